@@ -137,7 +137,9 @@ format: setup
 
 # Brings the texts of the window into the files for Qt Linguist, and compiles these; new texts stay unfinished.
 translations: setup
-	$(VENV)/bin/pyside6-lupdate $$(find groundstation/gui -name '*.py' | sort) -no-obsolete -locations none -ts $(TEXTS)
+	$(PY) -m groundstation.gui.application.collect_messages $(VENV)/messages.py
+	$(VENV)/bin/pyside6-lupdate $$(find groundstation/gui -name '*.py' | sort) $(VENV)/messages.py \
+		-no-obsolete -locations none -ts $(TEXTS)
 	$(VENV)/bin/pyside6-lrelease $(TEXTS)
 
 clean:

@@ -11,13 +11,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.effects import Decision
 from planning.base.files import read_given
-from planning.base.json_file import JSON_FILE, expect_format, parse_json, to_record, write_atomically
+from planning.base.json_file import JSON_FILE, expect_format, parse_json, plain_values, to_record, write_atomically
+from planning.base.messages import say
 from planning.geo.frames import Origin, Vec3
 from planning.parameters import Constraints, FlightRules
 from planning.site.records import check_point
@@ -45,10 +45,12 @@ class Camera:
         for field in ("sensor_width_mm", "sensor_height_mm", "focal_length_mm", "image_width_px", "image_height_px"):
             value = getattr(self, field)
             if not (math.isfinite(value) and value > 0):
-                raise ValueError(f"{field}: expected a positive number, got {value}")
+                raise ValueError(say("expected a positive number, got {}", value, place=field))
         low, high = self.gimbal_pitch_deg
         if not -180.0 <= low <= high <= 90.0:
-            raise ValueError(f"gimbal_pitch_deg: expected [lowest, highest] within -180 to 90, got [{low}, {high}]")
+            raise ValueError(
+                say("expected [lowest, highest] within -180 to 90, got [{}, {}]", low, high, place="gimbal_pitch_deg")
+            )
 
     @property
     def half_width(self) -> float:
@@ -96,13 +98,15 @@ class Aircraft:
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.min_waypoint_spacing_m) and self.min_waypoint_spacing_m >= 0.0):
-            raise ValueError(f"min_waypoint_spacing_m: expected 0 or more, got {self.min_waypoint_spacing_m}")
+            raise ValueError(
+                say("expected 0 or more, got {}", self.min_waypoint_spacing_m, place="min_waypoint_spacing_m")
+            )
         for field in self.__slots__:
             value = getattr(self, field)
             if field in ("name", "min_waypoint_spacing_m") or (field == "max_jerk_m_s3" and value is None):
                 continue
             if not (math.isfinite(value) and value > 0):
-                raise ValueError(f"{field}: expected a positive number, got {value}")
+                raise ValueError(say("expected a positive number, got {}", value, place=field))
 
 
 USUAL_GSD_M = 0.020
@@ -140,12 +144,12 @@ class Viewpoint:
 
     def __post_init__(self) -> None:
         if not self.id:
-            raise ValueError("id: expected a name, got an empty text")
+            raise ValueError(say("expected a name, got an empty text", place="id"))
         check_point(self.position_enu_m, "position_enu_m")
         if not -180.0 <= self.heading_deg <= 360.0:
-            raise ValueError(f"heading_deg: expected (-180, 180], got {self.heading_deg}")
+            raise ValueError(say("expected (-180, 180], got {}", self.heading_deg, place="heading_deg"))
         if not -180.0 <= self.gimbal_pitch_deg <= 90.0:
-            raise ValueError(f"gimbal_pitch_deg: expected -180 to 90, got {self.gimbal_pitch_deg}")
+            raise ValueError(say("expected -180 to 90, got {}", self.gimbal_pitch_deg, place="gimbal_pitch_deg"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,7 +172,9 @@ class Sortie:
             check_point(point, f"path_enu_m[{i}]")
         unknown = set(self.in_passing_ids).difference(self.viewpoint_ids)
         if unknown:
-            raise ValueError(f"in_passing_ids: expected viewpoints of the sortie, got {sorted(unknown)[0]!r}")
+            raise ValueError(
+                say("expected viewpoints of the sortie, got {}", repr(sorted(unknown)[0]), place="in_passing_ids")
+            )
 
 
 @dataclass(frozen=True, slots=True)
@@ -187,11 +193,16 @@ class Coverage:
 
     def __post_init__(self) -> None:
         if self.sharp is not None and not 0 <= self.sharp <= self.total:
-            raise ValueError(f"coverage: expected sharp from 0 to {self.total}, got {self.sharp}")
+            raise ValueError(say("expected sharp from 0 to {}, got {}", self.total, self.sharp, place="coverage"))
         if not 0 <= self.covered <= self.reachable_upper_bound <= self.total:
             raise ValueError(
-                "coverage: expected 0 <= covered <= reachable_upper_bound <= total, got "
-                f"{self.covered}, {self.reachable_upper_bound}, {self.total}"
+                say(
+                    "expected 0 <= covered <= reachable_upper_bound <= total, got {}, {}, {}",
+                    self.covered,
+                    self.reachable_upper_bound,
+                    self.total,
+                    place="coverage",
+                )
             )
 
 
@@ -229,18 +240,20 @@ class Plan:
 
     def __post_init__(self) -> None:
         if self.format != PLAN_FORMAT:
-            raise ValueError(f"format: expected '{PLAN_FORMAT}', got '{self.format}'")
+            raise ValueError(say("expected '{}', got '{}'", PLAN_FORMAT, self.format, place="format"))
         if self.home_enu_m is not None:
             check_point(self.home_enu_m, "home_enu_m")
         ids = [viewpoint.id for viewpoint in self.viewpoints]
         known = set(ids)
         if len(known) != len(ids):
             twice = next(i for i in ids if ids.count(i) > 1)
-            raise ValueError(f"viewpoints: expected unique ids, '{twice}' occurs twice")
+            raise ValueError(say("expected unique ids, '{}' occurs twice", twice, place="viewpoints"))
         for i, sortie in enumerate(self.sorties):
             for viewpoint_id in sortie.viewpoint_ids:
                 if viewpoint_id not in known:
-                    raise ValueError(f"sorties[{i}].viewpoint_ids: there is no viewpoint '{viewpoint_id}'")
+                    raise ValueError(
+                        say("there is no viewpoint '{}'", viewpoint_id, place=f"sorties[{i}].viewpoint_ids")
+                    )
 
     @property
     def duration_s(self) -> float:
@@ -288,7 +301,7 @@ def plan_of(written: bytes, path: Path) -> Plan:
 
 def plan_to_json(plan: Plan) -> dict[str, Any]:
     """Content of `plan.json`; optional fields that are not set are left out."""
-    content: dict[str, Any] = msgspec.to_builtins(plan)
+    content: dict[str, Any] = plain_values(plan)
     content = {"format": content.pop("format"), **content}
     content["coverage"] = {key: value for key, value in content["coverage"].items() if value is not None}
     for viewpoint in content["viewpoints"]:

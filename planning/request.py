@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from planning.base.messages import say
 from planning.parameters import PlanParameters
 from planning.plan import Viewpoint
 
@@ -23,6 +24,8 @@ class PlanRequest(PlanParameters):
     def __post_init__(self) -> None:
         PlanParameters.__post_init__(self)
         if self.n_views is not None and self.n_views < len(self.locked):
-            raise ValueError(f"views: expected at least the {len(self.locked)} locked ones, got {self.n_views}")
+            raise ValueError(
+                say("expected at least the {} locked ones, got {}", len(self.locked), self.n_views, place="views")
+            )
         if len({viewpoint.id for viewpoint in self.locked}) < len(self.locked):
-            raise ValueError("locked: expected unique ids")
+            raise ValueError(say("expected unique ids", place="locked"))

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from groundstation.services.jobs.runner import JobContext, JobEvent, JobProgress, JobRunner
 from planning.base.findings import Finding, Severity
+from planning.base.messages import say
 
 if TYPE_CHECKING:
     from missions.flight.outcome import FlightReport
@@ -115,7 +116,7 @@ def print_findings(findings: Iterable[Finding]) -> None:
         for message, equal in list(texts.items())[:MAX_SHOWN]:
             place = equal[0].place
             if len(equal) > 1:
-                message += f" ({len(equal)} times, the first: {place})" if place else f" ({len(equal)} times)"
+                message += f" ({len(equal)} times, the first: {place})" if place else say(" ({} times)", len(equal))
             elif place and place not in message:
                 message = f"{place}: {message}"
             print(f"{MARKS[severity]}: {message}", file=sys.stderr)

@@ -101,15 +101,14 @@ def run_scene(options: argparse.Namespace) -> int:
 
 
 def _summary(found: SceneTrials) -> dict[str, Any]:
-    import msgspec
-
+    from planning.base.json_file import plain_values
     from reconstruction.tradeoff.scene_downstream import worth_rows
     from reconstruction.tradeoff.scene_tradeoff import scene_rows, truth_error
 
     truth = found.truth
     return {
         "truth": {"name": truth.name, "seconds": truth.seconds, "error": truth_error(truth)},
-        "effects": msgspec.to_builtins(found.decisions),
+        "effects": plain_values(found.decisions),
         "settings": scene_rows(truth, found.trials),
         "reflections": worth_rows(found.worths) if found.worths else [],
     }

@@ -7,10 +7,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TypeVar
 
-import msgspec
-
 from planning.base.errors import InputError
-from planning.base.json_file import read_toml, write_atomically
+from planning.base.json_file import plain_values, read_toml, write_atomically
+from planning.base.messages import glue, say
 
 Record = TypeVar("Record")
 
@@ -35,7 +34,7 @@ def or_first(path: Path, read: Callable[[], Record], first: Record, tell: Tell) 
         return read()
     except InputError as error:
         if os.path.lexists(path):
-            tell(f"{error}; {_put_aside(path)}")
+            tell(glue(error, "; ", _put_aside(path)))
         return first
 
 
@@ -45,8 +44,8 @@ def _put_aside(path: Path) -> str:
     try:
         path.replace(aside)
     except OSError:
-        return "its settings are as at first, and the file stays as it is"
-    return f"its settings are as at first again, and the damaged file is kept as '{aside}'"
+        return say("its settings are as at first, and the file stays as it is")
+    return say("its settings are as at first again, and the damaged file is kept as '{}'", aside)
 
 
 def write_kept(path: Path, record: object) -> None:
@@ -62,5 +61,5 @@ def write_kept(path: Path, record: object) -> None:
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise InputError(f"{path.parent}: this folder cannot be made ({error.strerror or error})") from error
-    write_atomically(path, tomli_w.dumps(msgspec.to_builtins(record)).encode())
+        raise InputError(say("this folder cannot be made ({})", error.strerror or error, place=path.parent)) from error
+    write_atomically(path, tomli_w.dumps(plain_values(record)).encode())

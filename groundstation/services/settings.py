@@ -11,13 +11,12 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
-import msgspec
-
 from groundstation.services.preferences import Tell, or_first
 from groundstation.services.units import UnitSystem
 from planning.base.errors import InputError
 from planning.base.files import real_path
-from planning.base.json_file import read_toml, to_record, write_atomically
+from planning.base.json_file import plain_values, read_toml, to_record, write_atomically
+from planning.base.messages import say
 from planning.parameters import DEFAULT_PROFILE
 
 CONFIG_VARIABLE = "REFLIGHT_CONFIG_DIR"
@@ -146,10 +145,12 @@ def read_settings(path: Path) -> Settings:
     for key, value in content.items():
         if key not in known:
             close = difflib.get_close_matches(key, known, 1)
-            hint = f"; is '{close[0]}' meant?" if close else ""
-            raise InputError(f"{path}: {key}: expected one of {', '.join(known)}, found an unknown key{hint}")
+            hint = say("; is '{}' meant?", close[0]) if close else ""
+            raise InputError(
+                say("expected one of {}, found an unknown key{}", ", ".join(known), hint, place=f"{path}: {key}")
+            )
         if key in CHOICES and value not in list(CHOICES[key]):
-            raise InputError(f"{path}: {key}: expected {' or '.join(CHOICES[key])}, got {value!r}")
+            raise InputError(say("expected {}, got {}", " or ".join(CHOICES[key]), repr(value), place=f"{path}: {key}"))
     return to_record(content, Settings, path)
 
 
@@ -176,7 +177,7 @@ def write_settings(path: Path, settings: Settings, *, replace_unreadable: bool =
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise InputError(f"{path.parent}: this folder cannot be made ({error.strerror or error})") from error
+        raise InputError(say("this folder cannot be made ({})", error.strerror or error, place=path.parent)) from error
     import tomli_w
 
-    write_atomically(path, (HEADER + tomli_w.dumps(msgspec.to_builtins(settings))).encode())
+    write_atomically(path, (HEADER + tomli_w.dumps(plain_values(settings))).encode())

@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 from enum import Enum
 
 from missions.mavlink.messages import Address, CommandAck, CommandInt, CommandLong, Message, Received
+from planning.base.messages import say
 
 ATTEMPT_S = 1.5
 """Wait for an acknowledgement before the command is sent again; the MAVLink guide's default timeout."""
@@ -36,14 +37,14 @@ class Answer(Enum):
 
 
 RESULTS = {
-    1: "not now",
+    1: say("not now"),
     2: "denied",
-    3: "not supported",
+    3: say("not supported"),
     4: "failed",
     6: "cancelled",
-    7: "only as COMMAND_LONG",
-    8: "only as COMMAND_INT",
-    9: "frame not supported",
+    7: say("only as COMMAND_LONG"),
+    8: say("only as COMMAND_INT"),
+    9: say("frame not supported"),
 }
 """MAV_RESULT in words."""
 
@@ -112,10 +113,12 @@ class CommandCall:
             self._deadline_s = received.time_s + PROGRESS_S
             self._n_sent = self._n_attempts  # it is being done: sending it again could do it twice
         elif ack.result == MAV_RESULT_ACCEPTED:
-            self.outcome = CommandOutcome(Answer.ACCEPTED, ack.result, f"{self.what}: done")
+            self.outcome = CommandOutcome(Answer.ACCEPTED, ack.result, say("done", place=self.what))
         else:
-            word = RESULTS.get(ack.result, f"result {ack.result}")
-            self.outcome = CommandOutcome(Answer.REFUSED, ack.result, f"the vehicle refused {self.what} ({word})")
+            word = RESULTS.get(ack.result, say("result {}", ack.result))
+            self.outcome = CommandOutcome(
+                Answer.REFUSED, ack.result, say("the vehicle refused {} ({})", self.what, word)
+            )
         return []
 
     def tick(self, now_s: float) -> list[Message]:
@@ -124,7 +127,7 @@ class CommandCall:
             return []
         if self._n_sent < self._n_attempts:
             return self._send(now_s)
-        self.outcome = CommandOutcome(Answer.NO_ANSWER, None, f"the vehicle did not answer to {self.what}")
+        self.outcome = CommandOutcome(Answer.NO_ANSWER, None, say("the vehicle did not answer to {}", self.what))
         return []
 
     def _send(self, now_s: float) -> list[Message]:

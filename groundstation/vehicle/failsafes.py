@@ -18,6 +18,7 @@ from groundstation.vehicle.preflight import PreflightCheck, Verdict
 from groundstation.vehicle.surroundings import Surroundings
 from groundstation.vehicle.watch import DISTANCE_TOLERANCE_M
 from missions.mavlink.autopilots import Autopilot
+from planning.base.messages import say
 from planning.geo.frames import Vec3
 from planning.routing.rally import return_way
 
@@ -181,20 +182,25 @@ def _stated(code: str, deed: Deed | None, when: str, set_so: str) -> PreflightCh
     """One line: what happens then, as the parameters have it."""
     match deed:
         case Deed.GO_ON:
-            verdict, text = Verdict.OK, f"{when}, and it flies the mission on ({set_so})"
+            verdict, text = Verdict.OK, say("{}, and it flies the mission on ({})", when, set_so)
         case Deed.RETURN:
-            verdict, text = Verdict.OK, f"{when}, and it breaks the mission off and returns ({set_so})"
+            verdict, text = Verdict.OK, say("{}, and it breaks the mission off and returns ({})", when, set_so)
         case Deed.LAND:
-            verdict, text = Verdict.WARN, f"{when}, and it lands, whatever is below it ({set_so})"
+            verdict, text = Verdict.WARN, say("{}, and it lands, whatever is below it ({})", when, set_so)
         case Deed.HOVER:
-            verdict, text = Verdict.WARN, f"{when}, and it hovers until its battery is low ({set_so})"
+            verdict, text = Verdict.WARN, say("{}, and it hovers until its battery is low ({})", when, set_so)
         case Deed.DRIFT:
-            text = f"{when}, and it only keeps its height and drifts with the wind: take over at once ({set_so})"
+            text = say(
+                "{}, and it only keeps its height and drifts with the wind: take over at once ({})", when, set_so
+            )
             verdict = Verdict.WARN
         case Deed.FALL:
-            verdict, text = Verdict.BAD, f"{when}, and it stops its motors and falls ({set_so}): set it otherwise"
+            verdict, text = (
+                Verdict.BAD,
+                say("{}, and it stops its motors and falls ({}): set it otherwise", when, set_so),
+            )
         case None:
-            verdict, text = Verdict.WARN, f"{when}, and what the vehicle does is not known ({set_so})"
+            verdict, text = Verdict.WARN, say("{}, and what the vehicle does is not known ({})", when, set_so)
     return PreflightCheck(code, verdict, text)
 
 
@@ -203,15 +209,17 @@ def _link(autopilot: Autopilot, values: Mapping[str, float]) -> Iterator[Preflig
     name, wait = ("FS_GCS_ENABLE", "FS_GCS_TIMEOUT") if is_ardupilot else ("NAV_DLL_ACT", "COM_DL_LOSS_T")
     number = values.get(name)
     if number is None:
-        text = f"what the vehicle does when the link is lost is not known: it has no {name}"
+        text = say("what the vehicle does when the link is lost is not known: it has no {}", name)
         yield PreflightCheck("link-loss", Verdict.WARN, text)
         return
     options, bit = ("FS_OPTIONS", CONTINUE_MISSION) if is_ardupilot else ("COM_DLL_EXCEPT", EXCEPT_MISSION)
     deed = LINK_ACTIONS[autopilot].get(int(number))
     if deed is Deed.GO_ON or int(values.get(options, 0.0)) & bit:
-        yield PreflightCheck("link-loss", Verdict.OK, "without the link it flies the mission on, and lands at home")
+        yield PreflightCheck(
+            "link-loss", Verdict.OK, say("without the link it flies the mission on, and lands at home")
+        )
     else:
-        yield _stated("link-loss", deed, f"{values.get(wait, 0.0):g} s without the link", f"{name} {number:g}")
+        yield _stated("link-loss", deed, say("{:g} s without the link", values.get(wait, 0.0)), f"{name} {number:g}")
 
 
 def _remote_control(autopilot: Autopilot, values: Mapping[str, float]) -> Iterator[PreflightCheck]:
@@ -219,38 +227,41 @@ def _remote_control(autopilot: Autopilot, values: Mapping[str, float]) -> Iterat
     name, wait = ("FS_THR_ENABLE", "RC_FS_TIMEOUT") if is_ardupilot else ("NAV_RCL_ACT", "COM_RC_LOSS_T")
     number = values.get(name)
     if number is None:
-        text = f"what the vehicle does without its remote control is not known: it has no {name}"
+        text = say("what the vehicle does without its remote control is not known: it has no {}", name)
         yield PreflightCheck("rc-loss", Verdict.WARN, text)
         return
     if not is_ardupilot and values.get("COM_RC_IN_MODE") == NO_STICKS:
-        text = f"it takes no remote control (COM_RC_IN_MODE {NO_STICKS}): only this ground station can take over"
+        text = say("it takes no remote control (COM_RC_IN_MODE {}): only this ground station can take over", NO_STICKS)
         yield PreflightCheck("rc-loss", Verdict.WARN, text)
         return
     options = "FS_OPTIONS" if is_ardupilot else "COM_RCL_EXCEPT"
     goes_on = bool(int(values.get(options, 0.0)) & EXCEPT_MISSION)
     deed = Deed.GO_ON if goes_on else REMOTE_CONTROL_ACTIONS[autopilot].get(int(number))
     set_so = f"{options} {values[options]:g}" if goes_on else f"{name} {number:g}"
-    yield _stated("rc-loss", deed, f"{values.get(wait, 1.0):g} s without the remote control", set_so)
+    yield _stated("rc-loss", deed, say("{:g} s without the remote control", values.get(wait, 1.0)), set_so)
 
 
 def _battery(autopilot: Autopilot, values: Mapping[str, float], orders: SortieOrders) -> Iterator[PreflightCheck]:
     """What it does when its battery is low; where that comes before the sortie is over, that it does."""
     stages = tuple(_battery_stages(autopilot, values))
     if not stages:
-        text = "nothing is done by itself when the battery is low: watch it, and land in time"
+        text = say("nothing is done by itself when the battery is low: watch it, and land in time")
         yield PreflightCheck("battery-low", Verdict.WARN, text)
         return
     reserve = orders.surroundings[autopilot].rules.battery_reserve
     left = 1.0 - (orders.battery_needed_by(autopilot) - reserve)
     for stage in stages:
         if stage.level is not None and stage.level > left and stage.deed is not Deed.GO_ON:
-            text = (
-                f"the vehicle breaks the mission off at a charge of {stage.level:.0%}, and the sortie ends with "
-                f"{left:.0%}: set {stage.name} so that it lasts"
+            text = say(
+                "the vehicle breaks the mission off at a charge of {:.0%}, and the sortie ends with {:.0%}: set "
+                "{} so that it lasts",
+                stage.level,
+                left,
+                stage.name,
             )
             yield PreflightCheck("battery-low", Verdict.WARN, text, stage.level, left)
         else:
-            when = f"battery below {stage.below}"
+            when = say("battery below {}", stage.below)
             # To land where it is, with the last charge, is what is left.
             check = _stated("battery-low", stage.deed, when, stage.set_so)
             yield replace(check, verdict=Verdict.OK) if stage.deed is Deed.LAND and stage.is_last else check
@@ -274,7 +285,7 @@ def _battery_stages(autopilot: Autopilot, values: Mapping[str, float]) -> Iterat
         for threshold, staged, is_last in BATTERY_STAGES_PX4.get(int(number), ()):
             level = values.get(threshold)
             if level is not None:
-                yield _Stage(staged, f"{level:.0%}", threshold, f"COM_LOW_BAT_ACT {number:g}", level, is_last)
+                yield _Stage(staged, f"{level:.0%}", threshold, say("COM_LOW_BAT_ACT {:g}", number), level, is_last)
         return
     capacity_mah = values.get("BATT_CAPACITY", 0.0)
     for kind in ("LOW", "CRT"):
@@ -283,11 +294,11 @@ def _battery_stages(autopilot: Autopilot, values: Mapping[str, float]) -> Iterat
         charge_mah = values.get(f"BATT_{kind}_MAH", 0.0)
         below = [f"{voltage_v:g} V"] if voltage_v > 0.0 else []
         level = charge_mah / capacity_mah if charge_mah > 0.0 and capacity_mah > 0.0 else None
-        below += [f"{charge_mah:g} mAh"] if charge_mah > 0.0 else []
+        below += [say("{:g} mAh", charge_mah)] if charge_mah > 0.0 else []
         deed = BATTERY_ACTIONS_ARDUPILOT.get(int(number))
         if below and deed is not Deed.GO_ON:
             name = f"BATT_{kind}_MAH"
-            yield _Stage(deed, " / ".join(below), name, f"BATT_FS_{kind}_ACT {number:g}", level, kind == "CRT")
+            yield _Stage(deed, " / ".join(below), name, say("BATT_FS_{}_ACT {:g}", kind, number), level, kind == "CRT")
 
 
 def _position(autopilot: Autopilot, values: Mapping[str, float]) -> Iterator[PreflightCheck]:
@@ -295,13 +306,13 @@ def _position(autopilot: Autopilot, values: Mapping[str, float]) -> Iterator[Pre
     name = "FS_EKF_ACTION" if autopilot is Autopilot.ARDUPILOT else "COM_POSCTL_NAVL"
     number = values.get(name)
     if number is None:
-        text = f"what the vehicle does when it loses its position is not known: it has no {name}"
+        text = say("what the vehicle does when it loses its position is not known: it has no {}", name)
         yield PreflightCheck("position-loss", Verdict.WARN, text)
         return
     is_off = autopilot is Autopilot.ARDUPILOT and values.get("FS_EKF_THRESH", 1.0) <= 0.0
     deed = Deed.DRIFT if is_off else POSITION_ACTIONS[autopilot].get(int(number))
-    set_so = f"FS_EKF_THRESH {values['FS_EKF_THRESH']:g}" if is_off else f"{name} {number:g}"
-    check = _stated("position-loss", deed, "position lost", set_so)
+    set_so = say("FS_EKF_THRESH {:g}", values["FS_EKF_THRESH"]) if is_off else f"{name} {number:g}"
+    check = _stated("position-loss", deed, say("position lost"), set_so)
     yield replace(check, verdict=Verdict.OK) if deed is Deed.LAND else check
 
 
@@ -332,7 +343,7 @@ def return_of(autopilot: Autopilot, values: Mapping[str, float], orders: SortieO
 def _return(autopilot: Autopilot, values: Mapping[str, float], orders: SortieOrders) -> Iterator[PreflightCheck]:
     found, around = return_of(autopilot, values, orders), orders.surroundings[autopilot]
     if found is None:
-        text = "how high the vehicle returns is not known; look before it is told to return"
+        text = say("how high the vehicle returns is not known; look before it is told to return")
         yield PreflightCheck("return", Verdict.WARN, text)
         return
     if len(around.path_enu_m) == 0:
@@ -347,32 +358,34 @@ def _return(autopilot: Autopilot, values: Mapping[str, float], orders: SortieOrd
         upper_m=2.0 * limit_m + 10.0,
     )
     n_rally = len(orders.site.rally_points)
-    where = f"{found.height_m:g} m above take-off, to the nearest of home and the rally points ({n_rally})"
+    where = say("{:g} m above take-off, to the nearest of home and the rally points ({})", found.height_m, n_rally)
     if not n_rally or found.destinations_enu_m == (orders.home_enu_m,):
-        where = f"{found.height_m:g} m above take-off, to home"
-    advice = f"set {found.height_name} so that it returns {orders.return_height_m:g} m above take-off"
+        where = say("{:g} m above take-off, to home", found.height_m)
+    advice = say("set {} so that it returns {:g} m above take-off", found.height_name, orders.return_height_m)
     if abs(found.height_m - orders.return_height_m) < SAME_HEIGHT_M:
-        advice = "it climbs there on its way, and no other height mends that; be ready to fly it back by hand"
+        advice = say("it climbs there on its way, and no other height mends that; be ready to fly it back by hand")
     ceiling_m = float(around.space.high_enu_m[2]) - orders.home_enu_m[2]
     if found.height_m > ceiling_m + DISTANCE_TOLERANCE_M:
-        text = f"it returns above the airspace, which ends {ceiling_m:.1f} m above take-off ({where}): {advice}"
+        text = say(
+            "it returns above the airspace, which ends {:.1f} m above take-off ({}): {}", ceiling_m, where, advice
+        )
         yield PreflightCheck("return", Verdict.BAD, text, found.height_m, ceiling_m, "m")
         return
     if way.gap_m <= 0.0:
-        text = f"it returns straight through the building or an obstacle ({where}): {advice}"
+        text = say("it returns straight through the building or an obstacle ({}): {}", where, advice)
     elif way.gap_m < limit_m - DISTANCE_TOLERANCE_M and way.gap_m >= _gap_of_best_m(orders, around, found):
         # No height is better: it is the climb that comes near, straight up beside something that juts out.
-        text = f"it climbs within {way.gap_m:.1f} m of the building or an obstacle before it returns ({where})"
+        text = say("it climbs within {:.1f} m of the building or an obstacle before it returns ({})", way.gap_m, where)
         yield PreflightCheck("return", Verdict.WARN, text, way.gap_m, limit_m, "m")
         return
     elif way.gap_m < limit_m - DISTANCE_TOLERANCE_M:
-        text = f"it returns {way.gap_m:.1f} m from the building or an obstacle ({where}): {advice}"
+        text = say("it returns {:.1f} m from the building or an obstacle ({}): {}", way.gap_m, where, advice)
     elif way.crosses_no_fly:
-        text = f"it returns across a no-fly zone ({where}); fly it back by hand"
+        text = say("it returns across a no-fly zone ({}); fly it back by hand", where)
         yield PreflightCheck("return", Verdict.WARN, text, way.gap_m, limit_m, "m")
         return
     else:
-        yield PreflightCheck("return", Verdict.OK, f"it returns {where}", way.gap_m, limit_m, "m")
+        yield PreflightCheck("return", Verdict.OK, say("it returns {}", where), way.gap_m, limit_m, "m")
         return
     yield PreflightCheck("return", Verdict.BAD, text, way.gap_m, limit_m, "m")
 
@@ -396,15 +409,15 @@ def _fence(autopilot: Autopilot, values: Mapping[str, float], orders: SortieOrde
     set_so = f"{switch} {value:g}"
     if is_off or deed is Deed.GO_ON:
         verdict = Verdict.WARN
-        text = f"the geofence is on board, but nothing keeps the aircraft from leaving it ({set_so})"
+        text = say("the geofence is on board, but nothing keeps the aircraft from leaving it ({})", set_so)
     elif deed is Deed.RETURN:
-        verdict, text = Verdict.OK, f"at the geofence it returns ({set_so})"
+        verdict, text = Verdict.OK, say("at the geofence it returns ({})", set_so)
     elif deed is Deed.LAND:
-        verdict, text = Verdict.OK, f"at the geofence it lands ({set_so})"
+        verdict, text = Verdict.OK, say("at the geofence it lands ({})", set_so)
     elif deed is Deed.HOVER:
-        verdict, text = Verdict.OK, f"at the geofence it hovers ({set_so})"
+        verdict, text = Verdict.OK, say("at the geofence it hovers ({})", set_so)
     elif deed is Deed.FALL:
-        verdict, text = Verdict.BAD, f"at the geofence it stops its motors and falls ({set_so}): set it otherwise"
+        verdict, text = Verdict.BAD, say("at the geofence it stops its motors and falls ({}): set it otherwise", set_so)
     else:
-        verdict, text = Verdict.WARN, f"what the vehicle does at the geofence is not known: see {name}"
+        verdict, text = Verdict.WARN, say("what the vehicle does at the geofence is not known: see {}", name)
     yield PreflightCheck("fence-action", verdict, text)

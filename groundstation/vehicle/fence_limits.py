@@ -14,6 +14,7 @@ import numpy as np
 from groundstation.vehicle.orders import SortieOrders
 from groundstation.vehicle.preflight import PreflightCheck, Verdict
 from missions.mavlink.autopilots import Autopilot
+from planning.base.messages import say
 
 NAMES = {
     Autopilot.ARDUPILOT: (
@@ -75,21 +76,29 @@ def fence_limit_checks(
     is_ardupilot = autopilot is Autopilot.ARDUPILOT
     if np.isfinite(limits.height_m):
         name = "FENCE_ALT_MAX" if is_ardupilot else "GF_MAX_VER_DIST"
-        beyond = (
-            f"the sortie climbs to {highest_m:.1f} m above take-off, the vehicle's fence ends at "
-            f"{limits.height_m:g} m: raise {name}"
+        beyond = say(
+            "the sortie climbs to {:.1f} m above take-off, the vehicle's fence ends at {:g} m: raise {}",
+            highest_m,
+            limits.height_m,
+            name,
         )
-        near = f"the sortie climbs to {limits.height_m - highest_m:.1f} m below the vehicle's fence: raise {name}"
-        fine = f"the sortie stays {limits.height_m - highest_m:.1f} m below the vehicle's fence ({name})"
+        near = say(
+            "the sortie climbs to {:.1f} m below the vehicle's fence: raise {}", limits.height_m - highest_m, name
+        )
+        fine = say("the sortie stays {:.1f} m below the vehicle's fence ({})", limits.height_m - highest_m, name)
         yield _judged("fence-height", limits.height_m - highest_m, limits, (beyond, near, fine))
     if np.isfinite(limits.radius_m):
         name = "FENCE_RADIUS" if is_ardupilot else "GF_MAX_HOR_DIST"
-        beyond = (
-            f"the sortie goes {farthest_m:.1f} m away from home, the vehicle's fence ends at {limits.radius_m:g} m: "
-            f"raise {name}"
+        beyond = say(
+            "the sortie goes {:.1f} m away from home, the vehicle's fence ends at {:g} m: raise {}",
+            farthest_m,
+            limits.radius_m,
+            name,
         )
-        near = f"the sortie comes within {limits.radius_m - farthest_m:.1f} m of the vehicle's fence: raise {name}"
-        fine = f"the sortie stays {limits.radius_m - farthest_m:.1f} m inside the vehicle's fence ({name})"
+        near = say(
+            "the sortie comes within {:.1f} m of the vehicle's fence: raise {}", limits.radius_m - farthest_m, name
+        )
+        fine = say("the sortie stays {:.1f} m inside the vehicle's fence ({})", limits.radius_m - farthest_m, name)
         yield _judged("fence-radius", limits.radius_m - farthest_m, limits, (beyond, near, fine))
 
 

@@ -18,6 +18,7 @@ from missions.mavlink.transfer.exchange import MissionType
 from missions.mavlink.transfer.wire_items import to_wire
 from missions.mission.model import GeoPoint, HeightReference, Mission
 from planning.base.errors import InfeasibleError, MissionError
+from planning.base.messages import say
 from planning.geo.frames import Vec3
 from planning.insight.flight_profile import LowFlight, low_flight
 from planning.plan import Plan
@@ -161,7 +162,11 @@ def _raised(mission: Mission, raised_m: float) -> Mission:
     climb_m = min((end.position.height_ellipsoid_m - lowered.height_ellipsoid_m for end in ends), default=math.inf)
     if climb_m < TAKEOFF_CLIMB_M:
         raise MissionError(
-            f"the flight would begin {climb_m:.1f} m above take-off, at least {TAKEOFF_CLIMB_M:g} m are needed; plan "
-            "it from where the aircraft stands"
+            say(
+                "the flight would begin {:.1f} m above take-off, at least {:g} m are needed; plan it from where "
+                "the aircraft stands",
+                climb_m,
+                TAKEOFF_CLIMB_M,
+            )
         )
     return replace(mission, takeoff=lowered)

@@ -14,6 +14,7 @@ from groundstation.vehicle.watch import FIX_3D, RTK_FLOAT, STALE_S
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.transfer.exchange import MissionType
 from missions.mission.model import altitude_amsl_m as home_altitude_amsl_m
+from planning.base.messages import glue, joined, say
 from planning.geo.frames import Vec3
 from planning.insight.flight_profile import LOW_M
 from planning.site.records import MIN_HEIGHT_ABOVE_GROUND_M
@@ -24,7 +25,7 @@ HOME_M = 3.0
 HOME_HEIGHT_M = 1.0
 """How much higher or lower than the planned home it may stand: every height of the flight is counted from there."""
 
-PRE_ARM = "pre-arm checks"
+PRE_ARM = say("pre-arm checks")
 """Name of that bit in `data/vehicle.toml`."""
 
 HEIGHT_ROUNDING_M = 1e-3
@@ -123,7 +124,7 @@ def preflight_checks(
         *_low_flight(orders),
         _board("mission", "mission", on_board.mission, on_board.doubt),
         *([_board("geofence", "geofence", on_board.fence, on_board.doubt)] if orders.fences else []),
-        *([_board("rally", "list of rally points", on_board.rally, on_board.doubt)] if orders.rally else []),
+        *([_board("rally", say("list of rally points"), on_board.rally, on_board.doubt)] if orders.rally else []),
         *_parameters(on_board.changes),
         *on_board.failsafes,
     )
@@ -148,7 +149,7 @@ OVERRULABLE = frozenset(("return", "home-height", "parameters"))
 def overruled(checks: Iterable[PreflightCheck], codes: frozenset[str]) -> tuple[PreflightCheck, ...]:
     """Checks with those that the pilot overruled told as warnings."""
     return tuple(
-        replace(check, verdict=Verdict.WARN, text=f"{check.text} (overruled)")
+        replace(check, verdict=Verdict.WARN, text=say("{} (overruled)", check.text))
         if check.verdict is Verdict.BAD and check.code in codes & OVERRULABLE
         else check
         for check in checks
@@ -175,63 +176,67 @@ def is_ready(checks: tuple[PreflightCheck, ...]) -> bool:
 
 def _link(state: VehicleState, now_s: float) -> PreflightCheck:
     if state.heartbeat is None or state.autopilot is None:
-        return PreflightCheck("link", Verdict.WAIT, "no autopilot was heard yet")
+        return PreflightCheck("link", Verdict.WAIT, say("no autopilot was heard yet"))
     if not state.is_link_alive(now_s):
-        return PreflightCheck("link", Verdict.WAIT, f"no heartbeat for {state.heartbeat.age_s(now_s):.0f} s")
+        return PreflightCheck("link", Verdict.WAIT, say("no heartbeat for {:.0f} s", state.heartbeat.age_s(now_s)))
     number = state.address.system if state.address is not None else 0
     if state.impostor:
-        text = (
-            f"{state.impostor} go by the number {number} on this link: switch one off, or give each a number of its "
-            "own (SYSID_THISMAV, MAV_SYS_ID)"
+        text = say(
+            "{} go by the number {} on this link: switch one off, or give each a number of its own "
+            "(SYSID_THISMAV, MAV_SYS_ID)",
+            state.impostor,
+            number,
         )
         return PreflightCheck("link", Verdict.BAD, text)
     if state.others:
         others = ", ".join(map(str, sorted(state.others)))
-        text = f"{state.autopilot.product} answers, vehicle {number}; others are on the link, too: {others}"
+        text = say("{} answers, vehicle {}; others are on the link, too: {}", state.autopilot.product, number, others)
         return PreflightCheck("link", Verdict.WARN, text)
-    return PreflightCheck("link", Verdict.OK, f"{state.autopilot.product} answers")
+    return PreflightCheck("link", Verdict.OK, say("{} answers", state.autopilot.product))
 
 
 def _position(state: VehicleState, now_s: float) -> PreflightCheck:
     if state.estimator is None and state.motion is None:
-        return PreflightCheck("position", Verdict.WAIT, "the autopilot does not know where it is yet")
+        return PreflightCheck("position", Verdict.WAIT, say("the autopilot does not know where it is yet"))
     if state.estimator is not None and state.estimator.value.problem:
-        return PreflightCheck("position", Verdict.WAIT, f"the autopilot has {state.estimator.value.problem}")
+        return PreflightCheck("position", Verdict.WAIT, say("the autopilot has {}", state.estimator.value.problem))
     if state.motion is None or state.motion.age_s(now_s) > STALE_S:
-        return PreflightCheck("position", Verdict.WAIT, "the autopilot sends no position")
-    return PreflightCheck("position", Verdict.OK, "the autopilot knows where it is")
+        return PreflightCheck("position", Verdict.WAIT, say("the autopilot sends no position"))
+    return PreflightCheck("position", Verdict.OK, say("the autopilot knows where it is"))
 
 
 def _gnss(state: VehicleState, now_s: float, needs_rtk: bool) -> PreflightCheck:
     if state.fix is None or state.fix.age_s(now_s) > STALE_S:
-        return PreflightCheck("gnss", Verdict.WAIT, "the GNSS receiver is silent")
+        return PreflightCheck("gnss", Verdict.WAIT, say("the GNSS receiver is silent"))
     fix, wanted = state.fix.value, RTK_FLOAT if needs_rtk else FIX_3D
     name = FIX_NAMES.get(fix.fix_type, str(fix.fix_type))
-    text = f"fix: {name}, {fix.n_satellites} satellites"
+    text = say("fix: {}, {} satellites", name, fix.n_satellites)
     if fix.horizontal_accuracy_m is not None:
-        text += f", {fix.horizontal_accuracy_m:.2f} m"
+        text += say(", {:.2f} m", fix.horizontal_accuracy_m)
     verdict = Verdict.OK if fix.fix_type >= wanted else Verdict.WAIT
     if verdict is Verdict.WAIT:
-        text += f"; {FIX_NAMES[wanted]} is needed"
+        text += say("; {} is needed", FIX_NAMES[wanted])
     return PreflightCheck("gnss", verdict, text, float(fix.fix_type), float(wanted))
 
 
 def _home(state: VehicleState, orders: SortieOrders, now_s: float) -> PreflightCheck:
     # Autopilots set home anew when they are armed: where the aircraft stands is what counts.
     if state.motion is None:
-        return PreflightCheck("home", Verdict.WAIT, "where the aircraft stands is not known yet")
+        return PreflightCheck("home", Verdict.WAIT, say("where the aircraft stands is not known yet"))
     x, y, _ = state.motion.value.position_enu_m
     away_m = math.dist((x, y), orders.home_enu_m[:2])
     low, high = orders.site.airspace.min_enu_m, orders.site.airspace.max_enu_m
     place = f"{orders.home.lat_deg:.7f}, {orders.home.lon_deg:.7f}"
     # A home on the border is inside; an aircraft on it stands a little to either side.
     if away_m > HOME_M and not (low[0] <= x <= high[0] and low[1] <= y <= high[1]):
-        text = f"the aircraft stands {away_m:.0f} m from the planned home, outside the airspace; put it at {place}"
+        text = say(
+            "the aircraft stands {:.0f} m from the planned home, outside the airspace; put it at {}", away_m, place
+        )
         return PreflightCheck("home", Verdict.BAD, text, away_m, HOME_M, "m")
     if away_m > HOME_M:
-        text = f"the aircraft stands {away_m:.1f} m from the planned home; put it at {place}, or plan from here"
+        text = say("the aircraft stands {:.1f} m from the planned home; put it at {}, or plan from here", away_m, place)
         return PreflightCheck("home", Verdict.BAD, text, away_m, HOME_M, "m")
-    return PreflightCheck("home", Verdict.OK, f"{away_m:.1f} m from the planned home", away_m, HOME_M, "m")
+    return PreflightCheck("home", Verdict.OK, say("{:.1f} m from the planned home", away_m), away_m, HOME_M, "m")
 
 
 def stands_above_m(state: VehicleState, orders: SortieOrders, altitude_amsl_m: float) -> float:
@@ -254,21 +259,27 @@ def stands_enu_m(state: VehicleState, orders: SortieOrders) -> Vec3 | None:
 def _home_height(state: VehicleState, orders: SortieOrders) -> PreflightCheck:
     """Where the aircraft stands, and from where it counts its heights: both are the height of the planned home."""
     if state.motion is None or state.home_altitude_amsl_m is None:
-        return PreflightCheck("home-height", Verdict.WAIT, "how high the aircraft stands is not known yet")
+        return PreflightCheck("home-height", Verdict.WAIT, say("how high the aircraft stands is not known yet"))
     stands_m = state.home_altitude_amsl_m + state.motion.value.height_above_home_m
     above_m = stands_above_m(state, orders, stands_m)
     accuracy_m = None if state.fix is None else state.fix.value.vertical_accuracy_m
-    told = "" if accuracy_m is None else f" (its GNSS height is good to {accuracy_m:.1f} m)"
+    told = "" if accuracy_m is None else say(" (its GNSS height is good to {:.1f} m)", accuracy_m)
     if abs(above_m) > HOME_HEIGHT_M:
         if above_m < 0.0:
-            text = (
-                f"the aircraft stands {-above_m:.1f} m lower than the planned home{told}, and all of the flight would "
-                f"be: raise it by {-above_m:.1f} m, or plan from here"
+            text = say(
+                "the aircraft stands {:.1f} m lower than the planned home{}, and all of the flight would be: "
+                "raise it by {:.1f} m, or plan from here",
+                -above_m,
+                told,
+                -above_m,
             )
         else:
-            text = (
-                f"the aircraft stands {above_m:.1f} m higher than the planned home{told}, and all of the flight would "
-                f"be: lower it by {above_m:.1f} m, or plan from here"
+            text = say(
+                "the aircraft stands {:.1f} m higher than the planned home{}, and all of the flight would be: "
+                "lower it by {:.1f} m, or plan from here",
+                above_m,
+                told,
+                above_m,
             )
         return PreflightCheck("home-height", Verdict.BAD, text, above_m, HOME_HEIGHT_M, "m")
     counted_m = state.home_position_amsl_m
@@ -276,12 +287,23 @@ def _home_height(state: VehicleState, orders: SortieOrders) -> PreflightCheck:
     if abs(off_m) > HOME_HEIGHT_M:
         # ArduPilot sets its home anew when it is armed, and that is looked at again; PX4 takes off at once.
         text = (
-            f"the vehicle's own home lies {abs(off_m):.1f} m {'higher' if off_m > 0.0 else 'lower'} than the planned "
-            "one: set it anew where it stands"
+            say(
+                "the vehicle's own home lies {:.1f} m higher than the planned one: set it anew where it stands",
+                abs(off_m),
+            )
+            if off_m > 0.0
+            else say(
+                "the vehicle's own home lies {:.1f} m lower than the planned one: set it anew where it stands",
+                abs(off_m),
+            )
         )
         verdict = Verdict.WARN if state.autopilot is Autopilot.ARDUPILOT else Verdict.BAD
         return PreflightCheck("home-height", verdict, text, off_m, HOME_HEIGHT_M, "m")
-    text = f"{abs(above_m):.1f} m {'above' if above_m >= 0.0 else 'below'} the planned home{told}"
+    text = (
+        say("{:.1f} m above the planned home{}", abs(above_m), told)
+        if above_m >= 0.0
+        else say("{:.1f} m below the planned home{}", abs(above_m), told)
+    )
     return PreflightCheck("home-height", Verdict.OK, text, above_m, HOME_HEIGHT_M, "m")
 
 
@@ -291,7 +313,7 @@ def _slower(orders: SortieOrders, autopilot: Autopilot) -> str:
     if f"{needed:.0%}" == f"{planned:.0%}":
         return ""
     takes, reckons = _minutes(orders.duration_s(autopilot)), _minutes(orders.mission.duration_s)
-    return f" ({autopilot.product} flies it in {takes} min, the plan reckons with {reckons} min)"
+    return say(" ({} flies it in {} min, the plan reckons with {} min)", autopilot.product, takes, reckons)
 
 
 def _minutes(duration_s: float) -> str:
@@ -302,14 +324,23 @@ def _minutes(duration_s: float) -> str:
 def _battery(state: VehicleState, orders: SortieOrders, now_s: float) -> PreflightCheck:
     level = None if state.battery is None else state.battery.value.remaining
     if level is None:
-        return PreflightCheck("battery", Verdict.WAIT, "the battery's charge is not known")
+        return PreflightCheck("battery", Verdict.WAIT, say("the battery's charge is not known"))
     needed = orders.battery_needed_by(state.autopilot)
     why = "" if state.autopilot is None else _slower(orders, state.autopilot)
     if level < needed:
-        advice = "put in a full one" if needed <= 1.0 else "none holds that much: plan it again, in shorter sorties"
-        text = f"the battery holds {level:.0%}; the sortie and the reserve take {needed:.0%}{why}: {advice}"
+        advice = (
+            say("put in a full one")
+            if needed <= 1.0
+            else say("none holds that much: plan it again, in shorter sorties")
+        )
+        text = say(
+            "the battery holds {:.0%}; the sortie and the reserve take {}: {}",
+            level,
+            glue(f"{needed:.0%}", why),
+            advice,
+        )
         return PreflightCheck("battery", Verdict.BAD, text, level, needed)
-    text = f"{level:.0%}; the sortie and the reserve take {needed:.0%}{why}"
+    text = say("{:.0%}; the sortie and the reserve take {}", level, glue(f"{needed:.0%}", why))
     return PreflightCheck("battery", Verdict.OK, text, level, needed)
 
 
@@ -320,23 +351,27 @@ def _sensors(state: VehicleState) -> Iterator[PreflightCheck]:
     problems = state.sensor_problems.value
     if PRE_ARM in problems:
         texts = (text.text for text in reversed(state.texts) if text.text.startswith("PreArm"))
-        said = next(texts, "it does not say why")
-        yield PreflightCheck("sensors", Verdict.WAIT, f"the autopilot cannot be armed yet ({said})")
+        said = next(texts, say("it does not say why"))
+        yield PreflightCheck("sensors", Verdict.WAIT, say("the autopilot cannot be armed yet ({})", said))
     elif problems:
-        yield PreflightCheck("sensors", Verdict.OK, "it can be armed, but has trouble with: " + ", ".join(problems))
+        yield PreflightCheck(
+            "sensors", Verdict.OK, say("it can be armed, but has trouble with: ") + joined(", ", problems)
+        )
     else:
-        yield PreflightCheck("sensors", Verdict.OK, "the autopilot is content with all sensors")
+        yield PreflightCheck("sensors", Verdict.OK, say("the autopilot is content with all sensors"))
 
 
 def _wind(state: VehicleState, orders: SortieOrders) -> PreflightCheck:
     limit_m_s = orders.mission.aircraft.max_wind_m_s
     if state.wind_enu_m_s is None:
         # Multirotors without an airspeed sensor know the wind only in flight.
-        return PreflightCheck("wind", Verdict.OK, "not measured on the ground; look up", None, limit_m_s, "m/s")
+        return PreflightCheck("wind", Verdict.OK, say("not measured on the ground; look up"), None, limit_m_s, "m/s")
     wind_m_s = math.hypot(*state.wind_enu_m_s.value[:2])
     if wind_m_s > limit_m_s:
         name = orders.mission.aircraft.name
-        text = f"the wind blows with {wind_m_s:.1f} m/s, more than the {limit_m_s:g} m/s of {name}; wait for less"
+        text = say(
+            "the wind blows with {:.1f} m/s, more than the {:g} m/s of {}; wait for less", wind_m_s, limit_m_s, name
+        )
         return PreflightCheck("wind", Verdict.BAD, text, wind_m_s, limit_m_s, "m/s")
     return PreflightCheck("wind", Verdict.OK, f"{wind_m_s:.1f} m/s", wind_m_s, limit_m_s, "m/s")
 
@@ -345,13 +380,13 @@ def _low_flight(orders: SortieOrders) -> Iterator[PreflightCheck]:
     low, usual_m = orders.low, MIN_HEIGHT_ABOVE_GROUND_M
     if low is None:
         return
-    text = f"down to {low.lowest_m:.1f} m above the ground"
+    text = say("down to {:.1f} m above the ground", low.lowest_m)
     if low.below_s is not None and low.lowest_m < LOW_M:
-        text = f"{text}, {_minutes(low.below_s)} min below {LOW_M:g} m"
+        text = say("{}, {} min below {:g} m", text, _minutes(low.below_s), LOW_M)
     if low.lowest_m >= usual_m - HEIGHT_ROUNDING_M:
         yield PreflightCheck("low-flight", Verdict.OK, text, low.lowest_m, usual_m, "m")
         return
-    text = f"{text}, under the usual {usual_m:g} m: look for people, cars and cables on the whole way"
+    text = say("{}, under the usual {:g} m: look for people, cars and cables on the whole way", text, usual_m)
     yield PreflightCheck("low-flight", Verdict.WARN, text, low.lowest_m, usual_m, "m")
 
 
@@ -360,21 +395,21 @@ def _parameters(changes: tuple[ParameterChange, ...] | None) -> Iterator[Preflig
         return
     off = [change for change in changes if change.is_off]
     if not changes:
-        yield PreflightCheck("parameters", Verdict.OK, "they are as the plan needs them")
+        yield PreflightCheck("parameters", Verdict.OK, say("they are as the plan needs them"))
     elif off:
         yield PreflightCheck("parameters", Verdict.BAD, change_text(off[0]), float(len(changes)), 0.0)
     else:
         text = change_text(changes[0])
         if len(changes) > 1:
-            text += f"; {len(changes) - 1} more differ"
+            text += say("; {} more differ", len(changes) - 1)
         yield PreflightCheck("parameters", Verdict.WARN, text, float(len(changes)), 0.0)
 
 
 def _board(code: str, what: str, is_equal: bool | None, doubt: str) -> PreflightCheck:
     if is_equal is None and doubt:
-        return PreflightCheck(code, Verdict.WAIT, f"the {what} was uploaded, but {doubt}: it is read again")
+        return PreflightCheck(code, Verdict.WAIT, say("the {} was uploaded, but {}: it is read again", what, doubt))
     if is_equal is None:
-        return PreflightCheck(code, Verdict.WAIT, f"the {what} was not uploaded yet")
+        return PreflightCheck(code, Verdict.WAIT, say("the {} was not uploaded yet", what))
     if not is_equal:
-        return PreflightCheck(code, Verdict.BAD, f"what the vehicle holds is not this {what}: upload it again")
-    return PreflightCheck(code, Verdict.OK, f"the {what} is on board, read back and equal")
+        return PreflightCheck(code, Verdict.BAD, say("what the vehicle holds is not this {}: upload it again", what))
+    return PreflightCheck(code, Verdict.OK, say("the {} is on board, read back and equal", what))

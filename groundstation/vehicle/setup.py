@@ -15,6 +15,7 @@ from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.messages import Address, CommandLong
 from missions.mission.model import Mission
 from planning.base.json_file import read_toml
+from planning.base.messages import say
 
 DATA_PATH = Path(__file__).parent / "data" / "setup.toml"
 
@@ -94,9 +95,11 @@ def needs_reboot(autopilot: Autopilot) -> frozenset[str]:
 def change_text(change: ParameterChange) -> str:
     """What is to be set, and why, in words."""
     if change.is_off:
-        return (
-            f"{change.name} is {change.old:g}: the autopilot commands no camera, or no gimbal; set it to "
-            f"{change.new:g} and restart the vehicle"
+        return say(
+            "{} is {:g}: the autopilot commands no camera, or no gimbal; set it to {:g} and restart the vehicle",
+            change.name,
+            change.old,
+            change.new,
         )
     return f"{change.name} is {change.old:g}; the plan was made for {change.new:g}"
 

@@ -31,6 +31,7 @@ from missions.flight.record import TakenPhoto
 from missions.mavlink import messages
 from missions.mavlink.autopilots import Autopilot, facts
 from missions.mavlink.mode_numbers import mode_name
+from planning.base.messages import say
 from planning.geo.enu import enu_from_geodetic, geodetic_from_enu
 from planning.geo.frames import Origin, Vec3, wrap_heading_deg
 
@@ -53,9 +54,9 @@ TURNS_BACK, TURNS_BACK_S = 3, 20.0
 JUMP_M, BACK_M, JUMPS_S = 50.0, 5.0, 3.0
 """Between two positions, ten of which come every second, nothing flies so far, and is back again at once."""
 
-OTHER_KIND = "two vehicles of different kinds"
-TWO_CLOCKS = "two vehicles whose times since power-up differ"
-TWO_PLACES = "two vehicles at different places"
+OTHER_KIND = say("two vehicles of different kinds")
+TWO_CLOCKS = say("two vehicles whose times since power-up differ")
+TWO_PLACES = say("two vehicles at different places")
 
 VELOCITY_KNOWN, HEIGHT_KNOWN = 2, 32
 MAX_VARIANCE = 0.8
@@ -217,24 +218,24 @@ def _wind_cov(state: VehicleState, message: messages.WindCov, now_s: float, _: L
 
 def _ekf(state: VehicleState, message: messages.EkfStatusReport, now_s: float, _: LocalFrame) -> VehicleState:
     worst = max(message.velocity_variance, message.pos_horiz_variance, message.pos_vert_variance)
-    problem = _lacking(message.flags) or ("its measurements contradict each other" if worst > MAX_VARIANCE else "")
+    problem = _lacking(message.flags) or (say("its measurements contradict each other") if worst > MAX_VARIANCE else "")
     return replace(state, estimator=Timed(EstimatorHealth(problem), now_s))
 
 
 def _estimator(state: VehicleState, message: messages.EstimatorStatus, now_s: float, _: LocalFrame) -> VehicleState:
     worst = max(message.vel_ratio, message.pos_horiz_ratio, message.pos_vert_ratio)
     flags = message.flags & ~CONSTANT_POSITION
-    problem = _lacking(flags) or ("its measurements contradict each other" if worst > 1.0 else "")
+    problem = _lacking(flags) or (say("its measurements contradict each other") if worst > 1.0 else "")
     return replace(state, estimator=Timed(EstimatorHealth(problem), now_s))
 
 
 def _lacking(flags: int) -> str:
     """What an estimator does not know; the bits are the same for both autopilots."""
     if not flags & POSITION_KNOWN or flags & CONSTANT_POSITION:
-        return "no position yet"
+        return say("no position yet")
     if not flags & HEIGHT_KNOWN:
-        return "no height yet"
-    return "" if flags & VELOCITY_KNOWN else "no velocity yet"
+        return say("no height yet")
+    return "" if flags & VELOCITY_KNOWN else say("no velocity yet")
 
 
 def _home(state: VehicleState, message: messages.HomePosition, now_s: float, frame: LocalFrame) -> VehicleState:

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from planning.base.errors import InputError
+from planning.base.messages import say
 
 RETRY_S = 5.0
 
@@ -41,9 +42,11 @@ class TelemetryLog:
         try:
             self._file: BinaryIO = path.open("xb", buffering=0)
         except FileExistsError as error:
-            raise InputError(f"{path}: this log exists already; name another file") from error
+            raise InputError(say("this log exists already; name another file", place=path)) from error
         except OSError as error:
-            raise InputError(f"{path}: the telemetry log cannot be made ({error.strerror or error})") from error
+            raise InputError(
+                say("the telemetry log cannot be made ({})", error.strerror or error, place=path)
+            ) from error
 
     def write(self, frame: bytes, unix_time_s: float) -> None:
         """Add a frame; never raises because of the disk."""
@@ -62,7 +65,7 @@ class TelemetryLog:
             self._failed(error.strerror or str(error), unix_time_s)
         else:
             if n_written != len(content):
-                self._failed("the disk is full", unix_time_s)
+                self._failed(say("the disk is full"), unix_time_s)
                 return
             self._n_bytes += len(content)
             self.problem = ""
@@ -76,13 +79,13 @@ class TelemetryLog:
                 self._file.truncate(self._n_bytes)
             self._file.close()
         except OSError as error:
-            self.problem = f"{self.path}: the telemetry log may lack its end ({error.strerror or error})"
+            self.problem = say("the telemetry log may lack its end ({})", error.strerror or error, place=self.path)
 
     def _failed(self, why: str, unix_time_s: float) -> None:
         self.n_lost += 1
         self._retry_s = unix_time_s + RETRY_S
-        self.problem = (
-            f"{self.path}: the telemetry log cannot be written ({why}); free some space, and it goes on by itself"
+        self.problem = say(
+            "the telemetry log cannot be written ({}); free some space, and it goes on by itself", why, place=self.path
         )
 
 
@@ -98,7 +101,7 @@ def new_log_path(folder: Path, unix_time_s: float, name: str = "flight") -> Path
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(
-            f"{folder}: the folder for telemetry logs cannot be made ({error.strerror or error})"
+            say("the folder for telemetry logs cannot be made ({})", error.strerror or error, place=folder)
         ) from error
     began = datetime.datetime.fromtimestamp(unix_time_s, datetime.UTC).strftime("%Y-%m-%dT%H-%M-%SZ")
     path, number = folder / f"{name}-{began}.tlog", 1

@@ -14,6 +14,7 @@ from groundstation.vehicle.modes import MISSION_MODE
 from groundstation.vehicle.state import LINK_LOST_S, Landed, Motion, VehicleState
 from groundstation.vehicle.surroundings import Surroundings
 from planning.base.findings import Severity
+from planning.base.messages import say
 from planning.geo.frames import Vec3
 
 HOLD_S = 3.0
@@ -169,7 +170,7 @@ def _link(
     if state.heartbeat is None:
         return
     age_s = state.heartbeat.age_s(now_s)
-    text = f"no heartbeat for {age_s:.0f} s: what is shown is old; the aircraft goes on by itself"
+    text = say("no heartbeat for {:.0f} s: what is shown is old; the aircraft goes on by itself", age_s)
     yield Watched("link-lost", Severity.ERROR, text, age_s - LINK_LOST_S, LINK_LOST_S / 2.0, age_s, LINK_LOST_S, "s")
 
 
@@ -177,7 +178,9 @@ def _impostor(
     watch: Watch, state: VehicleState, around: Surroundings, now_s: float, rules: WatchRules
 ) -> Iterator[Watched]:
     if state.impostor:
-        text = f"{state.impostor} go by one number on this link: nothing shown here can be relied on; fly it by hand"
+        text = say(
+            "{} go by one number on this link: nothing shown here can be relied on; fly it by hand", state.impostor
+        )
         yield Watched("two-vehicles", Severity.ERROR, text, 1.0, 0.0, 1.0, 0.0)
 
 
@@ -193,7 +196,7 @@ def _distance(
     ahead_m = around.facade_distance_m(motion.position_enu_m, end)
     here_m = around.facade_distance_m(motion.position_enu_m, motion.position_enu_m)
     severity = Severity.ERROR if here_m < limit_m else Severity.WARNING
-    text = f"the facade is {here_m:.1f} m away and will be {ahead_m:.1f} m away where the aircraft can stop"
+    text = say("the facade is {:.1f} m away and will be {:.1f} m away where the aircraft can stop", here_m, ahead_m)
     excess_m = limit_m - ahead_m
     yield Watched("facade-distance", severity, text, excess_m, DISTANCE_SLACK_M, ahead_m, limit_m, "m")
 
@@ -206,7 +209,7 @@ def _wind(
     wind_m_s = math.hypot(*state.wind_enu_m_s.value[:2])
     limit_m_s = around.aircraft.max_wind_m_s
     severity = Severity.ERROR if wind_m_s > limit_m_s else Severity.WARNING
-    text = f"the wind is {wind_m_s:.1f} m/s; {around.aircraft.name} may fly in up to {limit_m_s:g} m/s"
+    text = say("the wind is {:.1f} m/s; {} may fly in up to {:g} m/s", wind_m_s, around.aircraft.name, limit_m_s)
     excess_m_s = wind_m_s - WIND_SHARE * limit_m_s
     yield Watched("wind", severity, text, excess_m_s, WIND_SLACK_M_S, wind_m_s, limit_m_s, "m/s")
 
@@ -222,12 +225,18 @@ def _battery(
     home = 0.0 if motion is None else around.way_home_s(motion.position_enu_m) / around.aircraft.endurance_s
     needed = reserve + home
     if level <= reserve:
-        severity, text = Severity.ERROR, f"the battery holds {level:.0%}, less than the reserve of {reserve:.0%}: land"
+        severity, text = (
+            Severity.ERROR,
+            say("the battery holds {:.0%}, less than the reserve of {:.0%}: land", level, reserve),
+        )
     elif level <= needed:
-        severity, text = Severity.ERROR, f"the way home would use the reserve: {level:.0%} left, {needed:.0%} needed"
+        severity, text = (
+            Severity.ERROR,
+            say("the way home would use the reserve: {:.0%} left, {:.0%} needed", level, needed),
+        )
     else:
         severity = Severity.WARNING
-        text = f"the battery holds {level:.0%}; at {needed:.0%} the aircraft must turn home"
+        text = say("the battery holds {:.0%}; at {:.0%} the aircraft must turn home", level, needed)
     yield Watched("battery", severity, text, needed + BATTERY_EARLY - level, BATTERY_SLACK, level, needed)
 
 
@@ -241,13 +250,13 @@ def _airspace(
     room_m = around.airspace_room_m(end)
     here_m = around.airspace_room_m(motion.position_enu_m)
     severity = Severity.ERROR if here_m < 0.0 else Severity.WARNING
-    text = f"the airspace ends {max(room_m, 0.0):.1f} m from where the aircraft can stop"
+    text = say("the airspace ends {:.1f} m from where the aircraft can stop", max(room_m, 0.0))
     if here_m < 0.0:
-        text = f"the aircraft is {-here_m:.1f} m outside the airspace"
+        text = say("the aircraft is {:.1f} m outside the airspace", -here_m)
     # Plans use the airspace up to its faces, as they do the minimum distance.
     yield Watched("airspace", severity, text, -AIRSPACE_EARLY_M - room_m, AIRSPACE_SLACK_M, room_m, 0.0, "m")
     away_m = around.no_fly_distance_m(end)
-    text = f"a no-fly zone is {max(away_m, 0.0):.1f} m from where the aircraft can stop"
+    text = say("a no-fly zone is {:.1f} m from where the aircraft can stop", max(away_m, 0.0))
     severity = Severity.ERROR if away_m <= 0.0 else Severity.WARNING
     if math.isfinite(away_m):
         limit_m = max(0.0, around.space.no_fly_distance_m - DISTANCE_TOLERANCE_M)
@@ -263,7 +272,7 @@ def _gnss(
     is_stale = state.fix.age_s(now_s) > STALE_S and state.is_link_alive(now_s)
     fix_type = 0 if is_stale else state.fix.value.fix_type
     severity = Severity.ERROR if fix_type < FIX_3D else Severity.WARNING
-    text = "the GNSS receiver has lost its fix: fly by hand or land" if fix_type < FIX_3D else "RTK is lost"
+    text = say("the GNSS receiver has lost its fix: fly by hand or land") if fix_type < FIX_3D else say("RTK is lost")
     yield Watched("gnss", severity, text, wanted - fix_type - 0.5, 0.0, float(fix_type), float(wanted))
 
 
@@ -278,16 +287,17 @@ def _position(
     silent_s = _silent_s(state)
     problem = "" if state.estimator is None else state.estimator.value.problem
     if silent_s > NO_POSITION_S:
-        text = (
-            "the aircraft sends no position any more: its distance, airspace, no-fly zones and path are not watched; "
-            "fly it by hand"
+        text = say(
+            "the aircraft sends no position any more: its distance, airspace, no-fly zones and path are not "
+            "watched; fly it by hand"
         )
         excess_s = silent_s - NO_POSITION_S
         yield Watched("position-lost", Severity.ERROR, text, excess_s, 0.0, silent_s, NO_POSITION_S, "s")
     elif problem:
-        text = (
-            f"the autopilot has {problem}: its place may be wrong, and so may the warnings of distance, airspace, "
-            "no-fly zones and path; be ready to fly by hand"
+        text = say(
+            "the autopilot has {}: its place may be wrong, and so may the warnings of distance, airspace, "
+            "no-fly zones and path; be ready to fly by hand",
+            problem,
         )
         yield Watched("position-lost", Severity.ERROR, text, 1.0, 0.0, 1.0, 0.0)
 
@@ -320,9 +330,13 @@ def _gimbal(
     wrong = [each for each in off_deg if each[0] > GIMBAL_OFF_DEG]
     if len(wrong) >= GIMBAL_PHOTOS:
         worst, place = max(wrong)
-        text = (
-            f"the camera looked {worst:.0f} degrees off at viewpoint '{place}', and elsewhere at {len(wrong)} of the "
-            f"last {len(off_deg)} photos: the gimbal may be stuck; pause, and look"
+        text = say(
+            "the camera looked {:.0f} degrees off at viewpoint '{}', and elsewhere at {} of the last {} "
+            "photos: the gimbal may be stuck; pause, and look",
+            worst,
+            place,
+            len(wrong),
+            len(off_deg),
         )
         excess = worst - GIMBAL_OFF_DEG
         yield Watched("gimbal", Severity.ERROR, text, excess, 0.0, worst, GIMBAL_OFF_DEG, "deg")
@@ -333,7 +347,7 @@ def _photos(
 ) -> Iterator[Watched]:
     missing = [name for name, since_s in watch.passed_s if now_s - since_s > PHOTO_LATE_S]
     if missing:
-        text = f"no photo came from viewpoint '{missing[-1]}'; {len(missing)} of this sortie are missing"
+        text = say("no photo came from viewpoint '{}'; {} of this sortie are missing", missing[-1], len(missing))
         yield Watched("photo-missing", Severity.WARNING, text, float(len(missing)), 0.0, float(len(missing)), 0.0)
 
 
@@ -344,7 +358,7 @@ def _deviation(
     if motion is None or not _flies_mission(state):
         return
     off_m = around.off_path_m(motion.position_enu_m)
-    text = f"the aircraft is {off_m:.1f} m beside its planned path"
+    text = say("the aircraft is {:.1f} m beside its planned path", off_m)
     yield Watched("off-path", Severity.WARNING, text, off_m - OFF_PATH_M, OFF_PATH_SLACK_M, off_m, OFF_PATH_M, "m")
 
 
@@ -352,7 +366,9 @@ def _board(
     watch: Watch, state: VehicleState, around: Surroundings, now_s: float, rules: WatchRules
 ) -> Iterator[Watched]:
     if rules.has_other_mission:
-        text = "the vehicle has another mission now than the one that was uploaded: pause it, and look what it does"
+        text = say(
+            "the vehicle has another mission now than the one that was uploaded: pause it, and look what it does"
+        )
         yield Watched("other-mission", Severity.ERROR, text, 1.0, 0.0, 1.0, 0.0)
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from planning.base.errors import MissionError
 from planning.base.json_file import read_toml
+from planning.base.messages import say
 
 DATA_PATH = Path(__file__).parents[1] / "data" / "dji.toml"
 
@@ -81,9 +82,13 @@ def dji_profile(identifier: str) -> DjiProfile:
     """
     known = dji_catalogue().profiles
     if identifier not in known:
-        found = f"the profile '{identifier}'" if identifier else "no profile"
+        found = say("the profile '{}'", identifier) if identifier else say("no profile")
         raise MissionError(
-            f"a DJI mission names its aircraft and camera, but the plan has {found}; expected one of "
-            f"{', '.join(sorted(known))}; plan with one of them, or export for MAVLink"
+            say(
+                "a DJI mission names its aircraft and camera, but the plan has {}; expected one of {}; plan with "
+                "one of them, or export for MAVLink",
+                found,
+                ", ".join(sorted(known)),
+            )
         )
     return known[identifier]

@@ -14,6 +14,7 @@ from missions.dji.wpml import Action, ActionGroup, Folder, MissionConfig, WpmlDo
 from missions.mission.legs import courses_deg, distance_m, leg_lengths_m
 from planning.aircraft.catalogue import profiles
 from planning.base.findings import Finding, Severity
+from planning.base.messages import glue, say
 
 ERROR, WARNING, NOTE = (Severity.ERROR, Severity.WARNING, Severity.NOTE)
 
@@ -46,18 +47,20 @@ def check_actions(
     ids_before
         Ids of the action groups of earlier waylines; those of this one are added.
     """
-    yield from _actions(folder.start_actions, config, f"{place}start actions", is_template=is_template)
+    yield from _actions(folder.start_actions, config, say("{}start actions", place), is_template=is_template)
     n, ids = len(folder.waypoints), set[int]()
     for i, waypoint in enumerate(folder.waypoints):
         for group in waypoint.groups:
-            where = f"{place}waypoint {i}, group {group.group_id}"
+            where = say("{}waypoint {}, group {}", place, i, group.group_id)
             yield from _group(group, n, where)
             yield from _actions(group.actions, config, where, is_template=is_template)
             if group.group_id in ids:
-                text = "the actionGroupId occurs twice in one wayline; number the groups from 0"
+                text = say("the actionGroupId occurs twice in one wayline; number the groups from 0")
                 yield Finding(ERROR, "action-group-id", text, where)
             elif group.group_id in ids_before:
-                yield Finding(NOTE, "action-group-id", "the actionGroupId occurs in an earlier wayline, too", where)
+                yield Finding(
+                    NOTE, "action-group-id", say("the actionGroupId occurs in an earlier wayline, too"), where
+                )
             ids |= set() if group.group_id is None else {group.group_id}
     ids_before |= ids
 
@@ -66,37 +69,39 @@ def _group(group: ActionGroup, n_waypoints: int, where: str) -> Iterator[Finding
     start, end = group.start_index, group.end_index
     if group.group_id is None or start is None or end is None:
         yield Finding(
-            ERROR, "action-group", "the group lacks its id, actionGroupStartIndex or actionGroupEndIndex", where
+            ERROR, "action-group", say("the group lacks its id, actionGroupStartIndex or actionGroupEndIndex"), where
         )
     elif UNSET in (group.group_id, start, end):
-        yield Finding(ERROR, "action-group", "the group has an id or index of 65535, which means unset", where)
+        yield Finding(ERROR, "action-group", say("the group has an id or index of 65535, which means unset"), where)
     elif not 0 <= start <= end < n_waypoints:
-        text = f"the group acts from waypoint {start} to {end}, but there are waypoints 0 to {n_waypoints - 1} only"
+        text = say(
+            "the group acts from waypoint {} to {}, but there are waypoints 0 to {} only", start, end, n_waypoints - 1
+        )
         yield Finding(ERROR, "action-group", text, where)
     if group.trigger not in TRIGGERS:
         known = ", ".join(TRIGGERS)
-        yield Finding(ERROR, "action-trigger", f"the trigger '{group.trigger}' is not one of {known}", where)
+        yield Finding(ERROR, "action-trigger", say("the trigger '{}' is not one of {}", group.trigger, known), where)
     elif group.trigger.startswith("multiple") and not (group.trigger_param or 0.0) > 0.0:
-        yield Finding(ERROR, "action-trigger", f"{group.trigger} needs an actionTriggerParam above 0", where)
+        yield Finding(ERROR, "action-trigger", say("{} needs an actionTriggerParam above 0", group.trigger), where)
     elif group.trigger.startswith("multiple") and start == end:
-        text = "a trigger by time or distance that ends where it begins covers no leg; its photos are not counted"
+        text = say("a trigger by time or distance that ends where it begins covers no leg; its photos are not counted")
         yield Finding(WARNING, "action-trigger", text, where)
     elif group.trigger == "reachPoint" and start != end:
-        yield Finding(WARNING, "action-trigger", "a reachPoint group should act at one waypoint only", where)
+        yield Finding(WARNING, "action-trigger", say("a reachPoint group should act at one waypoint only"), where)
     if not group.actions:
-        yield Finding(WARNING, "action-group", "the group has no actions", where)
+        yield Finding(WARNING, "action-group", say("the group has no actions"), where)
 
 
 def _actions(actions: Sequence[Action], config: MissionConfig, where: str, *, is_template: bool) -> Iterator[Finding]:
     seen: set[int] = set()
     for action in actions:
-        place = f"{where}, action {action.action_id} ({action.func})"
+        place = say("{}, action {} ({})", where, action.action_id, action.func)
         if action.action_id is None or action.action_id == UNSET:
-            yield Finding(ERROR, "action-id", "the action has no actionId", place)
+            yield Finding(ERROR, "action-id", say("the action has no actionId"), place)
         elif action.action_id in seen:
             # Pilot 2's own templates do this, and it numbers the actions anew when it makes waylines.
             severity = NOTE if is_template else ERROR
-            yield Finding(severity, "action-id", "the actionId occurs twice in its group; number from 0", place)
+            yield Finding(severity, "action-id", say("the actionId occurs twice in its group; number from 0"), place)
         else:
             seen.add(action.action_id)
         yield from _function(action, config, place)
@@ -104,23 +109,23 @@ def _actions(actions: Sequence[Action], config: MissionConfig, where: str, *, is
 
 def _function(action: Action, config: MissionConfig, place: str) -> Iterator[Finding]:
     if action.func not in FUNCS:
-        yield Finding(WARNING, "action-function", f"'{action.func}' is not a documented action", place)
+        yield Finding(WARNING, "action-function", say("'{}' is not a documented action", action.func), place)
     if "payloadPositionIndex" in action.params:
         position = action.number("payloadPositionIndex")
         if position not in {position for _, position in config.payloads}:
-            text = f"the action is for the camera at position {position}, where payloadInfo names none"
+            text = say("the action is for the camera at position {}, where payloadInfo names none", position)
             yield Finding(ERROR, "payload-position", text, place)
     yield from _angles(action, config, place)
     if action.func == "hover" and not (action.number("hoverTime") or 0.0) > 0.0:
-        yield Finding(ERROR, "hover", "hover needs a hoverTime above 0", place)
+        yield Finding(ERROR, "hover", say("hover needs a hoverTime above 0"), place)
     if action.func == "zoom" and not (action.number("focalLength") or 0.0) > 0.0:
-        yield Finding(ERROR, "zoom", "zoom needs a focalLength above 0", place)
+        yield Finding(ERROR, "zoom", say("zoom needs a focalLength above 0"), place)
     if action.func == "startTimeLapse" and not (action.number("minShootInterval") or 0.0) > 0.0:
         yield Finding(
-            WARNING, "time-lapse", "the time-lapse has no interval: how many photos it takes is unknown", place
+            WARNING, "time-lapse", say("the time-lapse has no interval: how many photos it takes is unknown"), place
         )
     if action.func == "panoShot":
-        yield Finding(NOTE, "panorama", "panoramas are not counted as photos", place)
+        yield Finding(NOTE, "panorama", say("panoramas are not counted as photos"), place)
     yield from check_lenses(action.params.get("payloadLensIndex", ""), place)
 
 
@@ -129,19 +134,21 @@ def check_lenses(names: str, place: str) -> Iterator[Finding]:
     known = dji_catalogue().lenses.names
     for name in filter(None, (name.strip() for name in names.split(","))):
         if name not in known:
-            hint = "; DJI spells it 'visable'" if name == "visible" else ""
-            yield Finding(ERROR, "lens", f"'{name}' is not one of the lenses {', '.join(known)}{hint}", place)
+            hint = say("; DJI spells it 'visable'") if name == "visible" else ""
+            yield Finding(
+                ERROR, "lens", say("'{}' is not one of the lenses {}", name, glue(", ".join(known), hint)), place
+            )
 
 
 def _angles(action: Action, config: MissionConfig, place: str) -> Iterator[Finding]:
     for name in ("aircraftHeading", "gimbalYawRotateAngle"):
         angle = action.number(name)
         if name in action.params and (angle is None or not math.isfinite(angle)):
-            yield Finding(ERROR, "heading", f"{name} is '{action.params[name]}', not an angle", place)
+            yield Finding(ERROR, "heading", say("{} is '{}', not an angle", name, action.params[name]), place)
         elif name == "aircraftHeading" and angle is not None and not -180.0 <= angle <= 180.0:
-            yield Finding(ERROR, "heading", "aircraftHeading is not in [-180, 180]", place, angle, 180.0, "deg")
+            yield Finding(ERROR, "heading", say("aircraftHeading is not in [-180, 180]"), place, angle, 180.0, "deg")
     if action.func == "rotateYaw" and "aircraftHeading" not in action.params:
-        yield Finding(ERROR, "heading", "rotateYaw has no aircraftHeading", place)
+        yield Finding(ERROR, "heading", say("rotateYaw has no aircraftHeading"), place)
     yield from _pitch(action, config, place)
 
 
@@ -152,7 +159,7 @@ def _pitch(action: Action, config: MissionConfig, place: str) -> Iterator[Findin
         return
     pitch_deg = action.number("gimbalPitchRotateAngle")
     if pitch_deg is None or not -180.0 <= pitch_deg <= 90.0:
-        text = f"'{action.params['gimbalPitchRotateAngle']}' is no pitch of any gimbal"
+        text = say("'{}' is no pitch of any gimbal", action.params["gimbalPitchRotateAngle"])
         yield Finding(ERROR, "gimbal-pitch", text, place)
         return
     if action.params.get("gimbalRotateMode") == "relativeAngle":
@@ -164,7 +171,7 @@ def _pitch(action: Action, config: MissionConfig, place: str) -> Iterator[Findin
         return
     low, high = payload.gimbal_pitch_deg
     if not low - 0.05 <= pitch_deg <= high + 0.05:
-        text = f"the camera turns from {low:g} to {high:g} deg only"
+        text = say("the camera turns from {:g} to {:g} deg only", low, high)
         limit = low if pitch_deg < low else high
         yield Finding(ERROR, "gimbal-pitch", text, place, pitch_deg, limit, "deg")
 
@@ -198,16 +205,16 @@ def check_route(folder: Folder, place: str, *, dji_fly: bool) -> Iterator[Findin
         yield Finding(
             ERROR,
             "height-mode",
-            f"executeHeightMode is '{folder.height_mode}'; aircraft know {', '.join(HEIGHT_MODES)}",
+            say("executeHeightMode is '{}'; aircraft know {}", folder.height_mode, ", ".join(HEIGHT_MODES)),
             place,
         )
     bad_points = [
-        f for i, w in enumerate(folder.waypoints) for f in _point(w, folder.height_mode, f"{place}waypoint {i}")
+        f for i, w in enumerate(folder.waypoints) for f in _point(w, folder.height_mode, say("{}waypoint {}", place, i))
     ]
     yield from bad_points
     for i, waypoint in enumerate(folder.waypoints):
-        yield from _speed(waypoint.speed_m_s or folder.speed_m_s, f"{place}waypoint {i}")
-        yield from _heading(waypoint, f"{place}waypoint {i}")
+        yield from _speed(waypoint.speed_m_s or folder.speed_m_s, say("{}waypoint {}", place, i))
+        yield from _heading(waypoint, say("{}waypoint {}", place, i))
     if not any(finding.severity is ERROR for finding in bad_points):
         yield from _legs(folder, place)
 
@@ -216,19 +223,21 @@ def _count(folder: Folder, place: str, *, dji_fly: bool) -> Iterator[Finding]:
     n = len(folder.waypoints)
     limit = MAX_WAYPOINTS_DJI_FLY if dji_fly else MAX_WAYPOINTS
     if n == 0:
-        yield Finding(ERROR, "waypoint-count", "the wayline has no waypoints", place, 0, 2)
+        yield Finding(ERROR, "waypoint-count", say("the wayline has no waypoints"), place, 0, 2)
     elif n == 1:
-        yield Finding(WARNING, "waypoint-count", "the wayline has one waypoint; most aircraft want two", place, 1, 2)
+        yield Finding(
+            WARNING, "waypoint-count", say("the wayline has one waypoint; most aircraft want two"), place, 1, 2
+        )
     elif n > limit:
         severity = WARNING if dji_fly else ERROR
-        yield Finding(severity, "waypoint-count", f"the wayline has {n} waypoints; split it", place, n, limit)
+        yield Finding(severity, "waypoint-count", say("the wayline has {} waypoints; split it", n), place, n, limit)
     indices = [waypoint.index for waypoint in folder.waypoints]
     if indices != list(range(n)):
         wrong = next(i for i, index in enumerate(indices) if index != i)
         yield Finding(
             ERROR,
             "waypoint-index",
-            f"expected indices 0 to {n - 1} in order, found {indices[wrong]} in place {wrong}",
+            say("expected indices 0 to {} in order, found {} in place {}", n - 1, indices[wrong], wrong),
             place,
         )
 
@@ -236,42 +245,50 @@ def _count(folder: Folder, place: str, *, dji_fly: bool) -> Iterator[Finding]:
 def _point(waypoint: WpmlWaypoint, height_mode: str, place: str) -> Iterator[Finding]:
     lat, lon, height_m = waypoint.lat_deg, waypoint.lon_deg, waypoint.execute_height_m
     if lat is None or lon is None:
-        yield Finding(ERROR, "coordinates", "the waypoint has no coordinates (longitude,latitude)", place)
+        yield Finding(ERROR, "coordinates", say("the waypoint has no coordinates (longitude,latitude)"), place)
     elif not (math.isfinite(lat) and math.isfinite(lon)) or abs(lat) > 90.0 or abs(lon) > 180.0:
         swapped = abs(lon) <= 90.0 < abs(lat) <= 180.0
-        hint = "latitude and longitude are swapped" if swapped else "they look like projected metres, not degrees"
-        yield Finding(ERROR, "coordinates", f"coordinates {lon:g},{lat:g} are not on the globe; {hint}", place)
+        hint = (
+            say("latitude and longitude are swapped")
+            if swapped
+            else say("they look like projected metres, not degrees")
+        )
+        yield Finding(
+            ERROR, "coordinates", say("coordinates {:g},{:g} are not on the globe; {}", lon, lat, hint), place
+        )
     elif lat == 0.0 and lon == 0.0:
-        yield Finding(ERROR, "coordinates", "coordinates are 0,0, which means that they were never set", place)
+        yield Finding(ERROR, "coordinates", say("coordinates are 0,0, which means that they were never set"), place)
     if height_m is None or not math.isfinite(height_m):
-        yield Finding(ERROR, "height", "the waypoint has no executeHeight", place)
+        yield Finding(ERROR, "height", say("the waypoint has no executeHeight"), place)
     elif height_mode == "relativeToStartPoint":
         if not MIN_HEIGHT_M <= height_m <= MAX_HEIGHT_M:
             limit = MIN_HEIGHT_M if height_m < MIN_HEIGHT_M else MAX_HEIGHT_M
-            yield Finding(ERROR, "height", "the height is outside what aircraft accept", place, height_m, limit, "m")
+            yield Finding(
+                ERROR, "height", say("the height is outside what aircraft accept"), place, height_m, limit, "m"
+            )
         elif height_m < LOW_M:
             yield Finding(
                 WARNING,
                 "height",
-                "the height is close to or below the take-off point; make sure that this is meant",
+                say("the height is close to or below the take-off point; make sure that this is meant"),
                 place,
                 height_m,
                 LOW_M,
                 "m",
             )
         elif height_m > LEGAL_CEILING_M:
-            text = "the height is above what the law allows in most countries without a permit"
+            text = say("the height is above what the law allows in most countries without a permit")
             yield Finding(WARNING, "height", text, place, height_m, LEGAL_CEILING_M, "m")
 
 
 def _speed(speed_m_s: float | None, place: str) -> Iterator[Finding]:
     if speed_m_s is None:
-        yield Finding(ERROR, "speed", "neither the waypoint nor the wayline has a speed", place)
+        yield Finding(ERROR, "speed", say("neither the waypoint nor the wayline has a speed"), place)
     elif not 0.0 < speed_m_s <= MAX_SPEED_M_S:
         yield Finding(
             ERROR,
             "speed",
-            "the speed must be above 0 and within the format's range",
+            say("the speed must be above 0 and within the format's range"),
             place,
             speed_m_s,
             MAX_SPEED_M_S,
@@ -283,17 +300,20 @@ def _heading(waypoint: WpmlWaypoint, place: str) -> Iterator[Finding]:
     mode, angle = waypoint.heading_mode, waypoint.heading_angle_deg
     if mode not in HEADING_MODES:
         known = ", ".join(HEADING_MODES)
-        yield Finding(ERROR, "heading-mode", f"waypointHeadingMode is '{mode}'; aircraft know {known}", place)
+        yield Finding(ERROR, "heading-mode", say("waypointHeadingMode is '{}'; aircraft know {}", mode, known), place)
     if angle is not None and not -180.0 <= angle <= 180.0:
-        yield Finding(ERROR, "heading", "waypointHeadingAngle is not in [-180, 180]", place, angle, 180.0, "deg")
+        yield Finding(ERROR, "heading", say("waypointHeadingAngle is not in [-180, 180]"), place, angle, 180.0, "deg")
     if mode == "smoothTransition" and angle is None:
-        yield Finding(ERROR, "heading", "smoothTransition needs a waypointHeadingAngle", place)
+        yield Finding(ERROR, "heading", say("smoothTransition needs a waypointHeadingAngle"), place)
     elif mode == "smoothTransition" and not waypoint.heading_angle_enable:
         yield Finding(
-            WARNING, "heading", "smoothTransition has waypointHeadingAngleEnable 0, so its angle may be ignored", place
+            WARNING,
+            "heading",
+            say("smoothTransition has waypointHeadingAngleEnable 0, so its angle may be ignored"),
+            place,
         )
     if mode == "towardPOI" and waypoint.poi_lat_lon_deg in (None, (0.0, 0.0)):
-        yield Finding(ERROR, "heading", "towardPOI has no waypointPoiPoint to look at", place)
+        yield Finding(ERROR, "heading", say("towardPOI has no waypointPoiPoint to look at"), place)
 
 
 def _legs(folder: Folder, place: str) -> Iterator[Finding]:
@@ -301,25 +321,25 @@ def _legs(folder: Folder, place: str) -> Iterator[Finding]:
     lat, lon = [w.lat_deg or 0.0 for w in waypoints], [w.lon_deg or 0.0 for w in waypoints]
     lengths_m = [float(m) for m in leg_lengths_m(lat, lon, [w.execute_height_m or 0.0 for w in waypoints])]
     for i, (length_m, course) in enumerate(zip(lengths_m, courses_deg(lat, lon), strict=True)):
-        leg = f"{place}leg {i}-{i + 1}"
+        leg = say("{}leg {}-{}", place, i, i + 1)
         if length_m > MAX_SPACING_M:
             yield Finding(
                 ERROR,
                 "spacing",
-                "the leg is longer than aircraft accept; put a waypoint in between",
+                say("the leg is longer than aircraft accept; put a waypoint in between"),
                 leg,
                 length_m,
                 MAX_SPACING_M,
                 "m",
             )
         elif length_m > LONG_LEG_M:
-            yield Finding(WARNING, "spacing", "the leg is unusually long", leg, length_m, LONG_LEG_M, "m")
+            yield Finding(WARNING, "spacing", say("the leg is unusually long"), leg, length_m, LONG_LEG_M, "m")
         elif length_m < MIN_SPACING_M:
             # An error by the documents, but FlightHub 2's terrain routes have legs of 0.2 m and are flown.
             yield Finding(
                 WARNING,
                 "spacing",
-                "the leg is shorter than documented; some aircraft refuse it",
+                say("the leg is shorter than documented; some aircraft refuse it"),
                 leg,
                 length_m,
                 MIN_SPACING_M,
@@ -327,7 +347,7 @@ def _legs(folder: Folder, place: str) -> Iterator[Finding]:
             )
         if course is None and waypoints[i].heading_mode == "followWayline":
             # The Payload SDK has an error for it (TRAJ_INVALID_YAW_MODE_IN_VERT_SEGM), and DJI's programs write it.
-            text = "the leg is vertical, so there is no course to follow: the nose stays as it is"
+            text = say("the leg is vertical, so there is no course to follow: the nose stays as it is")
             yield Finding(NOTE, "vertical-leg", text, leg)
     yield from _turns(waypoints, lengths_m, place)
     yield from _distance(folder, sum(lengths_m), place)
@@ -337,30 +357,36 @@ def _turns(waypoints: Sequence[WpmlWaypoint], lengths_m: Sequence[float], place:
     n = len(waypoints)
     dampings_m = [w.turn_damping_m or 0.0 if w.turn_mode in PASS_MODES else 0.0 for w in waypoints]
     for i, waypoint in enumerate(waypoints):
-        where = f"{place}waypoint {i}"
+        where = say("{}waypoint {}", place, i)
         if waypoint.turn_mode not in (*STOP_MODES, *PASS_MODES):
-            yield Finding(ERROR, "turn-mode", f"waypointTurnMode '{waypoint.turn_mode}' is not known", where)
+            yield Finding(ERROR, "turn-mode", say("waypointTurnMode '{}' is not known", waypoint.turn_mode), where)
         elif i in (0, n - 1) and waypoint.turn_mode not in STOP_MODES:
-            yield Finding(ERROR, "turn-mode", "the first and the last waypoint must be of a stopping type", where)
+            yield Finding(ERROR, "turn-mode", say("the first and the last waypoint must be of a stopping type"), where)
         elif waypoint.turn_mode in PASS_MODES:
             needs = waypoint.turn_mode == "coordinateTurn" or waypoint.use_straight_line
             if needs and dampings_m[i] <= 0.0:
-                yield Finding(ERROR, "turn-damping", f"{waypoint.turn_mode} needs a waypointTurnDampingDist", where)
-            yield Finding(NOTE, "turn-mode", f"{waypoint.turn_mode} cuts the corner: the path is no polyline", where)
+                yield Finding(
+                    ERROR, "turn-damping", say("{} needs a waypointTurnDampingDist", waypoint.turn_mode), where
+                )
+            yield Finding(
+                NOTE, "turn-mode", say("{} cuts the corner: the path is no polyline", waypoint.turn_mode), where
+            )
         elif waypoint.turn_damping_m:
-            text = "waypointTurnDampingDist is ignored where the aircraft stops"
+            text = say("waypointTurnDampingDist is ignored where the aircraft stops")
             yield Finding(NOTE, "turn-damping", text, where, waypoint.turn_damping_m, 0.0, "m")
     for i, length_m in enumerate(lengths_m):
         turning_m = dampings_m[i] + dampings_m[i + 1]
         if turning_m > 0.0 and turning_m >= length_m:
-            text = "the leg is shorter than the turns at its two ends"
-            yield Finding(ERROR, "turn-damping", text, f"{place}leg {i}-{i + 1}", turning_m, length_m, "m")
+            text = say("the leg is shorter than the turns at its two ends")
+            yield Finding(ERROR, "turn-damping", text, say("{}leg {}-{}", place, i, i + 1), turning_m, length_m, "m")
 
 
 def _distance(folder: Folder, length_m: float, place: str) -> Iterator[Finding]:
     said_m = folder.distance_m
     if said_m is not None and not abs(said_m - length_m) <= STALE_M + STALE_SHARE * length_m:
-        text = f"its distance is {said_m:.1f} m, but its waypoints are {length_m:.1f} m long: was it edited by hand?"
+        text = say(
+            "its distance is {:.1f} m, but its waypoints are {:.1f} m long: was it edited by hand?", said_m, length_m
+        )
         yield Finding(WARNING, "stale-distance", text, place, said_m, length_m, "m")
 
 
@@ -379,7 +405,7 @@ def check_dji(parts: DjiParts) -> tuple[Finding, ...]:
         *_waylines(parts.waylines, catalogue),
     ]
     if parts.template is None:
-        text = "there is no template.kml; DJI Pilot 2 and FlightHub 2 do not open the mission without it"
+        text = say("there is no template.kml; DJI Pilot 2 and FlightHub 2 do not open the mission without it")
         findings.append(Finding(WARNING, "no-template", text))
     else:
         findings += _takeoff(parts.template.config)
@@ -390,61 +416,68 @@ def check_dji(parts: DjiParts) -> tuple[Finding, ...]:
 
 def _document(document: WpmlDocument, part: str, catalogue: DjiCatalogue) -> Iterator[Finding]:
     if not document.version.startswith("1.0."):
-        yield Finding(ERROR, "version", f"WPML {document.version} is not known; expected 1.0.x", part)
+        yield Finding(ERROR, "version", say("WPML {} is not known; expected 1.0.x", document.version), part)
     for text in document.garbled:
-        yield Finding(ERROR, "garbled", f"expected a number: {text}", part)
+        yield Finding(ERROR, "garbled", say("expected a number: {}", text), part)
     yield from _config(document.config, part, catalogue)
 
 
 def _config(config: MissionConfig, part: str, catalogue: DjiCatalogue) -> Iterator[Finding]:
     if config.fly_to_wayline_mode == "pointToPoint":
-        text = "the aircraft flies slanted to the first waypoint (pointToPoint): check that way for obstacles"
+        text = say("the aircraft flies slanted to the first waypoint (pointToPoint): check that way for obstacles")
         yield Finding(WARNING, "fly-to-wayline", text, part)
     elif config.fly_to_wayline_mode != "safely":
-        text = f"flyToWaylineMode is '{config.fly_to_wayline_mode}'; expected safely or pointToPoint"
+        text = say("flyToWaylineMode is '{}'; expected safely or pointToPoint", config.fly_to_wayline_mode)
         yield Finding(ERROR, "fly-to-wayline", text, part)
     if config.finish_action == "gotoFirstWaypoint":
-        text = "at the end the aircraft flies straight to the first waypoint: check that way for obstacles"
+        text = say("at the end the aircraft flies straight to the first waypoint: check that way for obstacles")
         yield Finding(WARNING, "finish-action", text, part)
     elif config.finish_action not in ("goHome", "noAction", "autoLand"):
-        yield Finding(ERROR, "finish-action", f"finishAction '{config.finish_action}' is not known", part)
+        yield Finding(ERROR, "finish-action", say("finishAction '{}' is not known", config.finish_action), part)
     leaves = config.exit_on_rc_lost == "executeLostAction"
     if leaves and config.rc_lost_action not in ("goBack", "landing", "hover"):
-        yield Finding(ERROR, "link-loss", "executeLostAction needs an executeRCLostAction", part)
+        yield Finding(ERROR, "link-loss", say("executeLostAction needs an executeRCLostAction"), part)
     elif not leaves and config.exit_on_rc_lost != "goContinue":
-        yield Finding(ERROR, "link-loss", f"exitOnRCLost '{config.exit_on_rc_lost}' is not known", part)
+        yield Finding(ERROR, "link-loss", say("exitOnRCLost '{}' is not known", config.exit_on_rc_lost), part)
     height_m, (low, high) = config.takeoff_security_height_m, SECURITY_HEIGHT_M
     if height_m is None:
-        yield Finding(ERROR, "security-height", "there is no takeOffSecurityHeight", part)
+        yield Finding(ERROR, "security-height", say("there is no takeOffSecurityHeight"), part)
     elif not low <= height_m <= high:
         limit = low if height_m < low else high
-        yield Finding(ERROR, "security-height", "takeOffSecurityHeight is out of range", part, height_m, limit, "m")
+        yield Finding(
+            ERROR, "security-height", say("takeOffSecurityHeight is out of range"), part, height_m, limit, "m"
+        )
     speed_m_s = config.transitional_speed_m_s
     if speed_m_s is None or not 0.0 < speed_m_s <= MAX_SPEED_M_S:
-        text = f"globalTransitionalSpeed must be above 0 and at most {MAX_SPEED_M_S:g} m/s"
+        text = say("globalTransitionalSpeed must be above 0 and at most {:g} m/s", MAX_SPEED_M_S)
         yield Finding(ERROR, "speed", text, part, speed_m_s, MAX_SPEED_M_S, "m/s")
     if config.rth_height_m is None:
         yield Finding(
-            NOTE, "return-height", "globalRTHHeight is missing: the remote controller's own setting holds", part
+            NOTE, "return-height", say("globalRTHHeight is missing: the remote controller's own setting holds"), part
         )
     yield from _aircraft(config, part, catalogue)
 
 
 def _aircraft(config: MissionConfig, part: str, catalogue: DjiCatalogue) -> Iterator[Finding]:
     if config.drone is None or not config.payloads:
-        yield Finding(ERROR, "aircraft", "droneInfo or payloadInfo is missing", part)
+        yield Finding(ERROR, "aircraft", say("droneInfo or payloadInfo is missing"), part)
         return
     drone = catalogue.drone_by_numbers(config.drone)
     if drone is None:
-        text = f"the aircraft {config.drone[0]}-{config.drone[1]} is not known here, so its cameras are not checked"
+        text = say(
+            "the aircraft {}-{} is not known here, so its cameras are not checked", config.drone[0], config.drone[1]
+        )
         yield Finding(WARNING, "aircraft", text, part)
         return
     fitting = {catalogue.payloads[name].number for name in drone.payloads}
     for number, _ in config.payloads:
         if fitting and number not in fitting:
-            text = (
-                f"the aircraft {config.drone[0]}-{config.drone[1]} does not carry the camera {number}; expected one of "
-                f"{', '.join(map(str, sorted(fitting)))}"
+            text = say(
+                "the aircraft {}-{} does not carry the camera {}; expected one of {}",
+                config.drone[0],
+                config.drone[1],
+                number,
+                ", ".join(map(str, sorted(fitting))),
             )
             yield Finding(ERROR, "payload", text, part)
 
@@ -453,15 +486,15 @@ def _waylines(document: WpmlDocument, catalogue: DjiCatalogue) -> Iterator[Findi
     drone = None if document.config.drone is None else catalogue.drone_by_numbers(document.config.drone)
     dji_fly = drone is not None and drone.dji_fly
     if not document.folders:
-        yield Finding(ERROR, "waypoint-count", "there is no wayline", "waylines.wpml", 0, 1)
+        yield Finding(ERROR, "waypoint-count", say("there is no wayline"), "waylines.wpml", 0, 1)
     group_ids: set[int] = set()
     for number, folder in enumerate(document.folders):
-        place = "" if len(document.folders) == 1 else f"wayline {number}, "
+        place = "" if len(document.folders) == 1 else say("wayline {}, ", number)
         yield from check_route(folder, place, dji_fly=dji_fly)
         yield from check_actions(folder, document.config, place, is_template=False, ids_before=group_ids)
         yield from _endurance(folder, document.config, place, catalogue)
         if document.version >= "1.0.5" and not all(w.gimbal_heading for w in folder.waypoints):
-            yield Finding(NOTE, "gimbal-heading", "waypointGimbalHeadingParam is missing", place)
+            yield Finding(NOTE, "gimbal-heading", say("waypointGimbalHeadingParam is missing"), place)
 
 
 def _endurance(folder: Folder, config: MissionConfig, place: str, catalogue: DjiCatalogue) -> Iterator[Finding]:
@@ -469,14 +502,14 @@ def _endurance(folder: Folder, config: MissionConfig, place: str, catalogue: Dji
     names = [key for key, p in catalogue.profiles.items() if catalogue.drones[p.drone].numbers == config.drone]
     endurance_s = max((profiles()[name].aircraft.endurance_s for name in names), default=math.inf)
     if folder.duration_s is not None and folder.duration_s > endurance_s:
-        text = "the wayline lasts longer than the aircraft flies on one battery; split it"
+        text = say("the wayline lasts longer than the aircraft flies on one battery; split it")
         yield Finding(WARNING, "endurance", text, place, folder.duration_s, endurance_s, "s")
 
 
 def _takeoff(config: MissionConfig) -> Iterator[Finding]:
     reference = config.takeoff_ref_lat_lon_height
     if reference is not None and not is_on_globe(reference):
-        text = f"takeOffRefPoint {reference[0]:g},{reference[1]:g} is not on the globe and is not used"
+        text = say("takeOffRefPoint {:g},{:g} is not on the globe and is not used", reference[0], reference[1])
         yield Finding(WARNING, "takeoff-reference", text, "template.kml")
 
 
@@ -487,7 +520,7 @@ def is_on_globe(reference: tuple[float, float, float]) -> bool:
 
 def _template(template: WpmlDocument) -> Iterator[Finding]:
     for text in template.garbled:
-        yield Finding(ERROR, "garbled", f"expected a number: {text}", "template.kml")
+        yield Finding(ERROR, "garbled", say("expected a number: {}", text), "template.kml")
     group_ids: set[int] = set()
     for folder in template.folders:
         yield from check_lenses(folder.image_format, "template.kml, imageFormat")
@@ -498,10 +531,12 @@ def _template(template: WpmlDocument) -> Iterator[Finding]:
 def _agreement(waylines: WpmlDocument, template: WpmlDocument) -> Iterator[Finding]:
     """Where the two parts contradict each other: a program may use either."""
     if waylines.config.drone != template.config.drone:
-        text = f"template and waylines name different aircraft: {template.config.drone}, {waylines.config.drone}"
+        text = say(
+            "template and waylines name different aircraft: {}, {}", template.config.drone, waylines.config.drone
+        )
         yield Finding(ERROR, "parts-disagree", text)
     if sorted(waylines.config.payloads) != sorted(template.config.payloads):
-        yield Finding(ERROR, "parts-disagree", "template and waylines name different cameras")
+        yield Finding(ERROR, "parts-disagree", say("template and waylines name different cameras"))
     # Templates of mapping types hold an area, from which the waylines were made.
     if len(waylines.folders) == len(template.folders) == 1 and template.folders[0].template_type == "waypoint":
         yield from _same_route(waylines.folders[0], template.folders[0])
@@ -509,14 +544,16 @@ def _agreement(waylines: WpmlDocument, template: WpmlDocument) -> Iterator[Findi
 
 def _same_route(wayline: Folder, template: Folder) -> Iterator[Finding]:
     if len(wayline.waypoints) != len(template.waypoints):
-        text = f"the template has {len(template.waypoints)} waypoints, the wayline {len(wayline.waypoints)}"
+        text = say("the template has {} waypoints, the wayline {}", len(template.waypoints), len(wayline.waypoints))
         yield Finding(ERROR, "parts-disagree", text)
         return
     relative = "relativeToStartPoint"
     if (wayline.height_mode == relative) != (template.height_mode == relative):
-        text = (
-            f"the template's heights are {template.height_mode}, but the wayline is flown in {wayline.height_mode}; "
-            "the wayline counts here, while a program that starts from the template would fly elsewhere"
+        text = say(
+            "the template's heights are {}, but the wayline is flown in {}; the wayline counts here, while a "
+            "program that starts from the template would fly elsewhere",
+            template.height_mode,
+            wayline.height_mode,
         )
         yield Finding(WARNING, "parts-disagree", text)
     for i, (flown, planned) in enumerate(zip(wayline.waypoints, template.waypoints, strict=True)):
@@ -527,5 +564,5 @@ def _same_route(wayline: Folder, template: Folder) -> Iterator[Finding]:
             continue
         away_m = distance_m(*both)  # type: ignore[arg-type]  # none of them is None
         if away_m > SAME_PLACE_M:
-            text = "template and wayline put the waypoint in different places"
-            yield Finding(ERROR, "parts-disagree", text, f"waypoint {i}", away_m, SAME_PLACE_M, "m")
+            text = say("template and wayline put the waypoint in different places")
+            yield Finding(ERROR, "parts-disagree", text, say("waypoint {}", i), away_m, SAME_PLACE_M, "m")

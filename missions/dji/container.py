@@ -9,6 +9,7 @@ from pathlib import Path
 from missions.dji.wpml import WpmlDocument, parse_wpml
 from missions.mission.safe_files import open_archive, read_limited, read_member
 from planning.base.errors import MissionError
+from planning.base.messages import about, say
 
 TEMPLATE, WAYLINES = "template.kml", "waylines.wpml"
 
@@ -46,7 +47,7 @@ def _from_archive(source: Path | io.BytesIO, label: str) -> DjiParts:
     with archive:
         waylines = members.get(f"wpmz/{WAYLINES}")
         if waylines is None:
-            raise MissionError(f"{label}: {_what_is_there(set(members))}")
+            raise MissionError(about(label, _what_is_there(set(members))))
         template = members.get(f"wpmz/{TEMPLATE}")
         inside = f"{label}: wpmz/"
         return DjiParts(
@@ -59,7 +60,7 @@ def _from_folder(folder: Path) -> DjiParts:
     inner = folder / "wpmz"
     folder = inner if inner.is_dir() else folder
     if not (folder / WAYLINES).is_file():
-        raise MissionError(f"{folder}: expected the {WAYLINES} of an unpacked DJI mission, there is none")
+        raise MissionError(say("expected the {} of an unpacked DJI mission, there is none", WAYLINES, place=folder))
     template = folder / TEMPLATE
     return DjiParts(
         parse_wpml(read_limited(folder / WAYLINES), str(folder / WAYLINES)),
@@ -72,12 +73,15 @@ def _what_is_there(names: set[str]) -> str:
     at_root = sorted(names & {TEMPLATE, WAYLINES})
     elsewhere = sorted(name for name in names if name.endswith(("/" + TEMPLATE, "/" + WAYLINES)))
     if at_root:
-        return (
-            f"{' and '.join(at_root)} at the top of the archive, where no DJI program looks; expected both in its "
-            "folder wpmz; pack it again with that folder"
+        return say(
+            "{} at the top of the archive, where no DJI program looks; expected both in its folder wpmz; "
+            "pack it again with that folder",
+            " and ".join(at_root),
         )
     if f"wpmz/{TEMPLATE}" in names:
-        return "has a template but no waylines, so what would be flown is not in it; open and save it in DJI Pilot 2"
+        return say(
+            "has a template but no waylines, so what would be flown is not in it; open and save it in DJI Pilot 2"
+        )
     if elsewhere:
-        return f"has {elsewhere[0]}; expected wpmz/{WAYLINES} at the top of the archive; pack it again"
-    return f"no DJI mission; expected wpmz/{WAYLINES}, found {', '.join(sorted(names)[:3]) or 'nothing'}"
+        return say("has {}; expected wpmz/{} at the top of the archive; pack it again", elsewhere[0], WAYLINES)
+    return say("no DJI mission; expected wpmz/{}, found {}", WAYLINES, ", ".join(sorted(names)[:3]) or "nothing")

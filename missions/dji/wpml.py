@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from planning.base.errors import MissionError
 from planning.base.files import HostileXml, parse_xml
+from planning.base.messages import say
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
@@ -133,15 +134,19 @@ def parse_wpml(content: bytes, part: str) -> WpmlDocument:
     try:
         root = parse_xml(content, part)
     except HostileXml as error:
-        raise MissionError(f"{part}: {error}, which no mission needs; refused as hostile") from error
+        raise MissionError(say("{}, which no mission needs; refused as hostile", error, place=part)) from error
     except ValueError as error:
-        raise MissionError(f"{part}: not readable as XML ({error}); export the mission again") from error
+        raise MissionError(say("not readable as XML ({}); export the mission again", error, place=part)) from error
     version = next((found[1] for element in root.iter() if (found := _WPML_NAMESPACE.match(element.tag))), "")
     document = _child(root, "Document")
     if not version or document is None:
         raise MissionError(
-            f"{part}: this is XML, but not a DJI mission; expected kml/Document with the namespace "
-            f"http://www.dji.com/wpmz/1.0.x, found <{_local(root)}>"
+            say(
+                "this is XML, but not a DJI mission; expected kml/Document with the namespace "
+                "http://www.dji.com/wpmz/1.0.x, found <{}>",
+                _local(root),
+                place=part,
+            )
         )
     return _Parser().document(document, version)
 
@@ -181,7 +186,7 @@ class _Parser:
         text = _text(element, name)
         value = _as_number(text, kind)
         if text and value is None:
-            self.garbled.append(f"{name} is '{text[:40]}'")
+            self.garbled.append(say("{} is '{}'", name, text[:40]))
         return value
 
     def numbers(self, text: str, n: int, name: str) -> tuple[float, ...] | None:
@@ -191,7 +196,7 @@ class _Parser:
         if len(found) == n:
             return found
         if text:
-            self.garbled.append(f"{name} is '{text[:40]}'")
+            self.garbled.append(say("{} is '{}'", name, text[:40]))
         return None
 
     def document(self, element: Element, version: str) -> WpmlDocument:

@@ -9,14 +9,13 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
-import msgspec
 import numpy as np
 
 from missions.flight.outcome import FlightReport
 from missions.flight.record import FlightEvent, FlightRecord, TakenPhoto, Track
 from planning.base.effects import Decision
 from planning.base.errors import InputError
-from planning.base.json_file import expect_format, read_json, to_record, write_atomically
+from planning.base.json_file import expect_format, plain_values, read_json, to_record, write_atomically
 from planning.geo.frames import Origin
 from planning.plan import Plan, plan_to_json
 from planning.site.records import SiteModel
@@ -151,11 +150,11 @@ def flight_to_json(flight: Flight) -> dict[str, Any]:
         "site": flight.site,
         "site_sha256": flight.site_sha256,
         "plan_sha256": flight.plan_sha256,
-        "origin": msgspec.to_builtins(flight.origin),
+        "origin": plain_values(flight.origin),
         "sorties": [_record_to_json(record) for record in flight.sorties],
     }
     if flight.report is not None:
-        content["report"] = msgspec.to_builtins(flight.report)
+        content["report"] = plain_values(flight.report)
     return content
 
 
@@ -164,9 +163,9 @@ def _record_to_json(record: FlightRecord) -> dict[str, Any]:
         "sortie": record.sortie,
         "vehicle": record.vehicle,
         "duration_s": record.duration_s,
-        "photos": msgspec.to_builtins(record.photos),
-        "events": msgspec.to_builtins(record.events),
-        "effects": msgspec.to_builtins(record.effects),
+        "photos": plain_values(record.photos),
+        "events": plain_values(record.events),
+        "effects": plain_values(record.effects),
         "counted_before": record.counted_before,
         "counted_after": record.counted_after,
         "is_disarmed": record.is_disarmed,

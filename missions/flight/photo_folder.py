@@ -18,6 +18,7 @@ from missions.flight.logs.flights import LogFlights
 from missions.flight.record import FlightRecord, TakenPhoto, Track
 from planning.base.errors import InputError
 from planning.base.findings import Finding, Severity
+from planning.base.messages import joined, say
 from planning.base.progress import QUIET, Monitor
 from planning.photos.folder import clock_s, in_order, read_photos
 from planning.photos.places import PhotoHeights, absolute_height_m, photo_places, photos_near, receiver_findings
@@ -99,7 +100,7 @@ def _usable(photos: Sequence[PhotoMetadata], label: str, findings: list[Finding]
         text = f"{n} of {len(photos)} photos do not say {what} and are left out; use the files as the camera wrote them"
         findings.append(Finding(Severity.WARNING, "photos-incomplete", text, "", float(n), 0.0, "photos"))
     if not usable:
-        what = ", ".join(f"{n} without {what}" for what, n in missing.items())
+        what = joined(", ", (say("{} without {}", n, what) for what, n in missing.items()))
         raise InputError(
             f"{label}: no photo says where and when it was taken ({what}); use the files as the camera wrote them: "
             "programs that edit, send or share photos often take that out"

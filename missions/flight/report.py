@@ -20,6 +20,7 @@ from missions.flight.outcome import Ending, FlightReport, SortieOutcome, Summary
 from missions.flight.poses import taken_poses
 from missions.flight.record import FlightEvent, FlightRecord, TakenPhoto, Track
 from missions.flight.report_rules import DEFAULT_LIMITS, Limits, flight_findings, left_in_air_m
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.checks.case import Case
 from planning.checks.measures import pose_of
@@ -47,9 +48,9 @@ def report_flight(
     monitor: Monitor = QUIET,
 ) -> FlightReport:
     """Compare a flight with its plan."""
-    monitor.report("comparing the flight", 0, 4)
+    monitor.report(say("comparing the flight"), 0, 4)
     case = Case.of(plan, site_model)
-    monitor.report("comparing the flight", 1, 4)
+    monitor.report(say("comparing the flight"), 1, 4)
     return report_case(case, records, limits, gates, monitor)
 
 
@@ -64,10 +65,10 @@ def report_case(
     are_cut_off = [record.is_disarmed is False and left_in_air_m(case, record) is not None for record in records]
     matching = match_flight(case.plan, records, gates, are_cut_off)
     shots = _shots(case, records, matching)
-    monitor.report("comparing the flight", 2, 4)
+    monitor.report(say("comparing the flight"), 2, 4)
     by_id = {view.id: view for view in case.plan.viewpoints}
     views = tuple(_view_outcome(case, by_id[m.view_id], m, records, shots, limits) for m in matching.views)
-    monitor.report("comparing the flight", 3, 4)
+    monitor.report(say("comparing the flight"), 3, 4)
     sorties = tuple(_sortie_outcome(case, matching, index, record) for index, record in enumerate(records))
     summary = _summary(case, matching, records, sorties, shots)
     findings = flight_findings(case, records, summary, views, sorties, limits)

@@ -14,6 +14,7 @@ from missions.flight.lost_reports import counts_by_more, n_lost
 from missions.flight.outcome import Ending, Reason, SortieOutcome, Summary, ViewOutcome
 from missions.flight.record import FlightRecord
 from planning.base.findings import Finding, Severity
+from planning.base.messages import joined, say
 from planning.checks.case import Case, judge
 
 Floats = NDArray[np.float64]
@@ -55,28 +56,28 @@ DEFAULT_LIMITS = Limits()
 
 
 REASONS = {
-    Reason.NOT_FLOWN: "in sorties that were not flown",
-    Reason.NOT_REACHED: "not reached",
-    Reason.NO_PHOTO: "reached, but the camera did not answer",
-    Reason.REPORT_LOST: "photographed, but the camera's report was lost",
-    Reason.TOO_FAR: "photographed from too far away",
-    Reason.WRONG_ANGLE: "where the photo looks elsewhere",
-    Reason.FLIGHT_ENDED: "not reached before the flight ended",
-    Reason.NOT_RECORDED: "after the end of the record in the air",
-    Reason.NO_TRACK: "where the record does not tell the aircraft's place",
+    Reason.NOT_FLOWN: say("in sorties that were not flown"),
+    Reason.NOT_REACHED: say("not reached"),
+    Reason.NO_PHOTO: say("reached, but the camera did not answer"),
+    Reason.REPORT_LOST: say("photographed, but the camera's report was lost"),
+    Reason.TOO_FAR: say("photographed from too far away"),
+    Reason.WRONG_ANGLE: say("where the photo looks elsewhere"),
+    Reason.FLIGHT_ENDED: say("not reached before the flight ended"),
+    Reason.NOT_RECORDED: say("after the end of the record in the air"),
+    Reason.NO_TRACK: say("where the record does not tell the aircraft's place"),
 }
 """Why views have no photo, to be read after their number."""
 
 ENDINGS = {
     Ending.UNKNOWN: REASONS[Reason.FLIGHT_ENDED],
-    Ending.RETURN: "not reached because the flight was broken off by Return",
-    Ending.LAND: "not reached because the flight was broken off by Land",
-    Ending.BATTERY: "not reached because the flight was broken off for low battery",
-    Ending.LINK: "not reached because the flight was broken off for the lost link",
-    Ending.REMOTE: "not reached because the flight was broken off for the lost remote control",
-    Ending.FENCE: "not reached because the flight was broken off at the fence",
-    Ending.HAND: "not reached because the pilot took over by hand",
-    Ending.MOTORS: "not reached because the motors stopped in the air",
+    Ending.RETURN: say("not reached because the flight was broken off by Return"),
+    Ending.LAND: say("not reached because the flight was broken off by Land"),
+    Ending.BATTERY: say("not reached because the flight was broken off for low battery"),
+    Ending.LINK: say("not reached because the flight was broken off for the lost link"),
+    Ending.REMOTE: say("not reached because the flight was broken off for the lost remote control"),
+    Ending.FENCE: say("not reached because the flight was broken off at the fence"),
+    Ending.HAND: say("not reached because the pilot took over by hand"),
+    Ending.MOTORS: say("not reached because the motors stopped in the air"),
 }
 """The same for views that come after the end of the flight, by how it ended."""
 
@@ -105,14 +106,16 @@ def flight_findings(
 
 def _sorties_known(records: Sequence[FlightRecord], sorties: Sequence[SortieOutcome]) -> Iterator[Finding]:
     if not records:
-        yield Finding(Severity.ERROR, "no-flight", "there is no record of any flight")
+        yield Finding(Severity.ERROR, "no-flight", say("there is no record of any flight"))
     for record, outcome in zip(records, sorties, strict=True):
         place = _place(outcome)
         if outcome.sortie == 0:
-            text = "this flight is none of the plan's sorties: no photo and no view of them is near its track"
+            text = say("this flight is none of the plan's sorties: no photo and no view of them is near its track")
             yield Finding(Severity.WARNING, "sortie-unknown", text, place)
         elif record.sortie not in (0, outcome.sortie):
-            text = f"recorded as sortie {record.sortie}, but it flew sortie {outcome.sortie}; it counts as what it flew"
+            text = say(
+                "recorded as sortie {}, but it flew sortie {}; it counts as what it flew", record.sortie, outcome.sortie
+            )
             yield Finding(Severity.WARNING, "sortie-swapped", text, place)
 
 
@@ -131,17 +134,20 @@ def _endings(case: Case, records: Sequence[FlightRecord], sorties: Sequence[Sort
     for record, outcome in zip(records, sorties, strict=True):
         up_m = left_in_air_m(case, record)
         if up_m is not None and record.is_disarmed:
-            text = f"the motors stopped {up_m:.0f} m above take-off: the aircraft fell; look for it, and for the cause"
+            text = say(
+                "the motors stopped {:.0f} m above take-off: the aircraft fell; look for it, and for the cause", up_m
+            )
             yield Finding(Severity.ERROR, "motors-off", text, _place(outcome), up_m, UP_M, "m")
         elif up_m is not None:
-            text = (
-                f"the record ends {up_m:.0f} m above take-off with the motors running; what came after is not in it: "
-                "take the autopilot's own log"
+            text = say(
+                "the record ends {:.0f} m above take-off with the motors running; what came after is not in it: "
+                "take the autopilot's own log",
+                up_m,
             )
             yield Finding(Severity.ERROR, "ends-in-air", text, _place(outcome), up_m, UP_M, "m")
         known = record.track.battery[record.track.battery >= 0.0]
         if len(known) and known[-1] <= EMPTY:
-            text = f"the battery was empty at the end ({known[-1]:.0%}): the aircraft could have fallen"
+            text = say("the battery was empty at the end ({:.0%}): the aircraft could have fallen", known[-1])
             yield Finding(Severity.ERROR, "battery-empty", text, _place(outcome), 100.0 * float(known[-1]), 0.0, "%")
 
 
@@ -171,7 +177,7 @@ def _level_m(places: Floats, point: Floats) -> Floats:
 
 
 def _place(outcome: SortieOutcome) -> str:
-    return f"sortie {outcome.sortie}" if outcome.sortie else f"record {outcome.record + 1}"
+    return say("sortie {}", outcome.sortie) if outcome.sortie else say("record {}", outcome.record + 1)
 
 
 def _views_taken(views: Sequence[ViewOutcome], sorties: Sequence[SortieOutcome]) -> Iterator[Finding]:
@@ -180,26 +186,30 @@ def _views_taken(views: Sequence[ViewOutcome], sorties: Sequence[SortieOutcome])
     if missing:
         endings = {outcome.sortie: outcome.ending for outcome in sorties}
         counts = Counter(_why(view, endings) for view in missing)
-        why = ", ".join(f"{n} {words}" for words, n in counts.most_common())
+        why = joined(", ", (say(f"{{}} {words}", n) for words, n in counts.most_common()))
         is_lost = {view.reason for view in missing} == {Reason.REPORT_LOST}
         advice = (
-            "look through the photos before planning a top-up flight" if is_lost else "plan a top-up flight for them"
+            say("look through the photos before planning a top-up flight")
+            if is_lost
+            else say("plan a top-up flight for them")
         )
-        text = f"{len(missing)} of {len(views)} views have no photo that is known of: {why}; {advice}"
+        text = say("{} of {} views have no photo that is known of: {}; {}", len(missing), len(views), why, advice)
         if len(missing) == 1:
-            text = f"1 of {len(views)} views has no photo that is known of: {why}; {advice}"
+            text = say("1 of {} views has no photo that is known of: {}; {}", len(views), why, advice)
         severity = Severity.WARNING if is_lost else Severity.ERROR
         first = missing[0].view_id
         yield Finding(severity, "views-taken", text, first, float(n_taken), float(len(views)), "views")
     else:
-        text = f"all {len(views)} views have a photo"
+        text = say("all {} views have a photo", len(views))
         yield Finding(Severity.OK, "views-taken", text, "", float(n_taken), float(len(views)), "views")
     n_extra = sum(outcome.n_extra for outcome in sorties)
     if n_extra:
         text = (
-            "1 photo belongs to no view, or to one that has a better photo; it counts for coverage, too"
+            say("1 photo belongs to no view, or to one that has a better photo; it counts for coverage, too")
             if n_extra == 1
-            else f"{n_extra} photos belong to no view, or to one that has a better photo; they count for coverage, too"
+            else say(
+                "{} photos belong to no view, or to one that has a better photo; they count for coverage, too", n_extra
+            )
         )
         yield Finding(Severity.NOTE, "photos-extra", text, "", float(n_extra), 0.0, "photos")
 
@@ -216,9 +226,11 @@ def _reports_lost(records: Sequence[FlightRecord], views: Sequence[ViewOutcome])
     n = sum(n_lost(record) for record in records if silent or not counts_by_more(record))
     if n:
         n_of_views = sum(view.reason is Reason.REPORT_LOST for view in views)
-        text = (
-            f"the camera counted {n} photos whose reports did not arrive; {n_of_views} of them are of views that are "
-            "known; the autopilot's own log (.BIN, .ulg) tells of all"
+        text = say(
+            "the camera counted {} photos whose reports did not arrive; {} of them are of views that are "
+            "known; the autopilot's own log (.BIN, .ulg) tells of all",
+            n,
+            n_of_views,
         )
         yield Finding(Severity.WARNING, "reports-lost", text, "", float(n), 0.0, "photos")
 
@@ -226,34 +238,45 @@ def _reports_lost(records: Sequence[FlightRecord], views: Sequence[ViewOutcome])
 def _poses(views: Sequence[ViewOutcome], limits: Limits) -> Iterator[Finding]:
     taken = [view for view in views if view.reason is Reason.TAKEN]
     rules = (
-        ("position", "position_error_m", limits.position_m, "m", "position error at the shutter", Severity.ERROR),
-        ("heading", "heading_error_deg", limits.heading_deg, "deg", "heading error at the shutter", Severity.ERROR),
-        ("gimbal", "gimbal_pitch_error_deg", limits.gimbal_pitch_deg, "deg", "gimbal pitch error", Severity.ERROR),
-        ("blur", "blur_px", limits.blur_px, "px", "motion blur", Severity.WARNING),
+        ("position", "position_error_m", limits.position_m, "m", say("position error at the shutter"), Severity.ERROR),
+        (
+            "heading",
+            "heading_error_deg",
+            limits.heading_deg,
+            "deg",
+            say("heading error at the shutter"),
+            Severity.ERROR,
+        ),
+        ("gimbal", "gimbal_pitch_error_deg", limits.gimbal_pitch_deg, "deg", say("gimbal pitch error"), Severity.ERROR),
+        ("blur", "blur_px", limits.blur_px, "px", say("motion blur"), Severity.WARNING),
     )
     for code, field, limit, unit, what, severity in rules:
         known = [(abs(getattr(view, field)), view.view_id) for view in taken if getattr(view, field) is not None]
         if len(known) < len(taken):
             n = len(taken) - len(known)
-            as_planned = "" if code in ("position", "blur") else "; coverage is counted as if they looked as planned"
-            text = f"the {what} of {n} of {len(taken)} photos is not known{as_planned}"
+            as_planned = (
+                "" if code in ("position", "blur") else say("; coverage is counted as if they looked as planned")
+            )
+            text = say("the {} of {} of {} photos is not known{}", what, n, len(taken), as_planned)
             yield Finding(Severity.WARNING, f"{code}-unknown", text, "", float(n), 0.0, "photos")
         if not known:
             continue
         worst, where = max(known)
         n_over = sum(value > limit for value, _ in known)
         cure = (
-            "fly with RTK, hover longer, or in less wind" if code == "position" else "hover longer, or fly in less wind"
+            say("fly with RTK, hover longer, or in less wind")
+            if code == "position"
+            else say("hover longer, or fly in less wind")
         )
-        advice = f"{n_over} of {len(known)} photos are over it; {cure}"
-        yield judge(worst <= limit, code, f"largest {what}", worst, limit, unit, where, advice, severity)
+        advice = say("{} of {} photos are over it; {}", n_over, len(known), cure)
+        yield judge(worst <= limit, code, say("largest {}", what), worst, limit, unit, where, advice, severity)
 
 
 def _coverage(summary: Summary, limits: Limits) -> Iterator[Finding]:
     if summary.covered_planned:
         share = summary.covered / summary.covered_planned
-        subject = f"sections covered, {summary.covered} where {summary.covered_planned} were planned"
-        advice = "plan a top-up flight"
+        subject = say("sections covered, {} where {} were planned", summary.covered, summary.covered_planned)
+        advice = say("plan a top-up flight")
         yield judge(
             share >= limits.coverage, "coverage", subject, 100.0 * share, 100.0 * limits.coverage, "%", "", advice,
             least=True,
@@ -261,8 +284,8 @@ def _coverage(summary: Summary, limits: Limits) -> Iterator[Finding]:
     if summary.lost_panels:
         n = len(summary.lost_panels)
         first = summary.lost_panels[0]
-        many = f"{n} panels of the plan are on no photo, the first is '{first}'"
-        text = f"the panel '{first}' of the plan is on no photo" if n == 1 else many
+        many = say("{} panels of the plan are on no photo, the first is '{}'", n, first)
+        text = say("the panel '{}' of the plan is on no photo", first) if n == 1 else many
         yield Finding(Severity.WARNING, "panels-lost", text, summary.lost_panels[0], float(n), 0.0, "panels")
 
 
@@ -271,12 +294,12 @@ def _distances(case: Case, sorties: Sequence[SortieOutcome]) -> Iterator[Finding
     limit = case.plan.constraints.min_distance_m
     for outcome in sorties:
         if outcome.least_distance_m is None or outcome.least_distance_time_s is None:
-            yield Finding(Severity.WARNING, "distance-unknown", "the distance kept is not known", _place(outcome))
+            yield Finding(Severity.WARNING, "distance-unknown", say("the distance kept is not known"), _place(outcome))
             continue
         short_m = limit - outcome.least_distance_m
         severity = Severity.ERROR if short_m > DISTANCE_TOLERANCE_M else Severity.WARNING
-        subject = f"smallest distance flown, {outcome.least_distance_time_s:.1f} s after the start"
-        advice = "see where, and keep further away"
+        subject = say("smallest distance flown, {:.1f} s after the start", outcome.least_distance_time_s)
+        advice = say("see where, and keep further away")
         judged = subject, outcome.least_distance_m, limit, "m", _place(outcome), advice, severity
         yield judge(short_m <= 0.0, "distance", *judged, least=True)
 
@@ -292,8 +315,8 @@ def _durations(sorties: Sequence[SortieOutcome], limits: Limits) -> Iterator[Fin
         if not predicted or flown is None or outcome.n_taken < outcome.n_views:
             continue
         off = abs(flown / predicted - 1.0)
-        subject = f"difference between the {flown:.0f} s flown and the {predicted:.0f} s predicted"
-        advice = "check the speeds and hover times of the aircraft's profile"
+        subject = say("difference between the {:.0f} s flown and the {:.0f} s predicted", flown, predicted)
+        advice = say("check the speeds and hover times of the aircraft's profile")
         judged = subject, 100.0 * off, 100.0 * limits.duration, "%", _place(outcome), advice, Severity.WARNING
         yield judge(off <= limits.duration, "duration", *judged)
 
@@ -306,9 +329,9 @@ def _batteries(case: Case, records: Sequence[FlightRecord], sorties: Sequence[So
         if outcome.battery_used is None or len(known) == 0:
             continue
         left = float(known[-1])
-        subject = f"battery left at the end, {outcome.battery_used:.0%} used"
+        subject = say("battery left at the end, {:.0%} used", outcome.battery_used)
         if outcome.battery_predicted is not None:
-            subject += f" where {outcome.battery_predicted:.0%} was predicted"
-        advice = "lower the endurance of the aircraft's profile"
+            subject += say(" where {:.0%} was predicted", outcome.battery_predicted)
+        advice = say("lower the endurance of the aircraft's profile")
         judged = subject, 100.0 * left, 100.0 * reserve, "%", _place(outcome), advice
         yield judge(left >= reserve, "battery", *judged, Severity.WARNING, least=True)

@@ -5,16 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-import msgspec
 import numpy as np
 
 from missions.flight.outcome import FlightReport, Reason, SortieOutcome, Summary
 from planning.base.findings import Severity
+from planning.base.json_file import plain_values
+from planning.base.messages import say
 
 
 def report_to_json(report: FlightReport) -> dict[str, Any]:
     """The report as plain values: the summary's fields, then `views`, `sorties` and `findings`."""
-    content: dict[str, Any] = msgspec.to_builtins(report)
+    content: dict[str, Any] = plain_values(report)
     return {**content.pop("summary"), **content}
 
 
@@ -65,7 +66,7 @@ def _shutter_lines(report: FlightReport) -> Iterator[str]:
 
 
 def _sortie_line(outcome: SortieOutcome) -> str:
-    name = f"sortie {outcome.sortie}" if outcome.sortie else f"record {outcome.record + 1}, no sortie of the plan"
+    name = say("sortie {}", outcome.sortie) if outcome.sortie else f"record {outcome.record + 1}, no sortie of the plan"
     parts = [f"{outcome.n_taken} of {outcome.n_views} views"]
     if outcome.duration_flown_s is not None:
         parts.append(f"{outcome.duration_flown_s:.0f} s flown")

@@ -24,6 +24,7 @@ from missions.mission.safe_files import MAX_LINES, read_limited
 from planning.base.errors import MissionError
 from planning.base.files import check_lines
 from planning.base.findings import Finding, Severity
+from planning.base.messages import say
 
 COLUMNS = (
     "sortie",
@@ -103,21 +104,25 @@ def read_csv(path: Path) -> tuple[ReadMission, ...]:
         check_lines(content, MAX_LINES, path)
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise MissionError(f"{path}: expected text in UTF-8, found other bytes at offset {error.start}") from error
+        raise MissionError(
+            say("expected text in UTF-8, found other bytes at offset {}", error.start, place=path)
+        ) from error
     table = csv.DictReader(text.splitlines())
     sorties: dict[int, list[ReadWaypoint]] = {}
     try:
         missing = [name for name in NEEDED if name not in (table.fieldnames or ())]
         if missing:
-            raise MissionError(f"{path}: expected the column {missing[0]} in the first line; it is missing")
+            raise MissionError(say("expected the column {} in the first line; it is missing", missing[0], place=path))
         for row in table:
-            number, waypoint = _read_row(row, f"{path}, line {table.line_num}")
+            number, waypoint = _read_row(row, say("{}, line {}", path, table.line_num))
             sorties.setdefault(number, []).append(waypoint)
     except csv.Error as error:
-        raise MissionError(f"{path}, line {table.line_num}: no table of photos ({error})") from error
+        raise MissionError(say("no table of photos ({})", error, place=f"{path}, line {table.line_num}")) from error
     if not sorties:
-        raise MissionError(f"{path}: the table has no rows, so there is nothing to fly")
-    text = "a table of photos does not say which way was flown between them; the path is straight from one to the next"
+        raise MissionError(say("the table has no rows, so there is nothing to fly", place=path))
+    text = say(
+        "a table of photos does not say which way was flown between them; the path is straight from one to the next"
+    )
     finding = Finding(Severity.NOTE, "no-path", text)
     return tuple(
         ReadMission(
@@ -141,4 +146,4 @@ def _read_row(row: dict[str, str], place: str) -> tuple[int, ReadWaypoint]:
         photo = ReadPhoto(heading_deg, pitch_deg, row["viewpoint_id"])
         return number, ReadWaypoint(lat_deg, lon_deg, height_ellipsoid_m=height_m, photos=(photo,))
     except (TypeError, ValueError) as error:
-        raise MissionError(f"{place}: no photo ({error}); expected numbers with a decimal point") from error
+        raise MissionError(say("no photo ({}); expected numbers with a decimal point", error, place=place)) from error

@@ -12,6 +12,7 @@ from missions.mavlink.autopilots import Autopilot
 from missions.mission.model import FileFormat, HeightReference, Mission
 from planning.base.errors import MissionError
 from planning.base.findings import Finding, Severity
+from planning.base.messages import glue, say
 from planning.plan import Plan
 from planning.routing.rally import CLEARANCE_M, clear_height_z_m, return_height
 from planning.site.free_space import unchecked_space
@@ -102,15 +103,45 @@ class TakeoffCheck:
 
     def __str__(self) -> str:
         if not self.facade:
-            return (
-                f"before any photo the aircraft stops {self.above_takeoff_m:.1f} m above take-off; where it does not, "
-                "land: it took off from another height than planned"
+            return say(
+                "before any photo the aircraft stops {:.1f} m above take-off; where it does not, land: it took "
+                "off from another height than planned",
+                self.above_takeoff_m,
             )
         return (
-            f"before any photo the aircraft stops {self.above_takeoff_m:.1f} m above take-off, "
-            f"{abs(self.above_edge_m):.1f} m {'above' if self.above_edge_m >= 0.0 else 'below'} the "
-            f"{'upper' if self.is_upper_edge else 'lower'} edge of facade '{self.facade}'; where it does not, land: it "
-            "took off from another height than planned"
+            (
+                say(
+                    "before any photo the aircraft stops {:.1f} m above take-off, {:.1f} m above the upper edge of "
+                    "facade '{}'; where it does not, land: it took off from another height than planned",
+                    self.above_takeoff_m,
+                    abs(self.above_edge_m),
+                    self.facade,
+                )
+                if self.is_upper_edge
+                else say(
+                    "before any photo the aircraft stops {:.1f} m above take-off, {:.1f} m above the lower edge of "
+                    "facade '{}'; where it does not, land: it took off from another height than planned",
+                    self.above_takeoff_m,
+                    abs(self.above_edge_m),
+                    self.facade,
+                )
+            )
+            if self.above_edge_m >= 0.0
+            else say(
+                "before any photo the aircraft stops {:.1f} m above take-off, {:.1f} m below the upper edge of "
+                "facade '{}'; where it does not, land: it took off from another height than planned",
+                self.above_takeoff_m,
+                abs(self.above_edge_m),
+                self.facade,
+            )
+            if self.is_upper_edge
+            else say(
+                "before any photo the aircraft stops {:.1f} m above take-off, {:.1f} m below the lower edge of "
+                "facade '{}'; where it does not, land: it took off from another height than planned",
+                self.above_takeoff_m,
+                abs(self.above_edge_m),
+                self.facade,
+            )
         )
 
 
@@ -147,7 +178,9 @@ def dji_return_height(plan: Plan, missions: Sequence[Mission], options: ExportOp
     if options.site is None:
         if options.rth_height_m is not None:
             return options.rth_height_m, []
-        text = "the return height clears the path only, because the site was not given; check that it clears everything"
+        text = say(
+            "the return height clears the path only, because the site was not given; check that it clears everything"
+        )
         return path_m, [Finding(Severity.WARNING, "return-height", text, "", path_m, None, "m")]
     space = unchecked_space(options.site, plan.constraints.min_distance_m)
     own = return_height(space)
@@ -156,18 +189,24 @@ def dji_return_height(plan: Plan, missions: Sequence[Mission], options: ExportOp
         return own.above_home_m, []
     top_m = clear_height_z_m(space, 0.0) - options.site.site.home_enu_m[2]
     if options.rth_height_m > own.ceiling_above_home_m:
-        text = (
-            f"the return height is above the airspace: expected at most {own.ceiling_above_home_m:.1f} m above "
-            f"take-off, got {options.rth_height_m:g} m; {own.above_home_m:g} m are right"
+        text = say(
+            "the return height is above the airspace: expected at most {:.1f} m above take-off, got {:g} m; "
+            "{:g} m are right",
+            own.ceiling_above_home_m,
+            options.rth_height_m,
+            own.above_home_m,
         )
         return options.rth_height_m, [
             Finding(Severity.ERROR, "return-height", text, "", options.rth_height_m, own.ceiling_above_home_m, "m")
         ]
     if options.rth_height_m < top_m:
-        text = (
-            f"the return height is below the highest point of the site: a returning aircraft may hit it; expected "
-            f"{_metres_up(top_m)} m or more above take-off, got {options.rth_height_m:g} m, and "
-            f"{_metres_up(top_m + CLEARANCE_M)} m keep {CLEARANCE_M:g} m from everything"
+        text = say(
+            "the return height is below the highest point of the site: a returning aircraft may hit it; "
+            "expected {} m or more above take-off, got {:g} m, and {} m keep {:g} m from everything",
+            _metres_up(top_m),
+            options.rth_height_m,
+            _metres_up(top_m + CLEARANCE_M),
+            CLEARANCE_M,
         )
         return options.rth_height_m, [
             Finding(Severity.ERROR, "return-height", text, "", options.rth_height_m, top_m, "m")
@@ -197,7 +236,7 @@ def encode_mavlink(missions: Sequence[Mission], file_format: FileFormat, options
     reference = options.height_reference
     if reference is HeightReference.ELLIPSOID:
         raise MissionError(
-            "MAVLink has no heights above the ellipsoid; expected above-takeoff or amsl (its absolute altitude)"
+            say("MAVLink has no heights above the ellipsoid; expected above-takeoff or amsl (its absolute altitude)")
         )
     contents: list[bytes] = []
     findings: list[Finding] = []
@@ -222,5 +261,5 @@ def _in_sortie(findings: Sequence[Finding], mission: Mission, missions: Sequence
     """Findings with the sortie in their place where there are several."""
     if len(missions) == 1:
         return list(findings)
-    prefix = f"sortie {mission.number}"
-    return [replace(found, place=f"{prefix}, {found.place}" if found.place else prefix) for found in findings]
+    prefix = say("sortie {}", mission.number)
+    return [replace(found, place=glue(prefix, ", ", found.place) if found.place else prefix) for found in findings]

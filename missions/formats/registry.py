@@ -20,6 +20,7 @@ from planning.base.errors import InputError, MissionError
 from planning.base.files import open_given
 from planning.base.findings import Finding, Severity
 from planning.base.json_file import write_together
+from planning.base.messages import about, glue, say
 from planning.base.plugins import Plugin, PluginGroup, doubted, expect_type, guarded, load_plugins, told_problem
 from planning.geo.frames import Origin, Vec3
 from planning.plan import Plan
@@ -124,7 +125,7 @@ def mission_format(name: str) -> MissionFormat:
         problem = told_problem(PluginGroup.MISSION_FORMATS, name)
         known = ", ".join(mission_formats())
         raise InputError(
-            f"there is no mission format '{name}'; known are: {known}" if problem is None else str(problem)
+            say("there is no mission format '{}'; known are: {}", name, known) if problem is None else str(problem)
         )
     return mission_formats()[name]
 
@@ -153,11 +154,14 @@ def _on_passing(plan: Plan, missions: Sequence[Mission]) -> Iterator[Finding]:
     for sortie, mission in zip(plan.sorties, missions, strict=True):
         n = len(sortie.in_passing_ids)
         if n:
-            text = (
-                f"{n} photos that the imported mission takes in passing are stops in these files, so the sortie takes "
-                f"{mission.duration_s:.0f} s instead of {sortie.duration_s:.0f} s"
+            text = say(
+                "{} photos that the imported mission takes in passing are stops in these files, so the sortie "
+                "takes {:.0f} s instead of {:.0f} s",
+                n,
+                mission.duration_s,
+                sortie.duration_s,
             )
-            place = f"sortie {mission.number}"
+            place = say("sortie {}", mission.number)
             yield Finding(Severity.WARNING, "in-passing", text, place, mission.duration_s, sortie.duration_s, "s")
 
 
@@ -197,9 +201,9 @@ def write_files(encoded: EncodedFiles, path: Path) -> tuple[Path, ...]:
     """Write encoded missions, all of them or none; see `export`."""
     errors = [finding for finding in encoded.findings if finding.severity is Severity.ERROR]
     if errors:
-        first = f"{errors[0].place}: {errors[0].message}".removeprefix(": ")
-        more = f" (and {len(errors) - 1} more errors)" if len(errors) > 1 else ""
-        raise MissionError(f"the mission would be refused: {first}{more}")
+        first = about(errors[0].place, errors[0].message) if errors[0].place else errors[0].message
+        more = say(" (and {} more errors)", len(errors) - 1) if len(errors) > 1 else ""
+        raise MissionError(say("the mission would be refused: {}", glue(first, more)))
     paths = tuple(sortie_path(path, number) for number in range(1, len(encoded.contents) + 1))
     write_together(dict(zip(paths, encoded.contents, strict=True)))
     return paths
@@ -250,8 +254,11 @@ def _reader(path: Path) -> _Reader:
     reader = _reader_of(head)
     if reader is None:
         raise InputError(
-            f"{path}: no mission file that is known; expected a DJI KMZ (or its unpacked folder), a QGroundControl "
-            ".plan, a QGC WPL .waypoints, or a KML or CSV that Reflight wrote"
+            say(
+                "no mission file that is known; expected a DJI KMZ (or its unpacked folder), a QGroundControl "
+                ".plan, a QGC WPL .waypoints, or a KML or CSV that Reflight wrote",
+                place=path,
+            )
         )
     return reader
 

@@ -15,6 +15,7 @@ from missions.mavlink.autopilots import Autopilot, facts
 from missions.mavlink.items import MavlinkFile, MissionItem
 from missions.mission.legs import leg_lengths_m
 from planning.base.findings import Finding, Severity
+from planning.base.messages import say
 
 ERROR, WARNING, NOTE = Severity.ERROR, Severity.WARNING, Severity.NOTE
 
@@ -48,7 +49,10 @@ def check_items(file: MavlinkFile, autopilot: Autopilot | None) -> tuple[Finding
     findings = [
         finding
         for number, item in enumerate(file.items, 1)
-        for finding in (*_positions(item, f"item {number}"), *_parameters(item, f"item {number}", autopilot))
+        for finding in (
+            *_positions(item, say("item {}", number)),
+            *_parameters(item, say("item {}", number), autopilot),
+        )
     ]
     findings += _sequence(file.items, autopilot)
     findings += _legs(file)
@@ -56,10 +60,12 @@ def check_items(file: MavlinkFile, autopilot: Autopilot | None) -> tuple[Finding
         n, limit = len(file.items) + (autopilot is Autopilot.ARDUPILOT), facts(autopilot).max_items
         if n > limit:
             severity = ERROR if autopilot is Autopilot.ARDUPILOT else WARNING
-            text = f"the mission has {n} items, {autopilot.product} keeps {limit}; plan it with shorter sorties"
+            text = say(
+                "the mission has {} items, {} keeps {}; plan it with shorter sorties", n, autopilot.product, limit
+            )
             findings.append(Finding(severity, "item-count", text, "", n, limit))
         for number, item in enumerate(file.items, 1):
-            findings += _support(item, f"item {number} (command {item.command})", autopilot)
+            findings += _support(item, say("item {} (command {})", number, item.command), autopilot)
     return tuple(findings)
 
 
@@ -68,19 +74,21 @@ def _positions(item: MissionItem, place: str) -> Iterator[Finding]:
         return
     lat_deg, lon_deg, altitude_m = item.params[4:]
     if abs(lat_deg) > 90.0 or abs(lon_deg) > 180.0:
-        yield Finding(ERROR, "coordinates", f"the position {lat_deg:g}, {lon_deg:g} is not on the globe", place)
+        yield Finding(ERROR, "coordinates", say("the position {:g}, {:g} is not on the globe", lat_deg, lon_deg), place)
     elif (lat_deg, lon_deg) == (0.0, 0.0) and item.command in WAYPOINTS:
-        text = "latitude and longitude are 0: ArduPilot takes that for the place where it is, PX4 for one off Africa"
+        text = say(
+            "latitude and longitude are 0: ArduPilot takes that for the place where it is, PX4 for one off Africa"
+        )
         yield Finding(WARNING, "coordinates", text, place)
     if not math.isfinite(altitude_m):
-        yield Finding(ERROR, "height", "the altitude is no number", place)
+        yield Finding(ERROR, "height", say("the altitude is no number"), place)
 
 
 def _parameters(item: MissionItem, place: str, autopilot: Autopilot | None) -> Iterator[Finding]:
     if item.command in WAYPOINTS and not 0.0 <= item.params[0] <= MAX_HOLD_S and not math.isnan(item.params[0]):
-        yield Finding(ERROR, "hold", "the hold time is out of range", place, item.params[0], MAX_HOLD_S, "s")
+        yield Finding(ERROR, "hold", say("the hold time is out of range"), place, item.params[0], MAX_HOLD_S, "s")
     if item.command == mavlink.MAV_CMD_DO_DIGICAM_CONTROL and item.params[4] != 1.0:
-        text = "DO_DIGICAM_CONTROL releases the camera only where param 5 is 1: no photo here"
+        text = say("DO_DIGICAM_CONTROL releases the camera only where param 5 is 1: no photo here")
         yield Finding(WARNING, "no-trigger", text, place, item.params[4], 1.0)
     if autopilot is Autopilot.ARDUPILOT:
         yield from _ardupilot_parameters(item, place)
@@ -89,19 +97,19 @@ def _parameters(item: MissionItem, place: str, autopilot: Autopilot | None) -> I
 def _ardupilot_parameters(item: MissionItem, place: str) -> Iterator[Finding]:
     for index, value in enumerate(item.params):
         if math.isnan(value) and index not in NAN_ALLOWED.get(item.command, ()):
-            yield Finding(ERROR, "nan", f"param {index + 1} is NaN, which ArduPilot refuses here", place)
+            yield Finding(ERROR, "nan", say("param {} is NaN, which ArduPilot refuses here", index + 1), place)
     if item.command in WAYPOINTS:
         hold_s, _, _, yaw_deg = item.params[:4]
         if math.isfinite(hold_s) and hold_s != math.floor(hold_s):
-            text = f"ArduPilot stores whole seconds: the hold of {hold_s:g} s becomes {math.floor(hold_s)} s"
+            text = say("ArduPilot stores whole seconds: the hold of {:g} s becomes {} s", hold_s, math.floor(hold_s))
             yield Finding(WARNING, "hold-truncated", text, place, hold_s, math.floor(hold_s), "s")
         if math.isfinite(yaw_deg) and yaw_deg != 0.0:
-            text = "ArduPilot ignores the yaw of a waypoint (param 4); use CONDITION_YAW before it"
+            text = say("ArduPilot ignores the yaw of a waypoint (param 4); use CONDITION_YAW before it")
             yield Finding(WARNING, "yaw-ignored", text, place, yaw_deg, None, "deg")
     if item.command == mavlink.MAV_CMD_DO_GIMBAL_MANAGER_PITCHYAW:
         angles = [angle for angle in item.params[:2] if math.isfinite(angle)]
         if any(angle != math.trunc(angle) for angle in angles):
-            text = "ArduPilot stores these angles in whole degrees; DO_MOUNT_CONTROL keeps the fraction"
+            text = say("ArduPilot stores these angles in whole degrees; DO_MOUNT_CONTROL keeps the fraction")
             yield Finding(WARNING, "angle-truncated", text, place)
 
 
@@ -109,20 +117,22 @@ def _support(item: MissionItem, place: str, autopilot: Autopilot) -> Iterator[Fi
     known = facts(autopilot)
     name = autopilot.product
     if item.command in known.rejected or (autopilot is Autopilot.PX4 and item.command not in known.commands):
-        yield Finding(ERROR, "unsupported-command", f"{name} refuses this command in missions", place, item.command)
+        yield Finding(
+            ERROR, "unsupported-command", say("{} refuses this command in missions", name), place, item.command
+        )
     elif item.command not in known.commands:
-        text = f"whether {name} takes this command in missions is not known"
+        text = say("whether {} takes this command in missions is not known", name)
         yield Finding(WARNING, "unknown-command", text, place, item.command)
     elif item.command in WITH_POSITION:
         if item.frame not in known.position_frames:
             frames = ", ".join(map(str, sorted(known.position_frames)))
-            text = f"{name} does not take the frame {item.frame} here; expected one of {frames}"
+            text = say("{} does not take the frame {} here; expected one of {}", name, item.frame, frames)
             yield Finding(ERROR, "unsupported-frame", text, place, item.frame)
         elif item.frame in (10, 11):
-            text = "the height counts from terrain: without terrain data ArduPilot does not arm"
+            text = say("the height counts from terrain: without terrain data ArduPilot does not arm")
             yield Finding(WARNING, "terrain-height", text, place)
     elif autopilot is Autopilot.PX4 and item.frame != mavlink.MAV_FRAME_MISSION and not _may_have_place(item):
-        text = f"PX4 takes this command in frame 2 only, found frame {item.frame}"
+        text = say("PX4 takes this command in frame 2 only, found frame {}", item.frame)
         yield Finding(ERROR, "unsupported-frame", text, place, item.frame)
 
 
@@ -133,11 +143,11 @@ def _may_have_place(item: MissionItem) -> bool:
 def _sequence(items: Sequence[MissionItem], autopilot: Autopilot | None) -> Iterator[Finding]:
     navigation = [item for item in items if item.command <= LAST_NAV_COMMAND]
     if not navigation or navigation[0].command not in (mavlink.MAV_CMD_NAV_TAKEOFF, mavlink.MAV_CMD_NAV_VTOL_TAKEOFF):
-        text = "the mission does not begin with a take-off: started on the ground it is refused"
+        text = say("the mission does not begin with a take-off: started on the ground it is refused")
         yield Finding(WARNING, "no-takeoff", text)
     kinds = {item.frame in (0, 5) for item in items if item.command in WAYPOINTS and item.frame in (0, 3, 5, 6)}
     if len(kinds) > 1:
-        text = "some waypoints count their height from take-off, others from sea level"
+        text = say("some waypoints count their height from take-off, others from sea level")
         yield Finding(WARNING, "mixed-heights", text)
     if autopilot is Autopilot.ARDUPILOT:
         yield from _ardupilot_order(items)
@@ -149,7 +159,7 @@ def _ardupilot_order(items: Sequence[MissionItem]) -> Iterator[Finding]:
     waypoint: MissionItem | None = None
     n_waiting = 0
     for number, item in enumerate(items, 1):
-        place = f"item {number}"
+        place = say("item {}", number)
         if item.command <= LAST_NAV_COMMAND:
             condition = trigger = mount_yaw = False
             waypoint = item if item.command in WAYPOINTS else None
@@ -158,28 +168,29 @@ def _ardupilot_order(items: Sequence[MissionItem]) -> Iterator[Finding]:
         n_waiting += 1
         if item.command in TRIGGERS:
             if condition:
-                text = (
-                    "the photo waits for a CONDITION while the aircraft flies on: it is taken on the way, and dropped "
-                    "without a word where the next waypoint is reached first; put the condition before the waypoint"
+                text = say(
+                    "the photo waits for a CONDITION while the aircraft flies on: it is taken on the way, and "
+                    "dropped without a word where the next waypoint is reached first; put the condition before the "
+                    "waypoint"
                 )
                 yield Finding(WARNING, "dropped-do", text, place)
             if trigger:
-                text = "a second photo follows at once; within 0.1 s ArduPilot drops it; put a NAV_DELAY between"
+                text = say("a second photo follows at once; within 0.1 s ArduPilot drops it; put a NAV_DELAY between")
                 yield Finding(WARNING, "dropped-photo", text, place)
             if waypoint is not None and waypoint.params[0] < 1.0:
-                text = "the waypoint of this photo has no hold: the photo is taken in flight, about 1 m off"
+                text = say("the waypoint of this photo has no hold: the photo is taken in flight, about 1 m off")
                 yield Finding(WARNING, "photo-in-flight", text, place)
             trigger = True
         elif trigger and item.command in AIMING:
-            text = "the camera turns on in the instant of the photo; put a NAV_DELAY behind the trigger"
+            text = say("the camera turns on in the instant of the photo; put a NAV_DELAY behind the trigger")
             yield Finding(WARNING, "photo-while-turning", text, place)
         if item.command == mavlink.MAV_CMD_DO_MOUNT_CONTROL and mount_yaw:
-            text = "on a gimbal without pan axis this turns the vehicle to param 3; put it before CONDITION_YAW"
+            text = say("on a gimbal without pan axis this turns the vehicle to param 3; put it before CONDITION_YAW")
             yield Finding(WARNING, "mount-after-yaw", text, place)
         condition |= item.command in CONDITIONS
         mount_yaw |= item.command == mavlink.MAV_CMD_CONDITION_YAW
     if n_waiting:
-        text = f"the last {n_waiting} items follow the last navigation command and may never be done"
+        text = say("the last {} items follow the last navigation command and may never be done", n_waiting)
         yield Finding(WARNING, "after-the-end", text)
 
 
@@ -192,5 +203,5 @@ def _legs(file: MavlinkFile) -> Iterator[Finding]:
     for (before, first), (after, second), length_m in zip(placed, placed[1:], lengths_m, strict=False):
         radius_m = max(CLOSE_M, second.params[1] if math.isfinite(second.params[1]) else 0.0)
         if first.frame == second.frame and 0.0 < length_m < radius_m:
-            text = "the waypoints are closer together than the vehicle tells apart"
-            yield Finding(NOTE, "spacing", text, f"items {before} and {after}", float(length_m), radius_m, "m")
+            text = say("the waypoints are closer together than the vehicle tells apart")
+            yield Finding(NOTE, "spacing", text, say("items {} and {}", before, after), float(length_m), radius_m, "m")

@@ -11,6 +11,7 @@ import numpy as np
 from missions.mavlink.items import Polygon
 from missions.mission.model import Mission
 from planning.base.findings import Finding, Severity
+from planning.base.messages import say
 from planning.site.records import NoFlyZone
 
 FENCE_CLEARANCE_M = 2.0
@@ -36,7 +37,7 @@ def fence_polygons(mission: Mission, zones: tuple[NoFlyZone, ...]) -> tuple[tupl
     for zone in zones:
         away_m = float(track.distance(shapely.Polygon(zone.polygon_enu_m)))
         if away_m < FENCE_CLEARANCE_M:
-            text = (
+            text = say(
                 "the mission passes over or under this zone, and fences have no height: it is not in the file's fence"
             )
             findings.append(Finding(Severity.WARNING, "zone-not-fenced", text, zone.id, away_m, FENCE_CLEARANCE_M, "m"))

@@ -19,12 +19,13 @@ from missions.mavlink.signing import KEY_BYTES, Signer
 from planning.base.errors import InputError
 from planning.base.files import FileLimit, read_given
 from planning.base.json_file import part_file
+from planning.base.messages import say
 
 SERVICE = "reflight"
 KEY_NAME = "mavlink-signing-key"
 TIMESTAMP_NAME = "mavlink-signing-timestamp"
 OWNER_ONLY = 0o600
-KEY_FILE = FileLimit("a file of the signing key", 1024)
+KEY_FILE = FileLimit(say("a file of the signing key"), 1024)
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +86,9 @@ class KeyStore:
         except ValueError:
             key = b""
         if len(key) != KEY_BYTES:
-            raise InputError(f"{self.key_path} does not hold a signing key of {2 * KEY_BYTES} hex digits; set it anew")
+            raise InputError(
+                say("{} does not hold a signing key of {} hex digits; set it anew", self.key_path, 2 * KEY_BYTES)
+            )
         return key
 
     def forget(self) -> None:
@@ -113,7 +116,7 @@ class KeyStore:
             return int(read_given(self.timestamp_path, KEY_FILE).decode("ascii"))
         except (InputError, ValueError) as error:
             path = self.timestamp_path
-            raise InputError(f"{path} does not hold a time stamp for signing ({error}); delete it") from error
+            raise InputError(say("{} does not hold a time stamp for signing ({}); delete it", path, error)) from error
 
     def _reserve(self, timestamp: int) -> None:
         self._write(self.timestamp_path, str(max(timestamp, self._timestamp())))
@@ -124,14 +127,20 @@ class KeyStore:
             # Windows has no such modes; there the folder is the user's own.
             if os.name != "nt" and mode & ~OWNER_ONLY:
                 raise InputError(
-                    f"others may read the signing key {self.key_path} (mode {mode:04o}, expected {OWNER_ONLY:04o}); "
-                    f"give the vehicle a new key, or run: chmod 600 '{self.key_path}'"
+                    say(
+                        "others may read the signing key {} (mode {:04o}, expected {:04o}); give the vehicle a new "
+                        "key, or run: chmod 600 '{}'",
+                        self.key_path,
+                        mode,
+                        OWNER_ONLY,
+                        self.key_path,
+                    )
                 )
             return read_given(self.key_path, KEY_FILE).decode("ascii")
         except FileNotFoundError:
             return None
         except (OSError, UnicodeDecodeError) as error:
-            raise InputError(f"the signing key {self.key_path} cannot be read: {error}") from error
+            raise InputError(say("the signing key {} cannot be read: {}", self.key_path, error)) from error
 
     def _write(self, path: Path, text: str) -> None:
         """Write a file for the owner only, all of it or nothing."""
@@ -140,7 +149,7 @@ class KeyStore:
             with part_file(path, OWNER_ONLY) as part:
                 part.write_text(text, "ascii")
         except OSError as error:
-            raise InputError(f"{path} cannot be written: {error.strerror or error}") from error
+            raise InputError(say("{} cannot be written: {}", path, error.strerror or error)) from error
 
     def _in_system(self, use: Callable[[Any], object]) -> bool:
         """Do something with the system's key store; False where there is none, or it does not let us."""

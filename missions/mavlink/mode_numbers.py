@@ -7,6 +7,7 @@ from pathlib import Path
 
 from missions.mavlink.autopilots import Autopilot
 from planning.base.json_file import read_toml
+from planning.base.messages import say
 
 DATA_PATH = Path(__file__).parents[1] / "data" / "modes.toml"
 
@@ -40,5 +41,5 @@ def mode_name(autopilot: Autopilot, custom_mode: int) -> str:
     names = _names(autopilot)
     if autopilot is Autopilot.PX4:
         main, sub = px4_main_and_sub(custom_mode)
-        return names.get(custom_mode) or names.get(px4_custom_mode(main, 0)) or f"mode {main}.{sub}"
-    return names.get(custom_mode) or f"mode {custom_mode}"
+        return names.get(custom_mode) or names.get(px4_custom_mode(main, 0)) or say("mode {}.{}", main, sub)
+    return names.get(custom_mode) or say("mode {}", custom_mode)

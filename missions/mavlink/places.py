@@ -10,6 +10,7 @@ from missions.mission.legs import distance_m
 from missions.mission.model import GeoPoint, ReadWaypoint, point_at_amsl
 from planning.base.errors import MissionError
 from planning.base.findings import Finding, Severity
+from planning.base.messages import say
 
 ABSOLUTE_FRAMES, RELATIVE_FRAMES, TERRAIN_FRAMES = (0, 5), (3, 6), (10, 11)
 
@@ -38,10 +39,12 @@ def position_of(item: MissionItem, here: ReadWaypoint | GeoPoint | None, place: 
     lat_deg, lon_deg, altitude_m = item.params[4:]
     if not has_place(item):
         if here is None:
-            raise MissionError(f"{place}: its position means here, but nothing says where that is")
+            raise MissionError(say("its position means here, but nothing says where that is", place=place))
         lat_deg, lon_deg = here.lat_deg, here.lon_deg
     if not (abs(lat_deg) <= 90.0 and abs(lon_deg) <= 180.0 and math.isfinite(altitude_m)):
-        raise MissionError(f"{place}: the position {lat_deg:g}, {lon_deg:g}, {altitude_m:g} m is not on the globe")
+        raise MissionError(
+            say("the position {:g}, {:g}, {:g} m is not on the globe", lat_deg, lon_deg, altitude_m, place=place)
+        )
     if item.frame in RELATIVE_FRAMES:
         return ReadWaypoint(lat_deg, lon_deg, height_above_takeoff_m=altitude_m)
     if item.frame in ABSOLUTE_FRAMES:
@@ -49,10 +52,13 @@ def position_of(item: MissionItem, here: ReadWaypoint | GeoPoint | None, place: 
         return ReadWaypoint(lat_deg, lon_deg, height_ellipsoid_m=point.height_ellipsoid_m)
     if item.frame in TERRAIN_FRAMES:
         raise MissionError(
-            f"{place}: its height counts from the terrain, which is not in the file; save the mission with heights "
-            "above take-off or sea level"
+            say(
+                "its height counts from the terrain, which is not in the file; save the mission with heights "
+                "above take-off or sea level",
+                place=place,
+            )
         )
-    raise MissionError(f"{place}: frame {item.frame} does not place it on the globe")
+    raise MissionError(say("frame {} does not place it on the globe", item.frame, place=place))
 
 
 def is_same_place(a: ReadWaypoint, b: ReadWaypoint) -> bool:
@@ -72,5 +78,7 @@ def home_of(lat_deg: float, lon_deg: float, altitude_amsl_m: float) -> tuple[Geo
         return None, ()
     if abs(lat_deg) <= 90.0 and abs(lon_deg) <= 180.0 and abs(altitude_amsl_m) < 1e5:
         return point_at_amsl(lat_deg, lon_deg, altitude_amsl_m), ()
-    text = f"its home position {lat_deg:g}, {lon_deg:g}, {altitude_amsl_m:g} m is not on the globe and is not used"
+    text = say(
+        "its home position {:g}, {:g}, {:g} m is not on the globe and is not used", lat_deg, lon_deg, altitude_amsl_m
+    )
     return None, (Finding(Severity.WARNING, "home", text),)

@@ -15,6 +15,7 @@ from missions.mission.model import GeoPoint, HeightReference, altitude_amsl_m
 from planning.base.errors import InputError, MissionError
 from planning.base.findings import Finding
 from planning.base.json_file import read_json
+from planning.base.messages import say
 
 PLAN_VERSION, MISSION_VERSION, FENCE_VERSION, RALLY_VERSION = 1, 2, 2, 2
 
@@ -98,25 +99,29 @@ def read_plan_json(path: Path) -> MavlinkFile:
     """
     content = read_json(path)
     if isinstance(content, dict) and str(content.get("format", "")).startswith("reflight-plan/"):
-        raise InputError(f"{path}: this is a Reflight plan already; it needs no import")
+        raise InputError(say("this is a Reflight plan already; it needs no import", place=path))
     if not isinstance(content, dict) or content.get("fileType") != "Plan":
-        raise MissionError(f"{path}: no QGroundControl plan; expected a JSON object with fileType 'Plan'")
+        raise MissionError(say("no QGroundControl plan; expected a JSON object with fileType 'Plan'", place=path))
     mission = content.get("mission")
     if not isinstance(mission, dict):
-        raise MissionError(f"{path}: the plan has no mission (it may hold a fence only); save it with its mission")
+        raise MissionError(
+            say("the plan has no mission (it may hold a fence only); save it with its mission", place=path)
+        )
     for name, found, expected in (
         ("version", content.get("version"), PLAN_VERSION),
         ("mission.version", mission.get("version"), MISSION_VERSION),
     ):
         if found != expected:
-            raise MissionError(f"{path}: {name} is {found}; expected {expected}; save it with a current QGroundControl")
+            raise MissionError(
+                say("{} is {}; expected {}; save it with a current QGroundControl", name, found, expected, place=path)
+            )
     home, on_home = _home(mission.get("plannedHomePosition"))
     firmware = mission.get("firmwareType")
     autopilot = next((a for a in Autopilot if facts(a).firmware_type == firmware), None)
     speed = mission.get("hoverSpeed")
     items: list[MissionItem] = []
     for number, item in enumerate(_list(mission.get("items"), f"{path}: mission.items"), 1):
-        items += _read_item(item, f"{path}: mission.items, item {number}")
+        items += _read_item(item, say("mission.items, item {}", number, place=path))
     return MavlinkFile(
         tuple(items),
         home,
@@ -131,25 +136,29 @@ def read_plan_json(path: Path) -> MavlinkFile:
 def _read_item(item: Any, place: str) -> list[MissionItem]:
     """The items that a simple or complex item stands for."""
     if not isinstance(item, dict):
-        raise MissionError(f"{place}: expected an object, got {type(item).__name__}")
+        raise MissionError(say("expected an object, got {}", type(item).__name__, place=place))
     if item.get("type") == "ComplexItem":
         name = item.get("complexItemType", "unnamed")
         transects = item.get("TransectStyleComplexItem")
         generated = transects.get("Items") if isinstance(transects, dict) else None
         if not generated:
             raise MissionError(
-                f"{place}: the complex item '{name}' does not hold the items it generates, which only QGroundControl "
-                "can make; turn it into simple items there"
+                say(
+                    "the complex item '{}' does not hold the items it generates, which only QGroundControl can make; "
+                    "turn it into simple items there",
+                    name,
+                    place=place,
+                )
             )
         inner = _list(generated, place)
         return [made for i, child in enumerate(inner, 1) for made in _read_item(child, f"{place} ({name} {i})")]
     if item.get("type") != "SimpleItem":
-        raise MissionError(f"{place}: type is '{item.get('type')}'; expected SimpleItem or ComplexItem")
+        raise MissionError(say("type is '{}'; expected SimpleItem or ComplexItem", item.get("type"), place=place))
     command, frame, params = item.get("command"), item.get("frame"), item.get("params")
     if not _is_number(command) or not _is_number(frame):
-        raise MissionError(f"{place}: expected numbers for command and frame, got {command} and {frame}")
+        raise MissionError(say("expected numbers for command and frame, got {} and {}", command, frame, place=place))
     if not isinstance(params, list) or len(params) != 7 or not all(p is None or _is_number(p) for p in params):
-        raise MissionError(f"{place}: expected params to be 7 numbers or null, got {str(params)[:60]}")
+        raise MissionError(say("expected params to be 7 numbers or null, got {}", str(params)[:60], place=place))
     values = [math.nan if value is None else float(value) for value in params]
     viewpoint_id = item.get(VIEWPOINT_KEY)
     filled: Params = (values[0], values[1], values[2], values[3], values[4], values[5], values[6])
@@ -158,7 +167,7 @@ def _read_item(item: Any, place: str) -> list[MissionItem]:
 
 def _list(content: Any, place: str) -> list[Any]:
     if not isinstance(content, list):
-        raise MissionError(f"{place}: expected a list, got {type(content).__name__}")
+        raise MissionError(say("expected a list, got {}", type(content).__name__, place=place))
     return content
 
 

@@ -35,6 +35,7 @@ from missions.mission.model import (
 )
 from planning.base.errors import MissionError
 from planning.base.findings import Finding, Severity
+from planning.base.messages import say
 from planning.geo.frames import wrap_heading_deg
 
 # What an autopilot would do with mission items: where photos are taken, and how the camera stands at each.
@@ -62,9 +63,9 @@ TAKEOFFS = (mavlink.MAV_CMD_NAV_TAKEOFF, mavlink.MAV_CMD_NAV_VTOL_TAKEOFF)
 LANDINGS = (mavlink.MAV_CMD_NAV_LAND, mavlink.MAV_CMD_NAV_VTOL_LAND)
 
 NOT_FLOWN = {
-    mavlink.MAV_CMD_NAV_SPLINE_WAYPOINT: "spline legs are taken as straight",
-    mavlink.MAV_CMD_NAV_LOITER_TURNS: "circles are taken as a stop at their centre",
-    mavlink.MAV_CMD_DO_JUMP: "jumps are not followed: each item counts once",
+    mavlink.MAV_CMD_NAV_SPLINE_WAYPOINT: say("spline legs are taken as straight"),
+    mavlink.MAV_CMD_NAV_LOITER_TURNS: say("circles are taken as a stop at their centre"),
+    mavlink.MAV_CMD_DO_JUMP: say("jumps are not followed: each item counts once"),
 }
 
 
@@ -143,13 +144,13 @@ class MavlinkFlight:
     def _note_simplification(self, item: MissionItem, number: int) -> None:
         text = NOT_FLOWN.get(item.command)
         if text is not None:
-            self.findings.append(Finding(Severity.WARNING, "simplified", text, f"{self.place}item {number}"))
+            self.findings.append(Finding(Severity.WARNING, "simplified", text, say("{}item {}", self.place, number)))
 
     # Positions ------------------------------------------------------------------------------------------------------
 
     def _position(self, item: MissionItem, number: int) -> ReadWaypoint:
         here = self.flown[-1] if self.flown else self.file.home
-        return position_of(item, here, f"{self.place}item {number}")
+        return position_of(item, here, say("{}item {}", self.place, number))
 
     def _metric_height_m(self, point: ReadWaypoint) -> float:
         """Height that can be compared with that of any other point of this mission."""
@@ -197,7 +198,7 @@ class MavlinkFlight:
         same_kind = (start.height_above_takeoff_m is None) == (end.height_above_takeoff_m is None)
         if not same_kind and self.file.home is None:
             raise MissionError(
-                f"{self.place}heights above take-off and above sea level are mixed, and home is not known"
+                say("{}heights above take-off and above sea level are mixed, and home is not known", self.place)
             )
         rise_m = self._metric_height_m(end) - self._metric_height_m(start)
         length_m = math.hypot(distance_m(start.lat_deg, start.lon_deg, end.lat_deg, end.lon_deg), rise_m)
@@ -244,16 +245,16 @@ class MavlinkFlight:
         low, high = (-180.0, 90.0) if index == 0 else (-360.0, 360.0)
         if low <= angle_deg <= high:
             return angle_deg
-        text = f"param {index + 1} is {angle_deg:g}; expected an angle in deg, so it is not followed"
-        self.findings.append(Finding(Severity.WARNING, "angle", text, f"{self.place}item {number}"))
+        text = say("param {} is {:g}; expected an angle in deg, so it is not followed", index + 1, angle_deg)
+        self.findings.append(Finding(Severity.WARNING, "angle", text, say("{}item {}", self.place, number)))
         return None
 
     def condition_yaw(self, item: MissionItem, number: int) -> None:
         """CONDITION_YAW: an absolute heading, or a turn from the present one."""
         angle_deg, _, direction, is_relative = item.params[:4]
         if not math.isfinite(angle_deg):
-            text = f"param 1 is {angle_deg:g}; expected an angle in deg, so it is not followed"
-            self.findings.append(Finding(Severity.WARNING, "angle", text, f"{self.place}item {number}"))
+            text = say("param 1 is {:g}; expected an angle in deg, so it is not followed", angle_deg)
+            self.findings.append(Finding(Severity.WARNING, "angle", text, say("{}item {}", self.place, number)))
         elif is_relative == 1.0:
             turn_deg = -angle_deg if direction < 0 else angle_deg
             self.wanted_yaw_deg = None if self.nose_deg is None else wrap_heading_deg(self.nose_deg + turn_deg)
@@ -292,8 +293,8 @@ class MavlinkFlight:
         """DO_SET_ROI and DO_SET_ROI_LOCATION: look at a place until told otherwise."""
         is_old = item.command in (mavlink.MAV_CMD_DO_SET_ROI, mavlink.MAV_CMD_NAV_ROI)
         if is_old and item.params[0] not in (0.0, mavlink.MAV_ROI_LOCATION):
-            text = f"a region of interest of mode {item.params[0]:g} is not followed"
-            self.findings.append(Finding(Severity.WARNING, "simplified", text, f"{self.place}item {number}"))
+            text = say("a region of interest of mode {:g} is not followed", item.params[0])
+            self.findings.append(Finding(Severity.WARNING, "simplified", text, say("{}item {}", self.place, number)))
         is_somewhere = has_place(item) and item.frame != mavlink.MAV_FRAME_MISSION
         self.roi = self._position(item, number) if is_somewhere else None
 
@@ -331,8 +332,10 @@ class MavlinkFlight:
 
     def _shoot(self, item: MissionItem, number: int) -> None:
         if not self.flown:
-            text = "a photo is taken before the first waypoint, so where is not known; it is left out"
-            self.findings.append(Finding(Severity.WARNING, "photo-without-place", text, f"{self.place}item {number}"))
+            text = say("a photo is taken before the first waypoint, so where is not known; it is left out")
+            self.findings.append(
+                Finding(Severity.WARNING, "photo-without-place", text, say("{}item {}", self.place, number))
+            )
             return
         here = self.flown[-1]
         self.flown[-1] = replace(here, photos=(*here.photos, self._photo(here, item.viewpoint_id)))
@@ -416,12 +419,12 @@ def read_mavlink(path: Path, file: MavlinkFile, file_format: str, *, strict: boo
     flight = MavlinkFlight(file, f"{path}: ")
     flight.fly()
     if not flight.flown:
-        raise MissionError(f"{path}: the mission has no waypoint, so there is nothing to fly")
+        raise MissionError(say("the mission has no waypoint, so there is nothing to fly", place=path))
     is_relative = any(point.height_above_takeoff_m is not None for point in flight.flown)
     checks = check_items(file, flight.autopilot)
     errors = [finding for finding in checks if finding.severity is Severity.ERROR]
     if strict and errors:
-        raise MissionError(f"{path}: the vehicle would refuse this mission: {reasons(errors)}")
+        raise MissionError(say("the vehicle would refuse this mission: {}", reasons(errors), place=path))
     return ReadMission(
         name=path.stem,
         path=path,
@@ -439,5 +442,7 @@ def read_mavlink(path: Path, file: MavlinkFile, file_format: str, *, strict: boo
 def _on_rally(file: MavlinkFile) -> tuple[Finding, ...]:
     if not file.rally:
         return ()
-    text = f"the file has {len(file.rally)} rally points, which belong to a site and not to a plan; mark them there"
+    text = say(
+        "the file has {} rally points, which belong to a site and not to a plan; mark them there", len(file.rally)
+    )
     return (Finding(Severity.NOTE, "rally-points", text, "", float(len(file.rally))),)

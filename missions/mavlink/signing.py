@@ -16,6 +16,7 @@ from dataclasses import dataclass, field
 
 from missions.mavlink.messages import Address, SetupSigning
 from planning.base.errors import InputError
+from planning.base.messages import say
 
 KEY_BYTES = 32
 SIGNATURE_BYTES = 13
@@ -45,7 +46,7 @@ def key_from_passphrase(passphrase: str) -> bytes:
         The passphrase is empty.
     """
     if not passphrase:
-        raise InputError("the passphrase for signing is empty; expected the one that the vehicle was given")
+        raise InputError(say("the passphrase for signing is empty; expected the one that the vehicle was given"))
     return hashlib.sha256(passphrase.encode()).digest()
 
 

@@ -18,6 +18,7 @@ from missions.mission.safe_files import MAX_LINES, read_limited
 from planning.base.errors import MissionError
 from planning.base.files import check_lines
 from planning.base.findings import Finding, Severity
+from planning.base.messages import about, say
 
 N_COLUMNS = 12
 HOME_IN_LINE_0, NO_HOME = "110", "120"
@@ -60,24 +61,24 @@ def read_wpl(path: Path) -> MavlinkFile:
         check_lines(content, MAX_LINES, path)
         lines = content.decode("utf-8-sig").splitlines()
     except UnicodeDecodeError as error:
-        raise MissionError(f"{path}: expected text, found other bytes at offset {error.start}") from error
+        raise MissionError(say("expected text, found other bytes at offset {}", error.start, place=path)) from error
     header = _HEADER.fullmatch(lines[0].strip()) if lines else None
     if header is None or header[1] not in (HOME_IN_LINE_0, NO_HOME):
         found = lines[0].strip()[:40] if lines else ""
-        raise MissionError(f"{path}: expected 'QGC WPL 110' in the first line, found '{found}'")
+        raise MissionError(say("expected 'QGC WPL 110' in the first line, found '{}'", found, place=path))
     items = [
-        _read_line(line, f"{path}, line {number}")
+        _read_line(line, say("{}, line {}", path, number))
         for number, line in enumerate(lines[1:], 2)
         if line.strip() and not line.lstrip().startswith("#")
     ]
     findings: tuple[Finding, ...] = ()
     wrong = next((place for place, (seq, _) in enumerate(items) if seq != place), None)
     if wrong is not None:
-        text = f"expected the items numbered from 0 in order, found {items[wrong][0]} in place {wrong}"
+        text = say("expected the items numbered from 0 in order, found {} in place {}", items[wrong][0], wrong)
         if sorted(seq for seq, _ in items) != list(range(len(items))):
-            raise MissionError(f"{path}: {text}")
+            raise MissionError(about(path, text))
         items.sort(key=lambda item: item[0])
-        findings = (Finding(Severity.WARNING, "order", f"{text}; they are taken in the order of their numbers"),)
+        findings = (Finding(Severity.WARNING, "order", say("{}; they are taken in the order of their numbers", text)),)
     home = None
     kept = [item for _, item in items]
     # Mission Planner writes command 0 where home was never set. A file that begins with a take-off has no home.
@@ -90,10 +91,10 @@ def read_wpl(path: Path) -> MavlinkFile:
 def _read_line(line: str, place: str) -> tuple[int, MissionItem]:
     columns = line.split()
     if len(columns) != N_COLUMNS:
-        raise MissionError(f"{place}: expected {N_COLUMNS} columns, found {len(columns)}")
+        raise MissionError(say("expected {} columns, found {}", N_COLUMNS, len(columns), place=place))
     try:
         seq, frame, command = int(columns[0]), int(columns[2]), int(columns[3])
         p1, p2, p3, p4, p5, p6, p7 = (float(column) for column in columns[4:11])
     except ValueError as error:
-        raise MissionError(f"{place}: expected numbers with a decimal point ({error})") from error
+        raise MissionError(say("expected numbers with a decimal point ({})", error, place=place)) from error
     return seq, MissionItem(command, frame, (p1, p2, p3, p4, p5, p6, p7))

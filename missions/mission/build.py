@@ -15,6 +15,7 @@ from typing import TypeVar
 from missions.mission.model import GeoPoint, Mission, Photo, Waypoint
 from planning.aircraft.catalogue import profiles
 from planning.base.errors import InputError, MissionError
+from planning.base.messages import say
 from planning.geo.frames import Origin, Vec3, wrap_heading_deg
 from planning.motion.sortie_timing import with_stops
 from planning.plan import Plan, Sortie, Viewpoint
@@ -54,7 +55,7 @@ def missions_from_plan(plan: Plan, origin: Origin | None = None, home_enu_m: Vec
     speed_m_s = min(plan.aircraft.max_speed_m_s, plan.rules.max_speed_m_s or math.inf)
     missions = []
     for number, sortie in enumerate(plan.sorties, 1):
-        place = f"sortie {number}"
+        place = say("sortie {}", number)
         _check_ends_at_home(sortie.path_enu_m, home_enu_m, place)
         views = [by_id[viewpoint_id] for viewpoint_id in sortie.viewpoint_ids]
         for view in views:
@@ -82,30 +83,39 @@ def missions_from_plan(plan: Plan, origin: Origin | None = None, home_enu_m: Vec
 def _agreed(of_plan: Value | None, given: Value | None, name: str) -> Value:
     if of_plan is None:
         if given is None:
-            raise InputError(f"the plan has no {name}, so nothing can be placed on the globe; add --site SITE")
+            raise InputError(say("the plan has no {}, so nothing can be placed on the globe; add --site SITE", name))
         return given
     if given is not None and of_plan != given:
-        raise InputError(f"the plan was made for the {name} {of_plan}, but the site says {given}; plan again")
+        raise InputError(say("the plan was made for the {} {}, but the site says {}; plan again", name, of_plan, given))
     return of_plan
 
 
 def _check_each_viewpoint_once(plan: Plan) -> None:
     if not plan.sorties:
-        raise MissionError("the plan has no sorties: nothing says which way to fly; plan again, locked views are kept")
+        raise MissionError(
+            say("the plan has no sorties: nothing says which way to fly; plan again, locked views are kept")
+        )
     seen: dict[str, int] = {}
     for number, sortie in enumerate(plan.sorties, 1):
         for viewpoint_id in sortie.viewpoint_ids:
             if viewpoint_id in seen:
                 raise MissionError(
-                    f"viewpoint '{viewpoint_id}' is in sortie {seen[viewpoint_id]} and again in sortie {number}; "
-                    "expected each viewpoint once"
+                    say(
+                        "viewpoint '{}' is in sortie {} and again in sortie {}; expected each viewpoint once",
+                        viewpoint_id,
+                        seen[viewpoint_id],
+                        number,
+                    )
                 )
             seen[viewpoint_id] = number
     missing = [viewpoint.id for viewpoint in plan.viewpoints if viewpoint.id not in seen]
     if missing:
         raise MissionError(
-            f"{len(missing)} viewpoints are in no sortie (the first is '{missing[0]}'): their photos would be lost; "
-            "plan the route again"
+            say(
+                "{} viewpoints are in no sortie (the first is '{}'): their photos would be lost; plan the route again",
+                len(missing),
+                missing[0],
+            )
         )
 
 
@@ -122,25 +132,43 @@ def _check_pitch(view: Viewpoint, plan: Plan) -> None:
     low, high = plan.camera.gimbal_pitch_deg
     if not low - 1e-6 <= view.gimbal_pitch_deg <= high + 1e-6:
         raise MissionError(
-            f"viewpoint '{view.id}' needs a gimbal pitch of {view.gimbal_pitch_deg:.1f} deg, but {plan.camera.name} "
-            f"turns from {low:g} to {high:g} deg and would be stopped there; plan with this camera's limits"
+            say(
+                "viewpoint '{}' needs a gimbal pitch of {:.1f} deg, but {} turns from {:g} to {:g} deg and would "
+                "be stopped there; plan with this camera's limits",
+                view.id,
+                view.gimbal_pitch_deg,
+                plan.camera.name,
+                low,
+                high,
+            )
         )
 
 
 def _check_ends_at_home(path_enu_m: Sequence[Vec3], home_enu_m: Vec3, place: str) -> None:
     if len(path_enu_m) < 3:
-        raise MissionError(f"{place}: its path has {len(path_enu_m)} points; expected take-off, flight and landing")
+        raise MissionError(
+            say("its path has {} points; expected take-off, flight and landing", len(path_enu_m), place=place)
+        )
     for end, neighbour, verb in ((path_enu_m[0], path_enu_m[1], "starts"), (path_enu_m[-1], path_enu_m[-2], "ends")):
         away_m = math.dist(end, home_enu_m)
         if away_m > COLUMN_RADIUS_M:
             raise MissionError(
-                f"{place}: its path {verb} {away_m:.1f} m from home; expected it to start and end on the ground at "
-                "home, where heights above take-off are counted from"
+                say(
+                    "its path {} {:.1f} m from home; expected it to start and end on the ground at home, where "
+                    "heights above take-off are counted from",
+                    verb,
+                    away_m,
+                    place=place,
+                )
             )
         if math.dist(neighbour[:2], end[:2]) > COLUMN_RADIUS_M or neighbour[2] <= end[2]:
             raise MissionError(
-                f"{place}: its path {verb} with a slanted leg, but aircraft climb and land vertically and would leave "
-                "the checked path; expected a vertex straight above home"
+                say(
+                    "its path {} with a slanted leg, but aircraft climb and land vertically and would leave the "
+                    "checked path; expected a vertex straight above home",
+                    verb,
+                    place=place,
+                )
             )
 
 
@@ -169,8 +197,12 @@ def _photos_at(vertices: Sequence[Vec3], views: Sequence[Viewpoint], place: str)
             index += 1
         if index == len(vertices):
             raise MissionError(
-                f"{place}: viewpoint '{view.id}' is not on the path, or not in the order of viewpoint_ids, so its "
-                "photo would be lost; plan the route again"
+                say(
+                    "viewpoint '{}' is not on the path, or not in the order of viewpoint_ids, so its photo would be "
+                    "lost; plan the route again",
+                    view.id,
+                    place=place,
+                )
             )
         photos[index].append(Photo(view.id, wrap_heading_deg(view.heading_deg), view.gimbal_pitch_deg))
     return photos

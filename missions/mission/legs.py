@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from planning.base.errors import MissionError
+from planning.base.messages import say
 from planning.geo.frames import Origin
 
 if TYPE_CHECKING:
@@ -80,7 +81,9 @@ def are_too_many(length: float, spacing: float) -> bool:
 
 def too_many_shots(length: float, spacing: float) -> str:
     """What is to be said then."""
-    return f"a camera trigger every {spacing:g} would take {length / spacing:.3g} photos on one leg; it is not followed"
+    return say(
+        "a camera trigger every {:g} would take {:.3g} photos on one leg; it is not followed", spacing, length / spacing
+    )
 
 
 def shots_on_leg(travelled: float, length: float, spacing: float) -> list[float]:

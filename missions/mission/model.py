@@ -19,6 +19,7 @@ from enum import StrEnum
 from pathlib import Path
 
 from planning.base.findings import Finding, Severity
+from planning.base.messages import glue, joined, say
 from planning.geo.frames import Origin
 from planning.parameters import FlightRules
 from planning.plan import Aircraft, Camera
@@ -245,7 +246,7 @@ def as_remark(finding: Finding) -> Finding:
     """A check's error, which grounds a file but not the evaluation of what it would do, as a warning."""
     if finding.severity is not Severity.ERROR:
         return finding
-    return replace(finding, severity=Severity.WARNING, message=f"the vehicle would refuse it: {finding.message}")
+    return replace(finding, severity=Severity.WARNING, message=say("the vehicle would refuse it: {}", finding.message))
 
 
 MAX_REASONS = 3
@@ -260,9 +261,11 @@ def reasons(errors: Sequence[Finding]) -> str:
     told = []
     for found in list(kinds.values())[:MAX_REASONS]:
         place = found[0].place.strip(", ")
-        times = f" ({len(found)} times)" if len(found) > 1 else ""
-        told.append(f"{place}: {found[0].message}{times}" if place else f"{found[0].message}{times}")
-    return "; ".join(told) + (f"; and {len(kinds) - MAX_REASONS} other kinds" if len(kinds) > MAX_REASONS else "")
+        times = say(" ({} times)", len(found)) if len(found) > 1 else ""
+        told.append(glue(f"{place}: " if place else "", found[0].message, times))
+    return joined("; ", told) + (
+        say("; and {} other kinds", len(kinds) - MAX_REASONS) if len(kinds) > MAX_REASONS else ""
+    )
 
 
 # Heights between the WGS 84 ellipsoid and mean sea level, which in every mission format means the EGM96 geoid.

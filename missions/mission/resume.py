@@ -15,6 +15,7 @@ from missions.mission.build import missions_from_plan
 from missions.mission.model import Mission
 from planning.base.errors import InfeasibleError, MissionError
 from planning.base.findings import Finding, Severity
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.plan import Plan
 from planning.revision import delete, revise
@@ -78,7 +79,7 @@ def resume_sortie(
     done = [identifier for identifier in sortie.viewpoint_ids if identifier in set(taken)]
     if len(done) == len(sortie.viewpoint_ids):
         raise MissionError(
-            f"sortie {number} is complete: all {len(done)} views have a photo, so there is nothing to resume"
+            say("sortie {} is complete: all {} views have a photo, so there is nothing to resume", number, len(done))
         )
     if prepared is None:
         prepared = _prepared(plan, site_model, monitor)
@@ -90,8 +91,13 @@ def resume_sortie(
     if errors:
         place = f" ({errors[0].place})" if errors[0].place else ""
         raise MissionError(
-            f"the rest of sortie {number} cannot be flown as it was planned{place}: {errors[0].message}; "
-            "plan a top-up instead, which finds its own views and ways"
+            say(
+                "the rest of sortie {} cannot be flown as it was planned{}: {}; plan a top-up instead, which "
+                "finds its own views and ways",
+                number,
+                place,
+                errors[0].message,
+            )
         )
     left = tuple(replace(view, locked=view.id in locked) for view in rest.plan.viewpoints)
     rest_plan = replace(
@@ -106,4 +112,4 @@ def _prepared(plan: Plan, site_model: SiteModel, monitor: Monitor) -> Prepared:
     try:
         return prepare(site_model, plan.camera, plan.constraints, seed=plan.seed, stop=lambda: True, monitor=monitor)
     except InfeasibleError as error:
-        raise InfeasibleError(f"the sortie cannot be resumed on the site as it is now: {error}") from error
+        raise InfeasibleError(say("the sortie cannot be resumed on the site as it is now: {}", error)) from error

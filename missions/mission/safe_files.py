@@ -10,11 +10,12 @@ from typing import BinaryIO
 
 from planning.base.errors import InputError, MissionError
 from planning.base.files import MIB, FileLimit, check_zip_directory, open_given, read_given
+from planning.base.messages import say
 
-MISSION_FILE = FileLimit("a mission file", 64 * MIB)
+MISSION_FILE = FileLimit(say("a mission file"), 64 * MIB)
 """Larger ones are refused; a mission of 10 000 waypoints with actions has about 40 MiB of XML."""
 
-KMZ_FILE = FileLimit("a DJI KMZ", 512 * MIB)
+KMZ_FILE = FileLimit(say("a DJI KMZ"), 512 * MIB)
 """With reference pictures in it."""
 
 MAX_FILE_BYTES = MISSION_FILE.max_bytes
@@ -59,9 +60,11 @@ def open_archive(source: Path | BinaryIO, label: str) -> tuple[zipfile.ZipFile, 
     try:
         archive = zipfile.ZipFile(source)
     except OSError as error:
-        raise InputError(f"{label}: cannot be read ({error.strerror or error})") from error
+        raise InputError(say("cannot be read ({})", error.strerror or error, place=label)) from error
     except (zipfile.BadZipFile, ValueError, NotImplementedError) as error:
-        raise MissionError(f"{label}: damaged or no zip archive ({error}); a KMZ is one; copy it again") from error
+        raise MissionError(
+            say("damaged or no zip archive ({}); a KMZ is one; copy it again", error, place=label)
+        ) from error
     try:
         return archive, _checked_members(archive, label)
     except BaseException:
@@ -71,18 +74,22 @@ def open_archive(source: Path | BinaryIO, label: str) -> tuple[zipfile.ZipFile, 
 
 def _checked_members(archive: zipfile.ZipFile, label: str) -> dict[str, zipfile.ZipInfo]:
     if len(archive.infolist()) > MAX_MEMBERS:
-        raise MissionError(f"{label}: holds {len(archive.infolist())} files; expected at most {MAX_MEMBERS}")
+        raise MissionError(
+            say("holds {} files; expected at most {}", len(archive.infolist()), MAX_MEMBERS, place=label)
+        )
     members: dict[str, zipfile.ZipInfo] = {}
     for member in archive.infolist():
         name = member.filename.replace("\\", "/")
         if name.startswith("/") or ":" in name or ".." in PurePosixPath(name).parts:
             raise MissionError(
-                f"{label}: holds the path '{member.filename}', which leads out of it; refused as hostile"
+                say("holds the path '{}', which leads out of it; refused as hostile", member.filename, place=label)
             )
         if name in members:
-            raise MissionError(f"{label}: holds '{name}' twice, so which one is meant is unknown; export it again")
+            raise MissionError(
+                say("holds '{}' twice, so which one is meant is unknown; export it again", name, place=label)
+            )
         if member.flag_bits & 0x1:
-            raise MissionError(f"{label}: '{name}' is encrypted; export it without a password")
+            raise MissionError(say("'{}' is encrypted; export it without a password", name, place=label))
         members[name] = member
     return members
 
@@ -99,11 +106,20 @@ def read_member(archive: zipfile.ZipFile, member: zipfile.ZipInfo, label: str) -
         with archive.open(member) as file:
             content = file.read(MAX_FILE_BYTES + 1)
     except (zipfile.BadZipFile, OSError, EOFError, RuntimeError, NotImplementedError, ValueError) as error:
-        raise MissionError(f"{label}: '{member.filename}' is damaged ({error}); copy the file again") from error
+        raise MissionError(
+            say("'{}' is damaged ({}); copy the file again", member.filename, error, place=label)
+        ) from error
     except (zlib.error, lzma.LZMAError) as error:
-        raise MissionError(f"{label}: '{member.filename}' cannot be inflated ({error}); copy the file again") from error
+        raise MissionError(
+            say("'{}' cannot be inflated ({}); copy the file again", member.filename, error, place=label)
+        ) from error
     if len(content) > MAX_FILE_BYTES:
         raise MissionError(
-            f"{label}: '{member.filename}' inflates to more than {MAX_FILE_BYTES // 2**20} MiB; refused as hostile"
+            say(
+                "'{}' inflates to more than {} MiB; refused as hostile",
+                member.filename,
+                MAX_FILE_BYTES // 2**20,
+                place=label,
+            )
         )
     return content

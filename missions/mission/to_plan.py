@@ -22,6 +22,7 @@ from missions.mission.model import Finish, HeightReference, ReadMission, ReadPho
 from planning.aircraft.catalogue import profile
 from planning.base.errors import InputError
 from planning.base.findings import Finding, Severity
+from planning.base.messages import say
 from planning.geo.frames import Origin, Vec3
 from planning.geo.mesh import MAX_COORDINATE_M
 from planning.motion.sortie_timing import SAME_PLACE_M, sortie_flight_path, stopping_duration_s
@@ -155,24 +156,29 @@ class _Unaimed:
 
     def findings(self, name: str) -> Iterator[Finding]:
         if self.n_without_heading:
-            text = f"{self.n_without_heading} photos are left out: the pilot turns the aircraft by hand there"
+            text = say("{} photos are left out: the pilot turns the aircraft by hand there", self.n_without_heading)
             yield Finding(Severity.WARNING, "no-heading", text, name, self.n_without_heading)
         if self.n_without_pitch:
-            text = (
-                f"{self.n_without_pitch} photos have no gimbal pitch in the file; a gimbal starts level: 0 deg assumed"
+            text = say(
+                "{} photos have no gimbal pitch in the file; a gimbal starts level: 0 deg assumed", self.n_without_pitch
             )
             yield Finding(Severity.WARNING, "no-gimbal-pitch", text, name, self.n_without_pitch)
 
 
 def _check_is_near(mission: ReadMission, home: tuple[float, float, float]) -> None:
     if not mission.waypoints:
-        raise InputError(f"{mission.path}: the mission has no waypoints")
+        raise InputError(say("the mission has no waypoints", place=mission.path))
     nearest_m = min(distance_m(w.lat_deg, w.lon_deg, home[0], home[1]) for w in mission.waypoints)
     if nearest_m > MAX_DISTANCE_M:
         raise InputError(
-            f"{mission.path}: the mission '{mission.name}' is {nearest_m / 1000.0:.1f} km from the site's home; "
-            f"expected at most {MAX_DISTANCE_M / 1000.0:g} km; is it the right site? Imported without one, the mission "
-            "gets a bare site of its own, to look at it"
+            say(
+                "the mission '{}' is {:.1f} km from the site's home; expected at most {:g} km; is it the right "
+                "site? Imported without one, the mission gets a bare site of its own, to look at it",
+                mission.name,
+                nearest_m / 1000.0,
+                MAX_DISTANCE_M / 1000.0,
+                place=mission.path,
+            )
         )
 
 
@@ -181,39 +187,54 @@ def _check_is_local(mission: ReadMission, path: Sequence[Vec3]) -> None:
         away_m = max(map(abs, point))
         if away_m > MAX_COORDINATE_M:
             raise InputError(
-                f"{mission.path}: the mission '{mission.name}' reaches {away_m / 1000.0:.0f} km from the origin of the "
-                f"site; expected at most {MAX_COORDINATE_M / 1000.0:g} km; a coordinate or a height in it is wrong"
+                say(
+                    "the mission '{}' reaches {:.0f} km from the origin of the site; expected at most {:g} km; a "
+                    "coordinate or a height in it is wrong",
+                    mission.name,
+                    away_m / 1000.0,
+                    MAX_COORDINATE_M / 1000.0,
+                    place=mission.path,
+                )
             )
 
 
 def _takeoff_findings(mission: ReadMission, home: tuple[float, float, float]) -> Iterator[Finding]:
     is_relative = mission.height_reference is HeightReference.ABOVE_TAKEOFF
     if is_relative:
-        text = "its heights are above take-off and were counted from the site's home"
+        text = say("its heights are above take-off and were counted from the site's home")
         yield Finding(Severity.NOTE, "height-reference", text, mission.name)
     elif mission.height_reference is HeightReference.AMSL:
-        text = "its heights are above sea level and were brought to the ellipsoid with EGM96"
+        text = say("its heights are above sea level and were brought to the ellipsoid with EGM96")
         yield Finding(Severity.NOTE, "height-reference", text, mission.name)
     if mission.takeoff is None:
         return
     away_m = distance_m(mission.takeoff.lat_deg, mission.takeoff.lon_deg, home[0], home[1])
     if away_m > TAKEOFF_MOVED_M:
-        text = (
-            f"it was planned for a take-off {away_m:.0f} m from the site's home; the way there is not the planned one"
+        text = say(
+            "it was planned for a take-off {:.0f} m from the site's home; the way there is not the planned one", away_m
         )
         yield Finding(Severity.WARNING, "takeoff-moved", text, mission.name, away_m, TAKEOFF_MOVED_M, "m")
     lifted_m = mission.takeoff.height_ellipsoid_m - home[2]
     if is_relative and abs(lifted_m) > TAKEOFF_LIFTED_M:
         text = (
-            f"its take-off point lies {abs(lifted_m):.1f} m {'above' if lifted_m > 0 else 'below'} the site's home, "
-            "so counted from home all its heights are off by that"
+            say(
+                "its take-off point lies {:.1f} m above the site's home, so counted from home all its heights "
+                "are off by that",
+                abs(lifted_m),
+            )
+            if lifted_m > 0
+            else say(
+                "its take-off point lies {:.1f} m below the site's home, so counted from home all its heights "
+                "are off by that",
+                abs(lifted_m),
+            )
         )
         yield Finding(Severity.WARNING, "takeoff-lifted", text, mission.name, lifted_m, TAKEOFF_LIFTED_M, "m")
 
 
 def _end_findings(mission: ReadMission) -> Iterator[Finding]:
     if mission.finish is Finish.HOVER:
-        text = "the mission ends hovering at its last waypoint; the way home is the pilot's and not in the path"
+        text = say("the mission ends hovering at its last waypoint; the way home is the pilot's and not in the path")
         yield Finding(Severity.NOTE, "finish", text, mission.name)
 
 
@@ -293,9 +314,12 @@ def _time_as_told(
     duration_s = rules.takeoff_landing_s + way_s + route_s
     if not mission.stated_s:
         return duration_s, ()
-    text = (
-        f"the file states {mission.stated_s:.0f} s for its route, and by what it tells the aircraft to do it takes "
-        f"{route_s:.0f} s; with the way there and back, take-off and landing the flight takes {duration_s:.0f} s"
+    text = say(
+        "the file states {:.0f} s for its route, and by what it tells the aircraft to do it takes {:.0f} "
+        "s; with the way there and back, take-off and landing the flight takes {:.0f} s",
+        mission.stated_s,
+        route_s,
+        duration_s,
     )
     return duration_s, (Finding(Severity.NOTE, "stated-time", text, mission.name, mission.stated_s, route_s, "s"),)
 

@@ -34,6 +34,7 @@ from missions.simulator.effects.wind import GustyAir, Wind
 from missions.simulator.scene import FlightScene, flight_scene
 from planning.base.effects import Decision, Effect, Wish, decide
 from planning.base.errors import InputError
+from planning.base.messages import say
 from planning.geo.frames import Vec3
 from planning.motion.timing import motion_limits
 from planning.parameters import FlightRules
@@ -65,7 +66,7 @@ def decide_effects(scene: FlightScene, wishes: Mapping[str, Wish] | None = None)
     known = [effect.name for effect in EFFECTS]
     for name in wishes:
         if name not in known:
-            raise InputError(f"there is no effect '{name}' of the flight; known are: {', '.join(known)}")
+            raise InputError(say("there is no effect '{}' of the flight; known are: {}", name, ", ".join(known)))
     return tuple(decide(effect, scene, wishes.get(effect.name, "auto")) for effect in EFFECTS)
 
 

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
+from planning.base.messages import say
 from planning.base.parameters import Choice, check, like, parameter
 from planning.parameters import FlightRules
 
@@ -52,7 +53,7 @@ class Conditions:
         choices=(
             Choice("rtk-fixed", "RTK fixed", "rtk"),
             Choice("rtk-float", "RTK float", "float"),
-            Choice("single", "without RTK"),
+            Choice("single", say("without RTK")),
         ),
         option="--gnss",
         row="first",

@@ -12,6 +12,7 @@ from pathlib import Path
 
 from planning.base.errors import InputError
 from planning.base.json_file import read_toml
+from planning.base.messages import say
 from planning.base.plugins import NAME, Plugin, PluginGroup, load_plugins
 from planning.plan import Aircraft, Camera
 
@@ -42,15 +43,17 @@ def profiles() -> dict[str, Profile]:
     def take(_plugin: Plugin, path: object) -> None:
         if not isinstance(path, (str, Path)):
             raise InputError(
-                f"expected its entry point to stand for the path of a TOML file, got {type(path).__name__}"
+                say("expected its entry point to stand for the path of a TOML file, got {}", type(path).__name__)
             )
         own = _read(Path(path))
         wrong = next((key for key in own if not NAME.fullmatch(key)), None)
         if wrong is not None:
-            raise InputError(f"{path}: '{wrong}' has other characters than a-z, 0-9, dot, hyphen and underscore")
+            raise InputError(
+                say("'{}' has other characters than a-z, 0-9, dot, hyphen and underscore", wrong, place=path)
+            )
         known = next((key for key in own if key in found), None)
         if known is not None:
-            raise InputError(f"{path}: there is another aircraft profile '{known}'")
+            raise InputError(say("there is another aircraft profile '{}'", known, place=path))
         found.update(own)
 
     load_plugins(PluginGroup.AIRCRAFT, take, ())
@@ -72,7 +75,9 @@ def profile(identifier: str) -> Profile:
     if identifier.lower().endswith(".toml"):
         own = _read(Path(identifier))
         if len(own) != 1:
-            raise InputError(f"{identifier}: expected one table with an aircraft and its camera, got {len(own)}")
+            raise InputError(
+                say("expected one table with an aircraft and its camera, got {}", len(own), place=identifier)
+            )
         return next(iter(own.values()))
     if identifier in bundled_profiles():
         return bundled_profiles()[identifier]
@@ -81,5 +86,5 @@ def profile(identifier: str) -> Profile:
     except KeyError:
         known = ", ".join(sorted(profiles()))
         raise InputError(
-            f"there is no aircraft profile '{identifier}'; known are: {known}; your own can be a .toml file"
+            say("there is no aircraft profile '{}'; known are: {}; your own can be a .toml file", identifier, known)
         ) from None

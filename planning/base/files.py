@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
 from planning.base.errors import InputError
+from planning.base.messages import say
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
@@ -61,7 +62,7 @@ class FileLimit:
     advice: str = ""
 
 
-ANY_FILE = FileLimit("a file", 2**62)
+ANY_FILE = FileLimit(say("a file"), 2**62)
 """For those who only look how it begins."""
 
 
@@ -148,29 +149,29 @@ def sha256_given(path: Path, limit: FileLimit = ANY_FILE) -> str:
 
 def _check_status(path: Path, status: os.stat_result, limit: FileLimit) -> None:
     if stat.S_ISDIR(status.st_mode):
-        raise InputError(f"{path}: expected {limit.what}, found a folder; name a file")
+        raise InputError(say("expected {}, found a folder; name a file", limit.what, place=path))
     if not stat.S_ISREG(status.st_mode):
-        raise InputError(f"{path}: expected {limit.what}, found a device or a pipe; name a file")
+        raise InputError(say("expected {}, found a device or a pipe; name a file", limit.what, place=path))
     if status.st_size > limit.max_bytes:
         raise _too_large(path, limit)
 
 
 def _too_large(path: Path, limit: FileLimit) -> InputError:
     return InputError(
-        f"{path}: the file has more than {size_text(limit.max_bytes)}; expected {limit.what}"
+        say("the file has more than {}; expected {}", size_text(limit.max_bytes), limit.what, place=path)
         + (f"; {limit.advice}" if limit.advice else "")
     )
 
 
 def size_text(n_bytes: int) -> str:
     """A limit in words: whole MiB, or KiB below one."""
-    return f"{n_bytes // MIB} MiB" if n_bytes >= MIB else f"{n_bytes // 1024} KiB"
+    return say("{} MiB", n_bytes // MIB) if n_bytes >= MIB else say("{} KiB", n_bytes // 1024)
 
 
 def _not_read(path: Path, error: Exception) -> InputError:
     if isinstance(error, FileNotFoundError):
-        return InputError(f"{path}: cannot be read: there is no such file")
-    return InputError(f"{path}: cannot be read ({getattr(error, 'strerror', None) or error})")
+        return InputError(say("cannot be read: there is no such file", place=path))
+    return InputError(say("cannot be read ({})", getattr(error, "strerror", None) or error, place=path))
 
 
 def check_lines(content: bytes, most: int, place: object) -> None:
@@ -183,7 +184,7 @@ def check_lines(content: bytes, most: int, place: object) -> None:
     """
     n_lines = content.count(b"\n") + content.count(b"\r")
     if n_lines > 2 * most:
-        raise InputError(f"{place}: has more than {most} lines; cut out the part that is wanted")
+        raise InputError(say("has more than {} lines; cut out the part that is wanted", most, place=place))
 
 
 def check_json_size(content: bytes, path: Path) -> None:
@@ -222,8 +223,13 @@ def _text_bytes(content: bytes) -> int:
 
 def _too_rich(place: object, n_bytes: int) -> InputError:
     return InputError(
-        f"{place}: its content would take about {n_bytes / 2**30:.0f} GiB of memory; expected at most "
-        f"{MAX_PARSED_BYTES // 2**30} GiB; cut out the part that is wanted"
+        say(
+            "its content would take about {:.0f} GiB of memory; expected at most {} GiB; cut out the part "
+            "that is wanted",
+            n_bytes / 2**30,
+            MAX_PARSED_BYTES // 2**30,
+            place=place,
+        )
     )
 
 
@@ -250,8 +256,11 @@ def check_zip_directory(file: BinaryIO, place: object) -> None:
     *_, n_bytes, _, _ = ZIP_END.unpack_from(tail, at)
     if n_bytes > MAX_ZIP_DIRECTORY_BYTES:
         raise InputError(
-            f"{place}: the list of its files has more than {size_text(MAX_ZIP_DIRECTORY_BYTES)}; pack it again with "
-            "what is needed"
+            say(
+                "the list of its files has more than {}; pack it again with what is needed",
+                size_text(MAX_ZIP_DIRECTORY_BYTES),
+                place=place,
+            )
         )
 
 
@@ -289,12 +298,12 @@ def parse_xml(content: bytes, place: object, *, forbid_dtd: bool = True) -> Elem
     try:
         root: Element = fromstring(content, forbid_dtd=forbid_dtd)
     except DefusedXmlException as error:
-        raise HostileXml("declares a document type or entities") from error
+        raise HostileXml(say("declares a document type or entities")) from error
     except (ParseError, LookupError) as error:
         raise ValueError(str(error)) from error
     level, depth = [root], 0
     while level:
         level, depth = [child for element in level for child in element], depth + 1
         if depth > MAX_XML_DEPTH:
-            raise HostileXml(f"is nested more than {MAX_XML_DEPTH} levels deep")
+            raise HostileXml(say("is nested more than {} levels deep", MAX_XML_DEPTH))
     return root

@@ -8,6 +8,7 @@ from fnmatch import fnmatch
 from pathlib import Path
 
 from planning.base.errors import InputError
+from planning.base.messages import say
 
 FILE_ENDING = re.compile(
     r"\.(avi|bin|bmp|csv|docx?|exr|gif|glb|gltf|gml|html?|ifc|jpe?g|json|kml|kmz|las|laz|log|md|mp4|npy|obj|ods|odt|pdf|"
@@ -39,7 +40,9 @@ def make_folder(folder: Path) -> None:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise InputError(f"{folder}: cannot be made ({error.strerror or error}); name another folder") from error
+        raise InputError(
+            say("cannot be made ({}); name another folder", error.strerror or error, place=folder)
+        ) from error
 
 
 def check_ending(path: Path, endings: Sequence[str], others: Collection[str] = PLAIN_ENDINGS) -> None:
@@ -62,10 +65,15 @@ def check_ending(path: Path, endings: Sequence[str], others: Collection[str] = P
     if is_known and not path.name.lower().endswith(tuple(endings)):
         told = " or ".join(endings)
         if path.exists():
-            raise InputError(f"{path}: would replace a {ending} file by what is {told}; name another file")
+            raise InputError(say("would replace a {} file by what is {}; name another file", ending, told, place=path))
         raise InputError(
-            f"{path}: not written: the name ends in {ending}, and what would be in the file is {told}; "
-            "name it so, or choose another format"
+            say(
+                "not written: the name ends in {}, and what would be in the file is {}; name it so, or choose "
+                "another format",
+                ending,
+                told,
+                place=path,
+            )
         )
 
 
@@ -80,5 +88,9 @@ def check_folder_name(path: Path) -> None:
     ending = path.suffix.lower()
     if FILE_ENDING.fullmatch(ending) and not path.is_dir():
         raise InputError(
-            f"{path}: not written: the name ends in {ending} as files do, and this is written as a folder; name one"
+            say(
+                "not written: the name ends in {} as files do, and this is written as a folder; name one",
+                ending,
+                place=path,
+            )
         )

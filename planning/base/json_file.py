@@ -23,13 +23,14 @@ import msgspec.inspect
 
 from planning.base.errors import InputError
 from planning.base.files import MIB, FileLimit, check_json_size, read_given, real_path
+from planning.base.messages import Message, about, joined, plain, say, without_place
 
 if sys.platform != "win32":
     import fcntl
 
 Record = TypeVar("Record")
 
-JSON_FILE = FileLimit("a JSON file", 512 * MIB)
+JSON_FILE = FileLimit(say("a JSON file"), 512 * MIB)
 """A site of 100 000 panels is under 50 MB."""
 
 LARGEST_INTEGER = 2**64
@@ -38,7 +39,7 @@ LARGEST_INTEGER = 2**64
 MAX_DEPTH = 100
 """Levels of lists and objects; GeoJSON and CityJSON, the deepest that are read, have under 12."""
 
-TOML_FILE = FileLimit("a TOML file", MIB)
+TOML_FILE = FileLimit(say("a TOML file"), MIB)
 """Settings have some kilobytes, with the layout of ten window sizes under 100."""
 
 MAX_KEY_PARTS = 16
@@ -79,17 +80,21 @@ def parse_json(written: bytes, path: Path, *, names_files: bool = False) -> Any:
     try:
         text = written.decode("utf-8-sig")  # editors on Windows put a byte order mark in front
     except UnicodeDecodeError as error:
-        raise InputError(f"{path}: expected JSON in UTF-8, found other bytes at offset {error.start}") from error
+        raise InputError(
+            say("expected JSON in UTF-8, found other bytes at offset {}", error.start, place=path)
+        ) from error
     if not text.strip():
-        raise InputError(f"{path}: not valid JSON, line 1: the file is empty")
+        raise InputError(say("not valid JSON, line 1: the file is empty", place=path))
     try:
         content = json.loads(text)
     except json.JSONDecodeError as error:
-        raise InputError(f"{path}: not valid JSON, line {error.lineno}, column {error.colno}: {error.msg}") from error
+        raise InputError(
+            say("not valid JSON, line {}, column {}: {}", error.lineno, error.colno, error.msg, place=path)
+        ) from error
     except RecursionError as error:
-        raise InputError(f"{path}: nested too deeply for a file of ours") from error
+        raise InputError(say("nested too deeply for a file of ours", place=path)) from error
     except ValueError as error:
-        raise InputError(f"{path}: holds a number with too many digits ({error})") from error
+        raise InputError(say("holds a number with too many digits ({})", error, place=path)) from error
     _check_values(content, path, names_files)
     return content
 
@@ -115,7 +120,7 @@ def _check_values(content: Any, path: Path, names_files: bool, *, is_toml: bool 
         if not deeper:
             return
         level = deeper
-    raise InputError(f"{path}: nested too deeply for a file of ours")
+    raise InputError(say("nested too deeply for a file of ours", place=path))
 
 
 def _is_text(text: str) -> bool:
@@ -129,10 +134,12 @@ def _is_text(text: str) -> bool:
 def _refuse_value(content: Any, wrong: Any, path: Path) -> NoReturn:
     place = (_place_of(content, wrong, "") or "").lstrip(".").encode("ascii", "backslashreplace").decode()
     if isinstance(wrong, int):
-        raise InputError(f"{path}: {place}: expected a number of at most 20 digits, found one of {len(str(wrong))}")
+        raise InputError(
+            say("expected a number of at most 20 digits, found one of {}", len(str(wrong)), place=f"{path}: {place}")
+        )
     if isinstance(wrong, float):
-        raise InputError(f"{path}: {place}: expected a finite number, got NaN or Infinity")
-    raise InputError(f"{path}: {place}: expected text, found half of a character (a surrogate by itself)")
+        raise InputError(say("expected a finite number, got NaN or Infinity", place=f"{path}: {place}"))
+    raise InputError(say("expected text, found half of a character (a surrogate by itself)", place=f"{path}: {place}"))
 
 
 def _place_of(content: Any, wrong: Any, place: str) -> str | None:
@@ -150,6 +157,22 @@ def _place_of(content: Any, wrong: Any, place: str) -> str | None:
     return next((found for value, inner in parts if (found := _place_of(value, wrong, inner)) is not None), None)
 
 
+def plain_values(record: Any) -> Any:
+    """A record as plain JSON values; messages are texts in a file."""
+    return msgspec.to_builtins(record, enc_hook=_as_text)
+
+
+def encoded(record: Any) -> bytes:
+    """A record as JSON without blanks; see `plain_values`."""
+    return msgspec.json.encode(record, enc_hook=_as_text)
+
+
+def _as_text(value: Any) -> str:
+    if isinstance(value, Message):
+        return plain(value)
+    raise TypeError(f"expected something that JSON has, got {type(value).__name__}")
+
+
 def to_record(content: Any, record: type[Record], path: Path) -> Record:
     """Typed record from plain JSON values; fields the record does not know are ignored.
 
@@ -161,9 +184,9 @@ def to_record(content: Any, record: type[Record], path: Path) -> Record:
     try:
         return msgspec.convert(content, record)
     except msgspec.ValidationError as error:
-        raise InputError(f"{path}: {_in_words(str(error), record)}") from error
+        raise InputError(about(path, _in_words(error, record))) from error
     except UnicodeEncodeError as error:
-        raise InputError(f"{path}: a text in it holds half of a character (a surrogate by itself)") from error
+        raise InputError(say("a text in it holds half of a character (a surrogate by itself)", place=path)) from error
 
 
 def expect_format(content: Any, expected: str, path: Path) -> None:
@@ -176,33 +199,52 @@ def expect_format(content: Any, expected: str, path: Path) -> None:
     """
     found = content.get("format", expected) if isinstance(content, dict) else expected
     if found != expected:
-        raise InputError(f"{path}: format: expected '{expected}', got {found!r}; is it the right file?")
+        raise InputError(say("format: expected '{}', got {}; is it the right file?", expected, repr(found), place=path))
 
 
 _WORDS = {
     "array": "list",
     "object": "object",
     "float": "number",
-    "int": "whole number",
+    "int": say("whole number"),
     "str": "text",
     "null": "nothing",
     "bool": "true/false",
 }
 
 
-def _in_words(message: str, record: type[Any]) -> str:
+_REFUSALS = (
+    (re.compile(r"missing required field '(.+)'"), "missing required field '{}'"),
+    (re.compile(r"object contains unknown field '(.+)'"), "object contains unknown field '{}'"),
+    (re.compile(r"expected (.+) of length (.+), got (.+)"), "expected {} of length {}, got {}"),
+    (re.compile(r"expected (.+), got (.+)"), "expected {}, got {}"),
+    (re.compile(r"invalid enum value (.+)", re.IGNORECASE), "invalid enum value {}"),
+)
+"""What msgspec says, in our words, as messages."""
+
+
+def _in_words(error: Exception, record: type[Any]) -> str:
     """Turn "Expected `float`, got `str` - at `$.a.b`" into "a.b: expected number, got text"."""
-    text, _, place = message.partition(" - at `$")
+    text, _, place = str(error).partition(" - at `$")
     place = place.rstrip("`").lstrip(".")
+    if isinstance(error.__cause__, ValueError) and isinstance(said := str(error.__cause__), Message):
+        # A check of the record's own.
+        is_field = re.fullmatch(r"\w+(\[\d+\])*", said.place) is not None
+        if not place:
+            return said
+        return about(f"{place}.{said.place}", without_place(said, said.place)) if is_field else about(place, said)
     text = re.sub(r"`(\w+(?: \| \w+)*)`", lambda found: _kind(found[1]), text).replace("`", "'")
     text = re.sub(r"^Object missing", "missing", text)
     text = text[:1].lower() + text[1:] if text.startswith("Expected") else text
     wrong = re.match(r"^Invalid enum value (.+)$", text)
     if wrong and (choices := _choices(record, place)):
-        text = f"expected {', '.join(choices)}, got {wrong[1]}"
-    if not place:
-        return text
-    return f"{place}.{text}" if re.match(r"\w+(\[\d+\])*: ", text) else f"{place}: {text}"
+        text = say("expected {}, got {}", ", ".join(choices), wrong[1])
+    if place and re.match(r"\w+(\[\d+\])*: ", text):
+        return f"{place}.{text}"
+    for pattern, template in _REFUSALS:
+        if not isinstance(text, Message) and (found := pattern.fullmatch(text)):
+            text = say(template, *found.groups())
+    return about(place, text) if place else text
 
 
 def _choices(record: type[Any], place: str) -> list[str]:
@@ -226,7 +268,7 @@ def _alternatives(kind: msgspec.inspect.Type) -> Sequence[msgspec.inspect.Type]:
 
 def _kind(types: str) -> str:
     """Turn "str | null" into "text or nothing"; a word that is no type is quoted."""
-    return " or ".join(_WORDS.get(kind, f"'{kind}'") for kind in types.split(" | "))
+    return joined(" or ", (_WORDS.get(kind, f"'{kind}'") for kind in types.split(" | ")))
 
 
 def read_toml(path: Path, record: type[Record]) -> Record:
@@ -258,14 +300,16 @@ def parse_toml(written: bytes, path: Path) -> dict[str, Any]:
         long_key = _LONG_KEY.search(text)
         if long_key is not None:
             line = text.count("\n", 0, long_key.start()) + 1
-            raise InputError(f"{path}: line {line}: a key has more than {MAX_KEY_PARTS} parts; none of ours has")
+            raise InputError(
+                say("line {}: a key has more than {} parts; none of ours has", line, MAX_KEY_PARTS, place=path)
+            )
         content = tomllib.loads(text)
         _check_values(content, path, False, is_toml=True)
         return content
     except ValueError as error:  # TOMLDecodeError, UnicodeDecodeError, and numbers with thousands of digits
-        raise InputError(f"{path}: not valid TOML ({error})") from error
+        raise InputError(say("not valid TOML ({})", error, place=path)) from error
     except RecursionError as error:
-        raise InputError(f"{path}: nested too deeply for a file of ours") from error
+        raise InputError(say("nested too deeply for a file of ours", place=path)) from error
 
 
 def check_settings(content: Mapping[str, Any], record: type[Any], path: Path, place: str = "") -> None:
@@ -286,7 +330,7 @@ def check_settings(content: Mapping[str, Any], record: type[Any], path: Path, pl
     known = [field.name for field in fields(record)]
     unknown = sorted(set(content) - set(known))
     if unknown:
-        raise InputError(f"{path}: {place}{unknown[0]}: no such setting; known are: {', '.join(known)}")
+        raise InputError(say("no such setting; known are: {}", ", ".join(known), place=f"{path}: {place}{unknown[0]}"))
 
 
 def settings_over(base: Record, content: Mapping[str, Any], path: Path) -> Record:
@@ -340,20 +384,20 @@ def check_output(path: Path, sources: Iterable[Path] = ()) -> None:
     # Files are made anew in their folder; devices and pipes are written into.
     if (path.is_file() or not path.exists()) and not os.access(folder, os.W_OK | os.X_OK):
         raise InputError(
-            f"{path}: cannot be written: the folder '{folder}' is write-protected; name a file in another one"
+            say("cannot be written: the folder '{}' is write-protected; name a file in another one", folder, place=path)
         )
     for source in sources:
         if path.exists() and source.exists() and path.samefile(source):
-            raise InputError(f"{path}: would replace {source}, which it is made from; name another file")
+            raise InputError(say("would replace {}, which it is made from; name another file", source, place=path))
 
 
 def _check_place(path: Path) -> None:
     if not path.parent.is_dir():
-        raise InputError(f"{path}: cannot be written: there is no folder '{path.parent}'; make it first")
+        raise InputError(say("cannot be written: there is no folder '{}'; make it first", path.parent, place=path))
     if path.is_dir():
-        raise InputError(f"{path}: cannot be written: this is a folder; name a file in it")
+        raise InputError(say("cannot be written: this is a folder; name a file in it", place=path))
     if path.exists() and not os.access(path, os.W_OK):
-        raise InputError(f"{path}: cannot be written: the file is write-protected; name another one")
+        raise InputError(say("cannot be written: the file is write-protected; name another one", place=path))
 
 
 def write_atomically(path: Path, content: bytes) -> None:
@@ -374,7 +418,7 @@ def write_atomically(path: Path, content: bytes) -> None:
         with part_file(real_path(path)) as part:
             part.write_bytes(content)
     except OSError as error:
-        raise InputError(f"{path}: cannot be written ({error.strerror or error})") from error
+        raise InputError(say("cannot be written ({})", error.strerror or error, place=path)) from error
 
 
 def write_together(files: Mapping[Path, bytes]) -> None:
@@ -397,7 +441,7 @@ def write_together(files: Mapping[Path, bytes]) -> None:
             for part, content in zip(parts, files.values(), strict=True):
                 part.write_bytes(content)
     except OSError as error:
-        raise InputError(f"{next(iter(files))}: cannot be written ({error.strerror or error})") from error
+        raise InputError(say("cannot be written ({})", error.strerror or error, place=next(iter(files)))) from error
 
 
 @contextmanager

@@ -16,6 +16,8 @@ from dataclasses import MISSING, Field, dataclass, field, fields, is_dataclass, 
 from functools import cache
 from typing import Any, Literal, TypeVar
 
+from planning.base.messages import say
+
 Value = TypeVar("Value")
 Record = TypeVar("Record")
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -109,17 +111,21 @@ class Parameter:
             return self.expected
         if self.choices:
             *first, last = [str(choice.value) for choice in self.choices]
-            return f"{', '.join(first)} or {last}" if first else last
+            return say("{} or {}", ", ".join(first), last) if first else last
         least, most = self.least, None if self.most == math.inf else self.most
         if least is not None and most is not None:
-            return f"{least:.15g} to {most:.15g}" if not isinstance(most, int) else f"{least} to {most}"
+            return say("{} to {}", *(f"{each:.15g}" if not isinstance(most, int) else each for each in (least, most)))
         if least is not None:
-            return f"{least:g} or more" if self.below is None else f"{least:g} to below {self.below:g}"
+            return say("{:g} or more", least) if self.below is None else say("{:g} to below {:g}", least, self.below)
         if self.above is not None and self.below is not None:
-            return f"above {self.above:g} and below {self.below:g}"
+            return say("above {:g} and below {:g}", self.above, self.below)
         if self.above is not None:
-            return f"more than {self.above:g}" + ("" if most is None else f" and at most {most:g}")
-        return "" if most is None else f"{most:g} at most"
+            return (
+                say("more than {:g}", self.above)
+                if most is None
+                else say("more than {:g} and at most {:g}", self.above, most)
+            )
+        return "" if most is None else say("{:g} at most", most)
 
     def holds(self, value: Any) -> bool:
         """Whether a value is in the range."""
@@ -140,7 +146,7 @@ class Parameter:
         """Raise `ValueError`, which names the parameter and its range, unless a value is in it."""
         if not self.holds(value):
             shown = f"'{value}'" if isinstance(value, str) else f"{value}"
-            raise ValueError(f"{self.name or field_name}: expected {self.range_text()}, got {shown}")
+            raise ValueError(say("expected {}, got {}", self.range_text(), shown, place=self.name or field_name))
 
 
 def parameter(default: Value, help: str = "", **facts: Any) -> Value:  # noqa: A002  (as argparse calls it)

@@ -21,6 +21,7 @@ from functools import cache
 from typing import TYPE_CHECKING, TypeVar
 
 from planning.base.errors import GroundStationError, InputError, PluginError
+from planning.base.messages import say
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
@@ -51,7 +52,7 @@ class Plugin:
     entry_point: EntryPoint = field(repr=False)
 
     def __str__(self) -> str:
-        return f"the plug-in '{self.name}' of {self.package}"
+        return say("the plug-in '{}' of {}", self.name, self.package)
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +63,7 @@ class PluginProblem:
     reason: str
 
     def __str__(self) -> str:
-        return f"{self.plugin} is left out: {self.reason}; update it, or remove it"
+        return say("{} is left out: {}; update it, or remove it", self.plugin, self.reason)
 
 
 _PROBLEMS: list[PluginProblem] = []
@@ -81,7 +82,7 @@ def installed_plugins(group: PluginGroup) -> tuple[Plugin, ...]:
 
 def _package(entry_point: EntryPoint) -> str:
     known = entry_point.dist
-    return "an unknown package" if known is None else f"{known.metadata['Name']} {known.version}"
+    return say("an unknown package") if known is None else f"{known.metadata['Name']} {known.version}"
 
 
 def load_plugins(group: PluginGroup, take: Callable[[Plugin, object], T], taken: Collection[str]) -> dict[str, T]:
@@ -99,9 +100,9 @@ def load_plugins(group: PluginGroup, take: Callable[[Plugin, object], T], taken:
     for plugin in installed_plugins(group):
         try:
             if not NAME.fullmatch(plugin.name):
-                raise InputError("its name has other characters than a-z, 0-9, dot, hyphen and underscore")
+                raise InputError(say("its name has other characters than a-z, 0-9, dot, hyphen and underscore"))
             if plugin.name in taken or plugin.name in found:
-                raise InputError("there is another one of that name")
+                raise InputError(say("there is another one of that name"))
             found[plugin.name] = take(plugin, plugin.entry_point.load())
         except (Exception, SystemExit) as error:  # it is the code of others
             leave_out(plugin, error)
@@ -128,7 +129,9 @@ def expect_type(found: object, expected: type[T]) -> T:
         It is of another type.
     """
     if not isinstance(found, expected):
-        raise InputError(f"expected its entry point to stand for a {expected.__name__}, got {type(found).__name__}")
+        raise InputError(
+            say("expected its entry point to stand for a {}, got {}", expected.__name__, type(found).__name__)
+        )
     return found
 
 
@@ -150,7 +153,9 @@ def guarded(plugin: Plugin, call: Callable[..., R], returns: type[R]) -> Callabl
         except Exception as error:
             raise _failure(plugin, error) from error
         if not isinstance(found, returns):
-            raise _failure(plugin, TypeError(f"expected a {returns.__name__} from it, got {type(found).__name__}"))
+            raise _failure(
+                plugin, TypeError(say("expected a {} from it, got {}", returns.__name__, type(found).__name__))
+            )
         return found
 
     return guarded_call
@@ -188,7 +193,7 @@ def blamed(error: BaseException) -> BaseException:
 
 
 def _failure(plugin: Plugin, error: Exception) -> PluginError:
-    return PluginError(f"{plugin} failed: {type(error).__name__}: {error}; update it, or remove it")
+    return PluginError(say("{} failed: {}: {}; update it, or remove it", plugin, type(error).__name__, error))
 
 
 def plugin_problems() -> tuple[PluginProblem, ...]:

@@ -11,8 +11,9 @@ from typing import NamedTuple
 
 from planning.base.errors import InputError
 from planning.base.files import MIB, FileLimit, open_given, read_given
+from planning.base.messages import say
 
-IFC_FILE = FileLimit("an IFC file", 4096 * MIB, "export the facade alone")
+IFC_FILE = FileLimit(say("an IFC file"), 4096 * MIB, say("export the facade alone"))
 
 TAIL_BYTES = 4096
 """The end mark stands in the last few; some programs write a comment after it."""
@@ -40,9 +41,9 @@ def check_ends(path: Path) -> None:
         file.seek(max(0, file.seek(0, os.SEEK_END) - TAIL_BYTES))
         tail = file.read(TAIL_BYTES)
     if not head.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(START):
-        raise InputError(f"{path}: expected an IFC file (STEP text that begins with ISO-10303-21)")
+        raise InputError(say("expected an IFC file (STEP text that begins with ISO-10303-21)", place=path))
     if END not in tail:
-        raise InputError(f"{path}: the file is cut off (END-ISO-10303-21 is missing); copy or export it again")
+        raise InputError(say("the file is cut off (END-ISO-10303-21 is missing); copy or export it again", place=path))
 
 
 class Mended(NamedTuple):

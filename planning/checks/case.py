@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.findings import Finding, Severity
+from planning.base.messages import glue, say
 from planning.checks.measures import Measures, TimedFlight, flight_key, measure
 from planning.coverage.model import CoverageModel
 from planning.plan import Plan, Sortie
@@ -59,7 +60,7 @@ class Case:
         """Name, record and path, shape (k, 3), of each sortie whose path has any leg."""
         for number, sortie in enumerate(self.plan.sorties, 1):
             if len(sortie.path_enu_m) > 1:
-                yield f"sortie {number}", sortie, np.array(sortie.path_enu_m, np.float64)
+                yield say("sortie {}", number), sortie, np.array(sortie.path_enu_m, np.float64)
 
     def timed_sorties(self) -> Iterator[tuple[str, Sortie, TimedFlight]]:
         """Name, record and times of each sortie whose path passes all its viewpoints; none where nothing can fly."""
@@ -67,7 +68,7 @@ class Case:
         for number, sortie in enumerate(self.plan.sorties, 1):
             flight = self.measures.flights.get(flight_key(sortie, by_id))
             if flight is not None:
-                yield f"sortie {number}", sortie, flight
+                yield say("sortie {}", number), sortie, flight
 
 
 Rule = Callable[[Case], Iterator[Finding]]
@@ -87,10 +88,14 @@ def judge(
     least: bool = False,
 ) -> Finding:
     """A finding about one measured value: OK where `kept`. The limit is the most allowed, or else the `least`."""
-    text = f"{subject}: {_number(value, unit)}, {'at least' if least else 'at most'} {_number(limit, unit)}"
+    text = (
+        say("{}, at least {}", _number(value, unit), _number(limit, unit), place=subject)
+        if least
+        else say("{}, at most {}", _number(value, unit), _number(limit, unit), place=subject)
+    )
     if kept:
         return Finding(Severity.OK, code, text, place, value, limit, unit)
-    return Finding(severity, code, f"{text}{'; ' + advice if advice else ''}", place, value, limit, unit)
+    return Finding(severity, code, glue(text, "; " if advice else "", advice), place, value, limit, unit)
 
 
 def _number(value: float, unit: str) -> str:

@@ -10,6 +10,7 @@ import numpy as np
 
 from planning.base.errors import InfeasibleError
 from planning.base.findings import Finding, Severity
+from planning.base.messages import glue, say
 from planning.checks.case import Array, Case, Rule, judge
 from planning.checks.measures import pose_of
 from planning.coverage.evaluate import nearest_views_m
@@ -34,15 +35,19 @@ def site_file(case: Case) -> Iterator[Finding]:
     """The plan was made for this very site file; without checksums, for a site of this name."""
     plan, model = case.plan, case.site_model
     if plan.site_sha256 and model.sha256 and is_planned_on(plan.site_sha256, model):
-        yield Finding(Severity.OK, "site", "the plan was made for this site file")
+        yield Finding(Severity.OK, "site", say("the plan was made for this site file"))
     elif plan.site != model.site.name:
-        text = f"the plan was made for site '{plan.site}', this is '{model.site.name}'; take its own site file"
+        text = say("the plan was made for site '{}', this is '{}'; take its own site file", plan.site, model.site.name)
         yield Finding(Severity.ERROR, "site", text)
     elif plan.site_sha256 and model.sha256:
-        text = "the site file has changed since this plan was made; what follows is measured on the file as it is now"
+        text = say(
+            "the site file has changed since this plan was made; what follows is measured on the file as it is now"
+        )
         yield Finding(Severity.WARNING, "site", text)
     else:
-        text = f"the plan was made for a site of this name, '{plan.site}'; it does not say for which state of its file"
+        text = say(
+            "the plan was made for a site of this name, '{}'; it does not say for which state of its file", plan.site
+        )
         yield Finding(Severity.OK, "site", text)
 
 
@@ -55,7 +60,11 @@ def sorties(case: Case) -> Iterator[Finding]:
         yield Finding(
             Severity.ERROR,
             "sorties",
-            f"{len(wrong)} viewpoints are not in exactly one sortie (the first is '{wrong[0]}'); plan the route again",
+            say(
+                "{} viewpoints are not in exactly one sortie (the first is '{}'); plan the route again",
+                len(wrong),
+                wrong[0],
+            ),
             wrong[0],
             float(len(wrong)),
             0.0,
@@ -64,29 +73,38 @@ def sorties(case: Case) -> Iterator[Finding]:
     by_id = {viewpoint.id: viewpoint for viewpoint in plan.viewpoints}
     home = np.array(case.site_model.site.home_enu_m)
     for number, sortie in enumerate(plan.sorties, 1):
-        yield from _sortie_path(f"sortie {number}", sortie, by_id, home)
+        yield from _sortie_path(say("sortie {}", number), sortie, by_id, home)
     if not plan.sorties:
-        yield Finding(Severity.ERROR, "sorties", "the plan has no sorties; plan the route first")
+        yield Finding(Severity.ERROR, "sorties", say("the plan has no sorties; plan the route first"))
     elif not wrong:
         yield Finding(
-            Severity.OK, "sorties", f"{len(plan.viewpoints)} viewpoints, each in one of {len(plan.sorties)} sorties"
+            Severity.OK,
+            "sorties",
+            say("{} viewpoints, each in one of {} sorties", len(plan.viewpoints), len(plan.sorties)),
         )
 
 
 def _sortie_path(place: str, sortie: Sortie, by_id: dict[str, Viewpoint], home: Array) -> Iterator[Finding]:
     path = np.array(sortie.path_enu_m, np.float64).reshape(-1, 3)
     if len(path) < 2:
-        yield Finding(Severity.ERROR, "path", f"the path has {len(path)} points; expected one from home to home", place)
+        yield Finding(
+            Severity.ERROR, "path", say("the path has {} points; expected one from home to home", len(path)), place
+        )
         return
     vertices = photo_vertices(sortie, by_id)
     if vertices is None:
         yield Finding(
-            Severity.ERROR, "path", "not all viewpoints are vertices of the path, in order; plan the route again", place
+            Severity.ERROR,
+            "path",
+            say("not all viewpoints are vertices of the path, in order; plan the route again"),
+            place,
         )
     for end, verb in ((path[0], "starts"), (path[-1], "ends")):
         away = float(np.linalg.norm(end - home))
         if away > SAME_PLACE_M:
-            message = f"the path {verb} {away:.2f} m from home; expected it to run from take-off to landing at home"
+            message = say(
+                "the path {} {:.2f} m from home; expected it to run from take-off to landing at home", verb, away
+            )
             yield Finding(Severity.ERROR, "path", message, place, away, 0.0, "m")
 
 
@@ -96,21 +114,21 @@ def gimbal_and_heading(case: Case) -> Iterator[Finding]:
     pitches = [(v.gimbal_pitch_deg, v.id) for v in case.plan.viewpoints]
     if pitches:
         (lowest, first), (highest, last) = min(pitches), max(pitches)
-        advice = "the camera would stop at its limit and look elsewhere"
+        advice = say("the camera would stop at its limit and look elsewhere")
         yield judge(
-            lowest >= low - 1e-6, "gimbal", "lowest gimbal pitch", lowest, low, "deg", first, advice, least=True
+            lowest >= low - 1e-6, "gimbal", say("lowest gimbal pitch"), lowest, low, "deg", first, advice, least=True
         )
-        yield judge(highest <= high + 1e-6, "gimbal", "highest gimbal pitch", highest, high, "deg", last, advice)
+        yield judge(highest <= high + 1e-6, "gimbal", say("highest gimbal pitch"), highest, high, "deg", last, advice)
     odd = [v.id for v in case.plan.viewpoints if not -180.0 < v.heading_deg <= 180.0]
     yield judge(
         not odd,
         "heading",
-        "viewpoints whose heading is not in (-180, 180]",
+        say("viewpoints whose heading is not in (-180, 180]"),
         float(len(odd)),
         0.0,
         "viewpoints",
         odd[0] if odd else "",
-        "mission files need it there",
+        say("mission files need it there"),
     )
 
 
@@ -121,12 +139,12 @@ def waypoint_counts(case: Case) -> Iterator[Finding]:
         yield judge(
             len(path) <= limit + 2,
             "waypoints",
-            f"waypoints of {case.plan.aircraft.name}",
+            say("waypoints of {}", case.plan.aircraft.name),
             float(len(path) - 2),
             float(limit),
             "",
             place,
-            "split the flight into more sorties",
+            say("split the flight into more sorties"),
         )
 
 
@@ -141,7 +159,7 @@ def durations(case: Case) -> Iterator[Finding]:
     except InfeasibleError as error:
         yield Finding(Severity.ERROR, "wind", str(error), "", plan.rules.wind_m_s, plan.aircraft.max_wind_m_s, "m/s")
         return
-    yield judge(True, "wind", "expected wind", plan.rules.wind_m_s, plan.aircraft.max_wind_m_s, "m/s")
+    yield judge(True, "wind", say("expected wind"), plan.rules.wind_m_s, plan.aircraft.max_wind_m_s, "m/s")
     usable = plan.aircraft.endurance_s * (1.0 - plan.rules.battery_reserve)
     for place, sortie, flight in case.timed_sorties():
         ours, length = flight.stopping_s, flight.length_m
@@ -149,29 +167,29 @@ def durations(case: Case) -> Iterator[Finding]:
         yield judge(
             max(ours, sortie.duration_s) <= usable + 0.01,
             "endurance",
-            "duration with the battery reserve kept",
+            say("duration with the battery reserve kept"),
             max(ours, sortie.duration_s),
             usable,
             "s",
             place,
-            "fly fewer views per sortie",
+            say("fly fewer views per sortie"),
         )
         yield judge(
             sortie.duration_s >= least,
             "duration",
-            "stated duration",
+            say("stated duration"),
             sortie.duration_s,
             least,
             "s",
             place,
-            "it is too optimistic for this path",
+            say("it is too optimistic for this path"),
             Severity.WARNING,
             least=True,
         )
         yield judge(
             abs(sortie.length_m - length) <= LENGTH_TOLERANCE * max(length, 1.0),
             "length",
-            "stated length off by",
+            say("stated length off by"),
             abs(sortie.length_m - length),
             LENGTH_TOLERANCE * max(length, 1.0),
             "m",
@@ -193,7 +211,7 @@ def _between_photos(case: Case) -> Iterator[tuple[float, str]]:
         between_s = np.diff(flight.photos_done_s)
         if len(between_s):
             shortest = int(np.argmin(between_s))
-            yield float(between_s[shortest]) - added_s, f"{place}, {sortie.viewpoint_ids[shortest + 1]}"
+            yield float(between_s[shortest]) - added_s, glue(place, ", ", sortie.viewpoint_ids[shortest + 1])
 
 
 def photo_times(case: Case) -> Iterator[Finding]:
@@ -202,16 +220,19 @@ def photo_times(case: Case) -> Iterator[Finding]:
     shortest = min(_between_photos(case), default=None)
     if shortest is not None:
         (between, place), limit = shortest, plan.aircraft.min_photo_interval_s
-        subject, advice = "shortest time between photos", "the camera would miss photos; hover longer before each"
+        subject, advice = (
+            say("shortest time between photos"),
+            say("the camera would miss photos; hover longer before each"),
+        )
         yield judge(between >= limit, "photo-interval", subject, between, limit, "s", place, advice, least=True)
     yield judge(
         plan.rules.settle_s >= SHORT_SETTLE_S,
         "settle",
-        "hover before each photo",
+        say("hover before each photo"),
         plan.rules.settle_s,
         SHORT_SETTLE_S,
         "s",
-        advice="1 to 2 s keep photos sharp",
+        advice=say("1 to 2 s keep photos sharp"),
         severity=Severity.WARNING,
         least=True,
     )
@@ -222,15 +243,18 @@ def ground_sampling(case: Case) -> Iterator[Finding]:
     furthest, viewpoints = case.plan.constraints.max_distance_m, case.plan.viewpoints
     measures = case.measures
     worst = case.plan.camera.gsd_m(max((sight.furthest_m for sight in measures.seen.values()), default=0.0))
-    text = f"coarsest pixel on a covered panel: {1e3 * worst:.2f} mm"
+    text = say("coarsest pixel on a covered panel: {:.2f} mm", 1000.0 * worst)
     if furthest is None:
-        yield Finding(Severity.OK, "gsd", f"{text}, no limit set", "", 1e3 * worst, None, "mm")
+        yield Finding(Severity.OK, "gsd", say("{}, no limit set", text), "", 1e3 * worst, None, "mm")
         return
     nearest = [(measures.nearest_m[pose_of(viewpoint)], viewpoint.id) for viewpoint in viewpoints]
     seen = [(distance, viewpoint_id) for distance, viewpoint_id in nearest if distance < math.inf]
     distance, place = max(seen, default=(0.0, ""))
     value, limit = 1e3 * case.plan.camera.gsd_m(distance), 1e3 * case.plan.camera.gsd_m(furthest)
-    subject, advice = "finest pixel on a panel, of the coarsest photo", "it covers nothing; take it closer or drop it"
+    subject, advice = (
+        say("finest pixel on a panel, of the coarsest photo"),
+        say("it covers nothing; take it closer or drop it"),
+    )
     yield judge(value <= limit * (1.0 + 1e-9), "gsd", subject, value, limit, "mm", place, advice, Severity.WARNING)
 
 
@@ -250,12 +274,12 @@ def sharp_views(case: Case) -> Iterator[Finding]:
 
 def sharpness(n_coarse: int, n_covered: int, coarsest_mm: float, wanted_mm: float, panel: str = "") -> Finding:
     """A finding on the sections that are covered by views with too large pixels only."""
-    text = f"sections seen only with pixels larger than {wanted_mm:.1f} mm: {n_coarse} of {n_covered} covered"
-    text = f"{text}, the coarsest with {coarsest_mm:.1f} mm"
+    text = say("sections seen only with pixels larger than {:.1f} mm: {} of {} covered", wanted_mm, n_coarse, n_covered)
+    text = say("{}, the coarsest with {:.1f} mm", text, coarsest_mm)
     if n_coarse == 0:
         return Finding(Severity.OK, "sharpness", text, panel, 0.0, 0.0, "sections")
     severity = Severity.WARNING if n_coarse > FEW_COARSE * n_covered else Severity.NOTE
-    text = f"{text}; allow more views, or a larger pixel"
+    text = say("{}; allow more views, or a larger pixel", text)
     return Finding(severity, "sharpness", text, panel, float(n_coarse), 0.0, "sections")
 
 
@@ -264,13 +288,15 @@ def stated_coverage(case: Case) -> Iterator[Finding]:
     stated, total = case.plan.coverage, case.model.n_elements
     covered = int(np.count_nonzero(case.measures.counts))
     if covered == 0:
-        text = "no panel is seen from any viewpoint"
+        text = say("no panel is seen from any viewpoint")
         yield Finding(Severity.ERROR, "coverage", text, "", 0.0, float(total), "sections")
     if (covered, total) == (stated.covered, stated.total):
-        text = f"{covered} of {total} sections are covered, as the plan states"
+        text = say("{} of {} sections are covered, as the plan states", covered, total)
         yield Finding(Severity.OK, "coverage", text, "", float(covered), float(stated.covered), "sections")
     else:
-        text = f"{covered} of {total} sections are covered, but the plan states {stated.covered} of {stated.total}"
+        text = say(
+            "{} of {} sections are covered, but the plan states {} of {}", covered, total, stated.covered, stated.total
+        )
         yield Finding(Severity.WARNING, "coverage", text, "", float(covered), float(stated.covered), "sections")
 
 
@@ -281,11 +307,11 @@ def duplicates(case: Case) -> Iterator[Finding]:
     yield judge(
         again == 0,
         "duplicates",
-        "viewpoints that repeat another",
+        say("viewpoints that repeat another"),
         float(again),
         0.0,
         "viewpoints",
-        advice="they cost time and show nothing new",
+        advice=say("they cost time and show nothing new"),
         severity=Severity.WARNING,
     )
 
@@ -306,11 +332,14 @@ def return_home(case: Case) -> Iterator[Finding]:
     crosses_by_itself = not path_crosses and any(way.crosses_no_fly for way in ways)
     is_capped = found.above_home_m < found.wanted_above_home_m
     if gap_m < limit_m - RETURN_TOLERANCE_M and is_capped:
-        what = "through the building or an obstacle" if gap_m <= 0.0 else f"{gap_m:.1f} m from something"
-        text = (
-            f"an aircraft that returns by itself would fly {what}: at {found.wanted_above_home_m:.1f} m above take-off "
-            f"it clears everything, and the airspace ends at {found.ceiling_above_home_m:.1f} m; raise its ceiling, or "
-            "move home to the side of the building that is flown"
+        what = say("through the building or an obstacle") if gap_m <= 0.0 else say("{:.1f} m from something", gap_m)
+        text = say(
+            "an aircraft that returns by itself would fly {}: at {:.1f} m above take-off it clears "
+            "everything, and the airspace ends at {:.1f} m; raise its ceiling, or move home to the side of "
+            "the building that is flown",
+            what,
+            found.wanted_above_home_m,
+            found.ceiling_above_home_m,
         )
         yield Finding(
             Severity.ERROR,
@@ -322,18 +351,19 @@ def return_home(case: Case) -> Iterator[Finding]:
             "m",
         )
     elif gap_m < limit_m - RETURN_TOLERANCE_M:
-        text = f"an aircraft that returns by itself climbs within {gap_m:.1f} m of the building or an obstacle"
+        text = say("an aircraft that returns by itself climbs within {:.1f} m of the building or an obstacle", gap_m)
         yield Finding(Severity.WARNING, "return-height", text, "", gap_m, limit_m, "m")
     elif crosses_by_itself:
-        text = (
-            f"an aircraft that returns by itself, {found.above_home_m:g} m above take-off, crosses a no-fly zone; fly "
-            "it back by hand"
+        text = say(
+            "an aircraft that returns by itself, {:g} m above take-off, crosses a no-fly zone; fly it back by hand",
+            found.above_home_m,
         )
         yield Finding(Severity.WARNING, "return-height", text, "", found.above_home_m, found.ceiling_above_home_m, "m")
     else:
-        text = (
-            f"an aircraft that returns by itself flies {found.above_home_m:g} m above take-off, "
-            f"{found.ceiling_above_home_m:.1f} m are allowed"
+        text = say(
+            "an aircraft that returns by itself flies {:g} m above take-off, {:.1f} m are allowed",
+            found.above_home_m,
+            found.ceiling_above_home_m,
         )
         yield Finding(Severity.OK, "return-height", text, "", found.above_home_m, found.ceiling_above_home_m, "m")
 

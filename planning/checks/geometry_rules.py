@@ -8,6 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from planning.base.findings import Finding, Severity
+from planning.base.messages import say
 from planning.checks.case import ROUNDING_M, Case, Rule, judge
 from planning.checks.measures import Gaps, legs_of
 from planning.motion.sortie_timing import SAME_PLACE_M, beside_column
@@ -29,8 +30,10 @@ def viewpoints_in_airspace(case: Case) -> Iterator[Finding]:
     outside = np.maximum(low - positions, positions - high).max(axis=1)
     found = [(float(value), v.id) for value, v in zip(outside, case.plan.viewpoints, strict=True)]
     worst, where = max([(0.0, ""), *found])
-    advice = "move them inside or widen the airspace"
-    yield judge(worst <= ROUNDING_M, "airspace", "viewpoints outside the airspace by", worst, 0.0, "m", where, advice)
+    advice = say("move them inside or widen the airspace")
+    yield judge(
+        worst <= ROUNDING_M, "airspace", say("viewpoints outside the airspace by"), worst, 0.0, "m", where, advice
+    )
 
 
 def paths_in_airspace(case: Case) -> Iterator[Finding]:
@@ -43,23 +46,23 @@ def paths_in_airspace(case: Case) -> Iterator[Finding]:
         floor = np.where(beside_column(path, home), low[2], min(low[2], home[2]))
         below = floor - np.minimum(path[:-1, 2], path[1:, 2])
         worst, where = max((worst, where), (float(max(outside.max(), below.max())), place))
-    advice = "only the column above home may lie below the airspace"
-    yield judge(worst <= ROUNDING_M, "airspace", "paths outside the airspace by", worst, 0.0, "m", where, advice)
+    advice = say("only the column above home may lie below the airspace")
+    yield judge(worst <= ROUNDING_M, "airspace", say("paths outside the airspace by"), worst, 0.0, "m", where, advice)
 
 
 def lowest_heights(case: Case) -> Iterator[Finding]:
     """Viewpoints and paths keep the lowest height above the ground, but for the column above home."""
     airspace, home = case.site_model.site.airspace, np.array(case.site_model.site.home_enu_m)
     limit = airspace.lowest_height_m(case.plan.constraints.min_height_above_ground_m)
-    advice = "plan it again, or allow lower flights"
-    subject = "lowest height above the ground beside the take-off column"
+    advice = say("plan it again, or allow lower flights")
+    subject = say("lowest height above the ground beside the take-off column")
     for place, _, path in case.sorties():
         heights = np.minimum(path[:-1, 2], path[1:, 2]) - airspace.ground_z_m
         heights = np.where(beside_column(path, home), heights, np.inf)
         leg = int(np.argmin(heights))
         value = float(heights[leg])
         if math.isfinite(value):
-            where, kept = f"{place}, leg {leg + 1}", value >= limit - ROUNDING_M
+            where, kept = say("{}, leg {}", place, leg + 1), value >= limit - ROUNDING_M
             yield judge(kept, "low-flight", subject, value, limit, "m", where, advice, least=True)
     flown = {viewpoint_id for _, sortie, _ in case.sorties() for viewpoint_id in sortie.viewpoint_ids}
     for viewpoint in case.plan.viewpoints:
@@ -73,9 +76,11 @@ def lowest_heights(case: Case) -> Iterator[Finding]:
 def low_flight_allowed(limit_m: float) -> Finding:
     """That lower flights than usual are allowed, which wants a decision."""
     usual_m = MIN_HEIGHT_ABOVE_GROUND_M
-    text = (
-        f"flights down to {limit_m:g} m above the ground are allowed, below the usual {usual_m:g} m: look for people, "
-        "cars and cables on the whole way"
+    text = say(
+        "flights down to {:g} m above the ground are allowed, below the usual {:g} m: look for people, "
+        "cars and cables on the whole way",
+        limit_m,
+        usual_m,
     )
     return Finding(Severity.WARNING, "low-flight-allowed", text, "", limit_m, usual_m, "m")
 
@@ -88,8 +93,10 @@ def distances_at_viewpoints(case: Case) -> Iterator[Finding]:
     points_m = case.measures.solid_gaps.points_m
     nearest = min(case.plan.viewpoints, key=lambda viewpoint: points_m[viewpoint.position_enu_m])
     value, place = points_m[nearest.position_enu_m], nearest.id
-    subject = "smallest distance at a viewpoint (negative: inside a solid)"
-    yield judge(value >= limit - ROUNDING_M, "distance", subject, value, limit, "m", place, "move it away", least=True)
+    subject = say("smallest distance at a viewpoint (negative: inside a solid)")
+    yield judge(
+        value >= limit - ROUNDING_M, "distance", subject, value, limit, "m", place, say("move it away"), least=True
+    )
 
 
 def distances_along_paths(case: Case) -> Iterator[Finding]:
@@ -97,9 +104,9 @@ def distances_along_paths(case: Case) -> Iterator[Finding]:
     limit = case.plan.constraints.min_distance_m
     for place, sortie, _ in case.sorties():
         value, leg, inside = _nearest_leg(case.measures.solid_gaps, sortie)
-        advice = "the path runs inside a solid" if inside else "plan the route again"
-        where = f"{place}, leg {leg + 1}"
-        subject = "smallest distance along the path"
+        advice = say("the path runs inside a solid") if inside else say("plan the route again")
+        where = say("{}, leg {}", place, leg + 1)
+        subject = say("smallest distance along the path")
         kept = value > 0.0 and value >= limit - ROUNDING_M
         yield judge(kept, "leg-distance", subject, value, limit, "m", where, advice, least=True)
 
@@ -115,13 +122,16 @@ def _nearest_leg(gaps: Gaps, sortie: Sortie) -> tuple[float, int, bool]:
 def no_fly_volumes(case: Case) -> Iterator[Finding]:
     """No leg enters a no-fly volume."""
     if not case.site_model.site.airspace.no_fly:
-        yield Finding(Severity.OK, "no-fly", "the site has no no-fly volumes")
+        yield Finding(Severity.OK, "no-fly", say("the site has no no-fly volumes"))
         return
     for place, sortie, _ in case.sorties():
         value, leg, _ = _nearest_leg(case.measures.no_fly_gaps, sortie)
-        where, subject = f"{place}, leg {leg + 1}", "smallest distance to a no-fly volume (negative: inside)"
+        where, subject = (
+            say("{}, leg {}", place, leg + 1),
+            say("smallest distance to a no-fly volume (negative: inside)"),
+        )
         yield judge(
-            value > 0.0, "no-fly", subject, value, 0.0, "m", where, "the path enters a no-fly volume", least=True
+            value > 0.0, "no-fly", subject, value, 0.0, "m", where, say("the path enters a no-fly volume"), least=True
         )
 
 
@@ -136,8 +146,8 @@ def altitude(case: Case) -> Iterator[Finding]:
     heights = [(float(path[:, 2].max()) - ground, place) for place, _, path in case.sorties()]
     if heights:
         value, place = max(heights)
-        advice = "most rules ask for a permit above it"
-        subject, kept = "greatest height above ground", value <= MAX_ALTITUDE_M
+        advice = say("most rules ask for a permit above it")
+        subject, kept = say("greatest height above ground"), value <= MAX_ALTITUDE_M
         yield judge(kept, "altitude", subject, value, MAX_ALTITUDE_M, "m", place, advice, Severity.WARNING)
 
 
@@ -150,12 +160,12 @@ def leg_lengths(case: Case) -> Iterator[Finding]:
             continue
         shortest, longest = float(flown.min()), float(flown.max())
         least_m = case.plan.aircraft.min_waypoint_spacing_m
-        advice = f"{int((flown < least_m).sum())} legs are shorter than DJI firmware likes"
-        judged = "shortest leg", shortest, least_m, "m", place, advice, Severity.WARNING
+        advice = say("{} legs are shorter than DJI firmware likes", int((flown < least_m).sum()))
+        judged = say("shortest leg"), shortest, least_m, "m", place, advice, Severity.WARNING
         yield judge(shortest >= least_m, "leg-spacing", *judged, least=True)
         severity = Severity.ERROR if longest > MAX_LEG_M else Severity.WARNING
-        kept, advice = longest <= LONG_LEG_M, "autopilots refuse it"
-        yield judge(kept, "leg-spacing", "longest leg", longest, LONG_LEG_M, "m", place, advice, severity)
+        kept, advice = longest <= LONG_LEG_M, say("autopilots refuse it")
+        yield judge(kept, "leg-spacing", say("longest leg"), longest, LONG_LEG_M, "m", place, advice, severity)
 
 
 GEOMETRY_RULES: tuple[Rule, ...] = (

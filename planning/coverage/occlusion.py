@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from planning.base.effects import Assessment
 from planning.base.jit import chunks
+from planning.base.messages import say
 from planning.coverage.sections import PanelFrames
 from planning.geo.line_of_sight import OCCLUSION_OFFSET_M, line_of_sight
 
@@ -55,15 +56,15 @@ class Occlusion:
     """The effect: the share of lines of sight, in per cent, that something blocks."""
 
     name = "occlusion"
-    unit = "% of the lines of sight"
+    unit = say("% of the lines of sight")
     tolerance = 0.5
 
     def assess(self, scene: OcclusionScene) -> Assessment:
         """Exactly zero where nothing rises in front of a panel; else estimated on a sample of lines."""
         if not rises_above_a_panel(scene.frames, scene.corners_enu_m):
-            return Assessment(0.0, "nothing stands in front of any panel", 0.0)
+            return Assessment(0.0, say("nothing stands in front of any panel"), 0.0)
         if len(scene.places_enu_m) == 0:
-            return Assessment(0.0, "there is no place to look from", 0.0)
+            return Assessment(0.0, say("there is no place to look from"), 0.0)
         started = time.perf_counter()
         rng = np.random.default_rng(0)
         places = scene.places_enu_m[_sample(rng, len(scene.places_enu_m), N_PROBES)]
@@ -72,12 +73,12 @@ class Occlusion:
         in_front = np.einsum("nmk,mk->nm", places[:, None, :] - centroids[None, :, :], normals) > 0.0
         place, panel = np.nonzero(in_front)
         if len(place) == 0:
-            return Assessment(0.0, "no allowed place lies in front of a panel", 0.0)
+            return Assessment(0.0, say("no allowed place lies in front of a panel"), 0.0)
         targets = centroids + OCCLUSION_OFFSET_M * normals
         free = line_of_sight(scene.corners_enu_m)(places[place], targets[panel])
         share = 100.0 * float(np.mean(~free))
         n_hit = len(np.unique(panel[~free]))
-        reason = f"something stands in front of {100 * n_hit / len(chosen):.0f} % of the panels"
+        reason = say("something stands in front of {:.0f} % of the panels", 100 * n_hit / len(chosen))
         cost = time.perf_counter() - started + len(scene.frames) * 40_000 / RAYS_PER_SECOND
         return Assessment(share, reason, cost)
 

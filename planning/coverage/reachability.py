@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.jit import chunks, n_threads, run_parallel
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor, Stop, never
 from planning.coverage.model import CoverageModel, codes_all_around
 from planning.coverage.positions import spread_positions
@@ -147,7 +148,7 @@ def _search_spread_positions(
     positions = spread_positions(space, model.frames, max_positions, np.random.default_rng(seed))
     idle = 0
     for start, end in chunks(len(positions), POSITIONS_PER_BLOCK):
-        monitor.report("looking for viewpoints", start, len(positions))
+        monitor.report(say("looking for viewpoints"), start, len(positions))
         if stop() or idle >= IDLE_BLOCKS:
             return
         points = positions[start:end]
@@ -224,7 +225,7 @@ def _branch_and_bound(
         still_open = np.flatnonzero(verdicts == UNDECIDED)
         size = max(1, min(64, len(still_open) // (4 * n_threads())))
         for first, last in chunks(len(still_open), 4 * n_threads() * size):
-            monitor.report("proving what cannot be seen", first, len(still_open))
+            monitor.report(say("proving what cannot be seen"), first, len(still_open))
             if stop():
                 return
             parts = [still_open[first:last][start:end] for start, end in chunks(last - first, size)]

@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InputError
+from planning.base.messages import joined, say
 from planning.geo.enu import Geodetic, wrap_longitude_deg
 from planning.geo.geoid import undulation_m
 
@@ -54,12 +55,15 @@ def parse_crs(name: str) -> CRS:
         crs = CRS.from_user_input(_plain_name(name.strip()))
     except CRSError as error:
         raise InputError(
-            f"'{name}' is not a coordinate reference system known here; expected a code such as EPSG:25832, "
-            "EPSG:7415 or EPSG:25832+7837"
+            say(
+                "'{}' is not a coordinate reference system known here; expected a code such as EPSG:25832, "
+                "EPSG:7415 or EPSG:25832+7837",
+                name,
+            )
         ) from error
     horizontal = horizontal_part(crs)
     if not (horizontal.is_projected or horizontal.is_geographic):
-        raise InputError(f"'{name}' is a {crs.type_name}; expected a projected or geographic system")
+        raise InputError(say("'{}' is a {}; expected a projected or geographic system", name, crs.type_name))
     return crs
 
 
@@ -101,7 +105,7 @@ AREA_MARGIN_DEG = 6.0
 MIN_FAR_COORDINATE = 100_000.0
 """Smaller numbers must lie inside the area of use proper: around zero they are rather local coordinates or degrees."""
 
-GEOID_UNCERTAINTY = "which may be off by 1 m, in mountains by 2 m"
+GEOID_UNCERTAINTY = say("which may be off by 1 m, in mountains by 2 m")
 """EGM96 against a national height datum: 0.5 to 1 m of the model itself (NIMA TR8350.2), the datum's own offset, and
 what a 15-minute grid cannot show: 2.0 m in the Alps against swisstopo's example."""
 
@@ -163,7 +167,9 @@ class CrsConversion:
         is_good = np.isfinite(lon) & np.isfinite(lat) & np.isfinite(height_m)
         if not is_good.all():
             bad = tuple(coordinates[int(np.argmin(is_good))].tolist())
-            raise InputError(f"the point {bad} has no position in {self.name}; is this the system the file is in?")
+            raise InputError(
+                say("the point {} has no position in {}; is this the system the file is in?", bad, self.name)
+            )
         if self.is_orthometric:
             height_m = height_m + undulation_m(lat, lon)
         return Geodetic(np.asarray(lat), wrap_longitude_deg(lon), np.asarray(height_m))
@@ -239,7 +245,7 @@ def _axis_order(name: str, crs: CRS, middle: NDArray[np.float64], wanted: AxisOr
     lists_north_first = crs.axis_info[0].direction.lower() in ("north", "south")
     is_short_name = re.match(r"(?i)\s*(epsg:)?\d", name) is not None
     prefers_swap = lists_north_first and crs.is_geographic and not is_short_name
-    in_words = {False: "(east, north)", True: "(north, east)"}
+    in_words = {False: say("(east, north)"), True: say("(north, east)")}
     orders = (prefers_swap, not prefers_swap) if wanted == "auto" else (wanted == "yx",)
     is_far = float(np.abs(middle[:2]).max()) > MIN_FAR_COORDINATE
     for margin_deg in (0.0, AREA_MARGIN_DEG) if is_far else (0.0,):
@@ -248,12 +254,20 @@ def _axis_order(name: str, crs: CRS, middle: NDArray[np.float64], wanted: AxisOr
                 if swaps == lists_north_first or wanted != "auto":
                     return _Order(swaps, ())
                 listed = in_words[lists_north_first]
-                note = f"coordinates are read as {in_words[swaps]}, as they fit; {crs.name} itself lists {listed}"
+                note = say(
+                    "coordinates are read as {}, as they fit; {} itself lists {}", in_words[swaps], crs.name, listed
+                )
                 return _Order(swaps, (note,))
-    tried = " and as ".join(in_words[swaps] for swaps in orders)
+    tried = joined(say(" and as "), (in_words[swaps] for swaps in orders))
     raise InputError(
-        f"the coordinates ({middle[0]:.2f}, {middle[1]:.2f}), read as {tried}, lie far outside the area of use of "
-        f"{crs_label(crs)}; name the right system with --crs"
+        say(
+            "the coordinates ({:.2f}, {:.2f}), read as {}, lie far outside the area of use of {}; name the "
+            "right system with --crs",
+            middle[0],
+            middle[1],
+            tried,
+            crs_label(crs),
+        )
     )
 
 
@@ -289,16 +303,21 @@ def _operation(crs: CRS, lon_deg: float, lat_deg: float) -> _Operation:
     best = next((t for t in group.transformers if t.accuracy >= 0.0), None)
     if best is None:
         raise InputError(
-            f"{crs_label(crs)}: no transformation to WGS 84 of known accuracy is installed; convert the file to a "
-            "system on WGS 84 or ETRS89 first (a UTM zone, say)"
+            say(
+                "no transformation to WGS 84 of known accuracy is installed; convert the file to a system on WGS "
+                "84 or ETRS89 first (a UTM zone, say)",
+                place=crs_label(crs),
+            )
         )
-    note = f"coordinates are in {crs_label(crs)}"
+    note = say("coordinates are in {}", crs_label(crs))
     if best.accuracy > 0.0:
         shift = next((step for step in best.description.split(" + ") if " to WGS 84" in step), best.description)
-        note += f"; '{shift}' is accurate to about {best.accuracy:.3g} m, by which the whole site may be displaced"
+        note += say(
+            "; '{}' is accurate to about {:.3g} m, by which the whole site may be displaced", shift, best.accuracy
+        )
         for finer in group.unavailable_operations:
             if grids := [grid.short_name for grid in finer.grids if not grid.available]:
-                note += f" (a finer one, {finer.accuracy:.3g} m, needs the grid {grids[0]})"
+                note += say(" (a finer one, {:.3g} m, needs the grid {})", finer.accuracy, grids[0])
                 break
     return _Operation(best.definition, float(best.accuracy), note)
 
@@ -311,25 +330,29 @@ class _Heights(NamedTuple):
 
 def _heights(crs: CRS, wanted: HeightReference, keeps_height: bool, geoid_m: float) -> _Heights:
     """What the third coordinate is above, and its unit."""
-    geoid = f"EGM96, here {geoid_m:.1f} m above the ellipsoid"
-    stand_in = f"{geoid}, stands in for the national geoid, {GEOID_UNCERTAINTY}"
+    geoid = say("EGM96, here {:.1f} m above the ellipsoid", geoid_m)
+    stand_in = say("{}, stands in for the national geoid, {}", geoid, GEOID_UNCERTAINTY)
     if crs.is_compound:
         vertical = crs.sub_crs_list[1]
         axis = vertical.axis_info[0]
         unit_m = axis.unit_conversion_factor * (-1.0 if axis.direction.lower() == "down" else 1.0)
         if wanted == "ellipsoid":
             return _Heights(
-                unit_m, False, f"heights are taken above the ellipsoid, as you asked, not as {vertical.name}"
+                unit_m, False, say("heights are taken above the ellipsoid, as you asked, not as {}", vertical.name)
             )
         if vertical.to_epsg() == EGM96_HEIGHT_EPSG:
-            return _Heights(unit_m, True, f"heights are above the geoid of {geoid}")
-        return _Heights(unit_m, True, f"heights are in the system '{vertical.name}'; {stand_in}")
+            return _Heights(unit_m, True, say("heights are above the geoid of {}", geoid))
+        return _Heights(unit_m, True, say("heights are in the system '{}'; {}", vertical.name, stand_in))
     if keeps_height:
-        return _Heights(1.0, False, "heights are above the ellipsoid, as the system says")
+        return _Heights(1.0, False, say("heights are above the ellipsoid, as the system says"))
     axis = crs.axis_info[0]
     unit_m = axis.unit_conversion_factor if crs.is_projected else 1.0
-    unit = "" if unit_m == 1.0 else f" in the unit of the other coordinates ({axis.unit_name})"
+    unit = "" if unit_m == 1.0 else say(" in the unit of the other coordinates ({})", axis.unit_name)
     if wanted == "ellipsoid":
-        return _Heights(unit_m, False, f"heights are taken above the ellipsoid{unit}, as you asked")
-    why = "as you asked" if wanted == "orthometric" else "as the system has none of its own (see --height-reference)"
-    return _Heights(unit_m, True, f"heights are taken above sea level{unit}, {why}; {stand_in}")
+        return _Heights(unit_m, False, say("heights are taken above the ellipsoid{}, as you asked", unit))
+    why = (
+        say("as you asked")
+        if wanted == "orthometric"
+        else say("as the system has none of its own (see --height-reference)")
+    )
+    return _Heights(unit_m, True, say("heights are taken above sea level{}, {}; {}", unit, why, stand_in))

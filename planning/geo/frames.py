@@ -14,6 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from planning.base.messages import say
+
 Vec3 = tuple[float, float, float]
 """One point or vector of the local ENU frame, metres."""
 
@@ -30,11 +32,13 @@ class Origin:
 
     def __post_init__(self) -> None:
         if not -90.0 <= self.lat_deg <= 90.0:
-            raise ValueError(f"lat_deg: expected -90 to 90, got {self.lat_deg}")
+            raise ValueError(say("expected -90 to 90, got {}", self.lat_deg, place="lat_deg"))
         if not -180.0 <= self.lon_deg <= 180.0:
-            raise ValueError(f"lon_deg: expected -180 to 180, got {self.lon_deg}")
+            raise ValueError(say("expected -180 to 180, got {}", self.lon_deg, place="lon_deg"))
         if not -1000.0 <= self.ellipsoid_height_m <= 10_000.0:
-            raise ValueError(f"ellipsoid_height_m: expected -1000 to 10000, got {self.ellipsoid_height_m}")
+            raise ValueError(
+                say("expected -1000 to 10000, got {}", self.ellipsoid_height_m, place="ellipsoid_height_m")
+            )
 
 
 def wrap_heading_rad(heading_rad: Array) -> Array:

@@ -16,13 +16,14 @@ from numpy.typing import NDArray
 from planning.base.errors import InputError
 from planning.base.files import MAX_PARSED_BYTES, MIB, FileLimit, read_given
 from planning.base.json_file import parse_json, write_atomically
+from planning.base.messages import about, say
 
 # What reading a mesh file will cost, found out before a reader starts: some bytes of it can mean gigabytes.
 #
 # Texts become several Python objects a line. A GLB file may name the same bytes in any number of views, put the same
 # vertices into any number of meshes, and set each of them into its scene any number of times.
 
-MESH_FILE = FileLimit("a mesh file", 2048 * MIB, "reduce it, or cut out the building")
+MESH_FILE = FileLimit(say("a mesh file"), 2048 * MIB, say("reduce it, or cut out the building"))
 
 _LINE_BYTES, _TEXT_FACTOR = 200, 6
 """That trimesh's readers of text take for a line, and for each of its characters (measured: 100 to 200, and 4 to 6)."""
@@ -72,8 +73,13 @@ def check_mesh_size(content: bytes, kind: str, path: Path) -> None:
 def _refuse(n_bytes: int, most: int, path: Path) -> None:
     if n_bytes > most:
         raise InputError(
-            f"{path}: this mesh would take about {n_bytes / 2**30:.1f} GiB of memory; expected at most "
-            f"{most / 2**30:.1f} GiB of one of its size; reduce it, or export the building alone as binary PLY"
+            say(
+                "this mesh would take about {:.1f} GiB of memory; expected at most {:.1f} GiB of one of its "
+                "size; reduce it, or export the building alone as binary PLY",
+                n_bytes / 2**30,
+                most / 2**30,
+                place=path,
+            )
         )
 
 
@@ -89,17 +95,21 @@ def _is_text(content: bytes, kind: str) -> bool:
 def _glb_bytes(content: bytes, path: Path) -> int:
     """Memory for a GLB file."""
     if len(content) < 20 or content[:4] != b"glTF":
-        raise InputError(f"{path}: is no GLB file, or cut off; export it again")
+        raise InputError(say("is no GLB file, or cut off; export it again", place=path))
     length, kind = struct.unpack_from("<I4s", content, 12)
     if kind != b"JSON" or length > len(content) - 20:
-        raise InputError(f"{path}: the GLB file does not begin with its description, or is cut off; export it again")
+        raise InputError(
+            say("the GLB file does not begin with its description, or is cut off; export it again", place=path)
+        )
     header = parse_json(content[20 : 20 + length], path)
     try:
         return len(content) + sum(_glb_parts(header))
     except (TypeError, ValueError, KeyError, IndexError, AttributeError, OverflowError) as error:
-        raise InputError(f"{path}: the description in the GLB file is damaged ({error!r}); export it again") from error
+        raise InputError(
+            say("the description in the GLB file is damaged ({}); export it again", repr(error), place=path)
+        ) from error
     except _NotRead as error:
-        raise InputError(f"{path}: {error}") from error
+        raise InputError(about(path, error)) from error
 
 
 class _NotRead(Exception):  # noqa: N818
@@ -109,9 +119,11 @@ class _NotRead(Exception):  # noqa: N818
 def _glb_parts(header: dict[str, Any]) -> Iterator[int]:
     found = [name for name in COMPRESSED if name in header.get("extensionsRequired", ())]
     if found:
-        raise _NotRead(f"its triangles are compressed ({found[0]}), which is not read; export it without compression")
+        raise _NotRead(
+            say("its triangles are compressed ({}), which is not read; export it without compression", found[0])
+        )
     if any(not str(buffer.get("uri", "data:")).startswith("data:") for buffer in header.get("buffers", ())):
-        raise _NotRead("its triangles are in another file; export it as one file, with everything in it")
+        raise _NotRead(say("its triangles are in another file; export it as one file, with everything in it"))
     for view in header.get("bufferViews", ()):
         yield _count(view["byteLength"])
     accessors = header.get("accessors", ())
@@ -134,7 +146,7 @@ def _primitive_bytes(primitive: dict[str, Any], accessors: Any) -> int:
         return 0
     used = [primitive["attributes"]["POSITION"], *([primitive["indices"]] if "indices" in primitive else [])]
     if any("bufferView" not in accessors[each] or "sparse" in accessors[each] for each in used):
-        raise _NotRead("its triangles are stored as differences from zero (sparse accessors), which is not read")
+        raise _NotRead(say("its triangles are stored as differences from zero (sparse accessors), which is not read"))
     n_vertices, n_indices = (_count(accessors[each]["count"]) for each in (used[0], used[-1]))
     # A triangle has three indices, or one where it is of a strip.
     return _VERTEX_BYTES * n_vertices + _TRIANGLE_BYTES * (n_indices if primitive.get("mode") == 5 else n_indices // 3)
@@ -247,9 +259,9 @@ def mesh_content(path: Path) -> tuple[bytes, str]:
         The file is missing, of another kind, or too large.
     """
     if path.suffix.lower() not in MESH_SUFFIXES:
-        raise InputError(f"{path}: expected a mesh file ({', '.join(MESH_SUFFIXES)}), got '{path.suffix}'")
+        raise InputError(say("expected a mesh file ({}), got '{}'", ", ".join(MESH_SUFFIXES), path.suffix, place=path))
     if not path.exists():
-        raise InputError(f"{path}: there is no such mesh file")
+        raise InputError(say("there is no such mesh file", place=path))
     return read_given(path, MESH_FILE), path.suffix.lower()
 
 
@@ -277,9 +289,9 @@ def load_triangles(content: bytes, kind: str, path: Path) -> tuple[NDArray[np.fl
                 loaded = loaded.to_mesh()
         vertices, triangles = np.asarray(loaded.vertices, np.float64), np.asarray(loaded.faces, np.int64)
     except Exception as error:  # trimesh's readers raise whatever their parsers raise
-        raise InputError(f"{path}: this mesh cannot be read ({error})") from error
+        raise InputError(say("this mesh cannot be read ({})", error, place=path)) from error
     if vertices.ndim != 2 or vertices.shape[1] != 3:
-        raise InputError(f"{path}: this mesh cannot be read (its vertices do not have three coordinates each)")
+        raise InputError(say("this mesh cannot be read (its vertices do not have three coordinates each)", place=path))
     return vertices, triangles
 
 
@@ -295,20 +307,28 @@ def read_mesh(path: Path, max_coordinate_m: float = MAX_COORDINATE_M) -> Triangl
     content, kind = mesh_content(path)
     vertices, triangles = load_triangles(content, kind, path)
     if triangles.ndim != 2 or len(triangles) == 0:
-        raise InputError(f"{path}: the mesh has no triangles (a point cloud cannot serve as a building)")
+        raise InputError(say("the mesh has no triangles (a point cloud cannot serve as a building)", place=path))
     if not 0 <= triangles.min() <= triangles.max() < len(vertices):
         wrong = triangles.min() if triangles.min() < 0 else triangles.max()
         raise InputError(
-            f"{path}: a triangle names vertex {wrong}, which is not there (vertices: 0 to {len(vertices) - 1}); "
-            "export the mesh again"
+            say(
+                "a triangle names vertex {}, which is not there (vertices: 0 to {}); export the mesh again",
+                wrong,
+                len(vertices) - 1,
+                place=path,
+            )
         )
     used = vertices[triangles]
     if not np.isfinite(used).all():
-        raise InputError(f"{path}: the mesh has coordinates that are not finite numbers")
+        raise InputError(say("the mesh has coordinates that are not finite numbers", place=path))
     if np.abs(used).max() > max_coordinate_m:
         raise InputError(
-            f"{path}: the mesh has a coordinate of {np.abs(used).max():.10g} m; local ENU metres near the site's "
-            "origin are expected. Shift it (site import does) before using it"
+            say(
+                "the mesh has a coordinate of {:.10g} m; local ENU metres near the site's origin are expected. "
+                "Shift it (site import does) before using it",
+                np.abs(used).max(),
+                place=path,
+            )
         )
     return TriangleMesh(np.where(np.isfinite(vertices), vertices, 0.0), triangles)
 

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.findings import Finding, Severity
+from planning.base.messages import joined, say
 from planning.base.progress import QUIET, Monitor
 from planning.checks import check_plan
 from planning.coverage.model import exact_sections
@@ -34,12 +35,12 @@ MAX_DEPTH = 4
 """Sections are counted that are covered at least twice, and so on up to this often."""
 
 CONSTRAINT_WORDS = {
-    "min_distance_m": "minimum distance (m)",
-    "section_step_deg": "section step (degrees)",
+    "min_distance_m": say("minimum distance (m)"),
+    "section_step_deg": say("section step (degrees)"),
     "occlusion": "occlusion",
-    "whole_panel": "whole panels only",
-    "max_distance_m": "largest distance (m)",
-    "wanted_gsd_mm": "pixel of sharp views (mm)",
+    "whole_panel": say("whole panels only"),
+    "max_distance_m": say("largest distance (m)"),
+    "wanted_gsd_mm": say("pixel of sharp views (mm)"),
 }
 
 
@@ -138,7 +139,7 @@ def compare_plans(
     model, verdicts = prepared.problem.model, prepared.problem.reachability.verdicts
     counts, sampling, findings = [], [], []
     for number, plan in enumerate(plans):
-        monitor.report("comparing plans", number, len(plans))
+        monitor.report(say("comparing plans"), number, len(plans))
         views = viewpoint_arrays(plan.viewpoints)
         sections = exact_sections(replace(model, camera=plan.camera), views)
         counts.append(section_counts(sections, model.grid.n_sections))
@@ -232,12 +233,12 @@ def _notes(constraints: Constraints, plans: Sequence[Plan], names: Sequence[str]
         if own.occlusion == "auto":
             own = replace(own, occlusion=constraints.occlusion)
         unlike = [
-            f"{words} {getattr(own, field)} instead of {getattr(constraints, field)}"
+            say(f"{words} {{}} instead of {{}}", getattr(own, field), getattr(constraints, field))
             for field, words in CONSTRAINT_WORDS.items()
             if getattr(own, field) != getattr(constraints, field)
         ]
         if unlike:
-            yield f"{name} was made for other constraints ({'; '.join(unlike)}); what it states may differ"
+            yield say("{} was made for other constraints ({}); what it states may differ", name, joined("; ", unlike))
     cameras = {plan.camera.name for plan in plans}
     if len(cameras) > 1:
-        yield "the cameras differ: each plan is seen with its own, what can be covered is that of the first"
+        yield say("the cameras differ: each plan is seen with its own, what can be covered is that of the first")

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.jit import chunks, n_threads, run_parallel
+from planning.base.messages import joined, say
 from planning.base.progress import QUIET, Monitor
 from planning.coverage.model import CoverageModel, exact_sections
 from planning.coverage.positions import aimed_views, hemisphere_direction, sobol
@@ -60,7 +61,7 @@ def unflyable_sections(
     doubtful = reachable[~problem.roadmap.connected_to_home(witnesses[reachable])]
     kept = []
     for number, element in enumerate(doubtful):
-        monitor.report("looking for ways to viewpoints", number, len(doubtful))
+        monitor.report(say("looking for ways to viewpoints"), number, len(doubtful))
         if not _has_flyable_place(problem, *divmod(int(element), problem.model.grid.n_sections)):
             kept.append(element)
     elements = np.array(kept, np.int64)
@@ -138,17 +139,17 @@ class BrokenRule:
         """What is wrong with the place, in the pilot's words."""
         amount, thing = f"{self.amount:.3g}", self.thing
         if self.rule in (Rule.DISTANCE, Rule.NO_FLY):
-            return f"inside {thing}" if self.inside else f"{amount} m too close to {thing}"
+            return say("inside {}", thing) if self.inside else say("{} m too close to {}", amount, thing)
         return {
-            Rule.GIMBAL_UP: f"{amount} degrees above what the camera sees with the gimbal at its limit",
-            Rule.GIMBAL_DOWN: f"{amount} degrees below what the camera sees with the gimbal at its limit",
-            Rule.FLOOR: f"{amount} m below the lowest flight allowed",
-            Rule.CEILING: f"{amount} m above the ceiling of the airspace",
-            Rule.SIDES: f"{amount} m beyond the sides of the airspace",
-            Rule.RANGE: f"{amount} m too far away for the largest distance or pixel size allowed",
-            Rule.GROUND: "below the ground",
-            Rule.HIDDEN: f"hidden by {thing}",
-            Rule.UNFLYABLE: "no way to it was found from home",
+            Rule.GIMBAL_UP: say("{} degrees above what the camera sees with the gimbal at its limit", amount),
+            Rule.GIMBAL_DOWN: say("{} degrees below what the camera sees with the gimbal at its limit", amount),
+            Rule.FLOOR: say("{} m below the lowest flight allowed", amount),
+            Rule.CEILING: say("{} m above the ceiling of the airspace", amount),
+            Rule.SIDES: say("{} m beyond the sides of the airspace", amount),
+            Rule.RANGE: say("{} m too far away for the largest distance or pixel size allowed", amount),
+            Rule.GROUND: say("below the ground"),
+            Rule.HIDDEN: say("hidden by {}", thing),
+            Rule.UNFLYABLE: say("no way to it was found from home"),
         }[self.rule]
 
 
@@ -161,7 +162,7 @@ class Reason:
 
     def __str__(self) -> str:
         """The rules, joined."""
-        return " and ".join(str(rule) for rule in self.broken)
+        return joined(" and ", (str(rule) for rule in self.broken))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -303,7 +304,7 @@ def _explain(
 
     size = SECTIONS_PER_CHUNK
     for first, last in chunks(k, 4 * n_threads() * size):
-        monitor.report("finding what stands in the way", first, k)
+        monitor.report(say("finding what stands in the way"), first, k)
         run_parallel(work, [(first + start, first + stop) for start, stop in chunks(last - first, size)])
     filled = np.arange(n_rules) < n_rows[:, None]
     return np.repeat(elements, n_rows), masks[filled], amounts[filled], places[filled]

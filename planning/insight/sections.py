@@ -8,6 +8,7 @@ from enum import IntEnum
 import numpy as np
 from numpy.typing import NDArray
 
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.coverage.model import exact_sections
 from planning.coverage.reach_kernel import REACHABLE, UNREACHABLE
@@ -112,7 +113,7 @@ def plan_insight(
     model, verdicts = prepared.problem.model, prepared.problem.reachability.verdicts
     if reasons.shape != verdicts.shape:
         raise ValueError(f"reasons: expected those of this site, shape {verdicts.shape}, got {reasons.shape}")
-    monitor.report("counting what each view covers", 0, 1)
+    monitor.report(say("counting what each view covers"), 0, 1)
     views = viewpoint_arrays(plan.viewpoints)
     sections = exact_sections(model, views)
     counts = section_counts(sections, model.grid.n_sections)

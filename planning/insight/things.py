@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.jit import chunks, kernel, run_chunks
+from planning.base.messages import say
 from planning.geo.bvh import MAX_DEPTH, Bvh, nearest_d2, segment_d2, segment_hits
 from planning.geo.distance import point_segment_d2, segment_hits_triangle, segment_triangle_d2
 from planning.geo.solids import MAX_HITS, Solids
@@ -35,7 +36,12 @@ class Thing:
 
     def __str__(self) -> str:
         """As it stands in a sentence."""
-        name = {"panel": "panel", "building": "the building", "obstacle": "obstacle", "no-fly": "no-fly volume"}
+        name = {
+            "panel": "panel",
+            "building": say("the building"),
+            "obstacle": "obstacle",
+            "no-fly": say("no-fly volume"),
+        }
         return f"{name[self.kind]} '{self.id}'" if self.id else name[self.kind]
 
 

@@ -23,6 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.effects import Assessment, Decision, Wish, decide
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor, Stop, never
 from planning.motion.smooth_path import PathGrid, arrivals_s, fastest_sweep, interval_times_s, path_grid
 from planning.motion.timing import FlightPath, MotionLimits, stopping_times_s
@@ -220,7 +221,7 @@ def _progress(n_variables: int, n_constraints: int, stop: Stop, monitor: Monitor
         def eval(self, _: Any) -> list[int]:
             self.iterations += 1
             try:
-                monitor.report("speed profile", self.iterations, 0)
+                monitor.report(say("speed profile"), self.iterations, 0)
             except BaseException as error:  # CasADi would turn it into an error of its own: kept and raised afterwards
                 self.cancelled = error
             return [int(self.cancelled is not None or stop())]
@@ -240,7 +241,7 @@ class CornerSpeed:
     scene is a path with the aircraft's limits.
     """
 
-    name: str = "speed through corners"
+    name: str = say("speed through corners")
     unit: str = "s"
     tolerance: float = 1.0
     """A second a sortie: less than the wind changes its duration."""
@@ -250,11 +251,11 @@ class CornerSpeed:
         path, limits = scene
         n_flown_through = int((~path.is_stop).sum())
         if n_flown_through == 0:
-            return Assessment(0.0, "the aircraft stops at every vertex, where the closed form is exact", 0.0)
+            return Assessment(0.0, say("the aircraft stops at every vertex, where the closed form is exact"), 0.0)
         grid = path_grid(path, limits, CORNER_DEVIATION_M)
         rounded_s = float(arrivals_s(grid, fastest_sweep(grid))[-1])
         saved_s = float(stopping_times_s(path, replace(limits, jerk_m_s3=math.inf))[-1]) - rounded_s
-        reason = f"{n_flown_through} of {len(path.is_stop)} vertices are flown through without a stop"
+        reason = say("{} of {} vertices are flown through without a stop", n_flown_through, len(path.is_stop))
         return Assessment(max(0.0, saved_s), reason, COST_S + COST_PER_NODE_S * len(grid.is_stop))
 
 

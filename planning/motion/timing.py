@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from planning.base.errors import InfeasibleError
+from planning.base.messages import say
 from planning.geo.frames import heading_difference_rad
 from planning.parameters import FlightRules
 from planning.plan import Aircraft
@@ -62,14 +63,24 @@ def motion_limits(aircraft: Aircraft, rules: FlightRules) -> MotionLimits:
     """
     if rules.wind_m_s >= aircraft.max_wind_m_s:
         raise InfeasibleError(
-            f"{aircraft.name} may fly in wind below {aircraft.max_wind_m_s:g} m/s, but {rules.wind_m_s:g} m/s are "
-            "expected; wait for less wind or take another aircraft"
+            say(
+                "{} may fly in wind below {:g} m/s, but {:g} m/s are expected; wait for less wind or take "
+                "another aircraft",
+                aircraft.name,
+                aircraft.max_wind_m_s,
+                rules.wind_m_s,
+            )
         )
     upwind_m_s = aircraft.max_speed_m_s - rules.wind_m_s
     if upwind_m_s <= 0.0:
         raise InfeasibleError(
-            f"{aircraft.name} flies {aircraft.max_speed_m_s:g} m/s and makes no headway against {rules.wind_m_s:g} m/s "
-            "of wind; wait for less wind or take another aircraft"
+            say(
+                "{} flies {:g} m/s and makes no headway against {:g} m/s of wind; wait for less wind or take "
+                "another aircraft",
+                aircraft.name,
+                aircraft.max_speed_m_s,
+                rules.wind_m_s,
+            )
         )
     return MotionLimits(
         horizontal_m_s=min(upwind_m_s, rules.max_speed_m_s or math.inf),
@@ -96,8 +107,14 @@ def usable_battery_s(aircraft: Aircraft, rules: FlightRules) -> float:
     usable_s = aircraft.endurance_s * (1.0 - rules.battery_reserve) - rules.takeoff_landing_s
     if usable_s <= 0.0:
         raise InfeasibleError(
-            f"a battery of {aircraft.name} lasts {aircraft.endurance_s:g} s; a reserve of {rules.battery_reserve:.0%} "
-            f"and {rules.takeoff_landing_s:g} s for take-off and landing leave nothing; lower the reserve"
+            say(
+                "a battery of {} lasts {:g} s; a reserve of {:.0%} and {:g} s for take-off and landing leave "
+                "nothing; lower the reserve",
+                aircraft.name,
+                aircraft.endurance_s,
+                rules.battery_reserve,
+                rules.takeoff_landing_s,
+            )
         )
     return usable_s
 

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from planning.base.errors import InputError
 from planning.base.findings import Finding, Severity
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.photos.metadata import read_photo
 from planning.photos.record import PhotoMetadata
@@ -45,17 +46,22 @@ def read_photos(folder: Path, monitor: Monitor = QUIET) -> PhotoFolder:
     findings: list[Finding] = []
     with ThreadPoolExecutor(N_THREADS) as pool:
         for start in range(0, len(paths), CHUNK):
-            monitor.report("reading photos", start, len(paths))
+            monitor.report(say("reading photos"), start, len(paths))
             for found in pool.map(_photo_or_finding, paths[start : start + CHUNK]):
                 if isinstance(found, Finding):
                     findings.append(found)
                 else:
                     photos.append(found)
     if not photos:
-        raise InputError(f"{folder}: none of its {len(paths)} photos can be read; the first: {findings[0].message}")
+        raise InputError(
+            say("none of its {} photos can be read; the first: {}", len(paths), findings[0].message, place=folder)
+        )
     findings += (
         Finding(
-            Severity.WARNING, "photo-cut-off", "the file has no end, so that a part of the picture is missing", name
+            Severity.WARNING,
+            "photo-cut-off",
+            say("the file has no end, so that a part of the picture is missing"),
+            name,
         )
         for name in (str(photo.path) for photo in photos if not photo.is_complete)
     )
@@ -64,7 +70,11 @@ def read_photos(folder: Path, monitor: Monitor = QUIET) -> PhotoFolder:
 
 def _paths(folder: Path) -> list[Path]:
     if not folder.is_dir():
-        raise InputError(f"{folder}: expected a folder of photos, found {'a file' if folder.exists() else 'nothing'}")
+        raise InputError(
+            say("expected a folder of photos, found a file", place=folder)
+            if folder.exists()
+            else say("expected a folder of photos, found nothing", place=folder)
+        )
     problems: list[OSError] = []
     paths = [
         Path(inside, name)
@@ -73,9 +83,11 @@ def _paths(folder: Path) -> list[Path]:
         if name.lower().endswith(SUFFIXES) and not name.startswith(".")
     ]
     if problems:
-        raise InputError(f"{problems[0].filename}: cannot be read ({problems[0].strerror})") from problems[0]
+        raise InputError(say("cannot be read ({})", problems[0].strerror, place=problems[0].filename)) from problems[0]
     if not paths:
-        raise InputError(f"{folder}: holds no .jpg photo; name the folder that was copied from the camera's card")
+        raise InputError(
+            say("holds no .jpg photo; name the folder that was copied from the camera's card", place=folder)
+        )
     return sorted(paths)
 
 

@@ -13,8 +13,9 @@ from typing import BinaryIO
 
 from planning.base.errors import InputError
 from planning.base.files import MIB, FileLimit, open_given
+from planning.base.messages import say
 
-PHOTO_FILE = FileLimit("a photo", 512 * MIB)
+PHOTO_FILE = FileLimit(say("a photo"), 512 * MIB)
 """Panoramas of drones have up to 100 MiB."""
 
 SOI, EOI, SOS, APP1 = 0xD8, 0xD9, 0xDA, 0xE1
@@ -91,7 +92,7 @@ class _Parts:
 
 def _header(file: BinaryIO, label: str) -> JpegHeader:
     if file.read(2) != bytes((0xFF, SOI)):
-        raise InputError(f"{label}: is no JPEG file; only .jpg photos as the camera wrote them can be read")
+        raise InputError(say("is no JPEG file; only .jpg photos as the camera wrote them can be read", place=label))
     parts = _Parts()
     for marker, length in _segments(file, label):
         if marker in SIZE_MARKERS and parts.size_px is None:
@@ -103,11 +104,15 @@ def _header(file: BinaryIO, label: str) -> JpegHeader:
     if parts.size_px is not None and 0 in parts.size_px:
         width, height = parts.size_px
         raise InputError(
-            f"{label}: claims to be a picture of {width} x {height} pixels, so there is none in it; copy it from the "
-            "card again"
+            say(
+                "claims to be a picture of {} x {} pixels, so there is none in it; copy it from the card again",
+                width,
+                height,
+                place=label,
+            )
         )
     if parts.size_px is None:
-        raise InputError(f"{label}: the JPEG file holds no picture; copy it from the card again")
+        raise InputError(say("the JPEG file holds no picture; copy it from the card again", place=label))
     packets = tuple(packet for packet in (parts.xmp, _extended(parts)) if packet is not None)
     return JpegHeader(*parts.size_px, parts.exif, packets, _has_end(file))
 
@@ -130,17 +135,17 @@ def _segments(file: BinaryIO, label: str) -> Iterator[tuple[int, int]]:
         after = file.tell() + length
         yield marker, length
         file.seek(after)
-    raise InputError(f"{label}: the JPEG header has more than {MAX_SEGMENTS} parts; refused as hostile")
+    raise InputError(say("the JPEG header has more than {} parts; refused as hostile", MAX_SEGMENTS, place=label))
 
 
 def _damaged(label: str) -> InputError:
-    return InputError(f"{label}: the header of the JPEG file is damaged; copy it from the card again")
+    return InputError(say("the header of the JPEG file is damaged; copy it from the card again", place=label))
 
 
 def _read(file: BinaryIO, n: int, label: str) -> bytes:
     content = file.read(n)
     if len(content) < n:
-        raise InputError(f"{label}: the file ends in its header; copy it from the card again")
+        raise InputError(say("the file ends in its header; copy it from the card again", place=label))
     return content
 
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from planning.base.errors import InputError
 from planning.base.findings import Finding, Severity
+from planning.base.messages import say
 from planning.geo.frames import Origin, Vec3
 from planning.photos.record import PhotoMetadata
 from planning.site.records import HEIGHT_DIFFERENCE_M, MAX_DISTANCE_M
@@ -77,13 +78,19 @@ def photos_near(
     near = [photo for photo, m in zip(photos, away_m.tolist(), strict=True) if m <= MAX_DISTANCE_M]
     if not near:
         raise InputError(
-            f"{label}: the photos were taken {away_m.min() / 1000.0:.1f} km from the site '{site.name}'; expected at "
-            f"most {MAX_DISTANCE_M / 1000.0:g} km; are they the right photos, and the right site?"
+            say(
+                "the photos were taken {:.1f} km from the site '{}'; expected at most {:g} km; are they the "
+                "right photos, and the right site?",
+                away_m.min() / 1000.0,
+                site.name,
+                MAX_DISTANCE_M / 1000.0,
+                place=label,
+            )
         )
     if len(near) == len(photos):
         return near, ()
     n = len(photos) - len(near)
-    text = f"{n} of {len(photos)} photos were taken far from the site and are left out"
+    text = say("{} of {} photos were taken far from the site and are left out", n, len(photos))
     return near, (Finding(Severity.WARNING, "photos-elsewhere", text, "", float(n), 0.0, "photos"),)
 
 
@@ -124,20 +131,33 @@ def photo_places(photos: Sequence[PhotoMetadata], site: Locality, heights: Photo
     is_known = np.isfinite(height_m)
     if not is_known.all():
         n = int((~is_known).sum())
-        what = "above take-off" if chosen == "takeoff" else "above sea level or ellipsoid"
+        what = say("above take-off") if chosen == "takeoff" else say("above sea level or ellipsoid")
         if not is_known.any():
-            raise InputError(f"{label}: no photo says its height {what}; choose the other way of counting heights")
-        text = f"{n} of {len(photos)} photos do not say their height {what}; theirs is counted the other way"
+            raise InputError(
+                say("no photo says its height {}; choose the other way of counting heights", what, place=label)
+            )
+        text = say("{} of {} photos do not say their height {}; theirs is counted the other way", n, len(photos), what)
         findings.append(Finding(Severity.WARNING, "height-mixed", text, "", float(n), 0.0, "photos"))
         height_m = np.where(is_known, height_m, other_m)
     findings.append(Finding(Severity.NOTE, "height-reference", reason))
     apart_m = (other_m - height_m)[np.isfinite(other_m) & is_known]
     median_m = float(np.median(apart_m)) if len(apart_m) else 0.0
     if abs(median_m) > HEIGHT_DIFFERENCE_M:
-        other = "absolute heights" if chosen == "takeoff" else "heights above take-off"
+        other = say("absolute heights") if chosen == "takeoff" else say("heights above take-off")
         text = (
-            f"by their {other} the photos would lie {abs(median_m):.1f} m {'higher' if median_m > 0.0 else 'lower'}: "
-            "the site's own height, the receiver, or the place of take-off is off by that"
+            say(
+                "by their {} the photos would lie {:.1f} m higher: the site's own height, the receiver, or the "
+                "place of take-off is off by that",
+                other,
+                abs(median_m),
+            )
+            if median_m > 0.0
+            else say(
+                "by their {} the photos would lie {:.1f} m lower: the site's own height, the receiver, or the "
+                "place of take-off is off by that",
+                other,
+                abs(median_m),
+            )
         )
         findings.append(Finding(Severity.WARNING, "height-disagreement", text, "", median_m, HEIGHT_DIFFERENCE_M, "m"))
     points = enu_from_geodetic(site.origin, lat, lon, height_m)
@@ -149,13 +169,15 @@ def receiver_findings(photos: Sequence[PhotoMetadata]) -> Iterator[Finding]:
     apart = [photo.position_disagreement_m for photo in photos if photo.position_disagreement_m is not None]
     worst_m = max(apart, default=0.0)
     if worst_m > DISAGREEMENT_M:
-        text = f"EXIF and XMP of a photo give positions {worst_m:.1f} m apart; EXIF's are taken"
+        text = say("EXIF and XMP of a photo give positions {:.1f} m apart; EXIF's are taken", worst_m)
         yield Finding(Severity.WARNING, "position-disagreement", text, "", worst_m, DISAGREEMENT_M, "m")
     flags = [photo for photo in photos if photo.rtk_flag is not None]
     n_loose = sum(not photo.is_rtk_fixed for photo in flags)
     if n_loose and any(photo.rtk_flag for photo in flags):
-        text = (
-            f"RTK was not fixed in {n_loose} of {len(flags)} photos: their positions are good to decimetres or metres"
+        text = say(
+            "RTK was not fixed in {} of {} photos: their positions are good to decimetres or metres",
+            n_loose,
+            len(flags),
         )
         yield Finding(Severity.WARNING, "rtk-not-fixed", text, "", float(n_loose), 0.0, "photos")
 
@@ -164,13 +186,15 @@ def _choice(heights: PhotoHeights, absolute_m: Floats, takeoff_m: Floats, n_fixe
     """Which heights count, `takeoff` or `absolute`, and why."""
     n = len(takeoff_m)
     if heights != "auto":
-        return heights, f"heights are counted as asked for: {heights}"
+        return heights, say("heights are counted as asked for: {}", heights)
     if n_fixed == n and np.isfinite(absolute_m).all():
-        return "absolute", "heights are those above the ellipsoid, because RTK was fixed in all photos"
+        return "absolute", say("heights are those above the ellipsoid, because RTK was fixed in all photos")
     if not np.isfinite(takeoff_m).any():
-        return "absolute", "heights are absolute ones, good to some metres: the photos do not say those above take-off"
-    why = f"because RTK was fixed in only {n_fixed} of {n} photos"
-    return "takeoff", f"heights are those above take-off, counted from the site's home, {why}"
+        return "absolute", say(
+            "heights are absolute ones, good to some metres: the photos do not say those above take-off"
+        )
+    why = say("because RTK was fixed in only {} of {} photos", n_fixed, n)
+    return "takeoff", say("heights are those above take-off, counted from the site's home, {}", why)
 
 
 def _columns(photos: Sequence[PhotoMetadata], *names: str) -> Iterator[Floats]:

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InfeasibleError, InputError
+from planning.base.messages import say
 from planning.checks.measures import TimedFlight, flight_key
 from planning.coverage.positions import aimed_views
 from planning.geo.frames import Vec3, heading_difference_rad, wrap_heading_deg
@@ -361,4 +362,6 @@ def _rounded_heading_deg(heading_deg: float) -> float:
 def _check_unlocked(viewpoints: Iterable[Viewpoint], verb: str) -> None:
     for viewpoint in viewpoints:
         if viewpoint.locked:
-            raise InputError(f"viewpoint '{viewpoint.id}' is locked and stays as it is; unlock it before it is {verb}")
+            raise InputError(
+                say("viewpoint '{}' is locked and stays as it is; unlock it before it is {}", viewpoint.id, verb)
+            )

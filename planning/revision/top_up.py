@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InfeasibleError
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor, QualityPoint, Stop, TimeLimit, Trace, any_of, never
 from planning.coverage.evaluate import coverage
 from planning.coverage.model import exact_coverage
@@ -289,8 +290,13 @@ def _batteries(plan: Plan, request: TopUpRequest, is_few: bool) -> Batteries:
         return Batteries(None, None, full_s)
     if left_s <= 0.0 and n_full == 0:
         raise InfeasibleError(
-            f"the battery is at {request.battery:.0%}; a reserve of {rules.battery_reserve:.0%} and "
-            f"{rules.takeoff_landing_s:g} s for take-off and landing leave nothing to fly on; change the battery"
+            say(
+                "the battery is at {:.0%}; a reserve of {:.0%} and {:g} s for take-off and landing leave nothing "
+                "to fly on; change the battery",
+                request.battery,
+                rules.battery_reserve,
+                rules.takeoff_landing_s,
+            )
         )
     return Batteries(left_s, n_full, full_s)
 
@@ -300,14 +306,31 @@ def _nothing_closed(
 ) -> InfeasibleError:
     if len(found.in_sight) == 0:
         return InfeasibleError(
-            f"none of the {n_wanted} missing sections can be seen from any allowed place that was found on the site as "
-            "it is now; check its no-fly volumes and obstacles, or lower the minimum distance"
+            say(
+                "none of the {} missing sections can be seen from any allowed place that was found on the site "
+                "as it is now; check its no-fly volumes and obstacles, or lower the minimum distance",
+                n_wanted,
+            )
         )
-    on_board = "" if request.battery is None else f" of a battery at {request.battery:.0%}"
+    on_board = "" if request.battery is None else say(" of a battery at {:.0%}", request.battery)
     return InfeasibleError(
-        f"{len(found.in_sight)} of the {n_wanted} missing sections can be seen, but none within the "
-        f"{batteries.longest_s:.0f} s{on_board} that are left above the reserve; "
-        f"{'move home closer' if request.battery is None else 'change the battery'}"
+        say(
+            "{} of the {} missing sections can be seen, but none within the {:.0f} s{} that are left above "
+            "the reserve; move home closer",
+            len(found.in_sight),
+            n_wanted,
+            batteries.longest_s,
+            on_board,
+        )
+        if request.battery is None
+        else say(
+            "{} of the {} missing sections can be seen, but none within the {:.0f} s{} that are left above "
+            "the reserve; change the battery",
+            len(found.in_sight),
+            n_wanted,
+            batteries.longest_s,
+            on_board,
+        )
     )
 
 

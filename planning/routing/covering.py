@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor, Stop, Trace, never
 from planning.routing import insertion
 from planning.routing.gains import CoverageGain
@@ -98,7 +99,7 @@ def shortest_cover(
     trace.record(search.best_s)
     last_success = 0
     for rounds in itertools.count():
-        monitor.report("shortening the flight", rounds, max_rounds or 0)
+        monitor.report(say("shortening the flight"), rounds, max_rounds or 0)
         limit = last_success + PATIENCE if max_rounds is None else max_rounds
         if rounds >= limit or len(search.best) == 0 or stop():
             break

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InfeasibleError
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor, Stop, Trace, never
 from planning.motion.sortie_timing import stopping_duration_s
 from planning.motion.timing import (
@@ -134,8 +135,11 @@ def plan_flights(
         if most_points > aircraft.max_waypoints:
             max_stops = max(1, int(max_stops * aircraft.max_waypoints / most_points * 0.95))
     raise InfeasibleError(
-        f"the views cannot be shared out so that every sortie fits {aircraft.name}'s battery and waypoint limit; "
-        "lower the reserve or the number of views"
+        say(
+            "the views cannot be shared out so that every sortie fits {}'s battery and waypoint limit; lower "
+            "the reserve or the number of views",
+            aircraft.name,
+        )
     )
 
 
@@ -150,7 +154,7 @@ def draw_flights(
     """Polylines and durations of sorties given by the numbers of their views."""
     flights = []
     for number, sortie in enumerate(sorties):
-        monitor.report("drawing legs", number, len(sorties))
+        monitor.report(say("drawing legs"), number, len(sorties))
         flights.append(_draw(times.table, np.array(sortie, np.int64), views, aircraft, rules))
     return tuple(flights)
 

@@ -18,6 +18,7 @@ from scipy.spatial.distance import cdist
 
 from planning.base.errors import InfeasibleError
 from planning.base.jit import chunks
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor, Stop, never
 from planning.routing.roadmap import MOST_NEIGHBOURS, LegMetric, Roadmap, unique_pairs
 
@@ -79,8 +80,13 @@ class LegTable:
         if previous[0, end] < 0:
             a, b = (", ".join(f"{value:.1f}" for value in place) for place in ends)
             raise InfeasibleError(
-                f"no way from ({a}) to ({b}) m was found that keeps {self.roadmap.space.min_distance_m:g} m from "
-                "everything; leave the place out, widen the airspace or lower the minimum distance"
+                say(
+                    "no way from ({:m}) to ({:m}) m was found that keeps {:g} m from everything; leave the place "
+                    "out, widen the airspace or lower the minimum distance",
+                    a,
+                    b,
+                    self.roadmap.space.min_distance_m,
+                )
             )
         way = [end]
         while way[-1] != start:
@@ -138,7 +144,7 @@ def build_leg_table(
     nearest_first = np.argsort(np.linalg.norm(points[j] - points[i], axis=1), kind="stable")
     straight = np.zeros((n, n), np.bool_)
     for start, end in chunks(len(i), PAIRS_PER_STEP):
-        monitor.report("checking legs", start, len(i))
+        monitor.report(say("checking legs"), start, len(i))
         if start > 0 and stop():
             break
         a, b = i[nearest_first[start:end]], j[nearest_first[start:end]]
@@ -146,14 +152,14 @@ def build_leg_table(
         straight[a[from_stop], b[from_stop]] = space.legs_clear(points[a[from_stop]], points[b[from_stop]])
     straight |= straight.T
     graph = _with_stops(roadmap, points, straight, metric)
-    monitor.report("finding ways around", 0, n)
+    monitor.report(say("finding ways around"), 0, n)
     cost = np.full((n, n), np.inf)
     cost[i, j] = np.where(straight[i, j], metric(points[j] - points[i]), np.inf)
     cost = np.minimum(cost, cost.T)
     np.fill_diagonal(cost, 0.0)
     needs_way = np.flatnonzero(~np.isfinite(cost).all(axis=1))
     for start, end in chunks(len(needs_way), ROWS_PER_STEP):
-        monitor.report("finding ways around", start, len(needs_way))
+        monitor.report(say("finding ways around"), start, len(needs_way))
         rows = needs_way[start:end]
         around = dijkstra(graph, directed=False, indices=rows)[:, :n]
         cost[rows] = np.where(np.isfinite(cost[rows]), cost[rows], around)

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.jit import inline, kernel
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor, Stop, Trace, never
 from planning.routing.slices import slices
 
@@ -75,7 +76,7 @@ def held_karp_bound(
         rounds += n_rounds
         if trace is not None:
             trace.record(float(ascent.status[1]))
-        monitor.report("lower bound", rounds, max_rounds or 0)
+        monitor.report(say("lower bound"), rounds, max_rounds or 0)
         if is_settled or stop():
             break
     bound = float(ascent.status[1])

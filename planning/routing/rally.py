@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.findings import Finding, Severity
+from planning.base.messages import say
 from planning.geo.frames import Vec3
 from planning.geo.solids import Solids
 from planning.site.free_space import SAFETY_MARGIN_M, FreeSpace
@@ -44,7 +45,7 @@ def rally_findings(model: SiteModel, space: FreeSpace) -> Iterator[Finding]:
         yield from found
     if model.site.rally_points and not n_wrong:
         n_points = len(model.site.rally_points)
-        yield Finding(Severity.OK, "rally-point", f"aircraft can land at the rally points ({n_points})")
+        yield Finding(Severity.OK, "rally-point", say("aircraft can land at the rally points ({})", n_points))
 
 
 def _findings(point: RallyPoint, model: SiteModel, space: FreeSpace) -> Iterator[Finding]:
@@ -52,30 +53,34 @@ def _findings(point: RallyPoint, model: SiteModel, space: FreeSpace) -> Iterator
 
     def error(text: str, value: float | None = None, limit: float | None = None) -> Finding:
         unit = "" if value is None else "m"
-        return Finding(Severity.ERROR, "rally-point", f"rally point '{point.id}' {text}", place, value, limit, unit)
+        return Finding(
+            Severity.ERROR, "rally-point", say("rally point '{}' {}", point.id, text), place, value, limit, unit
+        )
 
     foot = np.array(point.position_enu_m)
     top = space.column_top_above(foot)
     if not space.has_airspace_above(foot):
-        yield error("is not below or inside the airspace; move it, or widen the airspace")
+        yield error(say("is not below or inside the airspace; move it, or widen the airspace"))
         return
     # As with home: on the ground it lies on the bottom face of the building it is in.
     places = foot + np.array([[0.0, 0.0, 0.0], [0.0, 0.0, 0.1]])
     if (space.solids.clearance_m(places, 1.0) < 0).any():
-        yield error("lies inside a building or obstacle; move it outside")
+        yield error(say("lies inside a building or obstacle; move it outside"))
         return
     if len(space.no_fly.part) and (
         (space.no_fly.clearance_m(places, 1.0) < 0).any()
         or space.no_fly.segment_distances_m(foot[None], top[None], 1.0)[0] <= 2.0 * SAFETY_MARGIN_M
     ):
-        yield error("lies in a no-fly volume, or below one; move it outside")
+        yield error(say("lies in a no-fly volume, or below one; move it outside"))
         return
     limit_m = space.min_distance_m
     gap_m = float(space.solids.segment_distances_m(foot[None], top[None], 10.0 * limit_m + 10.0)[0])
     if gap_m < limit_m:
-        text = (
-            f"has a landing column that comes within {gap_m:.2f} m of the building or an obstacle, {limit_m:g} m are "
-            "required; move it away"
+        text = say(
+            "has a landing column that comes within {:.2f} m of the building or an obstacle, {:g} m are "
+            "required; move it away",
+            gap_m,
+            limit_m,
         )
         yield error(text, gap_m, limit_m)
     ground_m = model.site.airspace.ground_z_m
@@ -83,7 +88,12 @@ def _findings(point: RallyPoint, model: SiteModel, space: FreeSpace) -> Iterator
         yield Finding(
             Severity.WARNING,
             "rally-point",
-            f"rally point '{point.id}' lies at {foot[2]:g} m, below the ground at {ground_m:g} m; put it on the ground",
+            say(
+                "rally point '{}' lies at {:g} m, below the ground at {:g} m; put it on the ground",
+                point.id,
+                foot[2],
+                ground_m,
+            ),
             place,
             float(foot[2]),
             ground_m,

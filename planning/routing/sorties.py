@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from planning.base.errors import InfeasibleError
 from planning.base.jit import kernel
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor, Stop, Trace, never
 from planning.routing import exact_tour, insertion, string_removal, tour
 from planning.routing.lower_bound import held_karp_bound
@@ -153,17 +154,25 @@ def check_single_sorties(problem: SortieProblem, names: Sequence[str] | None = N
     too_far = np.flatnonzero(alone_s > problem.budget_s * (1.0 + FIT))
     if len(too_far):
         worst = int(too_far[np.argmax(alone_s[too_far])])
-        name = f"viewpoint {worst if names is None else names[worst]}"
-        others = f" ({len(too_far) - 1} more are too far as well)" if len(too_far) > 1 else ""
+        name = say("viewpoint {}", worst if names is None else names[worst])
+        others = say(" ({} more are too far as well)", len(too_far) - 1) if len(too_far) > 1 else ""
         if math.isinf(alone_s[worst]):
-            raise InfeasibleError(f"{name} cannot be reached from home and left again{others}; leave it out")
+            raise InfeasibleError(say("{} cannot be reached from home and left again{}; leave it out", name, others))
         raise InfeasibleError(
-            f"{name} takes {alone_s[worst]:.1f} s on a sortie of its own, but a battery allows "
-            f"{problem.budget_s:.1f} s{others}; move home closer, raise the speed, lower the reserve or leave it out"
+            say(
+                "{} takes {:.1f} s on a sortie of its own, but a battery allows {:.1f} s{}; move home closer, "
+                "raise the speed, lower the reserve or leave it out",
+                name,
+                alone_s[worst],
+                problem.budget_s,
+                others,
+            )
         )
     heavy = np.flatnonzero(problem.load > problem.capacity)
     if len(heavy):
-        raise InfeasibleError(f"stop {heavy[0]} has a load of {problem.load[heavy[0]]}, above {problem.capacity}")
+        raise InfeasibleError(
+            say("stop {} has a load of {}, above {}", heavy[0], problem.load[heavy[0]], problem.capacity)
+        )
 
 
 def sortie_durations_s(problem: SortieProblem, sorties: Sorties) -> tuple[float, ...]:
@@ -249,7 +258,7 @@ class _Solver:
         cooling = (COLD / HOT) ** (1.0 / n_rounds)
         rounds = 0
         for some_rounds in slices(n_rounds, first=100):
-            self.monitor.report("fewer sorties", rounds, n_rounds)
+            self.monitor.report(say("fewer sorties"), rounds, n_rounds)
             if string_removal.place_absent(self.limits, run, some_rounds, cooling, self.rng):
                 return _as_sorties(run.best, self.problem.n_stops)
             if self.stop():

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from planning.base.errors import InfeasibleError
 from planning.base.jit import chunks, run_chunks
+from planning.base.messages import glue, say
 from planning.base.progress import QUIET, Monitor, Stop, Trace, never
 from planning.routing import exact_tour, lower_bound, three_opt
 from planning.routing.slices import slices
@@ -134,8 +135,10 @@ def improve_tour(
         best = _run(search, max_kicks, patience * n, target_length, stop, trace, monitor)
     length = tour_length(cost, best, closed=closed)
     if math.isinf(length):
-        reason = "every order needs a leg that does not exist" if n <= exact_tour.MAX_POINTS else "none was found"
-        raise InfeasibleError(f"no tour visits all {n} points by existing legs: {reason}")
+        reason = (
+            say("every order needs a leg that does not exist") if n <= exact_tour.MAX_POINTS else say("none was found")
+        )
+        raise InfeasibleError(say("no tour visits all {} points by existing legs: {}", n, reason))
     if length >= given_length:
         return order
     trace.record(length)
@@ -267,19 +270,21 @@ def _check_connected(cost: Floats, order: Ints, closed: bool) -> None:
     n_parts, part = connected_components(has_leg, directed=False)
     if n_parts > 1:
         lost = _listed(np.flatnonzero(part != part[order[0]]))
-        raise InfeasibleError(f"no tour visits all {n} points: there is no way from point {order[0]} to {lost}")
+        raise InfeasibleError(
+            say("no tour visits all {} points: there is no way from point {} to {}", n, order[0], lost)
+        )
     needed = np.full(n, min(2, n - 1))
     if not closed:
         needed[order[[0, -1]]] = 1
     lone = np.flatnonzero(has_leg.sum(axis=1) < needed)
     if len(lone):
-        raise InfeasibleError(f"no tour visits all {n} points: there is only one leg at {_listed(lone)}")
+        raise InfeasibleError(say("no tour visits all {} points: there is only one leg at {}", n, _listed(lone)))
 
 
 def _listed(points: Ints) -> str:
     shown = ", ".join(str(point) for point in points[:5])
-    more = f" and {len(points) - 5} more" if len(points) > 5 else ""
-    return f"point{'s' if len(points) > 1 else ''} {shown}{more}"
+    more = say(" and {} more", len(points) - 5) if len(points) > 5 else ""
+    return say("points {}", glue(shown, more)) if len(points) > 1 else say("point {}", glue(shown, more))
 
 
 def tour_bound(

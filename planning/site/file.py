@@ -11,7 +11,16 @@ import msgspec
 
 from planning.base.errors import InputError
 from planning.base.files import read_given
-from planning.base.json_file import JSON_FILE, expect_format, parse_json, to_record, write_atomically
+from planning.base.json_file import (
+    JSON_FILE,
+    encoded,
+    expect_format,
+    parse_json,
+    plain_values,
+    to_record,
+    write_atomically,
+)
+from planning.base.messages import say
 from planning.geo.mesh import TriangleMesh, empty_mesh, read_mesh
 from planning.site.records import SITE_FORMAT, Obstacle, Site, SiteModel, box_geometry
 
@@ -46,7 +55,7 @@ def _read_named_mesh(folder: Path, name: str, place: str) -> TriangleMesh:
     try:
         return read_mesh(folder / name)
     except InputError as error:
-        raise InputError(f"{place}: {error}; mesh paths start from the folder of the site file") from error
+        raise InputError(say("{}; mesh paths start from the folder of the site file", error, place=place)) from error
 
 
 def _obstacle_geometry(folder: Path, obstacle: Obstacle, place: str) -> TriangleMesh:
@@ -58,7 +67,7 @@ def _obstacle_geometry(folder: Path, obstacle: Obstacle, place: str) -> Triangle
 
 def site_to_json(site: Site) -> dict[str, Any]:
     """Content of `site.json`; absent optional fields are left out."""
-    content: dict[str, Any] = msgspec.to_builtins(site)
+    content: dict[str, Any] = plain_values(site)
     content = {"format": content.pop("format"), **content}
     if content["building_mesh"] is None:
         del content["building_mesh"]
@@ -79,7 +88,7 @@ def _without_none(fields: dict[str, Any]) -> dict[str, Any]:
 
 def site_bytes(site: Site) -> bytes:
     """The site file of a site, as `write_site` writes it."""
-    return msgspec.json.format(msgspec.json.encode(site_to_json(site)), indent=1)
+    return msgspec.json.format(encoded(site_to_json(site)), indent=1)
 
 
 def site_sha256(site: Site) -> str:

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InputError
+from planning.base.messages import say
 from planning.geo.frames import Origin, Vec3
 from planning.geo.mesh import MAX_COORDINATE_M, TriangleMesh, box_mesh, extrude
 
@@ -39,11 +40,17 @@ def check_point(point: Vec3, name: str) -> None:
     """Raise `ValueError` naming `name` unless `point` is finite and local."""
     for axis, value in zip("xyz", point, strict=True):
         if not math.isfinite(value):
-            raise ValueError(f"{name}: expected finite metres, {axis} is {value}")
+            raise ValueError(say("expected finite metres, {} is {}", axis, value, place=name))
         if abs(value) > MAX_COORDINATE_M:
             raise ValueError(
-                f"{name}: expected local ENU metres within {MAX_COORDINATE_M:.0f} m of the origin, {axis} is "
-                f"{value:.1f} (projected coordinates such as UTM must be shifted to the site's origin first)"
+                say(
+                    "expected local ENU metres within {:.0f} m of the origin, {} is {:.1fm} (projected coordinates "
+                    "such as UTM must be shifted to the site's origin first)",
+                    MAX_COORDINATE_M,
+                    axis,
+                    value,
+                    place=name,
+                )
             )
 
 
@@ -60,7 +67,7 @@ class Panel:
 
     def __post_init__(self) -> None:
         if not self.id:
-            raise ValueError("id: expected a name, got an empty text")
+            raise ValueError(say("expected a name, got an empty text", place="id"))
         for i, corner in enumerate(self.corners_enu_m):
             check_point(corner, f"corners_enu_m[{i}]")
         # Plain numbers: NumPy takes ten times as long for four points, and large sites have thousands of panels.
@@ -69,20 +76,34 @@ class Panel:
         area = math.hypot(*area_vector)
         if area < MIN_PANEL_AREA_M2:
             raise ValueError(
-                f"corners_enu_m: panel '{self.id}' has an area of {area:.2g} m2, so it has no normal; expected four "
-                "corners in order around the pane"
+                say(
+                    "panel '{}' has an area of {:.2g} m2, so it has no normal; expected four corners in order around "
+                    "the pane",
+                    self.id,
+                    area,
+                    place="corners_enu_m",
+                )
             )
         x, y, z = (0.25 * sum(values) for values in zip(*corners, strict=True))
         warp = max(abs(_dot(_minus(corner, (x, y, z)), area_vector)) for corner in corners) / area
         if warp > max(MAX_PANEL_WARP_M, 0.02 * math.sqrt(area)):
             raise ValueError(
-                f"corners_enu_m: panel '{self.id}' is not flat, a corner lies {warp:.2f} m off its mean plane; split it"
+                say(
+                    "panel '{}' is not flat, a corner lies {:.2f} m off its mean plane; split it",
+                    self.id,
+                    warp,
+                    place="corners_enu_m",
+                )
             )
         edges = [_minus(corners[(i + 1) % 4], corners[i]) for i in range(4)]
         turns = (_dot(_cross(edges[i], edges[(i + 1) % 4]), area_vector) for i in range(4))
         if min(turns) < -1e-9 * area**2:
             raise ValueError(
-                f"corners_enu_m: panel '{self.id}' is not convex or its corners are not in order around the pane"
+                say(
+                    "panel '{}' is not convex or its corners are not in order around the pane",
+                    self.id,
+                    place="corners_enu_m",
+                )
             )
 
 
@@ -111,7 +132,7 @@ class Facade:
 
     def __post_init__(self) -> None:
         if not self.id:
-            raise ValueError("id: expected a name, got an empty text")
+            raise ValueError(say("expected a name, got an empty text", place="id"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,14 +145,20 @@ class Obstacle:
 
     def __post_init__(self) -> None:
         if (self.mesh is None) == (self.box_enu_m is None):
-            raise ValueError(f"obstacle '{self.id}': expected either mesh or box_enu_m, got both or neither")
+            raise ValueError(say("obstacle '{}': expected either mesh or box_enu_m, got both or neither", self.id))
         if self.box_enu_m is not None:
             low, high = self.box_enu_m
             check_point(low, "box_enu_m[0]")
             check_point(high, "box_enu_m[1]")
             if not all(a < b for a, b in zip(low, high, strict=True)):
                 raise ValueError(
-                    f"box_enu_m: obstacle '{self.id}' needs its minimum corner first, got {low} and {high}"
+                    say(
+                        "obstacle '{}' needs its minimum corner first, got {:m} and {:m}",
+                        self.id,
+                        low,
+                        high,
+                        place="box_enu_m",
+                    )
                 )
 
 
@@ -144,7 +171,7 @@ def box_geometry(obstacle: Obstacle) -> TriangleMesh:
         The obstacle is a mesh.
     """
     if obstacle.box_enu_m is None:
-        raise ValueError(f"obstacle '{obstacle.id}' is a mesh, not a box")
+        raise ValueError(say("obstacle '{}' is a mesh, not a box", obstacle.id))
     return box_mesh(np.array(obstacle.box_enu_m[0]), np.array(obstacle.box_enu_m[1]))
 
 
@@ -159,18 +186,27 @@ class NoFlyZone:
 
     def __post_init__(self) -> None:
         if len(self.polygon_enu_m) < 3:
-            raise ValueError(f"polygon_enu_m: zone '{self.id}' needs at least 3 corners, got {len(self.polygon_enu_m)}")
+            raise ValueError(
+                say(
+                    "zone '{}' needs at least 3 corners, got {}",
+                    self.id,
+                    len(self.polygon_enu_m),
+                    place="polygon_enu_m",
+                )
+            )
         for i, (x, y) in enumerate(self.polygon_enu_m):
             check_point((x, y, 0.0), f"polygon_enu_m[{i}]")
         check_point((0.0, 0.0, self.floor_m), "floor_m")
         check_point((0.0, 0.0, self.ceiling_m), "ceiling_m")
         if not self.floor_m < self.ceiling_m:
-            raise ValueError(f"ceiling_m: zone '{self.id}' needs a ceiling above its floor ({self.floor_m} m)")
+            raise ValueError(
+                say("zone '{}' needs a ceiling above its floor ({} m)", self.id, self.floor_m, place="ceiling_m")
+            )
         import shapely
 
         polygon = shapely.Polygon(self.polygon_enu_m)
         if not polygon.is_valid or polygon.area < 1e-6:
-            raise ValueError(f"polygon_enu_m: zone '{self.id}' crosses itself or has no area")
+            raise ValueError(say("zone '{}' crosses itself or has no area", self.id, place="polygon_enu_m"))
 
     def prism(self) -> TriangleMesh:
         """Closed mesh of the volume."""
@@ -185,7 +221,7 @@ hang at 4 to 5 m, and a barometer that counts from take-off is good to a metre o
 def check_min_height(height_m: float | None) -> None:
     """Raise `ValueError` unless a lowest height above the ground is one, or None."""
     if height_m is not None and not (math.isfinite(height_m) and height_m >= 0.0):
-        raise ValueError(f"min_height_above_ground_m: expected 0 m or more, got {height_m}")
+        raise ValueError(say("expected 0 m or more, got {}", height_m, place="min_height_above_ground_m"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -208,7 +244,9 @@ class Airspace:
         check_point((0.0, 0.0, self.ground_z_m), "ground_z_m")
         for axis, low, high in zip("xyz", self.min_enu_m, self.max_enu_m, strict=True):
             if not low < high:
-                raise ValueError(f"max_enu_m: the airspace is empty, {axis} runs from {low} to {high} m")
+                raise ValueError(
+                    say("the airspace is empty, {} runs from {} to {} m", axis, low, high, place="max_enu_m")
+                )
 
     def lowest_height_m(self, wished_m: float | None = None) -> float:
         """Lowest flight above the ground: as wished, else the site's, else the usual."""
@@ -225,7 +263,7 @@ class RallyPoint:
 
     def __post_init__(self) -> None:
         if not self.id:
-            raise ValueError("id: expected a name, got an empty text")
+            raise ValueError(say("expected a name, got an empty text", place="id"))
         check_point(self.position_enu_m, "position_enu_m")
 
 
@@ -252,18 +290,21 @@ class Site:
 
     def __post_init__(self) -> None:
         if self.format != SITE_FORMAT:
-            raise ValueError(f"format: expected '{SITE_FORMAT}', got '{self.format}'")
+            raise ValueError(say("expected '{}', got '{}'", SITE_FORMAT, self.format, place="format"))
         check_point(self.home_enu_m, "home_enu_m")
         if self.building_mesh is None and self.n_panels == 0 and not self.is_bare:
             raise ValueError(
-                "facades: expected at least one panel, or a building_mesh on which panels can be found, got neither; "
-                "add panels, or name the mesh of the building"
+                say(
+                    "expected at least one panel, or a building_mesh on which panels can be found, got neither; add "
+                    "panels, or name the mesh of the building",
+                    place="facades",
+                )
             )
         seen: set[str] = set()
         for facade in self.facades:
             for panel in facade.panels:
                 if panel.id in seen:
-                    raise ValueError(f"facades: expected unique panel ids, '{panel.id}' occurs twice")
+                    raise ValueError(say("expected unique panel ids, '{}' occurs twice", panel.id, place="facades"))
                 seen.add(panel.id)
 
     @property
@@ -298,7 +339,7 @@ class SiteModel:
 
     def __post_init__(self) -> None:
         if len(self.obstacles) != len(self.site.obstacles):
-            raise ValueError(f"expected {len(self.site.obstacles)} obstacle meshes, got {len(self.obstacles)}")
+            raise ValueError(say("expected {} obstacle meshes, got {}", len(self.site.obstacles), len(self.obstacles)))
 
 
 def panel_corners(site: Site) -> NDArray[np.float64]:
@@ -316,8 +357,11 @@ def require_panels(site: Site) -> None:
     """
     if site.n_panels == 0:
         raise InputError(
-            f"site '{site.name}' has no panels yet: find them in photos ('panels' or the Photos tab), or draw them on "
-            "the building (the Site tab, or 'site import' with --panel-grid)"
+            say(
+                "site '{}' has no panels yet: find them in photos ('panels' or the Photos tab), or draw them on "
+                "the building (the Site tab, or 'site import' with --panel-grid)",
+                site.name,
+            )
         )
 
 

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InfeasibleError
+from planning.base.messages import say
 from planning.base.progress import Monitor, Stop, Trace
 from planning.coverage.model import CoverageModel, Elements
 from planning.parameters import FlightRules, GreedyParameters
@@ -102,7 +103,7 @@ def views_within_budget(
     InfeasibleError
         Nothing can be seen within one battery, or the locked views do not fit into as many as there are.
     """
-    monitor.report("trying viewpoints", 0, 1)
+    monitor.report(say("trying viewpoints"), 0, 1)
     weights = element_weights(problem.model, parameters.solid_angle_weights)
     n_locked = len(locked.heading_rad)
     n_free, covered = max(0, MAX_CANDIDATES - n_locked), covered_by(problem.model, locked)
@@ -129,7 +130,10 @@ def views_within_budget(
     chosen = np.array([stop_number for sortie in selection.sorties for stop_number in sortie], np.int64)
     if len(chosen) == 0:
         raise InfeasibleError(
-            f"no viewpoint that sees a panel can be reached and left again within {times.budget_s:.0f} s of one battery"
+            say(
+                "no viewpoint that sees a panel can be reached and left again within {:.0f} s of one battery",
+                times.budget_s,
+            )
         )
     everything = float(weights[np.unique(pool.elements.items)].sum())
     chosen = np.concatenate([np.arange(n_locked), chosen[chosen >= n_locked]])
@@ -144,8 +148,13 @@ def _required(times: FlightTimes, n_locked: int, n_batteries: int, max_stops: in
     sorties = plan_sorties(travel_s, service_s, times.budget_s, max_stops, seed=seed, stop=stop)
     if len(sorties) > n_batteries:
         raise InfeasibleError(
-            f"the {n_locked} locked viewpoints alone take {len(sorties)} batteries, but {n_batteries} are allowed; "
-            "unlock some, or allow more batteries"
+            say(
+                "the {} locked viewpoints alone take {} batteries, but {} are allowed; unlock some, or allow "
+                "more batteries",
+                n_locked,
+                len(sorties),
+                n_batteries,
+            )
         )
     return sorties
 
@@ -180,7 +189,10 @@ def with_fewer_views(model: CoverageModel, views: ViewpointArrays, n_locked: int
     n_free = len(views.heading_rad) - n_locked
     if n_free == 0:
         raise InfeasibleError(
-            f"the {n_locked} locked viewpoints alone need more batteries than are allowed; unlock some, or allow more"
+            say(
+                "the {} locked viewpoints alone need more batteries than are allowed; unlock some, or allow more",
+                n_locked,
+            )
         )
     elements = model.elements(views)
     counts = np.bincount(elements.items, minlength=model.n_elements)

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.jit import chunks
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.coverage.model import Elements, codes_all_around
 from planning.coverage.positions import aimed_views, spread_positions
@@ -109,7 +110,7 @@ def candidates(
 ) -> Candidates:
     """Views to choose from; those of the `known` ones that show anything wanted come first."""
     problem = wanted.problem
-    monitor.report("trying viewpoints", 0, 1)
+    monitor.report(say("trying viewpoints"), 0, 1)
     first = _useful(wanted.pool(as_written(problem, known)))
     found = as_written(problem, _aimed(wanted, _places(wanted, first, rng), rng))
     further = shortlist(_useful(wanted.pool(found)), np.ones(len(wanted.elements)), None, MAX_CANDIDATES, DEPTHS)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InfeasibleError
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor, Stop, TimeLimit, Trace, any_of, never
 from planning.plan import ViewpointArrays
 from planning.routing.covering import cover_bound_s, shortest_cover
@@ -105,7 +106,7 @@ def show_all(
         idle = 0 if search.among(found, seed + round_number, limit, monitor) else idle + 1
         if idle == IDLE_ROUNDS or len(found.shown) == 0 or stop():
             break
-    monitor.report("bounding the optimum", 0, 1)
+    monitor.report(say("bounding the optimum"), 0, 1)
     return Shortest(search.views, found.shown, in_sight, search.duration_s, _bound_s(found))
 
 
@@ -404,8 +405,12 @@ class _Search:
                 return part, most
             allowed_s *= TIGHTER * budget_s / max(_longest_s(part, wanted), budget_s)
         raise InfeasibleError(
-            f"no flight through missing sections was found that fits {wanted.aircraft.name}'s waypoint limit and the "
-            f"{budget_s:.0f} s that the battery allows; change the battery"
+            say(
+                "no flight through missing sections was found that fits {}'s waypoint limit and the {:.0f} s "
+                "that the battery allows; change the battery",
+                wanted.aircraft.name,
+                budget_s,
+            )
         )
 
     def _result(

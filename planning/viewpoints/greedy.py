@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
 
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor, Stop, Trace
 from planning.coverage.model import CoverageModel, Elements
 from planning.coverage.sections import SectionGrid
@@ -65,7 +66,7 @@ def greedy(
     InfeasibleError
         There is no allowed viewpoint that sees anything.
     """
-    monitor.report("trying viewpoints", 0, 1)
+    monitor.report(say("trying viewpoints"), 0, 1)
     pool = candidate_pool(problem, seed, parameters.n_candidates, stop)
     weights = element_weights(problem.model, parameters.solid_angle_weights)
     covered = covered_by(problem.model, locked)
@@ -82,7 +83,7 @@ def greedy(
     pool, chosen, value = choice.greedily(pool, n_free, np.inf)
     bound = everything
     if value < everything - 1e-9 and len(chosen) == n_free and parameters.certify:
-        monitor.report("bounding the optimum", 0, 1)
+        monitor.report(say("bounding the optimum"), 0, 1)
         bound = _bound(pool.elements, weights, covered, n_free, value, stop)
     if value < everything - 1e-9 and len(chosen) > 0 and parameters.improve:
         views = improve_views(problem, pool, chosen, weights, seed, stop, trace, monitor, locked, choice.spacing_m)
@@ -150,7 +151,7 @@ class Choice:
             lost = self._lost(pool, chosen, shown_by)
             if len(lost) == 0 or self.stop():
                 break
-            self.monitor.report("choosing views", len(chosen), n_wanted)
+            self.monitor.report(say("choosing views"), len(chosen), n_wanted)
             pool = self._with_more_places(pool, chosen, lost, shown_by, rng)
             apart, seed = apart_of(pool.views, self.locked, self.spacing_m), self.seed + len(pool.views.heading_rad)
             exchange = Exchange(pool.elements, self.weights, chosen, seed, self.covered, apart)
@@ -269,7 +270,7 @@ def choose_greedily(
     for candidate in first:
         kernel.add_elements(state, pool.elements.of(candidate))
     while n_chosen < len(chosen):
-        monitor.report("choosing views", n_chosen, len(chosen))
+        monitor.report(say("choosing views"), n_chosen, len(chosen))
         slice_end = min(len(chosen), n_chosen + max(8, n_chosen // 4))
         n_now = int(kernel.greedy_steps(state, chosen, n_chosen, slice_end, enough))
         trace.record(int(np.count_nonzero(state.counts)))
@@ -308,7 +309,7 @@ def _fewest_views(choice: Choice, pool: Pool, target: float, parameters: GreedyP
         exchange = Exchange(pool.elements, choice.weights, chosen, choice.seed, choice.covered, apart)
         while len(chosen) > 1 and not choice.stop():
             exchange.drop_least_useful()
-            choice.monitor.report("saving views", len(pool.views.heading_rad) - len(exchange.chosen), 0)
+            choice.monitor.report(say("saving views"), len(pool.views.heading_rad) - len(exchange.chosen), 0)
             exchange.run(choice.stop, enough=enough)
             if exchange.value() < enough:
                 break
@@ -342,7 +343,7 @@ def spend_spare_views(
         n_spare = n_views - len(chosen)
         if n_spare <= 0:
             break
-        monitor.report("spending spare views", len(chosen), n_views)
+        monitor.report(say("spending spare views"), len(chosen), n_views)
         elements = pool.elements if finer is model else finer.elements(pool.views)
         taken = np.concatenate([locked.positions_enu_m, pool.views.positions_enu_m[chosen]])
         apart = Apart(pool.views.positions_enu_m, taken, spacing_m)

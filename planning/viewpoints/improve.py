@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor, Stop, Trace, never
 from planning.coverage.model import Elements
 from planning.plan import ViewpointArrays
@@ -63,7 +64,7 @@ def refine_views(
     while grown and not stop():
         grown = False
         for n_done, i in enumerate(_least_useful_first(elements, counts, weights)):
-            monitor.report("refining poses", n_done, len(poses))
+            monitor.report(say("refining poses"), n_done, len(poses))
             if stop():
                 break
             counts[elements[i]] -= 1
@@ -259,7 +260,7 @@ def improve_views(
     views, idle, value, round_number = take(pool.views, chosen), 0, -1.0, 0
     covered = covered_by(problem.model, locked)
     while idle < IDLE_ROUNDS and not stop():
-        monitor.report("improving views", round_number, 0)
+        monitor.report(say("improving views"), round_number, 0)
         apart = apart_of(pool.views, locked, spacing_m)
         exchange = Exchange(pool.elements, weights, chosen, seed + 7919 * round_number, covered, apart)
         exchange.run(stop)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InputError
+from planning.base.messages import say
 from planning.coverage.model import CoverageModel
 from planning.plan import Viewpoint, ViewpointArrays, viewpoint_arrays
 from planning.site.free_space import LEG_MARGIN_M, FreeSpace
@@ -30,12 +31,19 @@ def locked_views(problem: ViewProblem, locked: Sequence[Viewpoint]) -> Viewpoint
     for viewpoint, can_be_flown in zip(locked, flyable, strict=True):
         reason = "" if can_be_flown else _why_not(problem.space, np.array(viewpoint.position_enu_m))
         if not low <= viewpoint.gimbal_pitch_deg <= high:
-            reason = (
-                f"it looks {viewpoint.gimbal_pitch_deg:g} deg up, and the gimbal turns from {low:g} to {high:g} deg"
+            reason = say(
+                "it looks {:g} deg up, and the gimbal turns from {:g} to {:g} deg",
+                viewpoint.gimbal_pitch_deg,
+                low,
+                high,
             )
         if reason:
             raise InputError(
-                f"viewpoint '{viewpoint.id}' is locked, but cannot be flown: {reason}; unlock it, or move it first"
+                say(
+                    "viewpoint '{}' is locked, but cannot be flown: {}; unlock it, or move it first",
+                    viewpoint.id,
+                    reason,
+                )
             )
     return views
 
@@ -45,15 +53,17 @@ def _why_not(space: FreeSpace, position_enu_m: NDArray[np.float64]) -> str:
     outside_m = float(np.maximum(space.low_enu_m - position_enu_m, position_enu_m - space.high_enu_m).max())
     if outside_m > -LEG_MARGIN_M:
         if outside_m == float(space.low_enu_m[2] - position_enu_m[2]):
-            return f"it lies {max(outside_m, 0.0):.3f} m below the lowest flight allowed or on its border"
-        return f"it lies {max(outside_m, 0.0):.3f} m outside the airspace or on its border"
+            return say("it lies {:.3f} m below the lowest flight allowed or on its border", max(outside_m, 0.0))
+        return say("it lies {:.3f} m outside the airspace or on its border", max(outside_m, 0.0))
     distance_m = float(space.solids.clearance_m(position_enu_m[None])[0])
     if distance_m < space.min_distance_m + LEG_MARGIN_M:
-        where = "inside a solid" if distance_m < 0.0 else "from the building or an obstacle"
-        return f"it is {abs(distance_m):.3f} m {where}, and {space.min_distance_m + LEG_MARGIN_M:.3f} m are required"
+        where = say("inside a solid") if distance_m < 0.0 else say("from the building or an obstacle")
+        return say(
+            "it is {:.3f} m {}, and {:.3f} m are required", abs(distance_m), where, space.min_distance_m + LEG_MARGIN_M
+        )
     if not space.is_allowed(position_enu_m[None], LEG_MARGIN_M)[0]:
-        return f"it is in a no-fly volume or less than {space.no_fly_distance_m + LEG_MARGIN_M:.3f} m from one"
-    return "no way from home to it was found"
+        return say("it is in a no-fly volume or less than {:.3f} m from one", space.no_fly_distance_m + LEG_MARGIN_M)
+    return say("no way from home to it was found")
 
 
 def covered_by(model: CoverageModel, views: ViewpointArrays) -> NDArray[np.int32]:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from planning.base.messages import say
 from planning.base.progress import Monitor, Stop, Trace
 from planning.coverage.positions import aimed_views
 from planning.coverage.sections import panel_frames
@@ -58,7 +59,7 @@ def noto(
     InfeasibleError
         No view of the grid is allowed.
     """
-    monitor.report("laying the grid", 0, 1)
+    monitor.report(say("laying the grid"), 0, 1)
     if goal.n_views is None:
         views = _grid(problem, parameters, 1.0)
     else:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from planning.base.messages import say
 from planning.base.progress import Monitor, Stop, Trace
 from planning.coverage.positions import aimed_views
 from planning.plan import ViewpointArrays
@@ -51,7 +52,7 @@ def orbit(
     InfeasibleError
         No place on the rings is allowed.
     """
-    monitor.report("laying the rings", 0, 1)
+    monitor.report(say("laying the rings"), 0, 1)
     n_wanted = parameters.n_views if goal.n_views is None else goal.n_views
     # Where a part of the rings lies outside the airspace, more places are tried until enough are left.
     for factor in (1, 2, 4, 8):

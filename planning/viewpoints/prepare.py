@@ -9,6 +9,7 @@ import numpy as np
 from planning.base.effects import Decision, Wish, decide
 from planning.base.errors import InfeasibleError
 from planning.base.findings import Finding, Severity
+from planning.base.messages import joined, say
 from planning.base.progress import QUIET, Monitor, Stop, never
 from planning.coverage.model import CoverageModel
 from planning.coverage.occlusion import Occlusion, OcclusionScene
@@ -73,7 +74,7 @@ class Prepared:
             "precision": precision != self.problem.model.precision,
             "seed": seed != self.seed,
         }
-        return ", ".join(name for name, is_other in differs.items() if is_other)
+        return joined(", ", (name for name, is_other in differs.items() if is_other))
 
 
 def settled(constraints: Constraints, site_model: SiteModel, camera: Camera) -> Constraints:
@@ -157,7 +158,7 @@ def prepare(
         Home cannot be used, the airspace is empty, or no allowed viewpoint sees any panel.
     """
     require_panels(site_model.site)
-    monitor.report("reading the site", 0, 1)
+    monitor.report(say("reading the site"), 0, 1)
     constraints = settled(constraints, site_model, camera)
     space = free_space(site_model, constraints.min_distance_m, constraints.min_height_above_ground_m)
     decision = decide_occlusion(site_model, space, wish_of(constraints), seed)
@@ -165,14 +166,17 @@ def prepare(
     model = coverage_model(site_model, space, camera, decided, precision)
     if len(spread_positions(space, model.frames, N_PLACES, np.random.default_rng(seed))) == 0:
         raise InfeasibleError(
-            f"airspace: no place in it keeps {constraints.min_distance_m:g} m from the building and all obstacles; "
-            "widen the airspace or lower the minimum distance"
+            say(
+                "airspace: no place in it keeps {:g} m from the building and all obstacles; widen the airspace "
+                "or lower the minimum distance",
+                constraints.min_distance_m,
+            )
         )
     reachability = find_reachable(model, space, seed, max_positions, max_cells, stop, monitor)
     is_cut_short = stop()
     if reachability.upper_bound == 0:
         raise nothing_to_see()
-    monitor.report("finding ways around", 0, 1)
+    monitor.report(say("finding ways around"), 0, 1)
     problem = ViewProblem(model, space, reachability, build_roadmap(space, seed))
     return Prepared(site_model, problem, decided, (decision,), _findings(site_model, problem), seed, is_cut_short)
 
@@ -194,7 +198,7 @@ def _findings(site_model: SiteModel, problem: ViewProblem) -> tuple[Finding, ...
                 Finding(
                     Severity.WARNING,
                     "panel-faces-inwards",
-                    f"panel '{panel.id}' looks into a solid: its corners may be clockwise, or the mesh covers it",
+                    say("panel '{}' looks into a solid: its corners may be clockwise, or the mesh covers it", panel.id),
                     panel.id,
                 )
             )
@@ -203,7 +207,7 @@ def _findings(site_model: SiteModel, problem: ViewProblem) -> tuple[Finding, ...
                 Finding(
                     Severity.WARNING,
                     "panel-unseen",
-                    f"no allowed viewpoint sees panel '{panel.id}'",
+                    say("no allowed viewpoint sees panel '{}'", panel.id),
                     panel.id,
                     0.0,
                     float(model.grid.n_sections),
@@ -215,7 +219,10 @@ def _findings(site_model: SiteModel, problem: ViewProblem) -> tuple[Finding, ...
             Finding(
                 Severity.WARNING,
                 "home-near-no-fly",
-                f"home stands {space.no_fly_distance_m:.1f} m from a no-fly volume; no more than that is kept from it",
+                say(
+                    "home stands {:.1f} m from a no-fly volume; no more than that is kept from it",
+                    space.no_fly_distance_m,
+                ),
                 "home",
                 space.no_fly_distance_m,
                 space.min_distance_m,

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InfeasibleError
+from planning.base.messages import say
 from planning.base.progress import Monitor, Stop, Trace
 from planning.coverage.model import CoverageModel
 from planning.coverage.reachability import Reachability
@@ -96,6 +97,8 @@ def take(views: ViewpointArrays, index: NDArray[np.int64] | NDArray[np.bool_]) -
 def nothing_to_see() -> InfeasibleError:
     """The error for a site on which no allowed viewpoint sees a panel."""
     return InfeasibleError(
-        "no allowed viewpoint sees any panel: the airspace may be empty or too close to the building, the panels' "
-        "corners clockwise (normals pointing inwards), or the minimum distance too large"
+        say(
+            "no allowed viewpoint sees any panel: the airspace may be empty or too close to the building, "
+            "the panels' corners clockwise (normals pointing inwards), or the minimum distance too large"
+        )
     )

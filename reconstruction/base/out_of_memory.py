@@ -7,6 +7,8 @@ from collections.abc import Iterable
 import torch
 from torch import Tensor
 
+from planning.base.messages import say
+
 LARGEST = 1e15
 """Gradients beyond are no use: their squares, which Adam keeps, would be infinite for good."""
 
@@ -27,13 +29,13 @@ def require_finite(loss: Tensor, parameters: Iterable[Tensor]) -> None:
         The loss or a gradient is NaN, infinite or beyond `LARGEST`.
     """
     if not bool(torch.isfinite(loss)):
-        raise NotFinite("the loss is not a number")
+        raise NotFinite(say("the loss is not a number"))
     for parameter in parameters:
         # One pass: NaN and infinity reach the largest absolute value.
         if parameter.grad is not None and parameter.grad.numel():
             low, high = torch.aminmax(parameter.grad)
             if not bool((low > -LARGEST) & (high < LARGEST)):
-                raise NotFinite("a gradient is not a number")
+                raise NotFinite(say("a gradient is not a number"))
 
 
 def is_out_of_memory(error: BaseException) -> bool:

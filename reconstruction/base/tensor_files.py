@@ -8,15 +8,16 @@ from pathlib import Path
 from planning.base.errors import InputError
 from planning.base.files import MIB, FileLimit, open_given
 from planning.base.json_file import parse_json
+from planning.base.messages import say
 
-TENSORS_FILE = FileLimit("a safetensors file", 16384 * MIB)
+TENSORS_FILE = FileLimit(say("a safetensors file"), 16384 * MIB)
 """Splats, light and the optimiser's moments of twenty million splats."""
 
 MAX_HEADER_BYTES = 64 * MIB
 """Checkpoints hold their state in it, some hundred kilobytes."""
 
 
-def tensor_bytes(path: Path, advice: str = "get the file again") -> bytes:
+def tensor_bytes(path: Path, advice: str = say("get the file again")) -> bytes:
     """Content of a file of tensors, of the length that its header says.
 
     Parameters
@@ -34,11 +35,11 @@ def tensor_bytes(path: Path, advice: str = "get the file again") -> bytes:
         start = file.read(8)
         length = int.from_bytes(start, "little")
         if len(start) < 8 or length > min(MAX_HEADER_BYTES, size - 8):
-            raise InputError(f"{path}: is no safetensors file, or damaged (its header has no end); {advice}")
+            raise InputError(say("is no safetensors file, or damaged (its header has no end); {}", advice, place=path))
         header = file.read(length)
         wanted = 8 + length + _end_of(parse_json(header, path))
         if wanted != size:
-            raise InputError(f"{path}: is cut off or damaged ({size} of {wanted} bytes); {advice}")
+            raise InputError(say("is cut off or damaged ({} of {} bytes); {}", size, wanted, advice, place=path))
         return b"".join((start, header, file.read(wanted - 8 - length)))
 
 

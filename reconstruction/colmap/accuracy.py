@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from reconstruction.base.cameras import Intrinsics, PosedPhoto
 from reconstruction.colmap.block_inverse import inverse_blocks
@@ -24,7 +25,7 @@ from reconstruction.colmap.record import ColmapImage, ColmapModel
 
 Array = NDArray[np.float64]
 
-STAGE = "estimating accuracy"
+STAGE = say("estimating accuracy")
 
 CHUNK = 200_000
 """Image points whose part of the normal matrix is computed at a time: some 200 MB."""

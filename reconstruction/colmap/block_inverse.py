@@ -16,6 +16,7 @@ from scipy import sparse
 from scipy.linalg import cho_factor, cho_solve
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 
 Array = NDArray[np.float64]
@@ -57,7 +58,7 @@ def inverse_blocks(normal: sparse.csr_array, size: int, n_blocks: int, monitor: 
     solved, blocks = np.empty_like(border), np.empty((n_blocks, size, size))
     later: tuple[slice, Array] | None = None
     for cut, factor in zip(reversed(cuts), reversed(factors), strict=True):
-        monitor.report("inverting normal equations", n - cut.stop, n)
+        monitor.report(say("inverting normal equations"), n - cut.stop, n)
         inverse = cho_solve(factor, np.eye(cut.stop - cut.start))
         if later is None:
             solved[cut] = cho_solve(factor, forward[cut])
@@ -113,7 +114,7 @@ def _eliminated(
     forward = border.copy()
     before: slice | None = None
     for cut in cuts:
-        monitor.report("inverting normal equations", cut.start, inner.shape[0])
+        monitor.report(say("inverting normal equations"), cut.start, inner.shape[0])
         own = inner[cut, cut].toarray()
         if before is not None:
             link = inner[before, cut].toarray()

@@ -15,6 +15,7 @@ import numpy as np
 from planning.base.errors import InputError
 from planning.base.files import MIB, FileLimit, check_lines, read_given
 from planning.base.json_file import write_atomically
+from planning.base.messages import say
 from reconstruction.colmap import binary, text
 from reconstruction.colmap.camera_models import check_camera
 from reconstruction.colmap.record import NO_POINTS, ColmapCamera, ColmapImage, ColmapModel, ColmapPoints
@@ -91,7 +92,7 @@ def write_model(folder: Path, model: ColmapModel, kind: FileKind = "bin") -> Non
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise InputError(f"{folder}: cannot be made ({error.strerror or error})") from error
+        raise InputError(say("cannot be made ({})", error.strerror or error, place=folder)) from error
     for name, content in contents.items():
         write_atomically(folder / f"{name}.{kind}", content)
 
@@ -110,7 +111,7 @@ def _kind(folder: Path) -> FileKind:
     for kind in kinds:
         if (folder / f"cameras.{kind}").is_file() and (folder / f"images.{kind}").is_file():
             return kind
-    found = "a file" if folder.is_file() else "no folder" if not folder.is_dir() else "a folder without them"
+    found = say("a file") if folder.is_file() else "no folder" if not folder.is_dir() else "a folder without them"
     raise InputError(
         f"{folder}: expected a COLMAP model (cameras and images as .bin or .txt), found {found}; models are often in "
         "sparse/0"

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from planning.base.errors import InputError
 from planning.base.findings import Finding, Severity
+from planning.base.messages import say
 from reconstruction.base.cameras import Pose, PosedPhoto
 from reconstruction.colmap.camera_models import camera_of, intrinsics_of
 from reconstruction.colmap.record import ColmapCamera, ColmapImage, ColmapModel, quaternion_of
@@ -96,27 +97,38 @@ def georeference(model: ColmapModel, photos: Sequence[PosedPhoto], seed: int = 0
     paired = [by_name[image.name] for image in images]
     if len(images) < 3:
         raise InputError(
-            f"COLMAP model: {len(images)} of its {len(model.images)} images are among the {len(photos)} photos with a "
-            "pose; expected at least 3; are the names in the model the paths below the folder of photos?"
+            say(
+                "COLMAP model: {} of its {} images are among the {} photos with a pose; expected at least 3; are "
+                "the names in the model the paths below the folder of photos?",
+                len(images),
+                len(model.images),
+                len(photos),
+            )
         )
     centres = np.stack([image.centre_world for image in images])
     positions = np.stack([photo.pose.position_enu_m for photo in paired])
     if np.ptp(positions, axis=0).max() == 0.0 or np.ptp(centres, axis=0).max() == 0.0:
-        raise InputError("COLMAP model: all photos were taken in one place, so that the model gets no scale from them")
+        raise InputError(
+            say("COLMAP model: all photos were taken in one place, so that the model gets no scale from them")
+        )
     findings, rotation = [], None
     on_a_line = are_on_a_line(positions) or are_on_a_line(centres)
     if on_a_line:
         rotation = _mean_rotation(images, paired)
-        text = "the photos were taken along one line: the turn of the model about it is that of the cameras' angles"
+        text = say(
+            "the photos were taken along one line: the turn of the model about it is that of the cameras' angles"
+        )
         findings.append(Finding(Severity.WARNING, "model-on-a-line", text))
     similarity, is_inlier = fit_robustly(centres, positions, _sigmas_m(paired), rotation, seed)
     if not similarity.scale > 0.0:
-        raise InputError("COLMAP model: the photos' positions contradict the model; are they photos of this model?")
+        raise InputError(
+            say("COLMAP model: the photos' positions contradict the model; are they photos of this model?")
+        )
     for _ in range(N_STEPS):
         similarity = _step(similarity, images, paired, is_inlier)
     n_out = int((~is_inlier).sum())
     if n_out:
-        text = f"the positions of {n_out} of {len(images)} photos contradict the model and were not used"
+        text = say("the positions of {} of {} photos contradict the model and were not used", n_out, len(images))
         findings.append(Finding(Severity.WARNING, "positions-contradict", text, "", float(n_out), 0.0, "photos"))
     residuals = similarity(centres) - positions
     angles = np.array([_angle_deg(similarity, *pair) for pair in zip(images, paired, strict=True)])

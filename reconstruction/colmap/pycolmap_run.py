@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from planning.base.errors import InputError, ReconstructionError
 from planning.base.jit import n_threads
+from planning.base.messages import say
 from planning.base.progress import Monitor
 from reconstruction.base.cameras import Intrinsics, PosedPhoto
 from reconstruction.colmap.camera_models import camera_of
@@ -100,7 +101,7 @@ class ColmapRun:
             for start in range(0, len(names), BATCH):
                 batch = names[start : start + BATCH]
                 self._run(
-                    "finding features",
+                    say("finding features"),
                     self.colmap.extract_features,
                     self.database,
                     self.folder,
@@ -153,7 +154,7 @@ class ColmapRun:
             pairs.max_num_neighbors, pairs.ignore_z = self.parameters.n_neighbours, False
             pairs.max_distance = 1e4  # metres: the number of neighbours is the limit
         self._run(
-            "matching photos",
+            say("matching photos"),
             function,
             self.database,
             matching_options=options,
@@ -170,7 +171,7 @@ class ColmapRun:
         options.constant_cameras = fixed_cameras
         added: list[None] = []
         models = self._run(
-            "building the model",
+            say("building the model"),
             self.colmap.incremental_mapping,
             self.database,
             self.folder,
@@ -182,8 +183,12 @@ class ColmapRun:
         )
         if not models or max(model.num_reg_images() for model in models.values()) < LEAST_PHOTOS:
             raise ReconstructionError(
-                f"the {len(self.photos)} photos do not fit together: expected features that at least {LEAST_PHOTOS} of "
-                "them share; photos must overlap by two thirds, and show more than mirroring glass"
+                say(
+                    "the {} photos do not fit together: expected features that at least {} of them share; photos "
+                    "must overlap by two thirds, and show more than mirroring glass",
+                    len(self.photos),
+                    LEAST_PHOTOS,
+                )
             )
         return max(models.values(), key=lambda model: int(model.num_reg_images()))
 
@@ -206,7 +211,7 @@ class ColmapRun:
         prior_options.alignment_ransac.random_seed = self.parameters.seed
         prior_options.ceres.prior_position_loss_function_type = self.colmap.LossFunctionType.CAUCHY
         adjuster = self.colmap.create_pose_prior_ceres_bundle_adjuster(options, prior_options, config, priors, model)
-        self._run("adjusting all rays", lambda cancellation_token: adjuster.solve())
+        self._run(say("adjusting all rays"), lambda cancellation_token: adjuster.solve())
 
     def _run(
         self,
@@ -239,7 +244,7 @@ class ColmapRun:
             thread.join()
             raise
         if problem:
-            raise ReconstructionError(f"COLMAP stopped while {stage}: {problem[0]}") from problem[0]
+            raise ReconstructionError(say("COLMAP stopped while {}: {}", stage, problem[0])) from problem[0]
         return result[0]
 
 
@@ -255,8 +260,10 @@ def load_colmap() -> Any:
         pycolmap: Any = importlib.import_module("pycolmap")
     except ImportError as error:
         raise InputError(
-            "refining cameras needs pycolmap, which is not installed; install it with: pip install 'reflight[colmap]', "
-            "or go on with the poses that the photos have"
+            say(
+                "refining cameras needs pycolmap, which is not installed; install it with: pip install "
+                "'reflight[colmap]', or go on with the poses that the photos have"
+            )
         ) from error
     pycolmap.logging.minloglevel = pycolmap.logging.Level.ERROR.value
     return pycolmap

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from planning.base.errors import InputError
 from planning.base.findings import Finding, Severity
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.colmap.accuracy import pose_covariances
@@ -86,7 +87,9 @@ def refine_poses(
         The photos do not fit together.
     """
     if len(photos) < LEAST_PHOTOS:
-        raise InputError(f"refining cameras needs at least {LEAST_PHOTOS} photos with a pose, got {len(photos)}")
+        raise InputError(
+            say("refining cameras needs at least {} photos with a pose, got {}", LEAST_PHOTOS, len(photos))
+        )
     colmap = load_colmap()
     with tempfile.TemporaryDirectory(prefix="reflight-colmap-") as name:
         work = ColmapRun(colmap, Path(name), folder, photos, parameters, monitor)
@@ -126,9 +129,9 @@ def _covariances(
     try:
         return pose_covariances(model, {photo.name: photo for photo in photos}, monitor), []
     except TooLargeError:
-        text = (
-            "the photos are linked with each other too closely for the accuracy of each pose to be computed; all count "
-            "as equally good"
+        text = say(
+            "the photos are linked with each other too closely for the accuracy of each pose to be computed; "
+            "all count as equally good"
         )
         covariances = {image.name: laid.usual_covariance for image in model.images.values()}
         return covariances, [Finding(Severity.NOTE, "accuracy-estimated", text)]
@@ -148,7 +151,10 @@ def _transform(colmap: Any, reconstruction: Any, similarity: Similarity) -> None
 def _left_out(names: Sequence[str], n_all: int) -> list[Finding]:
     if not names:
         return []
-    text = (
-        f"{len(names)} of {n_all} photos found no place in the model, the first {names[0]}; they keep their own poses"
+    text = say(
+        "{} of {} photos found no place in the model, the first {}; they keep their own poses",
+        len(names),
+        n_all,
+        names[0],
     )
     return [Finding(Severity.WARNING, "photos-not-refined", text, "", float(len(names)), 0.0, "photos")]

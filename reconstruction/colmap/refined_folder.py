@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from planning.base.errors import InputError
 from planning.base.findings import Finding
 from planning.base.json_file import expect_format, part_folder, read_json, to_record, write_atomically
+from planning.base.messages import say
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.colmap.folder import read_model, write_model
 from reconstruction.colmap.georeference import posed_photos
@@ -84,7 +85,7 @@ def fingerprint(photos: Sequence[PosedPhoto]) -> str:
         try:
             n_bytes = photo.path.stat().st_size
         except OSError as error:
-            raise InputError(f"{photo.path}: cannot be read any more ({error.strerror or error})") from error
+            raise InputError(say("cannot be read any more ({})", error.strerror or error, place=photo.path)) from error
         place = np.round(photo.pose.position_enu_m, LENGTH_DECIMALS) + 0.0  # no negative zero
         turn = np.round(photo.pose.cam_from_enu, TURN_DECIMALS) + 0.0
         digest.update(repr((photo.name, n_bytes, place.tolist(), turn.tolist(), photo.intrinsics)).encode())
@@ -130,7 +131,9 @@ def write_refined(
                 folder.replace(waiting / "before")
             made.replace(folder)
     except OSError as error:
-        raise InputError(f"{folder}: cannot be written ({error.strerror or error}); name another folder") from error
+        raise InputError(
+            say("cannot be written ({}); name another folder", error.strerror or error, place=folder)
+        ) from error
 
 
 def check_refined_folder(folder: Path) -> None:
@@ -142,11 +145,11 @@ def check_refined_folder(folder: Path) -> None:
         The folder holds something else, or there is no folder that it could be made in.
     """
     if not folder.parent.is_dir():
-        raise InputError(f"{folder.parent}: expected a folder to write into, found none")
+        raise InputError(say("expected a folder to write into, found none", place=folder.parent))
     if not os.access(folder.parent, os.W_OK):
-        raise InputError(f"{folder.parent}: is write-protected; name another folder for refined poses")
+        raise InputError(say("is write-protected; name another folder for refined poses", place=folder.parent))
     if folder.exists() and not is_refined_folder(folder) and (not folder.is_dir() or any(folder.iterdir())):
-        raise InputError(f"{folder}: holds something other than refined poses; name another folder")
+        raise InputError(say("holds something other than refined poses; name another folder", place=folder))
 
 
 def read_refined(folder: Path, photos: Sequence[PosedPhoto]) -> KeptRefinement:
@@ -171,7 +174,7 @@ def read_refined(folder: Path, photos: Sequence[PosedPhoto]) -> KeptRefinement:
     model = read_model(folder)
     found = posed_photos(model, Similarity.identity(), folder)
     if {photo.name for photo in found} != set(covariances):
-        raise InputError(f"{path}: names other photos than the model beside it")
+        raise InputError(say("names other photos than the model beside it", place=path))
     refined = tuple(
         replace(
             photo,
@@ -201,8 +204,8 @@ def _array(photo: _Photo, path: Path) -> NDArray[np.float64] | None:
         return None
     sizes = {len(row) for row in photo.covariance}
     if len(photo.covariance) != 6 or sizes != {6}:
-        raise InputError(f"{path}: photo '{photo.name}': expected a covariance of 6 rows of 6 numbers")
+        raise InputError(say("photo '{}': expected a covariance of 6 rows of 6 numbers", photo.name, place=path))
     found = np.array(photo.covariance, np.float64)
     if np.linalg.eigvalsh(0.5 * (found + found.T)).min() <= 0.0:
-        raise InputError(f"{path}: photo '{photo.name}': expected a covariance, got a matrix that is none")
+        raise InputError(say("photo '{}': expected a covariance, got a matrix that is none", photo.name, place=path))
     return found

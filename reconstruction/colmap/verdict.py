@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.findings import Finding, Severity
+from planning.base.messages import say
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.colmap.georeference import position_covariance
 
@@ -88,8 +89,10 @@ def judge_poses(stated: Sequence[PosedPhoto], refined: Sequence[PosedPhoto]) -> 
     if paired:
         findings += _common_findings(common, [own for own, _ in paired])
     if len(keeps_own) > (1.0 - LEAST_SHARE) * len(paired):
-        text = (
-            f"{len(keeps_own)} of {len(paired)} refined poses were refused, so none is used: all photos keep their own"
+        text = say(
+            "{} of {} refined poses were refused, so none is used: all photos keep their own",
+            len(keeps_own),
+            len(paired),
         )
         findings.append(Finding(Severity.WARNING, "refinement-refused", text, "", float(len(keeps_own)), 0.0, "photos"))
         keeps_own = set(differences)
@@ -126,25 +129,29 @@ def _refusal(own: PosedPhoto, refined: PosedPhoto, difference: _Difference) -> F
     """Why a refined pose is not believed; None where it is."""
     known = refined.pose.covariance
     if known is None:
-        text = "nothing fixes where the refined model lies; the photo keeps its own pose"
+        text = say("nothing fixes where the refined model lies; the photo keeps its own pose")
         return Finding(Severity.WARNING, "refined-pose-loose", text, own.name)
     if difference.position_sigmas > MOST_SIGMAS:
-        text = (
-            f"its refined position is {difference.moved_m:.2f} m from its own, which is "
-            f"{difference.position_sigmas:.1f} standard deviations; the photo keeps its own pose"
+        text = say(
+            "its refined position is {:.2f} m from its own, which is {:.1f} standard deviations; the photo "
+            "keeps its own pose",
+            difference.moved_m,
+            difference.position_sigmas,
         )
         return _contradicts(text, own.name, difference.position_sigmas)
     if difference.angle_sigmas > MOST_SIGMAS:
-        text = (
-            f"its refined angles are {difference.turned_deg:.1f} degrees from its own, which is "
-            f"{difference.angle_sigmas:.1f} standard deviations more than for the others; the photo keeps its own pose"
+        text = say(
+            "its refined angles are {:.1f} degrees from its own, which is {:.1f} standard deviations more "
+            "than for the others; the photo keeps its own pose",
+            difference.turned_deg,
+            difference.angle_sigmas,
         )
         return _contradicts(text, own.name, difference.angle_sigmas)
     position = math.sqrt(float(np.trace(known[:3, :3]) / np.trace(position_covariance(own))))
     angles = math.sqrt(float(np.trace(known[3:, 3:]) / np.trace(_angle_covariance(own))))
     worse = min(position, angles)
     if worse > NO_BETTER:
-        text = f"its refined pose is known {worse:.1f} times worse than its own; the photo keeps its own pose"
+        text = say("its refined pose is known {:.1f} times worse than its own; the photo keeps its own pose", worse)
         return Finding(Severity.WARNING, "refined-pose-no-better", text, own.name, worse, NO_BETTER)
     return None
 
@@ -160,9 +167,10 @@ def _common_findings(common: Array, stated: Sequence[PosedPhoto]) -> list[Findin
     if sigmas <= MOST_SIGMAS:
         return []
     degrees = math.degrees(float(np.linalg.norm(common)))
-    text = (
-        f"the angles of all photos are off by {degrees:.1f} degrees in common, so it is the compass or the gimbal; "
-        "refined poses are free of it"
+    text = say(
+        "the angles of all photos are off by {:.1f} degrees in common, so it is the compass or the "
+        "gimbal; refined poses are free of it",
+        degrees,
     )
     return [Finding(Severity.NOTE, "angles-off-in-common", text, "", sigmas, MOST_SIGMAS)]
 

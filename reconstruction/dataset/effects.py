@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.effects import Assessment
+from planning.base.messages import say
 from reconstruction.base.cameras import Intrinsics, PosedPhoto
 from reconstruction.base.ray_casting import RayCaster
 from reconstruction.dataset.panel_images import IN_FRONT_M, facing
@@ -27,7 +28,7 @@ GRID = 21
 class LensDistortion:
     """Take the lens's distortion out of the photos; off, they are used as they are."""
 
-    name: str = "lens distortion"
+    name: str = say("lens distortion")
     unit: str = "px"
     tolerance: float = 0.3
 

@@ -23,6 +23,7 @@ from planning.base.files import read_given
 from planning.base.findings import Finding, Severity
 from planning.base.folders import is_empty
 from planning.base.jit import n_threads
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.geo.mesh import join, write_mesh
 from planning.site.records import SiteModel, panel_corners, require_panels
@@ -115,7 +116,7 @@ def prepare(
     require_panels(model.site)
     parameters = parameters or PrepareParameters()
     if not photos:
-        raise InputError("there are no photos with a pose to prepare")
+        raise InputError(say("there are no photos with a pose to prepare"))
     made = _empty(folder)
     try:
         prepared = _prepare(photos, model, panel_corners(model.site), folder, parameters, monitor)
@@ -149,7 +150,7 @@ def _prepare(
     workers = max(1, n_threads())
     with ThreadPoolExecutor(workers) as pool:
         for start in range(0, len(photos), workers):
-            monitor.report("preparing photos", start, len(photos))
+            monitor.report(say("preparing photos"), start, len(photos))
             part = photos[start : start + workers]
             for done in pool.map(
                 lambda photo: _photo(photo, scene, points, refined_caster, folder, bent.on, parameters), part
@@ -159,8 +160,8 @@ def _prepare(
                 else:
                     kept.append(done)
     if not kept:
-        raise InputError(f"none of the {len(photos)} photos can be read; the first: {findings[0].message}")
-    monitor.report("writing cameras and points", 0, 1)
+        raise InputError(say("none of the {} photos can be read; the first: {}", len(photos), findings[0].message))
+    monitor.report(say("writing cameras and points"), 0, 1)
     write_records(folder, kept, model.site, points, (bent, hidden), parameters.normal_step)
     return PreparedData(folder, tuple(kept), (bent, hidden), tuple(findings))
 
@@ -180,11 +181,13 @@ def _photo(
         content = decoded(read_given(photo.path, PICTURE_FILE), cv2.IMREAD_COLOR, str(photo.path))
     except InputError:
         return Finding(
-            Severity.WARNING, "photo-unreadable", "the picture cannot be decoded; it was left out", photo.name
+            Severity.WARNING, "photo-unreadable", say("the picture cannot be decoded; it was left out"), photo.name
         )
     if content.shape[:2] != (lens.height_px, lens.width_px):
         found = f"{content.shape[1]} x {content.shape[0]}"
-        text = f"the picture has {found} pixels, its camera {lens.width_px} x {lens.height_px}; it was left out"
+        text = say(
+            "the picture has {} pixels, its camera {} x {}; it was left out", found, lens.width_px, lens.height_px
+        )
         return Finding(Severity.WARNING, "photo-size", text, photo.name)
     straight = replace(photo, intrinsics=lens.straight())
     target = folder / "images" / photo.name
@@ -215,11 +218,11 @@ def _write(path: Path, image: NDArray[np.uint8] | NDArray[np.uint16]) -> None:
     )
     coded, content = cv2.imencode(path.suffix, image, quality)
     if not coded:
-        raise InputError(f"{path}: cannot be coded as {path.suffix}")
+        raise InputError(say("cannot be coded as {}", path.suffix, place=path))
     try:
         path.write_bytes(content.tobytes())
     except OSError as error:
-        raise InputError(f"{path}: cannot be written ({error.strerror or error})") from error
+        raise InputError(say("cannot be written ({})", error.strerror or error, place=path)) from error
 
 
 def _same_file(source: Path, target: Path) -> None:
@@ -230,7 +233,7 @@ def _same_file(source: Path, target: Path) -> None:
         try:
             shutil.copyfile(source, target)
         except OSError as error:
-            raise InputError(f"{target}: cannot be written ({error.strerror or error})") from error
+            raise InputError(say("cannot be written ({})", error.strerror or error, place=target)) from error
 
 
 def _empty(folder: Path) -> bool:
@@ -241,7 +244,7 @@ def _empty(folder: Path) -> bool:
         else:
             _clear(folder)
     if folder.exists() and (not folder.is_dir() or not is_empty(folder)):
-        raise InputError(f"{folder}: is not empty; name a new folder for the data set")
+        raise InputError(say("is not empty; name a new folder for the data set", place=folder))
     was_there = folder.exists()
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -249,7 +252,7 @@ def _empty(folder: Path) -> bool:
         for name in FOLDERS:
             (folder / name).mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise InputError(f"{folder}: cannot be made ({error.strerror or error})") from error
+        raise InputError(say("cannot be made ({})", error.strerror or error, place=folder)) from error
     return not was_there
 
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.geo.mesh import TriangleMesh
 
@@ -74,7 +75,7 @@ def refine_mesh(
     quads, numbers = [], []
     for number, corners in enumerate(corners_enu_m):
         if number % 16 == 0:
-            monitor.report("refining the mesh", number, len(corners_enu_m))
+            monitor.report(say("refining the mesh"), number, len(corners_enu_m))
         quad = drawn_in(corners, parameters.drawn_in_m)
         if quad is None:
             continue

@@ -15,6 +15,7 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from reconstruction.light.ray_table import RayTable
 from reconstruction.light.shading import display_from_linear, schlick, shade
@@ -68,7 +69,7 @@ def baked(scene: GsScene, model: SceneModel, monitor: Monitor = QUIET) -> GsScen
         sh = component.gaussians.values["sh"].copy()
         reflectivity = component.gaussians.values["reflectivity_logits"].copy()
         for element in component.elements:
-            monitor.report("baking panels", done, n_panels)
+            monitor.report(say("baking panels"), done, n_panels)
             done += 1
             for rows in _pieces(element.start, element.stop):
                 sh[rows] = _shown(component, rows, element.panel, model, table, np.asarray(scene.origin_enu_m))

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from planning.base.errors import InputError
 from planning.base.json_file import write_atomically
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.geo.enu import geodetic_from_enu
 from planning.geo.frames import Origin
@@ -75,12 +76,12 @@ def write_cityjson(
     """
     facades = [component for component in scene.components if component.elements]
     if not facades:
-        raise InputError(f"{path}: not written: there are no panels; choose other components")
+        raise InputError(say("not written: there are no panels; choose other components", place=path))
     corners = np.array([element.corners_enu_m for facade in facades for element in facade.elements], np.float64)
     if not np.isfinite(corners).all():
-        raise InputError(f"{path}: not written: a panel has corners that are not finite")
+        raise InputError(say("not written: a panel has corners that are not finite", place=path))
     epsg = None if scene.origin is None else utm_epsg(scene.origin, path)
-    monitor.report("writing panels", 0, 2)
+    monitor.report(say("writing panels"), 0, 2)
     points = corners.reshape(-1, 3) if scene.origin is None or epsg is None else _projected(scene.origin, epsg, corners)
     low = np.floor(points.min(axis=0))
     vertices, numbers = np.unique(np.rint((points - low) / STEP_M).astype(np.int64), axis=0, return_inverse=True)
@@ -102,7 +103,7 @@ def write_cityjson(
         "CityObjects": {scene.global_id: {"type": "Building", "attributes": building, "geometry": [geometry]}},
         "vertices": vertices.tolist(),
     }
-    monitor.report("writing panels", 1, 2)
+    monitor.report(say("writing panels"), 1, 2)
     data = json.dumps(content, ensure_ascii=False, allow_nan=False, separators=(",", ":")).encode()
     write_atomically(path, data)
     return WrittenCity(path, len(data), len(facades), len(corners), epsg)
@@ -119,7 +120,13 @@ def utm_epsg(origin: Origin, path: Path) -> int:
     low, high = UTM_LATITUDE_DEG
     if not low <= origin.lat_deg <= high:
         raise InputError(
-            f"{path}: not written: its latitude is {origin.lat_deg:.1f}°, and UTM has {low:g}° to {high:g}°"
+            say(
+                "not written: its latitude is {:.1f}°, and UTM has {:g}° to {:g}°",
+                origin.lat_deg,
+                low,
+                high,
+                place=path,
+            )
         )
     zone = math.floor((origin.lon_deg + 180.0) / ZONE_DEG) % 60 + 1
     return (32600 if origin.lat_deg >= 0.0 else 32700) + zone

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InputError
+from planning.base.messages import say
 from reconstruction.exports.ellipsoids import Ellipsoids, ellipsoids_of
 from reconstruction.objects.gs_scene import GsComponent, GsScene
 
@@ -38,7 +39,9 @@ def check_scene(scene: GsScene, path: Path) -> None:
         A Gaussian, a corner or the origin is not finite, or a size cannot be.
     """
     if not all(map(math.isfinite, scene.origin_enu_m)):
-        raise InputError(f"{path}: the scene's origin is not finite: {scene.origin_enu_m}; organise the model again")
+        raise InputError(
+            say("the scene's origin is not finite: {}; organise the model again", scene.origin_enu_m, place=path)
+        )
     for component in scene.components:
         for name, value in component.gaussians.values.items():
             for start in range(0, len(value), AT_ONCE):
@@ -46,12 +49,18 @@ def check_scene(scene: GsScene, path: Path) -> None:
                 is_good = np.isfinite(block).all() and (name != "log_scales" or block.max() <= LARGEST_LOG)
                 if not is_good:
                     raise InputError(
-                        f"{path}: component '{component.name}': {name}: holds numbers that are not finite or cannot "
-                        "be; train again"
+                        say(
+                            "component '{}': {}: holds numbers that are not finite or cannot be; train again",
+                            component.name,
+                            name,
+                            place=path,
+                        )
                     )
         for element in component.elements:
             if not np.isfinite(element.corners_enu_m).all():
-                raise InputError(f"{path}: panel '{element.name}': its corners are not finite; import the site again")
+                raise InputError(
+                    say("panel '{}': its corners are not finite; import the site again", element.name, place=path)
+                )
 
 
 def part_of(component: GsComponent, start: int, stop: int) -> GsComponent:

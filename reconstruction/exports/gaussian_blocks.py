@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InputError
+from planning.base.messages import say
 from planning.base.progress import Monitor
 from reconstruction.exports.component_parts import ellipsoid_blocks
 from reconstruction.exports.ellipsoids import Ellipsoids
@@ -101,4 +102,6 @@ def expect_some(n: int, path: Path) -> None:
         There are no Gaussians.
     """
     if n == 0:
-        raise InputError(f"{path}: not written: there is no Gaussian that could be seen; choose other components")
+        raise InputError(
+            say("not written: there is no Gaussian that could be seen; choose other components", place=path)
+        )

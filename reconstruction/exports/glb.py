@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InputError
+from planning.base.messages import say
 from reconstruction.exports.whole_files import whole_file
 
 FLOAT, UINT8, UINT16, UINT32 = 5126, 5121, 5123, 5125
@@ -139,8 +140,12 @@ def write_glb(path: Path, content: Mapping[str, Any], buffer: GlbBuffer) -> None
     total = HEADER_BYTES + len(text) + n_bytes if n_bytes else HEADER_BYTES - 8 + len(text)
     if total > LARGEST_BYTES:
         raise InputError(
-            f"{path}: would have {total / 1e9:.1f} GB, and a .glb has less than 4.3; choose a lower degree of "
-            "harmonics, fewer facades, or 3D Tiles, which are many files"
+            say(
+                "would have {:.1f} GB, and a .glb has less than 4.3; choose a lower degree of harmonics, fewer "
+                "facades, or 3D Tiles, which are many files",
+                total / 1000000000.0,
+                place=path,
+            )
         )
     with whole_file(path) as temporary, temporary.open("wb") as stream:
         stream.truncate(total)

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from planning.base.messages import say
 from planning.base.progress import Monitor
 from planning.geo.frames import Vec3
 from reconstruction.exports.component_parts import element_numbers, ellipsoid_blocks, light_of
@@ -74,7 +75,7 @@ def put_gaussians(
 
     def fill(put: Put) -> None:
         for start, block in ellipsoid_blocks(component):
-            monitor.report("writing Gaussians", start, n)
+            monitor.report(say("writing Gaussians"), start, n)
             columns = _columns(block, degree or 0)
             if component.elements:
                 columns[FEATURE_ID] = (row + element_numbers(component, start, start + len(block))).astype("<f4")
@@ -124,7 +125,10 @@ def put_panels(component: GsComponent, origin_enu_m: Vec3, row: int, buffer: Glb
     }
     primitive = _primitive(TRIANGLES, attributes, {FEATURES: _features(n)})
     indices = buffer.table(corner.ravel(), UINT32, INDICES)
-    return {"name": f"{component.name}: panels", "primitives": [{**primitive, "indices": indices, "material": 0}]}
+    return {
+        "name": say("panels", place=component.name),
+        "primitives": [{**primitive, "indices": indices, "material": 0}],
+    }
 
 
 def panel_material(alpha: float) -> dict[str, Any]:

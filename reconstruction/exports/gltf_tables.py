@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InputError
+from planning.base.messages import say
 from reconstruction.exports.glb import GlbBuffer
 from reconstruction.objects.gs_scene import GsElement, GsScene
 
@@ -144,7 +145,7 @@ def panel_table(scene: GsScene, attributes: Attributes, path: Path) -> PanelTabl
             cells.append(made)
     rows = {element.global_id: tuple(row) for element, row in zip(elements, zip(*cells, strict=True), strict=True)}
     if len(rows) != len(elements):
-        raise InputError(f"{path}: several panels have the same GlobalId; organise the model again")
+        raise InputError(say("several panels have the same GlobalId; organise the model again", place=path))
     return PanelTable(tuple(columns), rows)
 
 
@@ -194,7 +195,7 @@ def plain(text: str) -> str:
 
 def _checked(value: Value, name: str, path: Path) -> Value:
     if isinstance(value, float) and not math.isfinite(value):
-        raise InputError(f"{path}: attribute '{name[:80]}': expected finite numbers, got {value}")
+        raise InputError(say("attribute '{}': expected finite numbers, got {}", name[:80], value, place=path))
     # An empty text is none.
     return (plain(value) or None) if isinstance(value, str) else value
 

@@ -18,6 +18,7 @@ import torch
 from numpy.typing import NDArray
 
 from planning.base.errors import InputError
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.site.importing.polygons import area_vector
 from reconstruction.exports.component_parts import check_scene
@@ -232,7 +233,7 @@ def write_mesh(
     check_scene(scene, path)
     elements = [element for _, element in scene.elements]
     if not elements:
-        raise InputError(f"{path}: not written: there are no panels; choose other components")
+        raise InputError(say("not written: there are no panels; choose other components", place=path))
     views = [_view(scene, element, path, options) for element in elements]
     atlas = _packed(elements, views, path, options)
     raster = raster_of(scene)
@@ -250,7 +251,9 @@ def _view(scene: GsScene, element: GsElement, path: Path, options: MeshOptions) 
     try:
         return panel_view(corners_m, options.px_per_m)
     except ValueError as error:
-        raise InputError(f"{path}: not written: panel '{element.name}' has no area; import the site again") from error
+        raise InputError(
+            say("not written: panel '{}' has no area; import the site again", element.name, place=path)
+        ) from error
 
 
 def _packed(elements: Sequence[GsElement], views: Sequence[PanelView], path: Path, options: MeshOptions) -> Atlas:
@@ -259,15 +262,29 @@ def _packed(elements: Sequence[GsElement], views: Sequence[PanelView], path: Pat
         if longest > options.page_px:
             fits = int(options.px_per_m * options.page_px / longest)
             raise InputError(
-                f"{path}: not written: panel '{element.name}' would have {longest} pixels on a side, and textures have "
-                f"{options.page_px}; choose {fits} pixels per metre or fewer"
+                say(
+                    "not written: panel '{}' would have {} pixels on a side, and textures have {}; choose {} pixels "
+                    "per metre or fewer",
+                    element.name,
+                    longest,
+                    options.page_px,
+                    fits,
+                    place=path,
+                )
             )
     atlas = pack([(each.view.width_px, each.view.height_px) for each in views], options.page_px)
     if len(atlas.pages) > options.most_pages:
         fits = int(options.px_per_m * (options.most_pages / len(atlas.pages)) ** 0.5)
         raise InputError(
-            f"{path}: not written: {len(atlas.pages)} textures of {options.page_px} pixels would be needed, and "
-            f"{options.most_pages} are the most; choose about {fits} pixels per metre, or single facades"
+            say(
+                "not written: {} textures of {} pixels would be needed, and {} are the most; choose about {} "
+                "pixels per metre, or single facades",
+                len(atlas.pages),
+                options.page_px,
+                options.most_pages,
+                fits,
+                place=path,
+            )
         )
     return atlas
 
@@ -286,7 +303,7 @@ def _pages(
         picture = np.zeros((height, width, 3), np.uint8)
         for each, place in zip(views, atlas.places, strict=True):
             if place.page == page:
-                monitor.report("rendering panels", done, len(views))
+                monitor.report(say("rendering panels"), done, len(views))
                 rows = slice(place.y_px, place.y_px + each.view.height_px)
                 columns = slice(place.x_px, place.x_px + each.view.width_px)
                 picture[rows, columns] = _picture(model, each, options, raster)

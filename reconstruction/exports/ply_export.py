@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from reconstruction.exports.component_parts import check_scene
 from reconstruction.exports.compression import LEAST_SEEN, Compressed
@@ -69,11 +70,11 @@ def write_ply(
         raise ValueError("kind: expected '3dgs' for ellipsoids, got '2dgs'")
     check_scene(scene, path)
     n = 0
-    for block in blocks_of(scene, "enu", least_opacity, monitor, "counting Gaussians"):
+    for block in blocks_of(scene, "enu", least_opacity, monitor, say("counting Gaussians")):
         n += len(block)
     expect_some(n, path)
     row = _row_type(kind, degree)
-    blocks = blocks_of(scene, axes, least_opacity, monitor, "writing Gaussians")
+    blocks = blocks_of(scene, axes, least_opacity, monitor, say("writing Gaussians"))
     write_blocks(path, n, row, _comments(scene, kind, axes), _tables(blocks, row, kind, degree))
     return Compressed(path, path.stat().st_size, n, n_gaussians(scene) - n, 0, 0.0)
 

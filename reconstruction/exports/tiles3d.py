@@ -25,6 +25,7 @@ from planning.base.errors import InputError
 from planning.base.files import sha256_given
 from planning.base.folders import make_folder
 from planning.base.json_file import new_file_beside, write_together
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.geo.frames import Origin
 from reconstruction.exports.component_parts import check_scene, ellipsoid_blocks, extents_m
@@ -337,8 +338,11 @@ def write_tiles(
     """
     if options.place == "earth" and scene.origin is None:
         raise InputError(
-            f"{folder}: 3D Tiles lie on Earth, and the site's place is not known; set the site's origin, or ask for "
-            "tiles in its local frame"
+            say(
+                "3D Tiles lie on Earth, and the site's place is not known; set the site's origin, or ask for "
+                "tiles in its local frame",
+                place=folder,
+            )
         )
     check_scene(scene, folder)
     table = panel_table(scene, attributes, folder)
@@ -349,7 +353,7 @@ def write_tiles(
         tiles = tuple(made.component(component, attributes) for component in scene.components)
         tiles = tuple(tile for tile in tiles if tile.children)
         if not tiles:
-            raise InputError(f"{folder}: nothing to write: the scene has neither Gaussians nor panels")
+            raise InputError(say("nothing to write: the scene has neither Gaussians nor panels", place=folder))
         around = tiles[0].box.with_others(*(tile.box for tile in tiles[1:]))
         transform = {} if options.place == "local" else {"transform": _earth_from_enu(scene.origin)}
         root = _Tile(around, children=tiles, more={"refine": "ADD"} | transform)
@@ -428,7 +432,7 @@ class _Folder:
                 self.files.add(file)
                 new.replace(self._folder / file)
         except OSError as error:
-            raise InputError(f"{self._folder}: cannot be written ({error.strerror or error})") from error
+            raise InputError(say("cannot be written ({})", error.strerror or error, place=self._folder)) from error
         return file
 
 

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from planning.base.errors import InputError
 from planning.base.files import real_path
 from planning.base.json_file import check_output, part_folder
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from reconstruction.exports.component_parts import check_scene, ellipsoid_blocks, extents_m
 from reconstruction.exports.gltf import INVISIBLE
@@ -93,7 +94,7 @@ def write_usd(
         usd-core is missing or too old, the ending is another, numbers are not finite, or it cannot be written.
     """
     if path.suffix.lower() not in ENDINGS:
-        raise InputError(f"{path}: expected a name that ends in {', '.join(ENDINGS)}, got '{path.suffix}'")
+        raise InputError(say("expected a name that ends in {}, got '{}'", ", ".join(ENDINGS), path.suffix, place=path))
     pxr = _pxr()
     check_scene(scene, path)
     table = panel_table(scene, attributes, path)
@@ -107,9 +108,9 @@ def write_usd(
             finally:
                 made.close()
     except OSError as error:
-        raise InputError(f"{path}: cannot be written ({error.strerror or error})") from error
+        raise InputError(say("cannot be written ({})", error.strerror or error, place=path)) from error
     except pxr.Tf.ErrorException as error:
-        raise InputError(f"{path}: cannot be written ({error})") from error
+        raise InputError(say("cannot be written ({})", error, place=path)) from error
 
 
 def _pxr() -> Any:
@@ -118,10 +119,12 @@ def _pxr() -> Any:
         pxr = SimpleNamespace(**{name: import_module(f"pxr.{name}") for name in MODULES})
     except ImportError as error:
         raise InputError(
-            "USD needs the package usd-core, which is not installed: pip install 'reflight[usd]'"
+            say("USD needs the package usd-core, which is not installed: pip install 'reflight[usd]'")
         ) from error
     if not hasattr(pxr.UsdVol, SPLATS):
-        raise InputError("USD: this usd-core knows no Gaussians; install 26.3 or newer: pip install 'reflight[usd]'")
+        raise InputError(
+            say("USD: this usd-core knows no Gaussians; install 26.3 or newer: pip install 'reflight[usd]'")
+        )
     return pxr
 
 
@@ -196,7 +199,7 @@ class _Stage:
         harmonics, panels = np.empty((n, n_harmonics, 3), np.float32), np.empty(n, np.int32)
         lows, highs = [], []
         for start, block in ellipsoid_blocks(component):
-            monitor.report("writing Gaussians", start, n)
+            monitor.report(say("writing Gaussians"), start, n)
             rows = slice(start, start + len(block))
             positions[rows], scales[rows], opacities[rows] = block.means_m, block.scales_m, block.opacities
             quats[rows], panels[rows] = block.quats[:, [1, 2, 3, 0]], block.panels
@@ -256,7 +259,7 @@ class _Stage:
 
 def _export(stage: Any, file: Path, path: Path) -> None:
     if not stage.GetRootLayer().Export(str(file)):
-        raise InputError(f"{path}: cannot be written; is the disk full?")
+        raise InputError(say("cannot be written; is the disk full?", place=path))
 
 
 def _values(values: Mapping[str, Any]) -> dict[str, Any]:

@@ -9,6 +9,7 @@ from pathlib import Path
 from planning.base.errors import InputError
 from planning.base.files import real_path
 from planning.base.json_file import check_output, part_file
+from planning.base.messages import say
 
 
 @contextmanager
@@ -25,9 +26,9 @@ def whole_file(path: Path) -> Iterator[Path]:
     check_output(path)
     target = real_path(path)
     if target.exists() and not target.is_file():
-        raise InputError(f"{path}: cannot be written: it is no file; name one")
+        raise InputError(say("cannot be written: it is no file; name one", place=path))
     try:
         with part_file(target) as part:
             yield part
     except OSError as error:
-        raise InputError(f"{path}: cannot be written ({error.strerror or error})") from error
+        raise InputError(say("cannot be written ({})", error.strerror or error, place=path)) from error

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import torch
 
 from planning.base.effects import Assessment, Decision, Effect, decide
+from planning.base.messages import say
 from planning.base.progress import QUIET, Clock, Monitor
 from reconstruction.light.config import ReflectionConfig
 from reconstruction.light.glass_rays import GlassRays
@@ -62,7 +63,7 @@ class Trials:
 class NearLight:
     """Whether what glass mirrors is near enough to show parallax."""
 
-    name: str = "near-field light"
+    name: str = say("near-field light")
     unit: str = "dB"
     tolerance: float = NEAR_TOLERANCE_DB
 
@@ -70,8 +71,10 @@ class NearLight:
         """By how much a radiance grid is better than the best model without places."""
         slow, far, near = scene.scores_db
         gained = near - max(slow, far)
-        what = "show parallax" if gained > self.tolerance else "show no parallax to speak of"
-        reason = f"mirror images in unseen photos {what}: radiance grid {near:.1f} dB, environment map {far:.1f} dB"
+        what = say("show parallax") if gained > self.tolerance else say("show no parallax to speak of")
+        reason = say(
+            "mirror images in unseen photos {}: radiance grid {:.1f} dB, environment map {:.1f} dB", what, near, far
+        )
         return Assessment(gained, reason, GRID_TIMES * scene.seconds)
 
 
@@ -79,7 +82,7 @@ class NearLight:
 class FarLight:
     """Whether what glass mirrors has detail by direction."""
 
-    name: str = "mirrored surroundings"
+    name: str = say("mirrored surroundings")
     unit: str = "dB"
     tolerance: float = FAR_TOLERANCE_DB
 
@@ -87,8 +90,8 @@ class FarLight:
         """By how much the better model of mirrored light is better than harmonics, which mirror nothing."""
         slow, far, near = scene.scores_db
         gained = max(far, near) - slow
-        what = "clear mirror images" if gained > self.tolerance else "no clear mirror images"
-        return Assessment(gained, f"the panes show {what}: harmonics alone {slow:.1f} dB", scene.seconds)
+        what = say("clear mirror images") if gained > self.tolerance else say("no clear mirror images")
+        return Assessment(gained, say("the panes show {}: harmonics alone {:.1f} dB", what, slow), scene.seconds)
 
 
 def choose_light(
@@ -123,7 +126,7 @@ def choose_light(
         return "environment-map", ()
     found = []
     for done, model in enumerate(TRIED):
-        monitor.report("choosing a model of mirrored light", done, len(TRIED))
+        monitor.report(say("choosing a model of mirrored light"), done, len(TRIED))
         # In a program's first run kernels are compiled here, which takes longer than a trial and tells nothing of it.
         _tried(model, seen, planes, replace(config, steps=1, time_limit_s=None), monitor, clock, device)
         found.append(_tried(model, seen, planes, config, monitor, clock, device))

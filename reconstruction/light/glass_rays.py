@@ -18,6 +18,7 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.light.photo_set import PhotoSet
@@ -177,13 +178,13 @@ def glass_rays(
     if sum(photo.intrinsics.width_px * photo.intrinsics.height_px for photo in photos) * BYTES_PER_RAY > memory_bytes:
         n_pixels = 0
         for done, photo in enumerate(photos):
-            monitor.report("counting glass", done, len(photos))
+            monitor.report(say("counting glass"), done, len(photos))
             n_pixels += int((source.panel_numbers(photo) >= 0).sum())
         share = min(1.0, memory_bytes / (BYTES_PER_RAY * max(n_pixels, 1)))
     table = RayTable.of(photos, source.panels, source.own_exposures)
     parts = [_no_rays(table)]
     for done, photo in enumerate(photos):
-        monitor.report("reading rays", done, len(photos))
+        monitor.report(say("reading rays"), done, len(photos))
         parts.append(_rays(source, table, done, photo, share, seed + done, which))
     return joined(parts)
 

@@ -22,6 +22,7 @@ import torch
 from torch import Tensor
 
 from planning.base.errors import OperationCancelled, ReconstructionError
+from planning.base.messages import say
 from planning.base.progress import QUIET, Clock, Monitor
 from reconstruction.base.out_of_memory import NotFinite, is_out_of_memory
 from reconstruction.light.config import Precision, ReflectionConfig
@@ -138,7 +139,7 @@ class LightTraining:
         at = self.at
         while self.progress < 1.0:
             try:
-                monitor.report("learning reflections", at.step, self.n_steps)
+                monitor.report(say("learning reflections"), at.step, self.n_steps)
             except OperationCancelled:
                 self._keep()
                 raise
@@ -177,7 +178,7 @@ class LightTraining:
         more = None if panels.light is None else panels.light.regulariser(config, at.step)
         loss = loss if more is None else loss + more
         if not bool(torch.isfinite(loss)):
-            raise NotFinite("the loss is not a number")
+            raise NotFinite(say("the loss is not a number"))
         self.optimiser.zero_grad(set_to_none=True)
         loss.backward()  # type: ignore[no-untyped-call]
         self._is_editing = True
@@ -191,7 +192,7 @@ class LightTraining:
         self._is_editing = False
         if has_grown or at.step % KEPT_EVERY == 0 or at.step == self.n_steps:
             if not self._is_finite():
-                raise NotFinite("a weight is not a number")
+                raise NotFinite(say("a weight is not a number"))
             self._good = copy.deepcopy(self.state())
 
     def state(self) -> dict[str, Any]:
@@ -251,10 +252,16 @@ class LightTraining:
         kept.factor *= 0.5
         if kept.n_undone > MOST_HALVINGS:
             raise ReconstructionError(
-                f"learning reflections failed: {reason} at step {kept.step + 1} of {self.n_steps}; "
-                "lower the learning rates"
+                say(
+                    "learning reflections failed: {} at step {} of {}; lower the learning rates",
+                    reason,
+                    kept.step + 1,
+                    self.n_steps,
+                )
             )
-        kept.notes.append(f"learning light: {reason} at step {kept.step + 1}; all rates are halved from there on")
+        kept.notes.append(
+            say("learning light: {} at step {}; all rates are halved from there on", reason, kept.step + 1)
+        )
         self._go_back()
 
     def _shrink(self, error: BaseException) -> None:
@@ -263,11 +270,18 @@ class LightTraining:
         smaller = at.batch // 2
         if smaller < LEAST_BATCH:
             raise ReconstructionError(
-                f"learning reflections failed: there is no memory for batches of {at.batch} rays at step "
-                f"{at.step + 1} of {self.n_steps}; choose a smaller model"
+                say(
+                    "learning reflections failed: there is no memory for batches of {} rays at step {} of {}; choose "
+                    "a smaller model",
+                    at.batch,
+                    at.step + 1,
+                    self.n_steps,
+                )
             ) from error
         at.batch = smaller
-        at.notes.append(f"learning light: memory ran out at step {at.step + 1}; batches have {smaller} rays from there")
+        at.notes.append(
+            say("learning light: memory ran out at step {}; batches have {} rays from there", at.step + 1, smaller)
+        )
         if self._is_editing:
             self._go_back()
 

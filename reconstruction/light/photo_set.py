@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from planning.base.errors import InputError
 from planning.base.files import read_given
 from planning.base.json_file import expect_format, read_json, to_record
+from planning.base.messages import say
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.colmap.folder import read_model
 from reconstruction.colmap.georeference import posed_photos
@@ -119,11 +120,13 @@ class PhotoSet:
         path = layer_path(self.folder, "panels", photo.name)
         numbers = _image(path, cv2.IMREAD_UNCHANGED, photo)
         if numbers.ndim != 2:
-            raise InputError(f"{path}: expected one channel with panel numbers, found {numbers.shape[2]}")
+            raise InputError(say("expected one channel with panel numbers, found {}", numbers.shape[2], place=path))
         found = numbers.astype(np.int64) - 1
         n_panels = len(self.panels.corners_enu_m)
         if found.max(initial=-1) >= n_panels:
-            raise InputError(f"{path}: has panel {found.max() + 1}, and dataset.json {n_panels}; is it of another run?")
+            raise InputError(
+                say("has panel {}, and dataset.json {}; is it of another run?", found.max() + 1, n_panels, place=path)
+            )
         return found
 
 
@@ -139,22 +142,26 @@ def read_photo_set(folder: Path) -> PhotoSet:
     """
     path = folder / "dataset.json"
     if not path.is_file():
-        raise InputError(f"{folder}: has no dataset.json; name a folder that `prepare` or `scene render` has finished")
+        raise InputError(
+            say("has no dataset.json; name a folder that `prepare` or `scene render` has finished", place=folder)
+        )
     content = read_json(path, names_files=True)
     expect_format(content, DATASET_FORMAT, path)
     description = to_record(content, _Description, path)
     if not description.panels:
-        raise InputError(f"{path}: lists no panels, so there is no glass to learn from")
+        raise InputError(say("lists no panels, so there is no glass to learn from", place=path))
     if [panel.index for panel in description.panels] != list(range(1, len(description.panels) + 1)):
-        raise InputError(f"{path}: panels: expected indices 1, 2, 3 and so on; was the file edited?")
+        raise InputError(say("panels: expected indices 1, 2, 3 and so on; was the file edited?", place=path))
     corners = np.array([panel.corners_enu_m for panel in description.panels], float)
     areas = 0.5 * np.linalg.norm(np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]), axis=1)
     if areas.min() < LEAST_AREA_M2:
-        raise InputError(f"{path}: panel {areas.argmin() + 1} has next to no area; correct the site and prepare again")
+        raise InputError(
+            say("panel {} has next to no area; correct the site and prepare again", areas.argmin() + 1, place=path)
+        )
     model = read_model(folder / "sparse" / "0")
     photos = posed_photos(model, Similarity.identity(), folder / "images")
     if not photos:
-        raise InputError(f"{folder / 'sparse' / '0'}: holds no images; name a folder with photos")
+        raise InputError(say("holds no images; name a folder with photos", place=folder / "sparse" / "0"))
     run = _run(folder)
     own = {name: capture.exposure for name, capture in run.captures.items()}
     return PhotoSet(folder, photos, PanelPlanes(corners), run.exposure, own)
@@ -212,7 +219,7 @@ def held_out_names(names: Sequence[str], share: float, seed: int) -> tuple[str, 
     if not 0.0 < share < 1.0:
         raise ValueError(f"share: expected above 0 and below 1, got {share}")
     if len(names) < 2:
-        raise InputError(f"expected at least two photos, one to learn from and one to score, got {len(names)}")
+        raise InputError(say("expected at least two photos, one to learn from and one to score, got {}", len(names)))
     n_held = min(max(1, round(share * len(names))), len(names) - 1)
     ranked = sorted(names, key=lambda name: hashlib.sha256(f"{seed} {name}".encode()).digest())
     return tuple(sorted(ranked[:n_held]))
@@ -223,7 +230,13 @@ def _image(path: Path, flags: int, photo: PosedPhoto) -> NDArray[np.uint8] | NDA
     image = decoded(read_given(path, PICTURE_FILE), flags, str(path))
     if image.shape[:2] != (lens.height_px, lens.width_px):
         raise InputError(
-            f"{path}: expected {lens.width_px} x {lens.height_px} pixels as its camera has, got "
-            f"{image.shape[1]} x {image.shape[0]}"
+            say(
+                "expected {} x {} pixels as its camera has, got {} x {}",
+                lens.width_px,
+                lens.height_px,
+                image.shape[1],
+                image.shape[0],
+                place=path,
+            )
         )
     return image

@@ -15,6 +15,7 @@ from safetensors.numpy import load, save
 from planning.base.errors import InputError
 from planning.base.folders import make_folder
 from planning.base.json_file import expect_format, read_json, to_record, write_together
+from planning.base.messages import say
 from planning.base.progress import QualityPoint
 from reconstruction.base.tensor_files import tensor_bytes
 from reconstruction.light.config import Precision, ReflectionConfig
@@ -100,7 +101,7 @@ def read_reflections(folder: Path) -> TrainedReflections:
     if {name: value.shape for name, value in weights.items()} != expected:
         raise InputError(f"{folder / WEIGHTS}: holds the weights of another model than {path.name} describes")
     if not all(np.isfinite(value).all() for value in weights.values()):
-        raise InputError(f"{folder / WEIGHTS}: holds numbers that are not finite; train again")
+        raise InputError(say("holds numbers that are not finite; train again", place=folder / WEIGHTS))
     panels.load_state_dict({name: torch.from_numpy(value) for name, value in weights.items()})
     if panels.light is not None and isinstance(panels.light.light, RadianceGrid):
         panels.light.light.refresh()
@@ -133,7 +134,7 @@ def _weights(path: Path) -> dict[str, NDArray[np.float32]]:
     try:
         weights = load(tensor_bytes(path))
     except (SafetensorError, KeyError, ValueError) as error:
-        raise InputError(f"{path}: is no safetensors file, or damaged: {error}") from error
+        raise InputError(say("is no safetensors file, or damaged: {}", error, place=path)) from error
     other = [name for name, value in weights.items() if value.dtype != np.float32]
     if other:
         raise InputError(f"{path}: expected float32 numbers, found {weights[other[0]].dtype} in '{other[0]}'")

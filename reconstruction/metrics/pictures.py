@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from planning.base.errors import InputError
 from planning.base.files import read_given
 from planning.base.json_file import write_atomically
+from planning.base.messages import glue, say
 from planning.photos.metadata import read_photo
 from reconstruction.photos.decode import JPEG_START, PICTURE_FILE, colour_picture, decoded
 
@@ -44,7 +45,7 @@ def read_labels(path: Path) -> NDArray[np.uint8] | NDArray[np.uint16]:
         return np.asarray(picture, np.uint8)
     if picture.dtype == np.uint16:
         return np.asarray(picture, np.uint16)
-    raise InputError(f"{path}: expected an image of 8 or 16 bit, found {picture.dtype}")
+    raise InputError(say("expected an image of 8 or 16 bit, found {}", picture.dtype, place=path))
 
 
 def write_picture(path: Path, picture: NDArray[np.uint8]) -> None:
@@ -64,7 +65,9 @@ def pictures_in(folder: Path) -> dict[str, Path]:
         There is no such folder, it holds no pictures, or two of them have one name.
     """
     if not folder.is_dir():
-        raise InputError(f"{folder}: expected a folder of pictures, found {'a file' if folder.exists() else 'nothing'}")
+        raise InputError(
+            glue(folder, ": expected a folder of pictures, found ", say("a file") if folder.exists() else "nothing")
+        )
     found: dict[str, Path] = {}
     for path in sorted(folder.iterdir()):
         if path.suffix.lower() in PICTURE_SUFFIXES and path.is_file():
@@ -83,5 +86,5 @@ def _decoded(path: Path, flags: int) -> NDArray[Any]:
 def _content(path: Path) -> bytes:
     content = read_given(path, PICTURE_FILE)
     if not content:
-        raise InputError(f"{path}: the file is empty; copy it again")
+        raise InputError(say("the file is empty; copy it again", place=path))
     return content

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InfeasibleError, InputError
+from planning.base.messages import say
 from planning.base.progress import QUIET, Clock, Monitor
 from reconstruction.metrics.metrics import PhotoScores, SetScores, score_overlaps, summarise
 from reconstruction.metrics.overlaps import pixel_overlaps
@@ -77,7 +78,7 @@ class MaskFolder:
         """
         missing = [name for name in names if name not in self.paths]
         if missing:
-            more = f" and {len(missing) - NAMES_IN_MESSAGE} more" if len(missing) > NAMES_IN_MESSAGE else ""
+            more = say(" and {} more", len(missing) - NAMES_IN_MESSAGE) if len(missing) > NAMES_IN_MESSAGE else ""
             raise InputError(
                 f"{self.folder}: expected a mask for each of {len(names)} photos, named like it; missing: "
                 f"{', '.join(missing[:NAMES_IN_MESSAGE])}{more}"

@@ -13,6 +13,7 @@ import torch
 from torch import Tensor
 
 from planning.base.errors import InputError
+from planning.base.messages import say
 from planning.geo.frames import Origin, Vec3
 from reconstruction.objects.gs_scene import GsAuxiliary, GsComponent, GsElement, GsGaussian, GsScene
 from reconstruction.records.global_ids import global_id_of, is_global_id
@@ -131,7 +132,7 @@ def put_together(scene: GsScene, path: Path) -> TrainedModel:
     tables = [component.gaussians for component in scene.components]
     places = np.concatenate([table.places for table in tables])
     if not np.array_equal(np.sort(places), np.arange(len(places))):
-        raise InputError(f"{path}: its Gaussians do not each have a place of their own; it is damaged")
+        raise InputError(say("its Gaussians do not each have a place of their own; it is damaged", place=path))
     tensors: dict[str, Tensor] = {}
     for name in tables[0].values:
         values = np.concatenate([table.values[name] for table in tables])

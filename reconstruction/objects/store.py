@@ -25,6 +25,7 @@ from planning.base.errors import InputError
 from planning.base.files import check_given, open_given
 from planning.base.folders import make_folder
 from planning.base.json_file import expect_format, read_json, to_record, write_atomically
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.geo.frames import Origin, Vec3
 from reconstruction.base.tensor_files import TENSORS_FILE
@@ -153,7 +154,7 @@ def _write_parts(scene: GsScene, folder: Path, monitor: Monitor) -> set[str]:
     n_parts = len(scene.components) + len(scene.auxiliary)
     components: list[StoredComponent] = []
     for number, component in enumerate(scene.components):
-        monitor.report("writing components", number, n_parts)
+        monitor.report(say("writing components"), number, n_parts)
         table = component.gaussians
         part = _written(folder, component.name, {**table.values, PLACES: table.places})
         lowest, highest = _bounds(scene, component)
@@ -170,7 +171,7 @@ def _write_parts(scene: GsScene, folder: Path, monitor: Monitor) -> set[str]:
         )
     auxiliary = []
     for number, found in enumerate(scene.auxiliary, len(components)):
-        monitor.report("writing components", number, n_parts)
+        monitor.report(say("writing components"), number, n_parts)
         auxiliary.append(_written(folder, found.name, found.tensors))
     record = _Scene(
         scene.name,
@@ -205,7 +206,7 @@ class StoredScene:
     def __init__(self, folder: Path) -> None:
         self.folder, self._path = folder, folder / DESCRIPTION
         if not self._path.is_file():
-            raise InputError(f"{folder}: holds no scene of objects ({DESCRIPTION}); make one with `organise`")
+            raise InputError(say("holds no scene of objects ({}); make one with `organise`", DESCRIPTION, place=folder))
         self._scene = self._described()
 
     def _described(self) -> _Scene:
@@ -272,11 +273,11 @@ class StoredScene:
         unknown = set(components or ()) - set(self.component_names)
         if unknown:
             known = ", ".join(self.component_names)
-            raise InputError(f"{self._path}: has no component '{min(unknown)}'; it has {known}")
+            raise InputError(say("has no component '{}'; it has {}", min(unknown), known, place=self._path))
         wanted = [each for each in self._scene.components if components is None or each.name in components]
         found = []
         for number, component in enumerate(wanted):
-            monitor.report("reading components", number, len(wanted))
+            monitor.report(say("reading components"), number, len(wanted))
             found.append(self._component(component))
         scene = self._scene
         return GsScene(
@@ -309,7 +310,7 @@ class StoredScene:
                 if element.global_id == global_id:
                     values = self._rows(component, element.start, element.stop)
                     return element, self._table(component, values, element.n_gaussians)
-        raise InputError(f"{self._path}: has no element with the GlobalId '{global_id[:40]}'")
+        raise InputError(say("has no element with the GlobalId '{}'", global_id[:40], place=self._path))
 
     def _component(self, component: StoredComponent) -> GsComponent:
         table = self._table(component, self._checked(component), component.n_gaussians)
@@ -317,25 +318,35 @@ class StoredScene:
         try:
             return GsComponent(global_id, name, kind, component.elements, table)
         except ValueError as error:
-            raise InputError(f"{self._path}: component '{name}': {error}") from error
+            raise InputError(say("component '{}': {}", name, error, place=self._path)) from error
 
     def _table(self, component: StoredComponent, values: dict[str, Array], n: int) -> GsGaussian:
         path = self.folder / component.file
         places = values.pop(PLACES, None)
         if places is None or places.dtype != np.int32 or places.shape != (n,):
-            raise InputError(f"{path}: {PLACES}: expected {n} of int32; it is damaged, or of another program")
+            raise InputError(
+                say("expected {} of int32; it is damaged, or of another program", n, place=f"{path}: {PLACES}")
+            )
         missing = COLUMNS.keys() - values.keys()
         if missing:
-            raise InputError(f"{path}: has no '{min(missing)}' of Gaussians; it is damaged, or of another program")
+            raise InputError(
+                say("has no '{}' of Gaussians; it is damaged, or of another program", min(missing), place=path)
+            )
         for name, value in values.items():
             shapes = COLUMNS.get(name)
             is_known = value.shape[1:] in shapes if shapes is not None else math.prod(value.shape[1:]) <= WIDEST
             if value.dtype != np.float32 or len(value) != n or not is_known:
                 raise InputError(
-                    f"{path}: {name}: expected {n} rows of float32, found {value.dtype} of shape {value.shape}"
+                    say(
+                        "expected {} rows of float32, found {} of shape {}",
+                        n,
+                        value.dtype,
+                        value.shape,
+                        place=f"{path}: {name}",
+                    )
                 )
             if not np.isfinite(value).all():
-                raise InputError(f"{path}: {name}: holds numbers that are not finite; train again")
+                raise InputError(say("holds numbers that are not finite; train again", place=f"{path}: {name}"))
         return GsGaussian(values, places)
 
     def _checked(self, part: StoredPart) -> dict[str, Array]:
@@ -346,7 +357,9 @@ class StoredScene:
             is_same = os.fstat(stream.fileno()).st_size == part.n_bytes
             is_same = is_same and hashlib.file_digest(stream, "sha256").hexdigest() == part.sha256
         if not is_same:
-            raise InputError(f"{path}: is not the file that {DESCRIPTION} was written with; was it changed or cut off?")
+            raise InputError(
+                say("is not the file that {} was written with; was it changed or cut off?", DESCRIPTION, place=path)
+            )
         return self._opened(part, lambda file: {name: file.get_tensor(name) for name in file.keys()})  # noqa: SIM118
 
     def _rows(self, part: StoredPart, start: int, stop: int) -> dict[str, Array]:
@@ -359,7 +372,7 @@ class StoredScene:
             with safe_open(path, framework="numpy") as file:
                 found: dict[str, Array] = read(file)
         except (OSError, SafetensorError, KeyError, ValueError, TypeError, IndexError) as error:
-            raise InputError(f"{path}: is no safetensors file, or damaged: {error}") from error
+            raise InputError(say("is no safetensors file, or damaged: {}", error, place=path)) from error
         return found
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InputError
-from planning.base.json_file import expect_format, read_json, to_record, write_atomically
+from planning.base.json_file import encoded, expect_format, read_json, to_record, write_atomically
 from reconstruction.panels.rectify.rectification import Rectification
 from reconstruction.panels.search.record import FacadeGrid, GridLine, InclinedLine, Segmentation
 
@@ -152,7 +152,7 @@ def panels_record(found: Segmentation) -> PanelsFile:
 
 def panels_content(record: PanelsFile) -> Any:
     """A record as plain JSON values."""
-    return msgspec.json.decode(msgspec.json.encode(record))
+    return msgspec.json.decode(encoded(record))
 
 
 def write_panels(path: Path, record: PanelsFile) -> None:

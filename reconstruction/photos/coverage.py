@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.findings import Finding, Severity
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.coverage.model import CoverageModel, exact_sections
 from planning.coverage.sections import NOT_SEEN, sections_of
@@ -97,7 +98,7 @@ def photo_sections(model: CoverageModel, photos: Sequence[PosedPhoto], monitor: 
     found = np.full((len(photos), len(frames)), NOT_SEEN, np.int64)
     for index, photo in enumerate(photos):
         if index % CHUNK == 0:
-            monitor.report("coverage of the photos", index, len(photos))
+            monitor.report(say("coverage of the photos"), index, len(photos))
         seen = photo.sees(frames.centroids)
         if model.whole_panel:
             seen &= photo.sees(frames.corners.reshape(-1, 3)).reshape(len(frames), -1).all(axis=1)
@@ -149,12 +150,12 @@ def _findings(
     for panel in np.intersect1d(unseen, promised).tolist():
         name = panel_ids[panel] if panel_ids else str(panel)
         findings.append(
-            Finding(Severity.WARNING, "panel-not-photographed", f"no photo shows panel '{name}'", name, 0.0)
+            Finding(Severity.WARNING, "panel-not-photographed", say("no photo shows panel '{}'", name), name, 0.0)
         )
     if planned is not None:
         n_missed = int(((planned > 0) & (counts == 0)).sum())
         n_planned = int((planned > 0).sum())
         severity = Severity.WARNING if n_missed else Severity.OK
-        text = f"{n_missed} of the {n_planned} sections that the plan promised are on no photo"
+        text = say("{} of the {} sections that the plan promised are on no photo", n_missed, n_planned)
         findings.append(Finding(severity, "sections-missed", text, "", float(n_missed), 0.0, "sections"))
     return tuple(findings)

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from planning.base.errors import InputError
 from planning.base.files import MIB, FileLimit, read_given
+from planning.base.messages import say
 from planning.photos.jpeg import PHOTO_FILE
 from planning.photos.record import PhotoMetadata
 
@@ -46,7 +47,7 @@ MAX_PIXELS = 400 * 10**6
 LARGE_PIXELS = 64 * 10**6
 """Larger ones are decoded one at a time."""
 
-PICTURE_FILE = FileLimit("a picture", 512 * MIB)
+PICTURE_FILE = FileLimit(say("a picture"), 512 * MIB)
 
 JPEG_START, PNG_START = b"\xff\xd8\xff", b"\x89PNG\r\n\x1a\n"
 
@@ -78,13 +79,22 @@ def _picture(photo: PhotoMetadata, flag: int, scale: Scale) -> NDArray[np.uint8]
     _check_size((photo.width_px, photo.height_px), place, MAX_PIXELS)
     content = read_given(photo.path, PHOTO_FILE)
     if not photo.is_complete:
-        raise InputError(f"{place}: the file was cut off, so that part of the picture is missing; copy it again")
+        raise InputError(
+            say("the file was cut off, so that part of the picture is missing; copy it again", place=place)
+        )
     picture = decoded(content, flag | cv2.IMREAD_IGNORE_ORIENTATION, place)
     expected = -(-photo.height_px // scale), -(-photo.width_px // scale)
     if picture.shape[:2] != expected:
         raise InputError(
-            f"{place}: expected a picture of {expected[1]} x {expected[0]} pixels, as the header says, got "
-            f"{picture.shape[1]} x {picture.shape[0]}; the file is damaged: copy it again"
+            say(
+                "expected a picture of {} x {} pixels, as the header says, got {} x {}; the file is damaged: "
+                "copy it again",
+                expected[1],
+                expected[0],
+                picture.shape[1],
+                picture.shape[0],
+                place=place,
+            )
         )
     return np.asarray(picture, np.uint8)
 
@@ -106,24 +116,33 @@ def decoded(content: bytes, flags: int, place: str, max_pixels: int = MAX_PIXELS
     """
     size_wh = picture_size(content)
     if size_wh is None:
-        raise InputError(f"{place}: cannot be decoded as a picture; expected JPEG, PNG, WebP, TIFF or BMP, whole")
+        raise InputError(
+            say("cannot be decoded as a picture; expected JPEG, PNG, WebP, TIFF or BMP, whole", place=place)
+        )
     _check_size(size_wh, place, max_pixels)
     if content.startswith(PNG_START) and not _is_whole_png(content):
-        raise InputError(f"{place}: the picture is cut off or damaged; copy the file again")
+        raise InputError(say("the picture is cut off or damaged; copy the file again", place=place))
     try:
         picture = cv2.imdecode(np.frombuffer(content, np.uint8), flags)
     except cv2.error as error:
-        raise InputError(f"{place}: the picture cannot be decoded ({error.err}); copy the file again") from error
+        raise InputError(
+            say("the picture cannot be decoded ({}); copy the file again", error.err, place=place)
+        ) from error
     if picture is None or picture.size == 0:
-        raise InputError(f"{place}: the picture cannot be decoded; copy the file again")
+        raise InputError(say("the picture cannot be decoded; copy the file again", place=place))
     return np.asarray(picture)
 
 
 def _check_size(size_wh: tuple[int, int], place: str, max_pixels: int) -> None:
     if not 0 < size_wh[0] * size_wh[1] <= max_pixels:
         raise InputError(
-            f"{place}: claims to be a picture of {size_wh[0]} x {size_wh[1]} pixels; expected 1 to "
-            f"{max_pixels // 10**6} megapixels, so it is not decoded"
+            say(
+                "claims to be a picture of {} x {} pixels; expected 1 to {} megapixels, so it is not decoded",
+                size_wh[0],
+                size_wh[1],
+                max_pixels // 10**6,
+                place=place,
+            )
         )
 
 

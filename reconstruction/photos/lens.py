@@ -11,6 +11,7 @@ from enum import StrEnum
 
 from planning.aircraft.catalogue import profiles
 from planning.base.findings import Finding, Severity
+from planning.base.messages import say
 from planning.photos.record import Dewarp, PhotoMetadata
 from reconstruction.base.cameras import STRAIGHT, Intrinsics
 
@@ -106,7 +107,7 @@ def of_camera(
     left = ", ".join(f"{n} {kind}" for kind, n in sorted(counts.items()) if kind is not wanted)
     if not left:
         return kept, ()
-    text = f"photos of other cameras are left out ({left}); choose another camera to use those instead"
+    text = say("photos of other cameras are left out ({}); choose another camera to use those instead", left)
     return kept, (Finding(Severity.NOTE, "photos-other-camera", text, "", float(len(photos) - len(kept)), None, ""),)
 
 

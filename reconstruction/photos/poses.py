@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from planning.base.errors import InputError
 from planning.base.findings import Finding, Severity
+from planning.base.messages import joined, say
 from planning.geo.frames import Origin
 from planning.photos.folder import in_order
 from planning.photos.places import (
@@ -129,7 +130,7 @@ def pose_photos(
     chosen, findings = of_camera(photos, camera)
     usable, lens_by_path, unposed = _usable(chosen, folder)
     if not usable:
-        raise InputError(f"{label}: no photo can be given a camera pose ({_counted(unposed)}); {ADVICE}")
+        raise InputError(say("no photo can be given a camera pose ({}); {}", _counted(unposed), ADVICE, place=label))
     near, elsewhere = photos_near(usable, site, label)
     here = in_order(near)
     places = photo_places(here, site, heights, label)
@@ -147,7 +148,7 @@ def pose_photos(
     return PhotoSet(posed, here, lenses, tuple(unposed), findings)
 
 
-ADVICE = "use the files as the camera wrote them: programs that edit, send or share photos often take that out"
+ADVICE = say("use the files as the camera wrote them: programs that edit, send or share photos often take that out")
 
 
 def _name(photo: PhotoMetadata, folder: Path) -> str:
@@ -173,12 +174,12 @@ def _usable(
 def _missing(photo: PhotoMetadata, lens: Lens | None) -> str:
     """The first thing that a photo does not say; empty where it says all. A roll that is not recorded is 0."""
     if photo.lat_deg is None or photo.lon_deg is None:
-        return "a position"
+        return say("a position")
     if absolute_height_m(photo) is None and photo.height_above_takeoff_m is None:
-        return "a height"
+        return say("a height")
     if photo.gimbal_heading_deg is None or photo.gimbal_pitch_deg is None:
-        return "where the camera looked"
-    return "a focal length" if lens is None else ""
+        return say("where the camera looked")
+    return say("a focal length") if lens is None else ""
 
 
 def _pose(photo: PhotoMetadata, origin: Origin, point_enu_m: Array, is_absolute: bool, accuracy: Accuracy) -> Pose:
@@ -241,7 +242,7 @@ def enu_axes(lat_deg: float, lon_deg: float) -> Array:
 
 def _counted(unposed: Sequence[Unposed]) -> str:
     counts = Counter(photo.missing for photo in unposed)
-    return ", ".join(f"{n} without {what}" for what, n in counts.items()) or "there are none"
+    return joined(", ", (say("{} without {}", n, what) for what, n in counts.items())) or say("there are none")
 
 
 def _unposed_findings(unposed: Sequence[Unposed], n_all: int) -> list[Finding]:
@@ -251,7 +252,7 @@ def _unposed_findings(unposed: Sequence[Unposed], n_all: int) -> list[Finding]:
         Finding(
             Severity.WARNING,
             "photos-unposed",
-            f"{n} of {n_all} photos do not say {what} and get no pose, the first {first[what]}; {ADVICE}",
+            say("{} of {} photos do not say {} and get no pose, the first {}; {}", n, n_all, what, first[what], ADVICE),
             "",
             float(n),
             0.0,
@@ -264,19 +265,26 @@ def _unposed_findings(unposed: Sequence[Unposed], n_all: int) -> list[Finding]:
 def _lens_findings(lenses: Sequence[Lens]) -> list[Finding]:
     """Where intrinsics are from, and what is wrong with them."""
     sources = Counter(lens.source for lens in lenses)
-    text = "focal lengths are from: " + ", ".join(f"{source} ({n} photos)" for source, n in sources.items())
+    text = "focal lengths are from: " + joined(
+        ", ", (say("{} ({} photos)", source, n) for source, n in sources.items())
+    )
     findings = [Finding(Severity.NOTE, "lens-source", text)]
     n_bent = sum(not lens.is_distortion_known for lens in lenses)
     if n_bent:
-        text = (
-            f"the distortion of the lens is not known for {n_bent} of {len(lenses)} photos: straight lines may be bent "
-            "by tens of pixels near the edges; refine the cameras, or use photos with dewarp data"
+        text = say(
+            "the distortion of the lens is not known for {} of {} photos: straight lines may be bent by tens "
+            "of pixels near the edges; refine the cameras, or use photos with dewarp data",
+            n_bent,
+            len(lenses),
         )
         findings.append(Finding(Severity.NOTE, "lens-distortion-unknown", text, "", float(n_bent), None, "photos"))
     for source, n in Counter(source for lens in lenses for source in lens.passed_over).items():
-        text = (
-            f"the {source} of {n} photos is of another picture size and not used: it gives a focal length far from "
-            f"that of the 35 mm equivalent; {ADVICE}"
+        text = say(
+            "the {} of {} photos is of another picture size and not used: it gives a focal length far from "
+            "that of the 35 mm equivalent; {}",
+            source,
+            n,
+            ADVICE,
         )
         findings.append(Finding(Severity.WARNING, "lens-of-other-size", text, "", float(n), 0.0, "photos"))
     return findings
@@ -286,5 +294,5 @@ def _turned(photos: Sequence[PhotoMetadata]) -> list[Finding]:
     n = sum(photo.orientation not in (None, 1) for photo in photos)
     if not n:
         return []
-    text = f"{n} photos are marked to be shown turned; pixels are counted in the pictures as they are stored"
+    text = say("{} photos are marked to be shown turned; pixels are counted in the pictures as they are stored", n)
     return [Finding(Severity.NOTE, "photos-turned", text, "", float(n), None, "photos")]

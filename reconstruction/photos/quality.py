@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from planning.base.errors import InputError
 from planning.base.findings import Finding, Severity
 from planning.base.jit import n_threads
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.photos.record import PhotoMetadata
 from reconstruction.base.cameras import Pose, PosedPhoto
@@ -214,9 +215,9 @@ def check_quality(
         if result is not None:
             findings += _findings(_name(photo), result, limits)
     for first, second in alike:
-        text = f"shows the same as {_name(photos[first])}: from the same place, in the same direction"
+        text = say("shows the same as {}: from the same place, in the same direction", _name(photos[first]))
         if posed is None:
-            text = f"looks like {_name(photos[first])}; nothing says where they were taken"
+            text = say("looks like {}; nothing says where they were taken", _name(photos[first]))
         findings.append(Finding(Severity.NOTE, "photo-alike", text, _name(photos[second])))
     return QualityReport(tuple(kept), tuple(alike), tuple(findings))
 
@@ -278,7 +279,7 @@ def _measured(
     is_large = set(large)
     todo = iter([i for i in range(len(photos)) if i not in is_large])
     threads = n_threads()
-    monitor.report("checking photos", 0, len(photos))
+    monitor.report(say("checking photos"), 0, len(photos))
     with ThreadPoolExecutor(threads) as pool:
         running: dict[Future[PhotoQuality | Finding], int] = {}
         try:
@@ -291,14 +292,14 @@ def _measured(
                     break
                 for done in wait(running, return_when=FIRST_COMPLETED).done:
                     results[running.pop(done)] = done.result()
-                monitor.report("checking photos", len(results), len(photos))
+                monitor.report(say("checking photos"), len(results), len(photos))
         except BaseException:
             for future in running:
                 future.cancel()
             raise
     for index in large:
         results[index] = measure(index)
-        monitor.report("checking photos", len(results), len(photos))
+        monitor.report(say("checking photos"), len(results), len(photos))
     return [results[index] for index in range(len(photos))]
 
 
@@ -306,23 +307,26 @@ def _findings(name: str, quality: PhotoQuality, limits: QualityLimits) -> list[F
     findings = []
     blur = quality.blur_px
     if blur is not None and blur > limits.sigma_px:
-        why = "measured on its edges"
+        why = say("measured on its edges")
         if quality.sigma_px is None:
-            why = "by speed, exposure and distance; there are too few edges to measure it"
-        text = f"is blurred by {blur:.1f} px ({why}), more than {limits.sigma_px:g} px; take it again, slower"
+            why = say("by speed, exposure and distance; there are too few edges to measure it")
+        text = say("is blurred by {:.1f} px ({}), more than {:g} px; take it again, slower", blur, why, limits.sigma_px)
         findings.append(Finding(Severity.WARNING, "photo-blurred", text, name, blur, limits.sigma_px, "px"))
     for what, part, code, advice in (
         ("black", quality.dark, "photo-dark", "longer"),
         ("white", quality.bright, "photo-bright", "shorter"),
     ):
         if part > limits.clipped:
-            text = (
-                f"{100.0 * part:.0f} % of the picture are {what}, more than {100.0 * limits.clipped:.0f} %; expose "
-                f"{advice}"
+            text = say(
+                "{:.0f} % of the picture are {}, more than {:.0f} %; expose {}",
+                100.0 * part,
+                what,
+                100.0 * limits.clipped,
+                advice,
             )
             findings.append(Finding(Severity.WARNING, code, text, name, part, limits.clipped))
     if quality.sigma_px is None and max(quality.dark, quality.bright) <= limits.clipped:
-        text = f"shows too few edges ({quality.n_edges}) to tell whether it is sharp"
+        text = say("shows too few edges ({}) to tell whether it is sharp", quality.n_edges)
         findings.append(Finding(Severity.NOTE, "photo-without-edges", text, name, float(quality.n_edges)))
     return findings
 

@@ -12,6 +12,7 @@ from types import TracebackType
 from typing import Any
 
 from planning.base.errors import InputError
+from planning.base.messages import say
 from planning.geo.frames import Origin
 from reconstruction.records.changes import Changes
 from reconstruction.records.database import BUSY_S, Database, create_database
@@ -152,9 +153,11 @@ class RecordBook:
             sql = f"SELECT {OBJECT_COLUMNS} FROM {OBJECTS} WHERE o.name = ? ORDER BY o.is_present DESC LIMIT 3"
             rows = self.database.rows(sql, (name,))
             if len(rows) > 1 and rows[1][6]:
-                raise InputError(f"'{name[:60]}': {rows[0][1]} and {rows[1][1]} have this name; give the GlobalId")
+                raise InputError(
+                    say("'{}': {} and {} have this name; give the GlobalId", name[:60], rows[0][1], rows[1][1])
+                )
         if not rows:
-            raise InputError(f"'{name[:60]}': there is no such object; give its name or its GlobalId")
+            raise InputError(say("'{}': there is no such object; give its name or its GlobalId", name[:60]))
         return object_of(rows[0], self.database)
 
     @property
@@ -170,7 +173,7 @@ class RecordBook:
         try:
             return Origin(*json.loads(rows[0][0])) if rows else None
         except (ValueError, TypeError, RecursionError) as error:
-            raise InputError(f"{self.path}: facts: origin: {error}; the file is damaged") from error
+            raise InputError(say("facts: origin: {}; the file is damaged", error, place=self.path)) from error
 
     def _object_rows(self) -> list[Any]:
         return self.database.rows(f"SELECT {OBJECT_COLUMNS} FROM {OBJECTS} ORDER BY o.id")
@@ -195,7 +198,7 @@ class RecordBook:
         kind = KIND_OF[record]
         rows = self.database.rows(f"SELECT {selected(kind)} FROM {joined(kind)} WHERE e.key = ?", (key,))
         if not rows:
-            raise InputError(f"there is no {kind.name} with the key '{key[:40]}'")
+            raise InputError(say("there is no {} with the key '{}'", kind.name, key[:40]))
         return entry_of(rows[0], kind, self.database)
 
     @contextmanager

@@ -10,6 +10,7 @@ from typing import Any
 import msgspec
 
 from planning.base.errors import InputError
+from planning.base.messages import say
 from reconstruction.records.database import Database
 from reconstruction.records.entries import KIND_OF, Attribute, Defect, Entry, Inspection, Kind
 from reconstruction.records.global_ids import global_id_of, new_global_id
@@ -53,7 +54,9 @@ class Changes:
         object_id = self._object_id(entry.global_id)
         row_id, before = self._before(entry, kind)
         if before is not None and before.global_id != entry.global_id:
-            raise InputError(f"key: the {kind.name} {entry.key} belongs to another object, {before.global_id}")
+            raise InputError(
+                say("key: the {} {} belongs to another object, {}", kind.name, entry.key, before.global_id)
+            )
         if not entry.key:
             entry = replace(entry, key=_new_key(entry) if before is None else before.key)
         if entry == before and as_json(entry) == as_json(before):
@@ -82,11 +85,11 @@ class Changes:
         kind = KIND_OF[type(entry)]
         row_id, before = self._before(entry, kind)
         if before is None:
-            raise InputError(f"there is no {kind.name} with the key '{entry.key}'")
+            raise InputError(say("there is no {} with the key '{}'", kind.name, entry.key))
         if isinstance(before, Inspection):
             found = self._database.rows("SELECT count(*) FROM defects WHERE inspection = ?", (before.key,))[0][0]
             if found:
-                raise InputError(f"the inspection of {before.date} has {found} defects; take these out first")
+                raise InputError(say("the inspection of {} has {} defects; take these out first", before.date, found))
         self._database.run(f"DELETE FROM {kind.table} WHERE id = ?", (row_id,))
         self._index(kind, row_id, before, None)
         self._record(self._object_id(before.global_id), kind.name, row_id, as_json(before), None)
@@ -128,7 +131,7 @@ class Changes:
         if global_id not in self._objects:
             rows = self._database.rows("SELECT id FROM objects WHERE global_id = ?", (global_id,))
             if not rows:
-                raise InputError(f"global_id: the model has no object {global_id}")
+                raise InputError(say("the model has no object {}", global_id, place="global_id"))
             self._objects[global_id] = int(rows[0][0])
         return self._objects[global_id]
 
@@ -143,7 +146,7 @@ class Changes:
             found |= {int(row[0]): row for row in rows}
         if len(found) > 1:
             raise InputError(
-                f"{entry.key}: the object has an attribute '{getattr(entry, 'name', '')}' with another key"
+                say("the object has an attribute '{}' with another key", getattr(entry, "name", ""), place=entry.key)
             )
         return next(((i, entry_of(row, kind, self._database)) for i, row in found.items()), (0, None))
 
@@ -153,7 +156,7 @@ class Changes:
         sql = "SELECT o.global_id FROM inspections e JOIN objects o ON o.id = e.object_id WHERE e.key = ?"
         rows = self._database.rows(sql, (entry.inspection,))
         if not rows or rows[0][0] != entry.global_id:
-            raise InputError(f"inspection: the object has no inspection with the key {entry.inspection}")
+            raise InputError(say("inspection: the object has no inspection with the key {}", entry.inspection))
 
     def _index(self, kind: Kind, row_id: int, before: Entry | None, after: Entry | None) -> None:
         old = [] if before is None else searched_texts(before, kind)

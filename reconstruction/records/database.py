@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from planning.base.errors import InputError
+from planning.base.messages import about, glue, say
 from reconstruction.records.schema import APPLICATION_ID, STEPS, check_schema, check_version, migrate, version_of
 
 BUSY_S = 5.0
@@ -68,7 +69,7 @@ class Database:
         except BaseException as error:
             connection.close()
             if isinstance(error, InputError):
-                raise InputError(f"{self.path}: {error}") from error
+                raise InputError(about(self.path, error)) from error
             raise
         return connection
 
@@ -122,7 +123,7 @@ class Database:
             As `run`; the file is open for reading only.
         """
         if not self.writing:
-            raise InputError(f"{self.path}: the records are open for reading only")
+            raise InputError(say("the records are open for reading only", place=self.path))
         with self._lock, self._in_words():
             self._connection.execute("BEGIN IMMEDIATE")
             try:
@@ -157,10 +158,14 @@ class Database:
         with self._lock, self._in_words():
             found = [str(row[0]) for row in self._connection.execute("PRAGMA integrity_check(5)")]
             if found != ["ok"]:
-                raise InputError(f"{self.path}: the file is damaged ({'; '.join(found)[:300]}); take a copy of it back")
+                raise InputError(
+                    say("the file is damaged ({}); take a copy of it back", "; ".join(found)[:300], place=self.path)
+                )
             strays = self._connection.execute("PRAGMA foreign_key_check").fetchall()
             if strays:
-                raise InputError(f"{self.path}: {len(strays)} rows refer to rows that are not there; take a copy back")
+                raise InputError(
+                    say("{} rows refer to rows that are not there; take a copy back", len(strays), place=self.path)
+                )
 
     @contextmanager
     def _in_words(self) -> Iterator[None]:
@@ -179,7 +184,7 @@ def create_database(path: Path, steps: Sequence[str] = STEPS) -> None:
         Something has that name, or it cannot be made.
     """
     if os.path.lexists(path):
-        raise InputError(f"{path}: is there already; nothing is written over it")
+        raise InputError(say("is there already; nothing is written over it", place=path))
     temporary: Path | None = None
     try:
         descriptor, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
@@ -195,7 +200,9 @@ def create_database(path: Path, steps: Sequence[str] = STEPS) -> None:
     except FAILURES as error:
         raise _refusal(path, error, BUSY_S) from error
     except OSError as error:
-        raise InputError(f"{path}: cannot be made ({error.strerror or error}); name another folder") from error
+        raise InputError(
+            say("cannot be made ({}); name another folder", error.strerror or error, place=path)
+        ) from error
     finally:
         if temporary is not None:
             temporary.unlink(missing_ok=True)
@@ -238,20 +245,22 @@ def _check_place(path: Path, writing: bool) -> None:
         status = path.stat()
     except FileNotFoundError:
         raise InputError(
-            f"{path}: there are no records yet; make them with 'records FOLDER make --objects SITE'"
+            say("there are no records yet; make them with 'records FOLDER make --objects SITE'", place=path)
         ) from None
     except (OSError, ValueError) as error:
-        raise InputError(f"{path}: cannot be read ({getattr(error, 'strerror', None) or error})") from error
+        raise InputError(say("cannot be read ({})", getattr(error, "strerror", None) or error, place=path)) from error
     if stat.S_ISDIR(status.st_mode):
-        raise InputError(f"{path}: is a folder; expected a file with records")
+        raise InputError(say("is a folder; expected a file with records", place=path))
     if not stat.S_ISREG(status.st_mode):
-        raise InputError(f"{path}: expected a file with records, found a device or a pipe")
+        raise InputError(say("expected a file with records, found a device or a pipe", place=path))
     if not status.st_size:
-        raise InputError(f"{path}: the file is empty; take a copy of it back")
+        raise InputError(say("the file is empty; take a copy of it back", place=path))
     if status.st_size > MAX_FILE_BYTES:
-        raise InputError(f"{path}: the file has more than {MAX_FILE_BYTES // 2**30} GiB; take a copy of it back")
+        raise InputError(
+            say("the file has more than {} GiB; take a copy of it back", MAX_FILE_BYTES // 2**30, place=path)
+        )
     if writing and not os.access(path, os.W_OK):
-        raise InputError(f"{path}: the file is write-protected")
+        raise InputError(say("the file is write-protected", place=path))
 
 
 def _check_content(connection: sqlite3.Connection, path: Path, steps: Sequence[str], writing: bool) -> None:
@@ -268,14 +277,17 @@ def _check_content(connection: sqlite3.Connection, path: Path, steps: Sequence[s
     try:
         application = connection.execute("PRAGMA application_id").fetchone()[0]
         if application != APPLICATION_ID:
-            raise InputError("is a SQLite file of another program, not records of ours")
+            raise InputError(say("is a SQLite file of another program, not records of ours"))
         version = version_of(connection)
         check_version(version, len(steps))
         check_schema(connection, steps)
         if not writing and version < len(steps):
             raise InputError(
-                f"the records have the older version {version}; opening them for writing, as 'records FOLDER make' "
-                "does, brings them up to date"
+                say(
+                    "the records have the older version {}; opening them for writing, as 'records FOLDER make' does, "
+                    "brings them up to date",
+                    version,
+                )
             )
         n_pages, page_bytes = (
             connection.execute(f"PRAGMA {name}").fetchone()[0] for name in ("page_count", "page_size")
@@ -283,7 +295,7 @@ def _check_content(connection: sqlite3.Connection, path: Path, steps: Sequence[s
         # SQLite misses whole pages, not a last one that is cut off. Pages of a write-ahead log are in the log.
         size, wanted = path.stat().st_size, n_pages * page_bytes
         if size < wanted and connection.execute("PRAGMA journal_mode").fetchone()[0] != "wal":
-            raise InputError(f"the file is cut off ({size} of {wanted} bytes); take a copy of it back")
+            raise InputError(say("the file is cut off ({} of {} bytes); take a copy of it back", size, wanted))
     finally:
         connection.execute("ROLLBACK")
 
@@ -291,16 +303,18 @@ def _check_content(connection: sqlite3.Connection, path: Path, steps: Sequence[s
 def _refusal(path: Path, error: Exception, busy_s: float) -> InputError:
     name = getattr(error, "sqlite_errorname", "") or ""
     words = {
-        "SQLITE_BUSY": f"another program is writing the records; waited {busy_s:g} s; try again",
-        "SQLITE_LOCKED": f"another program is writing the records; waited {busy_s:g} s; try again",
-        "SQLITE_FULL": "the disk is full; nothing was changed",
-        "SQLITE_READONLY": "the file or its folder is write-protected, or a write was interrupted here; make the "
-        "folder writable and open it for writing",
-        "SQLITE_CANTOPEN": "cannot be opened; is its folder there, and may it be written?",
-        "SQLITE_CORRUPT": "the file is damaged or cut off; take a copy of it back",
-        "SQLITE_NOTADB": "expected records (a SQLite file), found something else or a file that is cut off",
-        "SQLITE_IOERR": "the disk does not answer as it should; nothing was changed",
-        "SQLITE_TOOBIG": "a value is too large",
+        "SQLITE_BUSY": say("another program is writing the records; waited {:g} s; try again", busy_s),
+        "SQLITE_LOCKED": say("another program is writing the records; waited {:g} s; try again", busy_s),
+        "SQLITE_FULL": say("the disk is full; nothing was changed"),
+        "SQLITE_READONLY": say(
+            "the file or its folder is write-protected, or a write was interrupted here; make the folder "
+            "writable and open it for writing"
+        ),
+        "SQLITE_CANTOPEN": say("cannot be opened; is its folder there, and may it be written?"),
+        "SQLITE_CORRUPT": say("the file is damaged or cut off; take a copy of it back"),
+        "SQLITE_NOTADB": say("expected records (a SQLite file), found something else or a file that is cut off"),
+        "SQLITE_IOERR": say("the disk does not answer as it should; nothing was changed"),
+        "SQLITE_TOOBIG": say("a value is too large"),
     }
     known = next((text for start, text in words.items() if name.startswith(start)), None)
-    return InputError(f"{path}: {known or f'is damaged or cannot be used ({error})'}")
+    return InputError(glue(path, ": ", known or say("is damaged or cannot be used ({})", error)))

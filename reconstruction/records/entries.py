@@ -11,6 +11,7 @@ from typing import Literal
 from urllib.parse import urlsplit
 
 from planning.base.errors import InputError
+from planning.base.messages import say
 from reconstruction.records.global_ids import check_global_id
 from reconstruction.records.limits import (
     CURRENCY,
@@ -79,17 +80,21 @@ class Attribute:
         for place, text in (("name", self.name), ("unit", self.unit)):
             if text != text.strip() or any(character in NAME_FORBIDDEN for character in text):
                 raise InputError(
-                    f"{place}: expected a name without brackets, quotes and blanks around it, got '{text}'"
+                    say("expected a name without brackets, quotes and blanks around it, got '{}'", text, place=place)
                 )
         check_choice(self.type, "type", TYPES)
         if self.name in RESERVED:
-            raise InputError(f"name: '{self.name}' stands for the object itself; use another name")
+            raise InputError(say("name: '{}' stands for the object itself; use another name", self.name))
         if self.name in COMPUTED:
-            raise InputError(f"{self.name}: follows from the corners of the pane and is not set")
+            raise InputError(say("follows from the corners of the pane and is not set", place=self.name))
         if self.name in STANDARD and STANDARD[self.name] != (self.type, self.unit):
             kind, unit = STANDARD[self.name]
-            found = f"{self.type}{f' in {self.unit}' if self.unit else ''}"
-            raise InputError(f"{self.name}: expected a {kind}{f' in {unit}' if unit else ''}, got a {found}")
+            found = say("{} in {}", self.type, self.unit) if self.unit else self.type
+            raise InputError(
+                say("expected a {} in {}, got a {}", kind, unit, found, place=self.name)
+                if unit
+                else say("expected a {}, got a {}", kind, found, place=self.name)
+            )
         self._check_value()
 
     def _check_value(self) -> None:
@@ -101,7 +106,7 @@ class Attribute:
             check_number(self.value, self.name, 0.0 if self.name == "thickness" else -MAX_NUMBER)
             _as_floats(self, "value")
         elif not isinstance(self.value, bool):
-            raise InputError(f"{self.name}: expected yes or no, got {self.value!r}")
+            raise InputError(say("expected yes or no, got {}", repr(self.value), place=self.name))
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,14 +167,16 @@ class Defect:
         check_dates(self, ("repaired_on",))
         check_choice(self.status, "status", STATES)
         if self.repaired_on is not None and self.status == "open":
-            raise InputError(f"repaired_on: expected none while the defect is open, got {self.repaired_on}")
+            raise InputError(
+                say("expected none while the defect is open, got {}", self.repaired_on, place="repaired_on")
+            )
         if (self.u is None) != (self.v is None):
-            raise InputError("u, v: expected both or neither")
+            raise InputError(say("u, v: expected both or neither"))
         if self.u is not None:
             _check_place((self.u, self.v), "u, v")
             _as_floats(self, "u", "v")
         if 0 < len(self.outline) < 3 or len(self.outline) > MAX_OUTLINE:
-            raise InputError(f"outline: expected none or 3 to {MAX_OUTLINE} places, got {len(self.outline)}")
+            raise InputError(say("outline: expected none or 3 to {} places, got {}", MAX_OUTLINE, len(self.outline)))
         for place in self.outline:
             _check_place(place, "outline")
         object.__setattr__(self, "outline", tuple((float(u), float(v)) for u, v in self.outline))
@@ -208,7 +215,9 @@ class Maintenance:
             check_number(self.cost, "cost", 0.0)
             _as_floats(self, "cost")
         if (self.cost is None) != (not self.currency) or (self.currency and not CURRENCY.fullmatch(self.currency)):
-            raise InputError(f"currency: expected three letters such as EUR with every cost, got '{self.currency}'")
+            raise InputError(
+                say("currency: expected three letters such as EUR with every cost, got '{}'", self.currency)
+            )
 
 
 @dataclass(frozen=True, slots=True)
@@ -235,7 +244,7 @@ class Document:
         check_texts(self, ("title", "kind"), required=("title",))
         check_text(self.place, "place", 2000, required=True)
         if self.sha256 and not SHA256.fullmatch(self.sha256):
-            raise InputError(f"sha256: expected 64 hexadecimal digits in lower case, got '{self.sha256[:70]}'")
+            raise InputError(say("sha256: expected 64 hexadecimal digits in lower case, got '{}'", self.sha256[:70]))
         if not is_address(self.place):
             check_stored_name(self.place, "place")
 
@@ -295,7 +304,11 @@ def check_stored_name(name: str, field: str) -> None:
     """
     if not isinstance(name, str) or not is_plain_name(name):
         raise InputError(
-            f"{field}: expected an address (http, https) or the name of a file beside the records, got '{name[:80]}'"
+            say(
+                "expected an address (http, https) or the name of a file beside the records, got '{}'",
+                name[:80],
+                place=field,
+            )
         )
 
 
@@ -324,6 +337,6 @@ def _as_floats(entry: Entry, *names: str) -> None:
 
 def _check_place(place: tuple[float | None, float | None], field: str) -> None:
     if len(place) != 2:
-        raise InputError(f"{field}: expected two numbers, got {len(place)}")
+        raise InputError(say("expected two numbers, got {}", len(place), place=field))
     for number in place:
         check_number(number, field, 0.0, 1.0)

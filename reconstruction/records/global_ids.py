@@ -6,6 +6,7 @@ import re
 import uuid
 
 from planning.base.errors import InputError
+from planning.base.messages import say
 
 ALPHABET = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz_$"
 """Digits of the base 64 that IFC has of its own (buildingSMART, implementation guide on GUIDs)."""
@@ -31,7 +32,7 @@ def check_global_id(text: str, field: str) -> None:
         It is none.
     """
     if not is_global_id(text):
-        raise InputError(f"{field}: expected an IFC GlobalId ({LENGTH} characters), got '{text[:40]}'")
+        raise InputError(say("expected an IFC GlobalId ({} characters), got '{}'", LENGTH, text[:40], place=field))
 
 
 def compressed(number: uuid.UUID) -> str:

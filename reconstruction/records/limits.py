@@ -9,6 +9,7 @@ from datetime import date
 from pathlib import PurePosixPath, PureWindowsPath
 
 from planning.base.errors import InputError
+from planning.base.messages import say
 
 MAX_WORDS = 200
 """Characters of names, kinds and persons."""
@@ -37,14 +38,16 @@ def check_text(value: object, field: str, limit: int = MAX_WORDS, required: bool
         As said.
     """
     if not isinstance(value, str):
-        raise InputError(f"{field}: expected text, got {_shown(value)}")
+        raise InputError(say("expected text, got {}", _shown(value), place=field))
     if required and not value.strip():
-        raise InputError(f"{field}: expected a text, got none")
+        raise InputError(say("expected a text, got none", place=field))
     if len(value) > limit:
-        raise InputError(f"{field}: expected at most {limit} characters, got {len(value)}")
+        raise InputError(say("expected at most {} characters, got {}", limit, len(value), place=field))
     found = _FORBIDDEN.search(value)
     if found is not None:
-        raise InputError(f"{field}: character {found.start() + 1} is a control character (U+{ord(found[0]):04X})")
+        raise InputError(
+            say("character {} is a control character (U+{:04X})", found.start() + 1, ord(found[0]), place=field)
+        )
 
 
 def check_texts(record: object, words: Sequence[str], texts: Sequence[str] = (), required: Sequence[str] = ()) -> None:
@@ -69,7 +72,7 @@ def check_date(value: object, field: str) -> None:
             return
         except ValueError:
             pass
-    raise InputError(f"{field}: expected a date such as 2026-03-31, got {_shown(value)}")
+    raise InputError(say("expected a date such as 2026-03-31, got {}", _shown(value), place=field))
 
 
 def check_dates(record: object, fields: Sequence[str]) -> None:
@@ -90,7 +93,7 @@ def check_number(value: object, field: str, low: float = -MAX_NUMBER, high: floa
     """
     is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
     if not is_number or not math.isfinite(value) or not low <= value <= high:  # type: ignore[operator,arg-type]
-        raise InputError(f"{field}: expected a number from {low:g} to {high:g}, got {_shown(value)}")
+        raise InputError(say("expected a number from {:g} to {:g}, got {}", low, high, _shown(value), place=field))
 
 
 def check_choice(value: object, field: str, choices: Sequence[object]) -> None:
@@ -102,7 +105,7 @@ def check_choice(value: object, field: str, choices: Sequence[object]) -> None:
         As said.
     """
     if isinstance(value, bool) or value not in choices:
-        raise InputError(f"{field}: expected {', '.join(map(str, choices))}, got {_shown(value)}")
+        raise InputError(say("expected {}, got {}", ", ".join(map(str, choices)), _shown(value), place=field))
 
 
 def is_plain_name(name: str) -> bool:

@@ -10,6 +10,7 @@ from typing import Literal
 import numpy as np
 
 from planning.base.errors import InputError
+from planning.base.messages import say
 from planning.geo.frames import Vec3
 from planning.site.records import Panel, Site, check_point
 from reconstruction.records.global_ids import check_global_id, global_id_of, is_global_id
@@ -50,7 +51,9 @@ class ObjectRow:
             check_global_id(self.parent, "parent")
         if self.corners_enu_m is not None:
             if len(self.corners_enu_m) != 4 or any(len(corner) != 3 for corner in self.corners_enu_m):
-                raise InputError(f"corners_enu_m: expected four points of an element, '{self.name}' has others")
+                raise InputError(
+                    say("expected four points of an element, '{}' has others", self.name, place="corners_enu_m")
+                )
             try:
                 for corner in self.corners_enu_m:
                     check_point(corner, "corners_enu_m")
@@ -84,14 +87,16 @@ def check_objects(rows: Iterable[ObjectRow]) -> tuple[ObjectRow, ...]:
     """
     by_layer = tuple(sorted(rows, key=lambda row: LAYERS.index(row.layer)))
     if len(by_layer) > MAX_OBJECTS:
-        raise InputError(f"expected at most {MAX_OBJECTS} objects, got {len(by_layer)}")
+        raise InputError(say("expected at most {} objects, got {}", MAX_OBJECTS, len(by_layer)))
     layers: dict[str, Layer] = {}
     for row in by_layer:
         if row.global_id in layers:
-            raise InputError(f"'{row.name}': another object has its GlobalId {row.global_id} already")
+            raise InputError(say("'{}': another object has its GlobalId {} already", row.name, row.global_id))
         above = None if row.parent is None else layers.get(row.parent)
         if row.parent is not None and (above is None or LAYERS.index(above) + 1 != LAYERS.index(row.layer)):
-            raise InputError(f"'{row.name}': its parent {row.parent} is no object of the layer above '{row.layer}'")
+            raise InputError(
+                say("'{}': its parent {} is no object of the layer above '{}'", row.name, row.parent, row.layer)
+            )
         layers[row.global_id] = row.layer
     return by_layer
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from planning.base.errors import InputError
+from planning.base.messages import say
 from reconstruction.records.book import RecordBook
 from reconstruction.records.changes import decoded
 from reconstruction.records.entries import (
@@ -153,7 +154,7 @@ def _ask(book: RecordBook, table: str, check: Callable[..., None], *values: Any)
     try:
         check(*values)
     except InputError as error:
-        raise InputError(f"{book.path}: {table}: {error}; the file is damaged") from error
+        raise InputError(say("{}; the file is damaged", error, place=f"{book.path}: {table}")) from error
 
 
 def attributes_by_object(book: RecordBook) -> dict[str, dict[str, Value]]:
@@ -288,7 +289,7 @@ def _hits(book: RecordBook, code: int, places: list[tuple[int, int, float]]) -> 
         ]
     kind = next((kind for kind in KINDS if kind.code == code), None)
     if kind is None:
-        raise InputError(f"{book.path}: the search index is damaged; take a copy of the file back")
+        raise InputError(say("the search index is damaged; take a copy of the file back", place=book.path))
     sql = f"SELECT {selected(kind)}, o.name FROM {joined(kind)} WHERE e.id IN ({marks})"
     entries = {row[0]: (entry_of(row[:-1], kind, book.database), str(row[-1])) for row in book.database.rows(sql, ids)}
     return [

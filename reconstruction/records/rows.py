@@ -8,7 +8,8 @@ from typing import Any
 import msgspec
 
 from planning.base.errors import InputError
-from planning.base.json_file import to_record
+from planning.base.json_file import encoded, to_record
+from planning.base.messages import say
 from reconstruction.records.database import Database
 from reconstruction.records.entries import Attribute, Defect, Entry, Kind
 from reconstruction.records.objects import ObjectRow
@@ -60,7 +61,9 @@ def entry_of(row: Any, kind: Kind, book: Database) -> Entry:
             content["inspection"] = content["inspection"] or ""
         return kind.record(**content)
     except (InputError, ValueError, TypeError, RecursionError) as error:
-        raise InputError(f"{book.path}: {kind.table}, row {row[0]}: {error}; the file is damaged") from error
+        raise InputError(
+            say("{}, row {}: {}; the file is damaged", kind.table, row[0], error, place=book.path)
+        ) from error
 
 
 def object_of(row: Any, book: Database) -> ObjectRow:
@@ -75,12 +78,12 @@ def object_of(row: Any, book: Database) -> ObjectRow:
         corners = None if row[5] is None else msgspec.json.decode(row[5], type=tuple[tuple[float, float, float], ...])
         return ObjectRow(row[1], row[2], row[3], row[4], corners)  # type: ignore[arg-type]  # it checks them
     except (InputError, ValueError, TypeError, RecursionError) as error:
-        raise InputError(f"{book.path}: objects, row {row[0]}: {error}; the file is damaged") from error
+        raise InputError(say("objects, row {}: {}; the file is damaged", row[0], error, place=book.path)) from error
 
 
 def as_json(entry: Entry) -> str:
     """An entry in the history."""
-    return msgspec.json.encode(entry).decode()
+    return encoded(entry).decode()
 
 
 def from_json(text: str, kind: Kind, book: Database) -> Entry:
@@ -94,7 +97,7 @@ def from_json(text: str, kind: Kind, book: Database) -> Entry:
     try:
         content = json.loads(text)
     except (ValueError, RecursionError) as error:
-        raise InputError(f"{book.path}: changes: holds no {kind.name}; the file is damaged") from error
+        raise InputError(say("changes: holds no {}; the file is damaged", kind.name, place=book.path)) from error
     return to_record(content, kind.record, book.path)
 
 

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from functools import cache
 
 from planning.base.errors import InputError
+from planning.base.messages import say
 
 APPLICATION_ID = 0x52464C52
 """`RFLR` in a SQLite file's header: records of ours."""
@@ -104,7 +105,9 @@ def check_version(found: int, known: int) -> None:
     """
     if not 0 <= found <= known:
         raise InputError(
-            f"the records have version {found}, this program knows up to {known}; open them with a newer program"
+            say(
+                "the records have version {}, this program knows up to {}; open them with a newer program", found, known
+            )
         )
 
 
@@ -124,12 +127,14 @@ def check_schema(connection: sqlite3.Connection, steps: Sequence[str] = STEPS) -
     found, expected = _schema(connection), _expected(tuple(steps[: version_of(connection)]))
     for name, (kind, _) in found.items():
         if name not in expected:
-            raise InputError(f"holds the {kind} '{name[:60]}', which is none of ours; such a file is not opened")
+            raise InputError(
+                say("holds the {} '{}', which is none of ours; such a file is not opened", kind, name[:60])
+            )
     for name, definition in expected.items():
         if name not in found:
-            raise InputError(f"lacks the {definition[0]} '{name}'; the file is damaged or no file of ours")
+            raise InputError(say("lacks the {} '{}'; the file is damaged or no file of ours", definition[0], name))
         if found[name] != definition:
-            raise InputError(f"its {found[name][0]} '{name}' is not as ours are; such a file is not opened")
+            raise InputError(say("its {} '{}' is not as ours are; such a file is not opened", found[name][0], name))
 
 
 @cache

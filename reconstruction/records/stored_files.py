@@ -14,14 +14,15 @@ from planning.base.errors import InputError
 from planning.base.files import MIB, FileLimit, read_given, sha256_given
 from planning.base.folders import make_folder
 from planning.base.json_file import write_atomically
+from planning.base.messages import say
 from reconstruction.records.book import RecordBook
 from reconstruction.records.entries import check_stored_name
 from reconstruction.records.limits import SHA256
 
-PICTURE_FILE = FileLimit("a picture", 64 * MIB)
+PICTURE_FILE = FileLimit(say("a picture"), 64 * MIB)
 """The largest JPEG of a drone has 30 MB."""
 
-DOCUMENT_FILE = FileLimit("a document", 256 * MIB)
+DOCUMENT_FILE = FileLimit(say("a document"), 256 * MIB)
 
 STARTS = {".png": b"\x89PNG\r\n\x1a\n", ".jpg": b"\xff\xd8\xff", ".webp": b"RIFF"}
 """First bytes of pictures, by the ending they are stored under."""
@@ -50,12 +51,12 @@ def store_picture(book: RecordBook, picture: Path | bytes) -> StoredFile:
         It cannot be read, is no PNG, JPEG or WebP, is too large, or cannot be written.
     """
     content = picture if isinstance(picture, bytes) else read_given(picture, PICTURE_FILE)
-    where = "the picture" if isinstance(picture, bytes) else str(picture)
+    where = say("the picture") if isinstance(picture, bytes) else str(picture)
     if len(content) > PICTURE_FILE.max_bytes:
-        raise InputError(f"{where}: has {len(content)} bytes; pictures may have {PICTURE_FILE.max_bytes}")
+        raise InputError(say("has {} bytes; pictures may have {}", len(content), PICTURE_FILE.max_bytes, place=where))
     ending = next((ending for ending, start in STARTS.items() if content.startswith(start)), None)
     if ending is None or (ending == ".webp" and content[8:12] != b"WEBP"):
-        raise InputError(f"{where}: expected a PNG, JPEG or WebP picture, found other content")
+        raise InputError(say("expected a PNG, JPEG or WebP picture, found other content", place=where))
     return _stored(book, content, ending)
 
 
@@ -96,10 +97,10 @@ def stored_path(book: RecordBook, name: str) -> Path:
     check_stored_name(name, "name")
     path = book.files / name
     if path.is_symlink() or not path.is_file():
-        raise InputError(f"{path}: the file is missing; copy it back beside the records")
+        raise InputError(say("the file is missing; copy it back beside the records", place=path))
     digest = sha256_given(path, DOCUMENT_FILE)
     if digest != path.name.partition(".")[0]:
-        raise InputError(f"{path}: is not the file that was stored; copy it back")
+        raise InputError(say("is not the file that was stored; copy it back", place=path))
     return path
 
 

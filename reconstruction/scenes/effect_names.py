@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-NEAR_FIELD, FRESNEL, SECOND_BOUNCE = "near-field reflection", "Fresnel", "second bounce"
-TILT, DOUBLING, SHADOW = "panel tilt", "pane doubling", "shadow"
-CURVATURE, INTERIOR, SUN_GLARE, OCCLUSION = "curvature", "interior see-through", "sun glare", "occlusion"
-SKY_OCCLUSION = "sky occlusion"
-DISTORTION, VIGNETTING, NOISE = "lens distortion", "vignetting", "noise"
-MOTION_BLUR, EXPOSURE = "motion blur", "exposure changes"
-POSITION_ERROR, GIMBAL_ERROR = "position error", "gimbal error"
+from planning.base.messages import say
+
+NEAR_FIELD, FRESNEL, SECOND_BOUNCE = say("near-field reflection"), "Fresnel", say("second bounce")
+TILT, DOUBLING, SHADOW = say("panel tilt"), say("pane doubling"), "shadow"
+CURVATURE, INTERIOR, SUN_GLARE, OCCLUSION = "curvature", say("interior see-through"), say("sun glare"), "occlusion"
+SKY_OCCLUSION = say("sky occlusion")
+DISTORTION, VIGNETTING, NOISE = say("lens distortion"), "vignetting", "noise"
+MOTION_BLUR, EXPOSURE = say("motion blur"), say("exposure changes")
+POSITION_ERROR, GIMBAL_ERROR = say("position error"), say("gimbal error")
 EFFECTS = (
     NEAR_FIELD,
     FRESNEL,

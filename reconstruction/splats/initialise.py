@@ -13,6 +13,7 @@ from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
 from planning.base.errors import InputError
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.geo.mesh import from_corners, join
 from planning.site.records import panel_triangles
@@ -278,19 +279,25 @@ def initial_splats(
     """
     parameters = parameters or InitialParameters()
     if not photos:
-        raise InputError("there are no photos, so nobody knows how finely splats are seen; name a folder with photos")
-    monitor.report("placing splats", 0, 3)
+        raise InputError(
+            say("there are no photos, so nobody knows how finely splats are seen; name a folder with photos")
+        )
+    monitor.report(say("placing splats"), 0, 3)
     n_rays = RAYS_PER_SPLAT * parameters.n_splats
     around, reach_m = parameters.coarser_around, parameters.reach_m
     seen = seen_surfaces(scene, photos, origin_enu_m, reach_m, n_rays, around, parameters.seed)
-    monitor.report("placing splats", 1, 3)
+    monitor.report(say("placing splats"), 1, 3)
     surfels, n_known = _placed(scene, photos, seen, parameters)
     if not len(surfels):
         raise InputError(
-            f"no panel, mesh or point within {parameters.reach_m:g} m of the model's middle is seen by one of the "
-            f"{len(photos)} photos; are the poses and the points in one frame?"
+            say(
+                "no panel, mesh or point within {:g} m of the model's middle is seen by one of the {} photos; "
+                "are the poses and the points in one frame?",
+                parameters.reach_m,
+                len(photos),
+            )
         )
-    monitor.report("colouring splats", 2, 3)
+    monitor.report(say("colouring splats"), 2, 3)
     colours = _colours(surfels, scene, photos, pictures)
     opacities = np.where(np.arange(len(surfels)) < n_known, parameters.opacity, parameters.loose_opacity)
     across = np.cross(surfels.normals_enu, surfels.tangents_enu)

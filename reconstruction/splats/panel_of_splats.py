@@ -16,6 +16,7 @@ from scipy import sparse
 from scipy.spatial import cKDTree
 from torch import Tensor
 
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from reconstruction.dataset.layers import unit_normals
 from reconstruction.splats.rasterising.raster_types import RasterSettings
@@ -55,7 +56,7 @@ def assign_panels(
     n, n_panels = len(splats), len(corners_m)
     total = sparse.csr_array((n, n_panels + 1))
     for done, (view, panels) in enumerate(seen):
-        monitor.report("telling panels of splats", done, 0)
+        monitor.report(say("telling panels of splats"), done, 0)
         if panels.shape != (view.height_px, view.width_px):
             raise ValueError(f"panels: expected shape {(view.height_px, view.width_px)}, got {panels.shape}")
         if panels.max(initial=-1) >= n_panels:

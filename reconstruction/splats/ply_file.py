@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from planning.base.errors import InputError
 from planning.base.files import MIB, FileLimit, open_given, real_path
 from planning.base.json_file import part_file
+from planning.base.messages import say
 
 SPLATS_FILE = FileLimit("a PLY file", 65536 * MIB)
 """Read in blocks, so that its length costs no memory."""
@@ -141,7 +142,7 @@ def write_blocks(path: Path, n_rows: int, row: np.dtype[Any], comments: Sequence
             if n_written != n_rows:
                 raise ValueError(f"blocks: expected {n_rows} rows in all, got {n_written}")
     except OSError as error:
-        raise InputError(f"{path}: cannot be written ({error.strerror or error})") from error
+        raise InputError(say("cannot be written ({})", error.strerror or error, place=path)) from error
 
 
 def _header_lines(stream: BinaryIO, path: Path) -> list[str]:

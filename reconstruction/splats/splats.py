@@ -12,6 +12,7 @@ import torch
 from torch import Tensor, nn
 
 from planning.base.errors import InputError
+from planning.base.messages import say
 from reconstruction.light.shading import BASE_REFLECTANCE, REFLECTIVITY
 from reconstruction.splats.ellipsoid_axes import shortest_axes
 from reconstruction.splats.harmonic_colour import N_HARMONICS, flat_harmonics, seen_light
@@ -242,18 +243,22 @@ def splats_from_tensors(tensors: Mapping[str, Tensor], place: str) -> Splats:
     n = len(tensors["means"]) if "means" in tensors and tensors["means"].ndim else 0
     for name in (*SHAPES, "panels"):
         if name not in tensors:
-            raise InputError(f"{place}: has no '{name}' of splats; it is damaged, or of another program")
+            raise InputError(say("has no '{}' of splats; it is damaged, or of another program", name, place=place))
     parameters = {name: value for name, value in tensors.items() if name != "panels"}
     for name, shape in (expected_shapes(parameters) | {"panels": ()}).items():
         found = tensors[name]
         if tuple(found.shape) != (n, *shape):
-            raise InputError(f"{place}: {name}: expected shape {(n, *shape)}, found {tuple(found.shape)}")
+            raise InputError(
+                say("expected shape {}, found {}", (n, *shape), tuple(found.shape), place=f"{place}: {name}")
+            )
         if found.dtype != (torch.int32 if name == "panels" else torch.float32):
-            raise InputError(f"{place}: {name}: expected float32 (panels: int32), found {found.dtype}")
+            raise InputError(say("expected float32 (panels: int32), found {}", found.dtype, place=f"{place}: {name}"))
         if not bool(torch.isfinite(found).all()):
-            raise InputError(f"{place}: {name}: holds numbers that are not finite; train again")
+            raise InputError(say("holds numbers that are not finite; train again", place=f"{place}: {name}"))
     if bool((tensors["panels"] < NO_PANEL).any()):
-        raise InputError(f"{place}: panels: expected numbers from {NO_PANEL} on, found {int(tensors['panels'].min())}")
+        raise InputError(
+            say("panels: expected numbers from {} on, found {}", NO_PANEL, int(tensors["panels"].min()), place=place)
+        )
     return Splats(parameters, tensors["panels"])
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InputError
+from planning.base.messages import say
 from planning.geo.mesh import TriangleMesh, empty_mesh, read_mesh
 from planning.site.file import read_site
 from reconstruction.colmap.folder import read_model
@@ -74,7 +75,7 @@ def model_origin(scene: KnownScene) -> Array:
         return np.asarray(np.median(scene.points_enu_m, axis=0))
     if len(scene.mesh.triangles):
         return np.asarray(scene.mesh.corners_enu_m.reshape(-1, 3).mean(axis=0))
-    raise InputError("there are no panels, no mesh and no points to start from; prepare the data set again")
+    raise InputError(say("there are no panels, no mesh and no points to start from; prepare the data set again"))
 
 
 def known_scene(photo_set: PhotoSet) -> KnownScene:
@@ -110,8 +111,14 @@ def points_alone(scene: KnownScene, folder: Path, *, knows_panels: bool) -> Know
     on_glass = beside_panels(scene.points_enu_m, corners, SAME_SURFACE_M, 0.0).panels >= 0
     if on_glass.all():
         raise InputError(
-            f"{folder}: of {len(on_glass)} points of photogrammetry none is away from glass, so splats cannot start "
-            f"from points; put some there ({POINTS}, or a COLMAP model in {MODEL.as_posix()}), or start from surfaces"
+            say(
+                "of {} points of photogrammetry none is away from glass, so splats cannot start from points; put "
+                "some there ({}, or a COLMAP model in {}), or start from surfaces",
+                len(on_glass),
+                POINTS,
+                MODEL.as_posix(),
+                place=folder,
+            )
         )
     corners = corners if knows_panels else corners[:0]
     return KnownScene(corners, empty_mesh(), scene.points_enu_m[~on_glass], scene.rgb[~on_glass])
@@ -142,7 +149,7 @@ def read_points(path: Path) -> tuple[NDArray[np.float64], NDArray[np.uint8]]:
     header = read_header(path)
     missing = next((axis for axis in "xyz" if axis not in header.names), None)
     if missing is not None:
-        raise InputError(f"{path}: its points have no '{missing}'")
+        raise InputError(say("its points have no '{}'", missing, place=path))
     is_coloured = header.names.issuperset(COLOURS) and all(dict(header.columns)[name] == "u1" for name in COLOURS)
     points = np.empty((header.n_rows, 3))
     rgb = np.full((header.n_rows, 3), 128, np.uint8)
@@ -155,5 +162,5 @@ def read_points(path: Path) -> tuple[NDArray[np.float64], NDArray[np.uint8]]:
                 rgb[row : row + len(block), column] = block[colour]
         row += len(block)
     if not np.isfinite(points).all():
-        raise InputError(f"{path}: has points whose coordinates are not finite numbers; make it again")
+        raise InputError(say("has points whose coordinates are not finite numbers; make it again", place=path))
     return points, rgb

@@ -17,6 +17,7 @@ from torch import Tensor
 from planning.base.errors import InputError
 from planning.base.files import check_json_size
 from planning.base.json_file import write_atomically
+from planning.base.messages import say
 from reconstruction.base.tensor_files import tensor_bytes
 
 FORMAT = "reflight-checkpoint/1"
@@ -101,7 +102,7 @@ def read_checkpoint(path: Path) -> dict[str, Any]:
     InputError
         The file is missing, damaged, or none of ours.
     """
-    content = tensor_bytes(path, "begin the training anew")
+    content = tensor_bytes(path, say("begin the training anew"))
     try:
         tensors = load(content)
         text = _header_text(content)
@@ -111,9 +112,11 @@ def read_checkpoint(path: Path) -> dict[str, Any]:
             raise ValueError(f"expected '{FORMAT}'")
         state = unflatten(record["state"], tensors)
     except (SafetensorError, KeyError, ValueError, TypeError, RecursionError) as error:
-        raise InputError(f"{path}: is no checkpoint, or damaged ({error}); begin the training anew") from error
+        raise InputError(
+            say("is no checkpoint, or damaged ({}); begin the training anew", error, place=path)
+        ) from error
     if not isinstance(state, dict):
-        raise InputError(f"{path}: is no checkpoint; begin the training anew")
+        raise InputError(say("is no checkpoint; begin the training anew", place=path))
     return state
 
 

@@ -12,6 +12,7 @@ from torch import Tensor
 from planning.base.effects import Decision
 from planning.base.errors import InputError
 from planning.base.json_file import to_record
+from planning.base.messages import say
 from reconstruction.light.glass_rays import GlassRays
 from reconstruction.light.reflective_panels import ModelName
 from reconstruction.training.checkpoints import write_checkpoint
@@ -98,7 +99,7 @@ def begun_light(content: dict[str, Any], path: Path) -> BegunLight | None:
     stage = to_record(content[STAGE], LightStage, path)
     splats, state, spent_s = (content.get(name) for name in ("splats", "training", "spent_s"))
     if not isinstance(splats, dict) or not isinstance(state, dict) or not isinstance(spent_s, float):
-        raise InputError(f"{path}: holds no state of a training; begin the training anew")
+        raise InputError(say("holds no state of a training; begin the training anew", place=path))
     return BegunLight(stage, splats, state, spent_s)
 
 

@@ -15,6 +15,7 @@ from dataclasses import dataclass, field, replace
 from functools import cache
 from typing import Any, Literal
 
+from planning.base.messages import say
 from planning.base.plugins import Plugin, PluginGroup, expect_type, guarded, load_plugins, told_problem
 
 Primitive = Literal["discs", "ellipsoids"]
@@ -77,15 +78,19 @@ LIGHT_FIRST = "light is learned alone first, from rays of glass that the refined
 def _ablation(what: str, changes: Mapping[str, Any]) -> Method:
     losses = {**AS_PAPER["losses"], **changes.get("losses", {})}
     settings = {**AS_PAPER, **changes, "losses": losses}
-    return Method(f"RefGlass-GS {what}", f"{PAPER}, Table 5", "one of its parts left out", LIGHT_FIRST, settings, True)
+    return Method(
+        f"RefGlass-GS {what}", f"{PAPER}, Table 5", say("one of its parts left out"), LIGHT_FIRST, settings, True
+    )
 
 
 METHODS: dict[str, Method] = {
     "reflight": Method(
         "Reflight",
         "this program, docs/concepts/reflections.md",
-        "splats and the light that panels mirror, by the model that the scene calls for: near things are a scene that "
-        "mirrored rays march through",
+        say(
+            "splats and the light that panels mirror, by the model that the scene calls for: near things are "
+            "a scene that mirrored rays march through"
+        ),
         settings={
             "light": "auto",
             "geometry": "panels",
@@ -97,7 +102,10 @@ METHODS: dict[str, Method] = {
     "refglass-gs": Method(
         "RefGlass-GS",
         f"{PAPER}, 3.3",
-        "splats with reflectivity and base reflectance, and a network that gives mirrored light by place and direction",
+        say(
+            "splats with reflectivity and base reflectance, and a network that gives mirrored light by place "
+            "and direction"
+        ),
         LIGHT_FIRST,
         AS_PAPER,
         True,
@@ -108,7 +116,7 @@ METHODS: dict[str, Method] = {
     "3dgs": Method(
         "3DGS",
         "Kerbl et al., 3D Gaussian Splatting for Real-Time Radiance Field Rendering, SIGGRAPH 2023",
-        "ellipsoids whose colour depends on the direction by spherical harmonics",
+        say("ellipsoids whose colour depends on the direction by spherical harmonics"),
         "opacities are not reset",
         {"losses": {"normal_consistency": 0.0}},
         primitive="ellipsoids",
@@ -116,14 +124,16 @@ METHODS: dict[str, Method] = {
     "2dgs": Method(
         "2DGS",
         "Huang et al., 2D Gaussian Splatting for Geometrically Accurate Radiance Fields, SIGGRAPH 2024",
-        "flat discs whose colour depends on the direction by spherical harmonics",
+        say("flat discs whose colour depends on the direction by spherical harmonics"),
         "no depth distortion term: splats usually begin on known surfaces (`start_from`)",
     ),
     "gaussian-shader": Method(
         "GaussianShader",
         "Jiang et al., GaussianShader: 3D Gaussian Splatting with Shading Functions for Reflective Surfaces, CVPR 2024",
-        "ellipsoids, each shaded for itself: diffuse colour, tint times an environment cube by its shortest axis and "
-        "roughness, and harmonics for the rest",
+        say(
+            "ellipsoids, each shaded for itself: diffuse colour, tint times an environment cube by its "
+            "shortest axis and roughness, and harmonics for the rest"
+        ),
         "light is blended before it gets its sRGB curve",
         {"losses": {"normal_consistency": 0.0}},
         primitive="ellipsoids",
@@ -131,8 +141,10 @@ METHODS: dict[str, Method] = {
     "ref-gaussian": Method(
         "Ref-Gaussian",
         "Yao et al., Reflective Gaussian Splatting, ICLR 2025",
-        "discs with albedo, metallic and roughness, shaded after blending by an environment cube (split sum), with "
-        "light from other surfaces where the mirrored ray meets the known mesh",
+        say(
+            "discs with albedo, metallic and roughness, shaded after blending by an environment cube (split "
+            "sum), with light from other surfaces where the mirrored ray meets the known mesh"
+        ),
         "diffuse light is the albedo; the mesh is the site's and not fused from depths; no stage that shades discs one "
         "by one, no normal propagation",
         {"losses": {"normal_smoothness": 1.0}},
@@ -140,8 +152,10 @@ METHODS: dict[str, Method] = {
     "ref-gs": Method(
         "Ref-GS",
         "Zhang et al., Ref-GS: Directional Factorization for 2D Gaussian Splatting, CVPR 2025",
-        "discs with diffuse colour, roughness and features, shaded after blending by a small network from features of "
-        "the mirrored direction times those of the place",
+        say(
+            "discs with diffuse colour, roughness and features, shaded after blending by a small network "
+            "from features of the mirrored direction times those of the place"
+        ),
         "the grid of directions is a cube and smaller, the network has 64 hidden units",
     ),
 }

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from planning.base.messages import say
+
 PRESETS = {
-    "10min": "small photos or a first look",
-    "1h": "for photos of some hundred pixels' width, or windows of larger ones",
-    "overnight": "the paper's network and number of steps, as far as they go",
+    "10min": say("small photos or a first look"),
+    "1h": say("for photos of some hundred pixels' width, or windows of larger ones"),
+    "overnight": say("the paper's network and number of steps, as far as they go"),
     "smoke": "a minute; shows that everything works, and nothing else",
 }
 

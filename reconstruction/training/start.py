@@ -14,6 +14,7 @@ from torch import Tensor
 
 from planning.base.effects import Decision
 from planning.base.errors import InputError
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.light.choose_light import choose_light
@@ -294,8 +295,12 @@ def _learned_light(
     rays = glass_rays(source, learned, settings.memory_bytes, settings.seed, monitor)
     if not len(rays):
         raise InputError(
-            f"{source.folder}: none of {len(learned)} photos has a pixel that lies whole on a panel; take larger "
-            "photos or come closer, or train splats alone (--method 2dgs)"
+            say(
+                "none of {} photos has a pixel that lies whole on a panel; take larger photos or come closer, or "
+                "train splats alone (--method 2dgs)",
+                len(learned),
+                place=source.folder,
+            )
         )
     digest = checksum(rays)
     no_decisions: tuple[Decision, ...] = ()
@@ -310,8 +315,10 @@ def _learned_light(
         stage = begun.stage
         if digest != stage.rays_sha256:
             raise InputError(
-                f"{source.folder}: its photos, cameras or panels are not those that the training was begun with; name "
-                "that data set"
+                say(
+                    "its photos, cameras or panels are not those that the training was begun with; name that data set",
+                    place=source.folder,
+                )
             )
     keeping = None
     if checkpoint is not None:
@@ -335,7 +342,7 @@ def _learned_light(
         if begun is None:
             raise
         raise InputError(
-            f"{checkpoint}: is of another version, or damaged ({error}); begin the training anew"
+            say("is of another version, or damaged ({}); begin the training anew", error, place=checkpoint)
         ) from error
     return trained, stage.decisions
 

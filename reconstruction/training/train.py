@@ -13,6 +13,7 @@ import torch
 
 from planning.base.errors import InputError
 from planning.base.json_file import to_record
+from planning.base.messages import say
 from planning.base.progress import QualityPoint
 from reconstruction.light.photo_set import PhotoSet, read_photo_set
 from reconstruction.training.allocator import freed_memory_kept
@@ -160,7 +161,7 @@ def resume_model(
     if not ranks.is_first:
         return _joined_later(folder, checkpoint, watching, ranks, watch)
     if site_record(folder) != begun.stage.site:
-        raise InputError(f"{folder}: shows other panels; name the data set that the training was begun with")
+        raise InputError(say("shows other panels; name the data set that the training was begun with", place=folder))
     watch.before_s += begun.spent_s
     source = read_photo_set(folder)
     start = start_model(source, config, watching.monitor, watch, checkpoint, begun)
@@ -187,16 +188,16 @@ def _resumed(
     _check_method(record.config, method, checkpoint)
     state = content.get("training")
     if not isinstance(state, dict) or not isinstance(state.get("model"), dict):
-        raise InputError(f"{checkpoint}: holds no state of a training; begin the training anew")
+        raise InputError(say("holds no state of a training; begin the training anew", place=checkpoint))
     source = read_photo_set(folder)
     missing = {*record.learned, *record.held_out} - {photo.name for photo in source.photos}
     if missing or site_record(folder) != record.site:
-        what = f"lacks the photo '{min(missing)}'" if missing else "shows other panels"
-        raise InputError(f"{folder}: {what}; name the data set that the training was begun with")
+        what = say("lacks the photo '{}'", min(missing)) if missing else say("shows other panels")
+        raise InputError(say("{}; name the data set that the training was begun with", what, place=folder))
     try:
         model, exposures = empty_model(record, state["model"])
     except ValueError as error:
-        raise InputError(f"{checkpoint}: is damaged ({error}); begin the training anew") from error
+        raise InputError(say("is damaged ({}); begin the training anew", error, place=checkpoint)) from error
     with ExitStack() as closing:
         photos, shown = _photos(source, record, closing)
         trainer = Trainer(
@@ -220,12 +221,12 @@ def _resumed(
 def _check_method(config: TrainConfig, method: str | None, checkpoint: Path) -> None:
     _check_device(config)
     if method not in (None, config.method):
-        raise InputError(f"{checkpoint}: is of a training of {config.method}; resume with that method")
+        raise InputError(say("is of a training of {}; resume with that method", config.method, place=checkpoint))
 
 
 def _check_device(config: TrainConfig) -> None:
     if config.device == "cuda" and not torch.cuda.is_available():
-        raise InputError("device: 'cuda' is asked for, and torch finds no CUDA device; leave it out")
+        raise InputError(say("device: 'cuda' is asked for, and torch finds no CUDA device; leave it out"))
 
 
 def _photos(source: PhotoSet, record: ModelRecord, closing: ExitStack) -> tuple[PhotoStream, tuple[HeldOut, ...]]:

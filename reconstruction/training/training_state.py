@@ -18,6 +18,7 @@ import msgspec
 import torch
 
 from planning.base.errors import InputError, ReconstructionError
+from planning.base.messages import say
 from reconstruction.splats.densification.strategy import Densification
 from reconstruction.training.callbacks import Progress
 from reconstruction.training.checkpoints import read_checkpoint
@@ -85,10 +86,15 @@ class TrainingState:
         self.optimiser.zero_grad(set_to_none=True)
         if at.n_undone > MOST_HALVINGS:
             raise ReconstructionError(
-                f"training failed at step {at.step + 1}: {reason}, and lower rates do not help"
-                f"{self._left()}; train again with lower rates or fewer splats"
+                say(
+                    "training failed at step {}: {}, and lower rates do not help{}; train again with lower rates or "
+                    "fewer splats",
+                    at.step + 1,
+                    reason,
+                    self._left(),
+                )
             )
-        at.notes.append(f"step {at.step + 1} was undone ({reason}); all rates are halved from there on")
+        at.notes.append(say("step {} was undone ({}); all rates are halved from there on", at.step + 1, reason))
         if not self.is_finite():
             self.go_back(reason)
 
@@ -105,16 +111,26 @@ class TrainingState:
         smaller = min(at.window_px, self.n_pixels) // 2
         if smaller < SMALLEST_WINDOW_PX:
             raise ReconstructionError(
-                f"training failed at step {at.step + 1}: there is no memory for {len(self.model.splats)} splats and "
-                f"windows of {2 * smaller} pixels{self._left()}; train with fewer splats"
+                say(
+                    "training failed at step {}: there is no memory for {} splats and windows of {} pixels{}; train "
+                    "with fewer splats",
+                    at.step + 1,
+                    len(self.model.splats),
+                    2 * smaller,
+                    self._left(),
+                )
             ) from error
         at.window_px = self.photos.window_px = smaller
-        at.notes.append(f"memory ran out at step {at.step + 1}: windows of photos have {smaller} pixels from there on")
+        at.notes.append(
+            say("memory ran out at step {}: windows of photos have {} pixels from there on", at.step + 1, smaller)
+        )
         if self.is_editing:
-            self.go_back("memory ran out while splats were added")
+            self.go_back(say("memory ran out while splats were added"))
 
     def _left(self) -> str:
-        return f"; the last checkpoint, {self.path}, is good" if self.path is not None and self.path.exists() else ""
+        return (
+            say("; the last checkpoint, {}, is good", self.path) if self.path is not None and self.path.exists() else ""
+        )
 
     def is_finite(self) -> bool:
         """Whether all parameters are numbers."""
@@ -124,10 +140,10 @@ class TrainingState:
     def go_back(self, reason: str) -> None:
         """To the last checkpoint, with the rates, windows and notes of now."""
         if self.path is None or not self.path.exists():
-            raise ReconstructionError(f"training failed at step {self.at.step + 1}: {reason}; train again")
+            raise ReconstructionError(say("training failed at step {}: {}; train again", self.at.step + 1, reason))
         kept = self.at
         self.restore(read_checkpoint(self.path)["training"])
-        kept.notes.append(f"went back to step {self.at.step}")
+        kept.notes.append(say("went back to step {}", self.at.step))
         self.at.factor, self.at.n_undone, self.at.notes = kept.factor, kept.n_undone, kept.notes
         self.at.window_px = self.photos.window_px = kept.window_px
         self.is_editing = False
@@ -164,6 +180,6 @@ class TrainingState:
             self.at = msgspec.convert(state["progress"], Progress)
         except (KeyError, ValueError, TypeError, RuntimeError) as error:
             raise InputError(
-                f"{self.path}: is of another model or version ({error}); begin the training anew"
+                say("is of another model or version ({}); begin the training anew", error, place=self.path)
             ) from error
         self.photos.window_px = self.at.window_px

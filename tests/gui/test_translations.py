@@ -66,7 +66,10 @@ def test_the_file_holds_the_texts_of_the_sources_and_no_others(german, tmp_path)
     if lupdate is None:
         pytest.skip("pyside6-lupdate is not installed beside the interpreter")
     fresh = tmp_path / GERMAN.name
-    sources = [str(path.relative_to(ROOT)) for path in SOURCES]
+    collected = tmp_path / "messages.py"
+    code = "groundstation.gui.application.collect_messages"
+    subprocess.run([sys.executable, "-m", code, str(collected)], cwd=ROOT, check=True)
+    sources = [*(str(path.relative_to(ROOT)) for path in SOURCES), str(collected)]
     run = subprocess.run(
         [lupdate, *sources, "-locations", "none", "-target-language", "de_DE", "-ts", str(fresh)],
         cwd=ROOT,

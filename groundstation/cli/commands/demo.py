@@ -27,8 +27,6 @@ def add_parser(subparsers: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Demonstrate; returns the exit status."""
-    import msgspec
-
     from groundstation.cli.commands.plan import print_summary
     from groundstation.cli.console import print_findings, print_json, run_job, verdict_text
     from groundstation.services.demo import demonstrate
@@ -46,8 +44,10 @@ def run(options: argparse.Namespace) -> int:
         content["missions"] = [str(path) for path in made.mission_paths]
         content["flyable"] = flyable
         if made.flown is not None and made.flown.flight.report is not None:
+            from planning.base.json_file import plain_values
+
             content["flight"] = str(made.flight_path)
-            content["flown"] = msgspec.to_builtins(made.flown.flight.report.summary)
+            content["flown"] = plain_values(made.flown.flight.report.summary)
         print_json(content)
     else:
         print(f"site:     {made.site_path}")

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from groundstation.cli.options import add_profile_argument, in_words_of_options, json_file, number
+from planning.base.messages import say
 
 
 def add_parser(subparsers: Any) -> None:
@@ -78,7 +79,7 @@ def run(options: argparse.Namespace) -> int:
             }
         )
     else:
-        views = f"{counted(len(plan.viewpoints), 'view')} in {counted(len(plan.sorties), 'sortie')}"
+        views = say("{} in {}", counted(len(plan.viewpoints), "view"), counted(len(plan.sorties), "sortie"))
         if coverage.total:
             print(
                 f"{options.out}: {views} cover {coverage.covered} of {coverage.total} sections; no flight can cover "

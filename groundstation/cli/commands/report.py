@@ -75,16 +75,16 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _summary(reported: ReportedFlight, out: Path | None) -> dict[str, Any]:
-    import msgspec
 
     from missions.flight.report_text import report_to_json
+    from planning.base.json_file import plain_values
 
     report = reported.flight.report
     assert report is not None
     return {
         "flight": None if out is None else str(out),
         **report_to_json(report),
-        "source_findings": msgspec.to_builtins(reported.findings),
+        "source_findings": plain_values(reported.findings),
         "seconds": round(reported.seconds, 3),
     }
 

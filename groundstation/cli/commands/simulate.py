@@ -191,9 +191,8 @@ def effect_wishes(texts: list[str]) -> dict[str, Wish]:
 
 
 def _summary(flown: Flown, options: argparse.Namespace) -> dict[str, Any]:
-    import msgspec
-
     from missions.flight.report_text import report_to_json
+    from planning.base.json_file import plain_values
 
     report = flown.flight.report
     assert report is not None
@@ -201,10 +200,10 @@ def _summary(flown: Flown, options: argparse.Namespace) -> dict[str, Any]:
         "flight": str(options.out),
         "link": options.link,
         **report_to_json(report),
-        "effects": msgspec.to_builtins(flown.sorties[0].effects if flown.sorties else ()),
+        "effects": plain_values(flown.sorties[0].effects if flown.sorties else ()),
         "logs": [str(sortie.log) for sortie in flown.sorties if sortie.log is not None],
-        "notes": [msgspec.to_builtins(sortie.notes) for sortie in flown.sorties],
-        "plan_findings": msgspec.to_builtins(flown.findings),
+        "notes": [plain_values(sortie.notes) for sortie in flown.sorties],
+        "plan_findings": plain_values(flown.findings),
         "seconds": round(flown.seconds, 3),
     }
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from groundstation.cli.options import json_file, number
 from planning.base.errors import InputError
+from planning.base.messages import about
 
 if TYPE_CHECKING:
     from planning.site.importing.options import ImportOptions, PanelGrid
@@ -210,7 +211,7 @@ def import_options(options: argparse.Namespace) -> ImportOptions:
     try:
         origin = None if options.origin is None else Origin(*options.origin)
     except ValueError as error:
-        raise InputError(f"--origin: {error}") from error
+        raise InputError(about("--origin", error)) from error
     return ImportOptions(
         name=options.name,
         origin=origin,

@@ -16,6 +16,7 @@ from groundstation.cli.commands.segment import add_parameter_arguments
 from groundstation.cli.lists import above_zero, count, counts, numbers, wholes, words
 from groundstation.cli.options import checked_seed, new_folder
 from planning.base.errors import InputError
+from planning.base.messages import say
 
 if TYPE_CHECKING:
     from groundstation.services.plan.tradeoff import PlanRuns
@@ -289,7 +290,7 @@ def _print_answers(found: Answers, text: Callable[[float], str], goal: Callable[
         if budget.budget_s >= last_s:
             break
     for wanted in found.by_gap:
-        reached = "not reached" if wanted.t_s is None else f"after {seconds_text(wanted.t_s)} with '{wanted.run}'"
+        reached = say("not reached") if wanted.t_s is None else f"after {seconds_text(wanted.t_s)} with '{wanted.run}'"
         print(f"  {goal(wanted.gap)}: {reached}")
 
 
@@ -330,7 +331,7 @@ def _print_tour(report: TourReport) -> None:
             print(f"  {method:<18}{length:>12}{gap_text(curve.final_gap):>10}  best after {seconds_text(best_s)}")
         else:
             print(f"  {method:<18}  found no tour")
-    reference = "lower bound" if case.optimum is None else "optimum"
+    reference = say("lower bound") if case.optimum is None else "optimum"
     last_s = max(curve.end_s for curve in report.curves.values())
     _print_answers(report.answers, gap_text, lambda gap: f"within {100.0 * gap:g} % of the {reference}", last_s)
 

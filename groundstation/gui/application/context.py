@@ -13,7 +13,7 @@ from typing import Any
 from PySide6.QtCore import QObject, Signal
 
 from groundstation.gui.application.job_bridge import JobBridge
-from groundstation.gui.application.translate import own_words, with_fields
+from groundstation.gui.application.translate import translated, with_fields
 from groundstation.services.jobs.runner import ENDED, Job, JobContext, JobRunner, JobState, JobStateChanged
 from groundstation.services.project.document import Document, Item, exists
 from groundstation.services.project.session import Session
@@ -144,7 +144,7 @@ class ApplicationContext(QObject):
 
     def words(self, text: str) -> str:
         """What a part without Qt says, an error or a finding, in the user's language and units."""
-        return own_words(shortened(text), self._units)
+        return translated(shortened(text), self._units)
 
     def tell_of_plugins(self) -> None:
         """Say which plug-ins are left out of a list that was just filled, each once."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QDialog, QHeaderView, QLabel, QVBoxLayout, QWidget
 
-from groundstation.gui.application.translate import own_words
+from groundstation.gui.application.translate import translated
 from groundstation.gui.widgets.table_view import Column, RowModel, table_of
 from groundstation.services.scenes.preview import LEFT_OUT, SeenPhoto
 from groundstation.services.units import UnitSystem
@@ -34,15 +34,15 @@ class EffectsWindow(QDialog):
 
     def _columns(self) -> tuple[Column[Decision], ...]:
         return (
-            Column(self.tr("Effect"), lambda found: own_words(found.effect, self._units)),
+            Column(self.tr("Effect"), lambda found: translated(found.effect, self._units)),
             Column(self.tr("Simulated"), lambda found: self.tr("on") if found.on else self.tr("off")),
             Column(self.tr("Size"), self._size_text, is_number=True),
             Column(self.tr("Off below"), lambda found: f"{found.tolerance:.3g}", is_number=True),
-            Column(self.tr("Why"), lambda found: own_words(found.reason, self._units)),
+            Column(self.tr("Why"), lambda found: translated(found.reason, self._units)),
         )
 
     def _size_text(self, found: Decision) -> str:
-        return self.tr("{0:.3g} {1}").format(found.size, own_words(found.unit, self._units))
+        return self.tr("{0:.3g} {1}").format(found.size, translated(found.unit, self._units))
 
     def set_photo(self, photo: SeenPhoto | None) -> None:
         """Show the decisions of a photo; a quick one has none yet."""
@@ -62,7 +62,7 @@ class EffectsWindow(QDialog):
                 ).format(
                     photo.picture.shape[1],
                     photo.picture.shape[0],
-                    ", ".join(own_words(name, self._units) for name in LEFT_OUT),
+                    ", ".join(translated(name, self._units) for name in LEFT_OUT),
                 )
             )
         self._table.resizeColumnsToContents()

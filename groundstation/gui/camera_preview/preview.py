@@ -11,7 +11,7 @@ from PySide6.QtCore import QCoreApplication, QElapsedTimer, QEvent, QRect, Qt, Q
 from PySide6.QtGui import QHideEvent, QImage, QResizeEvent, QShortcut, QShowEvent
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QSlider, QVBoxLayout, QWidget
 
-from groundstation.gui.application.translate import own_words
+from groundstation.gui.application.translate import translated
 from groundstation.gui.camera_preview.flight import CameraFlight, CameraPose, camera_flight
 from groundstation.gui.camera_preview.photo_box import PhotoBox
 from groundstation.gui.camera_preview.photo_overlay import Lines, PhotoOverlay
@@ -572,7 +572,7 @@ class CameraPreview(QWidget):
         try:
             flight = camera_flight(plan, plan.sorties[number])
         except InfeasibleError as error:
-            return own_words(str(error), self._units)
+            return translated(str(error), self._units)
         return flight if flight is not None else self.tr("The path of this sortie misses one of its viewpoints.")
 
     def _find_on_flight(self, viewpoint_id: str) -> None:

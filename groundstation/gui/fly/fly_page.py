@@ -16,7 +16,7 @@ from PySide6.QtWidgets import (
 )
 
 from groundstation.gui.application.context import ApplicationContext
-from groundstation.gui.application.translate import own_words
+from groundstation.gui.application.translate import translated
 from groundstation.gui.fly.active_flight import ActiveFlight
 from groundstation.gui.fly.connection_box import ConnectionBox
 from groundstation.gui.fly.flight_buttons import APART_PX, FlightButtons
@@ -144,7 +144,7 @@ class WarningsView(QWidget):
         self._calm.setVisible(not ordered)
 
     def _said(self, warning: FlightWarning) -> str:
-        told = own_words(warning.text, self._units)
+        told = translated(warning.text, self._units)
         if warning.severity is Severity.ERROR:
             return self.tr("Danger: {0}").format(told)
         return self.tr("Warning: {0}").format(told)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QGridLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 
-from groundstation.gui.application.translate import own_words
+from groundstation.gui.application.translate import translated
 from groundstation.services.units import UnitSystem
 from groundstation.vehicle.preflight import Mend, OnBoard, PreflightCheck, Verdict, mends
 
@@ -88,7 +88,7 @@ class PreflightList(QWidget):
             if is_used:
                 check = self._checks[number]
                 sign, role = MARKS[check.verdict]
-                told = own_words(check.text, self._units)
+                told = translated(check.text, self._units)
                 row.mark.setText(sign)
                 row.words.setText(self.tr("{0}: {1}").format(names.get(check.code, check.code), told))
                 for label in (row.mark, row.words):

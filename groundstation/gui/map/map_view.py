@@ -19,7 +19,7 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QHBoxLayout, QToolButton, QVBoxLayout, QWidget
 
-from groundstation.gui.application.translate import own_words
+from groundstation.gui.application.translate import translated
 from groundstation.gui.map.map_canvas import MapCanvas
 from groundstation.gui.map.map_layer import MapLayer
 from groundstation.gui.map.map_paint import (
@@ -139,7 +139,7 @@ class MapView(MapCanvas):
         try:
             source = MapTiles(path)
         except InputError as error:
-            self._refusal = own_words(str(error), self._units)
+            self._refusal = translated(str(error), self._units)
             self.update()
             self.refused.emit(self._refusal)
             return False

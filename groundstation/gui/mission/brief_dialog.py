@@ -18,7 +18,7 @@ from PySide6.QtWidgets import (
 )
 
 from groundstation.gui.application.context import ApplicationContext
-from groundstation.gui.application.translate import finding_in_own_words
+from groundstation.gui.application.translate import translated_finding
 from groundstation.gui.mission.brief_printer import BriefDocument, page_size, painted_map, print_pages, say, write_pdf
 from groundstation.gui.widgets.inputs import ChoiceBox
 from groundstation.gui.widgets.job_bar import DialogFoot
@@ -60,7 +60,7 @@ class BriefDialog(QDialog):
         today = QLocale().toString(QDate.currentDate(), QLocale.FormatType.LongFormat)
         title = entry.title if entry is not None and entry.plan is plan else ""
         found = flight_brief(site_model, plan, checked.findings, today, title, day=checked.day)
-        told = tuple(finding_in_own_words(finding, self._units) for finding in found.findings)
+        told = tuple(translated_finding(finding, self._units) for finding in found.findings)
         self._brief = replace(found, findings=told)
         self._page, self._paper = QTextBrowser(), ChoiceBox()
         # Paper is white in every theme.

@@ -6,7 +6,7 @@ import numpy as np
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QLabel, QListWidget, QListWidgetItem, QVBoxLayout, QWidget
 
-from groundstation.gui.application.translate import own_words
+from groundstation.gui.application.translate import translated
 from groundstation.gui.charts.hemisphere_view import HemisphereView, ShownSection
 from groundstation.services.units import UnitSystem, sampling_unit
 from planning.insight.sections import PlanInsight, SectionState
@@ -174,7 +174,7 @@ class PanelDetail(QWidget):
         words = self._state_text(state, int(insight.counts[panel, section]))
         reasons = insight.reasons.of(panel, section)
         if state is not SectionState.COVERED and reasons:
-            words += ": " + self.tr("; or ").join(own_words(str(reason), self._units) for reason in reasons)
+            words += ": " + self.tr("; or ").join(translated(str(reason), self._units) for reason in reasons)
         self._section_words.setText(words)
         for view in insight.views_of(panel, section):
             row = QListWidgetItem(insight.view_ids[view])

@@ -8,7 +8,7 @@ from typing import Any
 from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import QCheckBox, QLabel, QToolButton, QVBoxLayout, QWidget
 
-from groundstation.gui.application.translate import own_words
+from groundstation.gui.application.translate import translated
 from groundstation.gui.plan.method_names import method_name
 from groundstation.gui.widgets.inputs import ChoiceBox, Form, QuantityBox
 from groundstation.gui.widgets.parameter_form import ParameterRow, add_rows, rows_of, tip_of, title_of
@@ -186,7 +186,7 @@ class PlanForm(QWidget):
         self._is_gsd_limited.toggled.connect(self._edited)
         self._gsd.valueChanged.connect(self._edited)
         self.aircraft.valueChanged.connect(self._edited)
-        self.aircraft.refused.connect(lambda text: self._say_wrong(own_words(text, self._units)))
+        self.aircraft.refused.connect(lambda text: self._say_wrong(translated(text, self._units)))
         for row in (*self.rows.values(), self._method, self._sharp):
             row.valueChanged.connect(self._edited)
 
@@ -218,7 +218,7 @@ class PlanForm(QWidget):
         try:
             self.aircraft.setValue(request.profile_id)
         except GroundStationError as error:
-            return own_words(str(error), self._units)
+            return translated(str(error), self._units)
         self._gsd.setValue(profile(request.profile_id).camera.gsd_m(furthest_m))
         self._shown_gsd = request.profile_id, self._gsd.value()
         self._show_sharp(constraints)

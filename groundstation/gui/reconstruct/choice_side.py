@@ -8,7 +8,7 @@ from pathlib import Path
 from PySide6.QtCore import QSignalBlocker, Qt, Signal
 from PySide6.QtWidgets import QComboBox, QLabel, QPushButton, QSizePolicy, QVBoxLayout, QWidget
 
-from groundstation.gui.application.translate import own_words
+from groundstation.gui.application.translate import translated
 from groundstation.gui.reconstruct.machine_words import MachineWords
 from groundstation.gui.reconstruct.reconstruct_controller import BUSY, Phase, ReconstructController
 from groundstation.gui.widgets.inputs import ChoiceBox, Form, NumberBox
@@ -98,11 +98,11 @@ class ChoiceForm(QWidget):
     def _fill(self) -> None:
         for number, row in enumerate(self._methods.values()):
             self.method.addItem(row.title, row.name)
-            self.method.setItemData(number, own_words(row.what, UnitSystem.METRIC), Qt.ItemDataRole.ToolTipRole)
+            self.method.setItemData(number, translated(row.what, UnitSystem.METRIC), Qt.ItemDataRole.ToolTipRole)
         times = {"10min": self.tr("10 minutes"), "1h": self.tr("1 hour"), "overnight": self.tr("overnight, 10 hours")}
         for number, preset in enumerate(preset_rows()):
             self.time.addItem(times.get(preset.name, preset.name), preset.name)
-            self.time.setItemData(number, own_words(preset.what, UnitSystem.METRIC), Qt.ItemDataRole.ToolTipRole)
+            self.time.setItemData(number, translated(preset.what, UnitSystem.METRIC), Qt.ItemDataRole.ToolTipRole)
         self.time.addItem(self.tr("own time"), OWN)
         self.device.addItem(self.tr("the processor"))
 
@@ -121,7 +121,7 @@ class ChoiceForm(QWidget):
 
     def _show(self) -> None:
         row = self._methods[self._value.method]
-        self.about.setText(own_words(row.what, UnitSystem.METRIC))
+        self.about.setText(translated(row.what, UnitSystem.METRIC))
         self._form.setRowVisible(self.minutes, self._value.minutes is not None)
         self._form.setRowVisible(self.device, self.device.count() > 1)
 

@@ -6,7 +6,7 @@ from PySide6.QtCore import QSize, Qt, Signal
 from PySide6.QtGui import QColor
 from PySide6.QtWidgets import QLabel, QListWidget, QListWidgetItem, QVBoxLayout, QWidget
 
-from groundstation.gui.application.translate import own_words
+from groundstation.gui.application.translate import translated
 from groundstation.gui.widgets.theme import colours
 from groundstation.services.project.document import Item, ItemKind
 from groundstation.services.units import UnitSystem
@@ -67,7 +67,7 @@ class FindingsList(QWidget):
         look = {Severity.ERROR: colours().error, Severity.WARNING: colours().warning}
         words = {Severity.ERROR: self.tr("Error"), Severity.WARNING: self.tr("Warning"), Severity.NOTE: self.tr("Note")}
         for finding in self._findings:
-            row = QListWidgetItem(f"{words.get(finding.severity, '')}: {own_words(finding.message, self._units)}")
+            row = QListWidgetItem(f"{words.get(finding.severity, '')}: {translated(finding.message, self._units)}")
             row.setForeground(QColor(look.get(finding.severity, colours().text)))
             row.setSizeHint(QSize(0, self._height(row.text())))
             self._list.addItem(row)

@@ -46,6 +46,7 @@ from groundstation.services.site.sources import (
 )
 from groundstation.services.units import UnitSystem, area_unit, length_unit
 from planning.base.errors import InputError
+from planning.base.messages import without_place
 from planning.geo.crs import AxisOrder, HeightReference
 from planning.geo.frames import Origin
 from planning.geo.mesh import MESH_SUFFIXES
@@ -446,7 +447,7 @@ class ImportDialog(QDialog):
 
     def _words(self, text: str) -> str:
         """A message of the import in words of the window, without the folder."""
-        return self._workspace.words(text.replace(f"{self._path}: ", ""))
+        return self._workspace.words(without_place(text, self._path))
 
     def _pick(self) -> None:
         wish = self.grid.value()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QWidget
 
-from groundstation.gui.application.translate import own_words
+from groundstation.gui.application.translate import translated
 from groundstation.gui.widgets.inputs import Form, LengthBox, NumberBox
 from groundstation.gui.widgets.value_boxes import DECIMALS, ErrorLine, muted
 from groundstation.services.site.edits import HeightReference, height_above_sea_m, origin_at
@@ -93,7 +93,7 @@ class OriginBox(QWidget):
                 self._degrees(self._lat, "lat_deg"), self._degrees(self._lon, "lon_deg"), height_m, reference
             )
         except InputError as error:
-            self._error.show_error(own_words(str(error), self._units))
+            self._error.show_error(translated(str(error), self._units))
             return
         self.setValue(origin)
         self.valueChanged.emit(origin)

@@ -5740,8 +5740,8 @@ Damit weiterarbeiten?</translation>
         <translation>es gibt keine Wayline</translation>
     </message>
     <message>
-        <source>wayline {0:n}, </source>
-        <translation>Wayline {0:n}, </translation>
+        <source>wayline {0}, </source>
+        <translation>Wayline {0}, </translation>
     </message>
     <message>
         <source>waypointGimbalHeadingParam is missing</source>
@@ -5750,6 +5750,22 @@ Damit weiterarbeiten?</translation>
     <message>
         <source>the wayline lasts longer than the aircraft flies on one battery; split it</source>
         <translation>die Wayline dauert länger, als das Fluggerät mit einem Akku fliegt; sie teilen</translation>
+    </message>
+    <message>
+        <source>, {0} m</source>
+        <translation>, {0} m</translation>
+    </message>
+    <message>
+        <source>above {0} and below {1}</source>
+        <translation>über {0} und unter {1}</translation>
+    </message>
+    <message>
+        <source>more than {0}</source>
+        <translation>mehr als {0}</translation>
+    </message>
+    <message>
+        <source>more than {0} and at most {1}</source>
+        <translation>mehr als {0} und höchstens {1}</translation>
     </message>
     <message>
         <source>takeOffRefPoint {0},{1} is not on the globe and is not used</source>
@@ -5780,8 +5796,8 @@ Damit weiterarbeiten?</translation>
         <translation>{0}Startaktionen</translation>
     </message>
     <message>
-        <source>{0}waypoint {1:n}, group {2}</source>
-        <translation>{0}Wegpunkt {1:n}, Gruppe {2}</translation>
+        <source>{0}waypoint {1}, group {2}</source>
+        <translation>{0}Wegpunkt {1}, Gruppe {2}</translation>
     </message>
     <message>
         <source>the actionGroupId occurs twice in one wayline; number the groups from 0</source>
@@ -5892,8 +5908,8 @@ Damit weiterarbeiten?</translation>
         <translation>executeHeightMode ist &apos;{0}&apos;; Fluggeräte kennen {1}</translation>
     </message>
     <message>
-        <source>{0}waypoint {1:n}</source>
-        <translation>{0}Wegpunkt {1:n}</translation>
+        <source>{0}waypoint {1}</source>
+        <translation>{0}Wegpunkt {1}</translation>
     </message>
     <message>
         <source>the wayline has no waypoints</source>
@@ -5976,8 +5992,8 @@ Damit weiterarbeiten?</translation>
         <translation>towardPOI hat keinen waypointPoiPoint zum Anblicken</translation>
     </message>
     <message>
-        <source>{0}leg {1:n}-{2}</source>
-        <translation>{0}Strecke {1:n}-{2}</translation>
+        <source>{0}leg {1}-{2}</source>
+        <translation>{0}Strecke {1}-{2}</translation>
     </message>
     <message>
         <source>the leg is longer than aircraft accept; put a waypoint in between</source>
@@ -6068,8 +6084,8 @@ Damit weiterarbeiten?</translation>
         <translation>{0} ist &apos;{1}&apos;</translation>
     </message>
     <message>
-        <source>waypoint {0:n}</source>
-        <translation>Wegpunkt {0:n}</translation>
+        <source>waypoint {0}</source>
+        <translation>Wegpunkt {0}</translation>
     </message>
     <message>
         <source>before any photo the aircraft stops {0} m above take-off; where it does not, land: it took off from another height than planned</source>
@@ -6236,8 +6252,8 @@ Damit weiterarbeiten?</translation>
         <translation>erwartet wurde die Spalte {0} in der ersten Zeile; sie fehlt</translation>
     </message>
     <message>
-        <source>{0}, line {1:n}</source>
-        <translation>{0}, Zeile {1:n}</translation>
+        <source>{0}, line {1}</source>
+        <translation>{0}, Zeile {1}</translation>
     </message>
     <message>
         <source>no table of photos ({0})</source>
@@ -6288,16 +6304,16 @@ Damit weiterarbeiten?</translation>
         <translation>beschädigt: Einem Einsatz fehlt, was Reflight schreibt ({0}); neu exportieren</translation>
     </message>
     <message>
-        <source>item {0:n}</source>
-        <translation>Element {0:n}</translation>
+        <source>item {0}</source>
+        <translation>Element {0}</translation>
     </message>
     <message>
         <source>the mission has {0} items, {1} keeps {2}; plan it with shorter sorties</source>
         <translation>die Mission hat {0} Elemente, {1} behält {2}; mit kürzeren Einsätzen planen</translation>
     </message>
     <message>
-        <source>item {0:n} (command {1})</source>
-        <translation>Element {0:n} (Befehl {1})</translation>
+        <source>item {0} (command {1})</source>
+        <translation>Element {0} (Befehl {1})</translation>
     </message>
     <message>
         <source>the position {0}, {1} is not on the globe</source>
@@ -6392,8 +6408,8 @@ Damit weiterarbeiten?</translation>
         <translation>die Wegpunkte liegen näher beieinander, als das Fluggerät unterscheidet</translation>
     </message>
     <message>
-        <source>items {0:n} and {1:n}</source>
-        <translation>Elemente {0:n} und {1:n}</translation>
+        <source>items {0} and {1}</source>
+        <translation>Elemente {0} und {1}</translation>
     </message>
     <message>
         <source>the mission passes over or under this zone, and fences have no height: it is not in the file&apos;s fence</source>
@@ -6412,8 +6428,12 @@ Damit weiterarbeiten?</translation>
         <translation>Sprüngen wird nicht gefolgt: Jedes Element zählt einmal</translation>
     </message>
     <message>
-        <source>{0}item {1:n}</source>
-        <translation>{0}Element {1:n}</translation>
+        <source>{0}; or let the embedded renderer be the truth (--truth-rays 0, no --rays)</source>
+        <translation>{0}; oder den eingebauten Renderer die Wahrheit sein lassen (--truth-rays 0, kein --rays)</translation>
+    </message>
+    <message>
+        <source>{0}item {1}</source>
+        <translation>{0}Element {1}</translation>
     </message>
     <message>
         <source>{0}heights above take-off and above sea level are mixed, and home is not known</source>
@@ -6808,96 +6828,100 @@ Damit weiterarbeiten?</translation>
         <translation>dem Gebäude &apos;{0}&apos;</translation>
     </message>
     <message>
-        <source>{0:n} deg</source>
-        <translation>{0:n}°</translation>
+        <source>{0} deg</source>
+        <translation>{0}°</translation>
     </message>
     <message>
-        <source>{0:n} viewpoints</source>
-        <translation>{0:n} Aufnahmepunkte</translation>
+        <source>{0} viewpoints</source>
+        <translation>{0} Aufnahmepunkte</translation>
     </message>
     <message>
-        <source>{0:n} views</source>
-        <translation>{0:n} Aufnahmen</translation>
+        <source>{0} views</source>
+        <translation>{0} Aufnahmen</translation>
     </message>
     <message>
-        <source>{0:n} sections</source>
-        <translation>{0:n} Sektoren</translation>
+        <source>{0} sections</source>
+        <translation>{0} Sektoren</translation>
     </message>
     <message>
-        <source>{0:n} photos</source>
-        <translation>{0:n} Fotos</translation>
+        <source>{0} photos</source>
+        <translation>{0} Fotos</translation>
     </message>
     <message>
-        <source>{0:n} findings</source>
-        <translation>{0:n} Befunde</translation>
+        <source>{0} findings</source>
+        <translation>{0} Befunde</translation>
     </message>
     <message>
-        <source>{0:n} not reached</source>
-        <translation>{0:n} nicht erreicht</translation>
+        <source>{0} not reached</source>
+        <translation>{0} nicht erreicht</translation>
     </message>
     <message>
-        <source>{0:n} reached, but the camera did not answer</source>
-        <translation>{0:n} erreicht, aber die Kamera antwortete nicht</translation>
+        <source>{0} reached, but the camera did not answer</source>
+        <translation>{0} erreicht, aber die Kamera antwortete nicht</translation>
     </message>
     <message>
-        <source>{0:n} photographed, but the camera&apos;s report was lost</source>
-        <translation>{0:n} fotografiert, aber die Meldung der Kamera ging verloren</translation>
+        <source>{0} photographed, but the camera&apos;s report was lost</source>
+        <translation>{0} fotografiert, aber die Meldung der Kamera ging verloren</translation>
     </message>
     <message>
-        <source>{0:n} in sorties that were not flown</source>
-        <translation>{0:n} in Einsätzen, die nicht geflogen wurden</translation>
+        <source>{0} in sorties that were not flown</source>
+        <translation>{0} in Einsätzen, die nicht geflogen wurden</translation>
     </message>
     <message>
-        <source>{0:n} photographed from too far away</source>
-        <translation>{0:n} aus zu großer Entfernung aufgenommen</translation>
+        <source>{0} of the {1} sections that flights can cover are covered ({2}): plan more views, or a share of coverage</source>
+        <translation>{0} der {1} Sektoren, die Flüge abdecken können, sind abgedeckt ({2}): mehr Aufnahmen planen oder einen Anteil der Abdeckung</translation>
     </message>
     <message>
-        <source>{0:n} where the photo looks elsewhere</source>
-        <translation>{0:n} mit einem Foto, das woandershin blickt</translation>
+        <source>{0} photographed from too far away</source>
+        <translation>{0} aus zu großer Entfernung aufgenommen</translation>
     </message>
     <message>
-        <source>{0:n} not reached before the flight ended</source>
-        <translation>{0:n} nicht erreicht, ehe der Flug endete</translation>
+        <source>{0} where the photo looks elsewhere</source>
+        <translation>{0} mit einem Foto, das woandershin blickt</translation>
     </message>
     <message>
-        <source>{0:n} not reached because the flight was broken off by Return</source>
-        <translation>{0:n} nicht erreicht, weil der Flug mit Heimkehr abgebrochen wurde</translation>
+        <source>{0} not reached before the flight ended</source>
+        <translation>{0} nicht erreicht, ehe der Flug endete</translation>
     </message>
     <message>
-        <source>{0:n} not reached because the flight was broken off by Land</source>
-        <translation>{0:n} nicht erreicht, weil der Flug mit Landen abgebrochen wurde</translation>
+        <source>{0} not reached because the flight was broken off by Return</source>
+        <translation>{0} nicht erreicht, weil der Flug mit Heimkehr abgebrochen wurde</translation>
     </message>
     <message>
-        <source>{0:n} not reached because the flight was broken off for low battery</source>
-        <translation>{0:n} nicht erreicht, weil der Flug wegen schwachen Akkus abgebrochen wurde</translation>
+        <source>{0} not reached because the flight was broken off by Land</source>
+        <translation>{0} nicht erreicht, weil der Flug mit Landen abgebrochen wurde</translation>
     </message>
     <message>
-        <source>{0:n} not reached because the flight was broken off for the lost link</source>
-        <translation>{0:n} nicht erreicht, weil der Flug wegen verlorener Funkverbindung abgebrochen wurde</translation>
+        <source>{0} not reached because the flight was broken off for low battery</source>
+        <translation>{0} nicht erreicht, weil der Flug wegen schwachen Akkus abgebrochen wurde</translation>
     </message>
     <message>
-        <source>{0:n} not reached because the flight was broken off for the lost remote control</source>
-        <translation>{0:n} nicht erreicht, weil der Flug wegen verlorener Fernsteuerung abgebrochen wurde</translation>
+        <source>{0} not reached because the flight was broken off for the lost link</source>
+        <translation>{0} nicht erreicht, weil der Flug wegen verlorener Funkverbindung abgebrochen wurde</translation>
     </message>
     <message>
-        <source>{0:n} not reached because the flight was broken off at the fence</source>
-        <translation>{0:n} nicht erreicht, weil der Flug am Geofence abgebrochen wurde</translation>
+        <source>{0} not reached because the flight was broken off for the lost remote control</source>
+        <translation>{0} nicht erreicht, weil der Flug wegen verlorener Fernsteuerung abgebrochen wurde</translation>
     </message>
     <message>
-        <source>{0:n} not reached because the pilot took over by hand</source>
-        <translation>{0:n} nicht erreicht, weil der Pilot von Hand übernahm</translation>
+        <source>{0} not reached because the flight was broken off at the fence</source>
+        <translation>{0} nicht erreicht, weil der Flug am Geofence abgebrochen wurde</translation>
     </message>
     <message>
-        <source>{0:n} not reached because the motors stopped in the air</source>
-        <translation>{0:n} nicht erreicht, weil die Motoren in der Luft ausgingen</translation>
+        <source>{0} not reached because the pilot took over by hand</source>
+        <translation>{0} nicht erreicht, weil der Pilot von Hand übernahm</translation>
     </message>
     <message>
-        <source>{0:n} after the end of the record in the air</source>
-        <translation>{0:n} nach dem Ende der Aufzeichnung in der Luft</translation>
+        <source>{0} not reached because the motors stopped in the air</source>
+        <translation>{0} nicht erreicht, weil die Motoren in der Luft ausgingen</translation>
     </message>
     <message>
-        <source>{0:n} where the record does not tell the aircraft&apos;s place</source>
-        <translation>{0:n} ohne Ort des Fluggeräts in der Aufzeichnung</translation>
+        <source>{0} after the end of the record in the air</source>
+        <translation>{0} nach dem Ende der Aufzeichnung in der Luft</translation>
+    </message>
+    <message>
+        <source>{0} where the record does not tell the aircraft&apos;s place</source>
+        <translation>{0} ohne Ort des Fluggeräts in der Aufzeichnung</translation>
     </message>
     <message>
         <source>minimum distance (m) {0} instead of {1}</source>
@@ -7028,8 +7052,8 @@ Damit weiterarbeiten?</translation>
         <translation>Speicherkontingent erschöpft</translation>
     </message>
     <message>
-        <source>[Errno {0:n}] {1}</source>
-        <translation>[Errno {0:n}] {1}</translation>
+        <source>[Errno {0}] {1}</source>
+        <translation>[Errno {0}] {1}</translation>
     </message>
     <message>
         <source>Expecting value</source>
@@ -7144,8 +7168,8 @@ Damit weiterarbeiten?</translation>
         <translation>px</translation>
     </message>
     <message>
-        <source>sortie {0:n}</source>
-        <translation>Einsatz {0:n}</translation>
+        <source>sortie {0}</source>
+        <translation>Einsatz {0}</translation>
     </message>
     <message>
         <source>{0}, at least {1}</source>
@@ -7284,6 +7308,26 @@ Damit weiterarbeiten?</translation>
         <translation>Sektoren, nur mit Pixeln über {0} mm gesehen: {1} von {2} abgedeckten</translation>
     </message>
     <message>
+        <source>{0} at most</source>
+        <translation>höchstens {0}</translation>
+    </message>
+    <message>
+        <source>{0} or more</source>
+        <translation>{0} oder mehr</translation>
+    </message>
+    <message>
+        <source>{0} or {1}</source>
+        <translation>{0} oder {1}</translation>
+    </message>
+    <message>
+        <source>{0} to below {1}</source>
+        <translation>{0} bis unter {1}</translation>
+    </message>
+    <message>
+        <source>{0} to {1}</source>
+        <translation>{0} bis {1}</translation>
+    </message>
+    <message>
         <source>{0}, the coarsest with {1} mm</source>
         <translation>{0}, das gröbste mit {1} mm</translation>
     </message>
@@ -7348,8 +7392,8 @@ Damit weiterarbeiten?</translation>
         <translation>die Route neu planen</translation>
     </message>
     <message>
-        <source>{0}, leg {1:n}</source>
-        <translation>{0}, Strecke {1:n}</translation>
+        <source>{0}, leg {1}</source>
+        <translation>{0}, Strecke {1}</translation>
     </message>
     <message>
         <source>smallest distance along the path</source>
@@ -7438,10 +7482,6 @@ Damit weiterarbeiten?</translation>
     <message>
         <source>expected 0 m or more, got {0}</source>
         <translation>erwartet werden 0 m oder mehr, nicht {0}</translation>
-    </message>
-    <message>
-        <source>expected 0 mm or more, got {0}</source>
-        <translation>erwartet wurden 0 mm oder mehr, gefunden wurde {0}</translation>
     </message>
     <message>
         <source>expected sharp from 0 to {0}, got {1}</source>
@@ -7544,14 +7584,6 @@ Damit weiterarbeiten?</translation>
         <translation>der Startplatz liegt {0} m von einer Flugverbotszone; mehr wird von ihr nicht eingehalten</translation>
     </message>
     <message>
-        <source>expected at most one of a number of views, a share and a number of batteries</source>
-        <translation>erwartet wurde höchstens eines von Anzahl der Aufnahmen, Anteil und Anzahl der Akkus</translation>
-    </message>
-    <message>
-        <source>time budget: expected more than 0 s, got {0}</source>
-        <translation>Zeit zum Planen: erwartet wurden mehr als 0 s, gefunden: {0}</translation>
-    </message>
-    <message>
         <source>viewpoint &apos;{0}&apos; is locked and stays as it is; unlock it before it is {1}</source>
         <translation>Aufnahmepunkt &apos;{0}&apos; ist fixiert und bleibt, wie er ist; ihn freigeben, bevor er {1} wird</translation>
     </message>
@@ -7604,28 +7636,12 @@ Damit weiterarbeiten?</translation>
         <translation>Luftraum: seine Decke liegt {0} m über dem Boden, und Flüge halten von ihm {1} m Abstand; die Decke anheben oder niedrigere Flüge erlauben</translation>
     </message>
     <message>
-        <source>expected 1 to 20000, got {0}</source>
-        <translation>erwartet wurden 1 bis 20000, gefunden: {0}</translation>
-    </message>
-    <message>
         <source>expected at least the {0} locked ones, got {1}</source>
         <translation>erwartet wurden mindestens die {0} fixierten, gefunden: {1}</translation>
     </message>
     <message>
         <source>expected unique ids</source>
         <translation>erwartet wurden eindeutige Kennungen</translation>
-    </message>
-    <message>
-        <source>expected more than 0 and at most 1, got {0}</source>
-        <translation>erwartet wurde mehr als 0 und höchstens 1, gefunden: {0}</translation>
-    </message>
-    <message>
-        <source>expected 1 to 100, got {0}</source>
-        <translation>erwartet wurden 1 bis 100, gefunden: {0}</translation>
-    </message>
-    <message>
-        <source>expected 0 to {0}, got {1}</source>
-        <translation>erwartet wurde 0 bis {0}, gefunden: {1}</translation>
     </message>
     <message>
         <source> ({0} more are too far as well)</source>
@@ -8402,26 +8418,6 @@ Damit weiterarbeiten?</translation>
     <message>
         <source>expected [lowest, highest] within -180 to 90, got [{0}, {1}]</source>
         <translation>erwartet wurde [kleinste, größte] zwischen -180 und 90, gefunden: [{0}, {1}]</translation>
-    </message>
-    <message>
-        <source>expected auto, on or off, got &apos;{0}&apos;</source>
-        <translation>erwartet wurde auto, on oder off, gefunden: &apos;{0}&apos;</translation>
-    </message>
-    <message>
-        <source>expected more than the minimum distance {0:m}, got {1:m}</source>
-        <translation>erwartet wurde mehr als der Mindestabstand {0:m}, gefunden: {1:m}</translation>
-    </message>
-    <message>
-        <source>expected a divisor of 90 from 1 to 90 degrees, got {0}</source>
-        <translation>erwartet wurde ein Teiler von 90 von 1 bis 90 Grad, gefunden: {0}</translation>
-    </message>
-    <message>
-        <source>expected 0 to below 1, got {0}</source>
-        <translation>erwartet wurde 0 bis unter 1, gefunden: {0}</translation>
-    </message>
-    <message>
-        <source>expected a positive speed, got {0}</source>
-        <translation>erwartet wurde eine positive Geschwindigkeit, gefunden: {0}</translation>
     </message>
     <message>
         <source>expected a name, got an empty text</source>
@@ -10472,8 +10468,8 @@ Damit weiterarbeiten?</translation>
         <translation>Flug wird vorbereitet</translation>
     </message>
     <message>
-        <source>the plan breaks {0:n} pre-flight rules, such as: {1}; correct it before it is flown</source>
-        <translation>der Plan verletzt {0:n} Regeln vor dem Flug, etwa: {1}; ihn vor dem Flug berichtigen</translation>
+        <source>the plan breaks {0} pre-flight rules, such as: {1}; correct it before it is flown</source>
+        <translation>der Plan verletzt {0} Regeln vor dem Flug, etwa: {1}; ihn vor dem Flug berichtigen</translation>
     </message>
     <message>
         <source>cannot be seen from any allowed place that was found on the site as it is now</source>
@@ -12750,6 +12746,26 @@ Damit weiterarbeiten?</translation>
     <message>
         <source>{0}, so the site has no panels yet: find them in photos (Photos tab), or draw them on the building (Site tab)</source>
         <translation>{0}, daher hat der Standort noch keine Scheiben: in Fotos suchen (Reiter Fotos) oder am Gebäude zeichnen (Reiter Standort)</translation>
+    </message>
+    <message>
+        <source>a divisor of 90 from 1 to 90 degrees</source>
+        <translation>ein Teiler von 90 von 1 bis 90 Grad</translation>
+    </message>
+    <message>
+        <source>0 m or more</source>
+        <translation>0 m oder mehr</translation>
+    </message>
+    <message>
+        <source>0 mm or more</source>
+        <translation>0 mm oder mehr</translation>
+    </message>
+    <message>
+        <source>a positive speed</source>
+        <translation>eine Geschwindigkeit über 0</translation>
+    </message>
+    <message>
+        <source>more than 0 s</source>
+        <translation>mehr als 0 s</translation>
     </message>
 </context>
 <context>

@@ -6,7 +6,7 @@ from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtGui import QShowEvent
 from PySide6.QtWidgets import QFrame, QLabel, QVBoxLayout, QWidget
 
-from groundstation.gui.application.translate import own_words
+from groundstation.gui.application.translate import translated
 from groundstation.gui.widgets.inputs import ChoiceBox
 from groundstation.gui.widgets.scrolling import WrappingRow
 from groundstation.services.plan.effects import EffectChoice
@@ -100,15 +100,15 @@ class _EffectCard(QFrame):
     def set_choice(self, choice: EffectChoice, units: UnitSystem) -> None:
         """Show a decision."""
         found = choice.decision
-        self._name.setText(own_words(found.effect, units))
+        self._name.setText(translated(found.effect, units))
         self._state.setText(self.tr("is on") if found.on else self.tr("is off"))
         self._state.setProperty("role", "ok" if found.on else "muted")
         self._state.style().polish(self._state)
         by = "" if found.decided_by == "scene" else self.tr(" (as you asked)")
-        self._words.setText(own_words(found.reason, units) + by)
+        self._words.setText(translated(found.reason, units) + by)
         self._size.setText(
             self.tr("Size {0:.3g} {1}, tolerance {2:.3g}; costs about {3:.1f} s").format(
-                found.size, own_words(found.unit, units), found.tolerance, found.cost_s
+                found.size, translated(found.unit, units), found.tolerance, found.cost_s
             )
         )
         self.wish.setVisible(choice.wish is not None)

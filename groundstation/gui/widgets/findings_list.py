@@ -8,7 +8,7 @@ from PySide6.QtCore import QEvent, QModelIndex, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QStandardItem, QStandardItemModel
 from PySide6.QtWidgets import QAbstractItemView, QListView, QWidget
 
-from groundstation.gui.application.translate import own_words
+from groundstation.gui.application.translate import translated
 from groundstation.gui.widgets.severity_icon import SIZE_PX, severity_icon
 from groundstation.gui.widgets.theme import colours
 from groundstation.services.mission.finding_texts import SEVERITIES, by_severity, measured_text
@@ -119,11 +119,11 @@ class FindingsList(QListView):
         if finding.limit is not None:
             facts.append(self.tr("limit {0}").format(self._measured(finding.limit, finding.unit)))
         if finding.place:
-            facts.append(self.tr("at {0}").format(own_words(finding.place, self._units)))
-        return "\n".join([title, own_words(finding.message, self._units), *([" · ".join(facts)] if facts else [])])
+            facts.append(self.tr("at {0}").format(translated(finding.place, self._units)))
+        return "\n".join([title, translated(finding.message, self._units), *([" · ".join(facts)] if facts else [])])
 
     def _measured(self, value: float, unit: str) -> str:
-        return own_words(measured_text(value, unit, self._units), self._units)
+        return translated(measured_text(value, unit, self._units), self._units)
 
     def _row_picked(self, index: QModelIndex) -> None:
         place = index.data(PLACE_ROLE)

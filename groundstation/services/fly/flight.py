@@ -55,6 +55,7 @@ from missions.mavlink.drive import GROUND_HEARTBEAT, HEARTBEAT_EVERY_S
 from missions.mavlink.link import GROUND_STATION
 from missions.mavlink.messages import Address, Message, Received
 from planning.base.errors import GroundStationError, LinkError
+from planning.base.messages import say
 from planning.base.progress import Clock
 
 # Hears a vehicle while no sortie of ours is under way, and passes the pilot's orders on, as a state machine.
@@ -180,20 +181,20 @@ class FlightNews:
 # What becomes of the pilot's requests: the orders they are, when they are done, and what is said of them.
 
 REFUSALS = {
-    Request.UPLOAD: "nothing can be uploaded now: the vehicle must be heard, on the ground and disarmed",
-    Request.START: "the pre-flight list is not all well, or nothing was uploaded yet",
-    Request.PAUSE: "the vehicle does not fly its mission, so there is nothing to pause",
-    Request.RESUME: "the vehicle is not in flight, so there is nothing to resume",
-    Request.RETURN: "no vehicle was heard yet, so none can return",
-    Request.LAND: "no vehicle was heard yet, so none can land",
-    Request.DISCONNECT: "there is no link",
+    Request.UPLOAD: say("nothing can be uploaded now: the vehicle must be heard, on the ground and disarmed"),
+    Request.START: say("the pre-flight list is not all well, or nothing was uploaded yet"),
+    Request.PAUSE: say("the vehicle does not fly its mission, so there is nothing to pause"),
+    Request.RESUME: say("the vehicle is not in flight, so there is nothing to resume"),
+    Request.RETURN: say("no vehicle was heard yet, so none can return"),
+    Request.LAND: say("no vehicle was heard yet, so none can land"),
+    Request.DISCONNECT: say("there is no link"),
 }
 REACHED = {Request.UPLOAD: (Phase.CHECKING, Phase.READY), Request.START: (Phase.FLYING,)}
 """Phases in which the run has done what was asked for."""
 
 DONE = {
-    Request.UPLOAD: "the mission is on board, read back and equal",
-    Request.START: "the aircraft flies its mission",
+    Request.UPLOAD: say("the mission is on board, read back and equal"),
+    Request.START: say("the aircraft flies its mission"),
 }
 
 ORDERS = {
@@ -335,7 +336,9 @@ class LiveFlight:
         except GroundStationError as error:
             problem = str(error)
         except Exception as error:
-            problem = f"the flight could not be watched any longer ({type(error).__name__}: {error}); please report it"
+            problem = say(
+                "the flight could not be watched any longer ({}: {}); please report it", type(error).__name__, error
+            )
             raise
         finally:
             self._keep_unfinished()
@@ -454,7 +457,7 @@ class LiveFlight:
     def _notice_link(self) -> None:
         link = link_state(self._machine.state, self._clock(), is_open=self._wire.opened is not None)
         if link is not self._link:
-            text = "the vehicle is heard again" if self._link is LinkState.LOST else ""
+            text = say("the vehicle is heard again") if self._link is LinkState.LOST else ""
             self._say_link(link, text if link is LinkState.ALIVE else "")
 
     def _say_link(self, link: LinkState, text: str) -> None:
@@ -490,7 +493,9 @@ class LiveFlight:
         if run is not None and run.recorder is not None and run.phase is Phase.FLYING:
             run.note("disconnected", "the ground station disconnected; the aircraft went on by itself")
             record = run.recorder.record(run.orders.site, run.orders.number)
-            error = LinkError("disconnected in flight; the aircraft goes on by itself, what was recorded ends there")
+            error = LinkError(
+                say("disconnected in flight; the aircraft goes on by itself, what was recorded ends there")
+            )
             self._end_flight(run, record, error)
 
     # What is in hand

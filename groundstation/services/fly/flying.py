@@ -39,6 +39,7 @@ from planning.base.effects import Decision, Wish
 from planning.base.errors import GroundStationError, InputError, MissionError, OperationCancelled
 from planning.base.findings import Finding
 from planning.base.json_file import check_output
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.plan import Plan
 from planning.site.file import is_planned_on
@@ -274,9 +275,19 @@ def check_site(plan: Plan, site_model: SiteModel) -> None:
     is_other = not is_planned_on(plan.site_sha256, site_model)
     if is_other or (plan.origin is not None and plan.origin != site_model.site.origin):
         raise InputError(
-            f"the plan was made for the site '{plan.site}' as it was then, and this is "
-            f"{'another' if plan.site != site_model.site.name else 'a changed'} site '{site_model.site.name}'; "
-            "name the site file that it was made for, or plan again"
+            say(
+                "the plan was made for the site '{}' as it was then, and this is another site '{}'; name the "
+                "site file that it was made for, or plan again",
+                plan.site,
+                site_model.site.name,
+            )
+            if plan.site != site_model.site.name
+            else say(
+                "the plan was made for the site '{}' as it was then, and this is a changed site '{}'; name the "
+                "site file that it was made for, or plan again",
+                plan.site,
+                site_model.site.name,
+            )
         )
 
 

@@ -12,6 +12,7 @@ from missions.mavlink.messages import Address, Heartbeat, Message
 from missions.mavlink.signing import Signer, forget_key, key_from_passphrase
 from missions.mavlink.wire import Counts
 from planning.base.errors import InputError, LinkError, LinkTimeout
+from planning.base.messages import about, say
 from planning.base.progress import Clock
 
 MIN_PASSPHRASE = 12
@@ -41,7 +42,7 @@ def set_passphrase(passphrase: str) -> None:
         It is too short, or the key cannot be kept.
     """
     if len(passphrase) < MIN_PASSPHRASE:
-        raise InputError(f"expected a passphrase of {MIN_PASSPHRASE} characters or more, got {len(passphrase)}")
+        raise InputError(say("expected a passphrase of {} characters or more, got {}", MIN_PASSPHRASE, len(passphrase)))
     key_store().save(key_from_passphrase(passphrase))
 
 
@@ -55,7 +56,9 @@ def link_signer() -> Signer:
     """
     signer = key_store().signer()
     if signer is None:
-        raise InputError("there is no signing key on this computer; set one ('signing set', or Key in the Fly tab)")
+        raise InputError(
+            say("there is no signing key on this computer; set one ('signing set', or Key in the Fly tab)")
+        )
     return signer
 
 
@@ -88,19 +91,19 @@ def signing_problem(counts: Counts, *, is_signed: bool, is_heard: bool) -> str:
         Whether an autopilot was heard.
     """
     if is_signed and not is_heard and counts.refused > counts.unsigned:
-        return (
-            "the vehicle signs with another key than this computer's; set the passphrase that it was given, or give it "
-            "this computer's key over a cable"
+        return say(
+            "the vehicle signs with another key than this computer's; set the passphrase that it was given, "
+            "or give it this computer's key over a cable"
         )
     if is_signed and not is_heard and counts.unsigned > 0:
-        return (
-            "the vehicle does not sign what it sends; give it this computer's key over a cable, or connect without "
-            "signing"
+        return say(
+            "the vehicle does not sign what it sends; give it this computer's key over a cable, or connect "
+            "without signing"
         )
     if not is_signed and counts.signed > 0:
-        return (
-            "the vehicle signs what it sends, and may not obey a link that is not signed; disconnect, and connect "
-            "signed with its key"
+        return say(
+            "the vehicle signs what it sends, and may not obey a link that is not signed; disconnect, and "
+            "connect signed with its key"
         )
     return ""
 
@@ -123,8 +126,8 @@ def give_key(url: str, clock: Clock = time.perf_counter) -> Address:
         try:
             return _vehicle(link, url, clock)
         except LinkTimeout as error:
-            text = "the vehicle was given the key and does not sign with it; it may not know signing"
-            raise LinkError(f"{url}: {text}") from error
+            text = say("the vehicle was given the key and does not sign with it; it may not know signing")
+            raise LinkError(about(url, text)) from error
 
 
 def withdraw_key(url: str, clock: Clock = time.perf_counter) -> Address:
@@ -149,7 +152,7 @@ def _vehicle(link: ChannelLink, url: str, clock: Clock) -> Address:
         if received is not None and isinstance(message, Heartbeat) and message.autopilot != NO_AUTOPILOT:
             return received.source
     raise LinkTimeout(
-        f"{url}: no autopilot is heard within {HEARD_S:g} s; is it switched on, and does it use this key?"
+        say("no autopilot is heard within {:g} s; is it switched on, and does it use this key?", HEARD_S, place=url)
     )
 
 

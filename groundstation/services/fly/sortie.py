@@ -16,6 +16,7 @@ from missions.simulator.scene import flight_scene
 from planning.base.effects import Wish
 from planning.base.errors import MissionError
 from planning.base.findings import Severity
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.checks import check_case
 from planning.checks.case import Case
@@ -64,7 +65,7 @@ def prepare_sortie(
     InputError, MissionError
         The plan is for another site, breaks a pre-flight rule, or cannot be flown as it stands.
     """
-    monitor.report("preparing the flight", 0, 2)
+    monitor.report(say("preparing the flight"), 0, 2)
     check_site(plan, site_model)
     missions = missions_from_plan(plan, site_model.site.origin, site_model.site.home_enu_m)
     is_known = known is not None and known.plan is plan and known.site_model is site_model
@@ -73,9 +74,9 @@ def prepare_sortie(
     if errors:
         first = errors[0].message
         raise MissionError(
-            f"the plan breaks {len(errors)} pre-flight rules, such as: {first}; correct it before it is flown"
+            say("the plan breaks {} pre-flight rules, such as: {}; correct it before it is flown", len(errors), first)
         )
-    monitor.report("preparing the flight", 1, 2)
+    monitor.report(say("preparing the flight"), 1, 2)
     return LiveSortie(case, sortie_orders(plan, site_model, missions[number - 1], raised_m))
 
 

@@ -23,6 +23,7 @@ from typing import Any, Generic, TypeVar
 
 from groundstation.services.jobs.worker import Worker
 from planning.base.errors import OperationCancelled
+from planning.base.messages import say
 from planning.base.plugins import blamed
 from planning.base.progress import Clock, QualityPoint, StopRequest, Trace
 
@@ -103,7 +104,7 @@ class JobContext:
     def report(self, stage: str, done: float, total: float) -> None:
         """Publish progress, at most 20 times a second within a stage; raises `OperationCancelled` after a cancel."""
         if self._job.cancel_requested:
-            raise OperationCancelled(f"{self._job.name} was cancelled")
+            raise OperationCancelled(say("{} was cancelled", self._job.name))
         now = self._clock()
         if stage != self._stage:
             self._stage, self._stage_start_s = stage, now
@@ -217,7 +218,7 @@ class JobRunner:
         """Ask a job to end and throw its work away; a queued job ends at once."""
         job._cancel.set()
         if self._advance(job, JobState.QUEUED, JobState.CANCELLED):
-            self._end(job, JobState.CANCELLED, error=OperationCancelled(f"{job.name} was cancelled"))
+            self._end(job, JobState.CANCELLED, error=OperationCancelled(say("{} was cancelled", job.name)))
 
     def shutdown(self) -> None:
         """Wait for running jobs; queued ones still run unless cancelled first."""

@@ -18,6 +18,7 @@ from typing import Any, TypeVar
 
 from groundstation.services.jobs.channel import Lost, Process, Send, sendable
 from planning.base.errors import GroundStationError, OperationCancelled
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor, Stop, Trace, never
 
 Result = TypeVar("Result")
@@ -151,7 +152,7 @@ class Worker:
 
     def _running(self) -> _Child:
         if self._is_closed:
-            raise OperationCancelled("the window is closing")
+            raise OperationCancelled(say("the window is closing"))
         if self._child is None or not self._child.process.is_running:
             self._child = _Child()
         return self._child
@@ -190,11 +191,18 @@ class Worker:
     def _lost(self, lost: Lost) -> GroundStationError:
         self._forget()
         if self._is_closed:
-            return OperationCancelled("the window is closing")
-        why = "the system ended it, mostly because memory ran out" if lost.is_killed else f"exit status {lost.status}"
+            return OperationCancelled(say("the window is closing"))
+        why = (
+            say("the system ended it, mostly because memory ran out")
+            if lost.is_killed
+            else say("exit status {}", lost.status)
+        )
         return GroundStationError(
-            f"the process that plans ended before the work was done ({why}); close other programs, or ask for less, "
-            "and try again"
+            say(
+                "the process that plans ended before the work was done ({}); close other programs, or ask for "
+                "less, and try again",
+                why,
+            )
         )
 
     def _forget(self) -> None:
@@ -256,7 +264,7 @@ class _Service:
     def report(self, stage: str, done: float, total: float) -> None:
         """Send progress, at most every `REPORT_S` within a stage; raises `OperationCancelled` after a cancel."""
         if self._cancel.is_set():
-            raise OperationCancelled(f"cancelled while {stage}")
+            raise OperationCancelled(say("cancelled while {}", stage))
         now = time.monotonic()
         if stage == self._stage and now - self._last_s < REPORT_S:
             return

@@ -20,6 +20,7 @@ from urllib.parse import quote
 from groundstation.services.map.web_mercator import MAX_ZOOM, Tile
 from planning.base.errors import InputError
 from planning.base.files import real_path
+from planning.base.messages import say
 
 MAX_QUERY_S = 2.0
 """Longest that one query may take; with the index that the format asks for it takes under a millisecond."""
@@ -80,7 +81,7 @@ class MapTiles:
         self._path, self._clock, self._deadline_s = path, clock, math.inf
         self._lock = threading.Lock()
         if not path.is_file():
-            raise InputError(f"{path}: there is no such file; choose an MBTiles file")
+            raise InputError(say("there is no such file; choose an MBTiles file", place=path))
         # Immutable: no lock and no journal beside the file, which may be on a stick that is write-protected.
         place = f"file:{quote(str(real_path(path)))}?mode=ro&immutable=1"
         self._connection = sqlite3.connect(place, uri=True, check_same_thread=False)
@@ -112,11 +113,17 @@ class MapTiles:
             self._rows(f"SELECT zoom_level FROM tiles ORDER BY zoom_level {order} LIMIT 1") for order in ("ASC", "DESC")
         )
         if not lowest:
-            raise InputError(f"{self._path}: the map has no tiles; export it again with the area of the site")
+            raise InputError(say("the map has no tiles; export it again with the area of the site", place=self._path))
         levels = lowest[0][0], highest[0][0]
         if not all(isinstance(level, int) and 0 <= level <= MAX_ZOOM for level in levels):
             raise InputError(
-                f"{self._path}: expected zoom levels from 0 to {MAX_ZOOM}, found {levels[0]!r} to {levels[1]!r}"
+                say(
+                    "expected zoom levels from 0 to {}, found {} to {}",
+                    MAX_ZOOM,
+                    repr(levels[0]),
+                    repr(levels[1]),
+                    place=self._path,
+                )
             )
         return TileSetInfo(
             self._path,
@@ -135,14 +142,25 @@ class MapTiles:
         data = self._tile_data("1", ())
         if stated.lower() == "pbf" or (data is not None and data.startswith(_GZIP)):
             raise InputError(
-                f"{self._path}: the map holds vector tiles (pbf), which Reflight does not draw; export it with picture "
-                "tiles (PNG, JPEG or WebP)"
+                say(
+                    "the map holds vector tiles (pbf), which Reflight does not draw; export it with picture tiles "
+                    "(PNG, JPEG or WebP)",
+                    place=self._path,
+                )
             )
         found = next((name for name, head in _HEADS.items() if head.match(data or b"")), None)
         if found is None:
             raise InputError(
-                f"{self._path}: expected tiles in PNG, JPEG or WebP, found something else"
-                f"{f' (the file says {stated!r})' if stated else ''}; export the map again"
+                say(
+                    "expected tiles in PNG, JPEG or WebP, found something else (the file says {}); export the map "
+                    "again",
+                    repr(stated),
+                    place=self._path,
+                )
+                if stated
+                else say(
+                    "expected tiles in PNG, JPEG or WebP, found something else; export the map again", place=self._path
+                )
             )
         return found
 
@@ -158,17 +176,22 @@ class MapTiles:
             except sqlite3.OperationalError as error:
                 if self._is_late():
                     raise InputError(
-                        f"{self._path}: looking a tile up takes more than {MAX_QUERY_S:g} s; the index on tiles is "
-                        "missing or the file is damaged; export the map again"
+                        say(
+                            "looking a tile up takes more than {:g} s; the index on tiles is missing or the file is "
+                            "damaged; export the map again",
+                            MAX_QUERY_S,
+                            place=self._path,
+                        )
                     ) from error
                 raise InputError(self._no_map(error)) from error
             except (sqlite3.Error, UnicodeDecodeError, OverflowError) as error:
                 raise InputError(self._no_map(error)) from error
 
     def _no_map(self, error: Exception) -> str:
-        return (
-            f"{self._path}: not a map in MBTiles format, or damaged ({error}); choose another file, or export the map "
-            "again"
+        return say(
+            "not a map in MBTiles format, or damaged ({}); choose another file, or export the map again",
+            error,
+            place=self._path,
         )
 
     def _is_late(self) -> bool:

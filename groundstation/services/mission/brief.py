@@ -14,6 +14,7 @@ from missions.formats.encode import ExportOptions, TakeoffCheck, dji_return_heig
 from missions.mission.build import missions_from_plan
 from planning.base.errors import GroundStationError
 from planning.base.findings import Finding, Severity
+from planning.base.messages import say
 from planning.insight.flight_profile import LowFlight, low_flight, lowest_flight
 from planning.plan import Plan
 from planning.site.records import Site, SiteModel
@@ -228,6 +229,6 @@ def _return_height(
     try:
         missions = missions_from_plan(plan, site.origin, site.home_enu_m)
     except GroundStationError as error:
-        return None, (Finding(Severity.ERROR, "no-mission", f"no mission can be made of this plan: {error}"),)
+        return None, (Finding(Severity.ERROR, "no-mission", say("no mission can be made of this plan: {}", error)),)
     height_m, findings = dji_return_height(plan, missions, options)
     return height_m, tuple(findings)

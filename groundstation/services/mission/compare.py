@@ -15,6 +15,7 @@ from missions.mission.model import FileFormat, ReadMission
 from missions.mission.to_plan import viewpoints_and_sorties
 from planning.base.errors import InputError
 from planning.base.findings import Finding
+from planning.base.messages import say
 from planning.geo.frames import Origin, Vec3, camera_axes, heading_difference_rad
 from planning.plan import Plan, Sortie, Viewpoint, viewpoint_arrays
 
@@ -191,8 +192,11 @@ def _pairs(planned: Sequence[Viewpoint], read: Sequence[Viewpoint]) -> dict[int,
         return {}
     if len(planned) * len(read) > MAX_PAIRS:
         raise InputError(
-            f"{len(planned)} planned photos and {len(read)} in the file are too many to compare one by one; compare "
-            "smaller plans"
+            say(
+                "{} planned photos and {} in the file are too many to compare one by one; compare smaller plans",
+                len(planned),
+                len(read),
+            )
         )
     from scipy.optimize import linear_sum_assignment
     from scipy.spatial.distance import cdist

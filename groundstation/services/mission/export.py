@@ -24,6 +24,7 @@ from planning.base.files import real_path, sha256_given
 from planning.base.findings import Finding, Severity
 from planning.base.folders import check_ending
 from planning.base.json_file import JSON_FILE, check_output
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.parameters import DEFAULT_PROFILE, Constraints
 from planning.plan import Plan, write_plan
@@ -157,7 +158,7 @@ def import_missions(
             f"{beside}: this is a site of its own, which the mission's bare one would replace; name it with --site, or "
             "the plan otherwise"
         )
-    monitor.report("reading the mission", 0, 1)
+    monitor.report(say("reading the mission"), 0, 1)
     read = read_mission_files(paths, strict=strict)
     model, on_site = bare_site(read)
     plan, findings = plan_of_missions(read, model, profile_id, constraints, monitor)

@@ -20,6 +20,7 @@ from planning.aircraft.catalogue import profile
 from planning.base.errors import GroundStationError, InputError
 from planning.base.files import real_path
 from planning.base.findings import Finding, Severity
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.checks import check_plan
 from planning.coverage.evaluate import coverage
@@ -126,16 +127,18 @@ def in_order_of_sorties(paths: Sequence[Path]) -> tuple[Path, ...]:
 def readiness(plan: Plan, site_model: SiteModel) -> Iterator[Finding]:
     """What the pilot must know of a plan before it flies on this site."""
     if not is_planned_on(plan.site_sha256, site_model):
-        text = (
-            f"the site file of '{site_model.site.name}' has changed since this plan was made; what the mission takes "
-            "from it (return height, fences) is as it is now"
+        text = say(
+            "the site file of '{}' has changed since this plan was made; what the mission takes from it "
+            "(return height, fences) is as it is now",
+            site_model.site.name,
         )
         yield Finding(Severity.WARNING, "site-changed", text)
     errors = [found for found in check_plan(plan, site_model) if found.severity is Severity.ERROR]
     if errors:
-        text = (
-            f"this plan is not ready to fly ({len(errors)} findings of the pre-flight check, the first: "
-            f"{errors[0].message})"
+        text = say(
+            "this plan is not ready to fly ({} findings of the pre-flight check, the first: {})",
+            len(errors),
+            errors[0].message,
         )
         yield Finding(Severity.WARNING, "not-ready", text, errors[0].place, float(len(errors)), 0.0, "findings")
 
@@ -150,9 +153,13 @@ def within_item_limit(plan: Plan, site_model: SiteModel, options: ExportOptions)
     if longest <= limit:
         return plan, ()
     anew = _shared_out(plan, site_model, limit)
-    text = (
-        f"{autopilot} keeps the items of about {limit} photos, but a sortie of this plan has {longest}; the same views "
-        f"were shared out among {len(anew.sorties)} sorties for these files"
+    text = say(
+        "{} keeps the items of about {} photos, but a sortie of this plan has {}; the same views were "
+        "shared out among {} sorties for these files",
+        autopilot,
+        limit,
+        longest,
+        len(anew.sorties),
     )
     return anew, (Finding(Severity.WARNING, "item-limit", text, "", float(longest), float(limit), "photos"),)
 
@@ -179,7 +186,7 @@ def read_mission_files(paths: Sequence[Path], *, strict: bool = False) -> tuple[
     resolved = [real_path(path) for path in paths]
     for number, path in enumerate(paths):
         if resolved[number] in resolved[:number]:
-            raise InputError(f"{path}: this mission file is named twice; name the file of each sortie once")
+            raise InputError(say("this mission file is named twice; name the file of each sortie once", place=path))
     return tuple(mission for path in paths for mission in _read_given_missions(path, strict))
 
 
@@ -212,9 +219,9 @@ def bare_site(missions: Sequence[ReadMission]) -> tuple[SiteModel, tuple[Finding
     else:
         geoid_m = float(undulation_m(start.lat_deg, start.lon_deg))
         home = GeoPoint(start.lat_deg, start.lon_deg, min(heights_m) - FLOOR_M if heights_m else geoid_m)
-        text = (
-            "its file does not say where it takes off, so home is below its first waypoint, at an assumed height; what "
-            "depends on that height is only to look at"
+        text = say(
+            "its file does not say where it takes off, so home is below its first waypoint, at an assumed "
+            "height; what depends on that height is only to look at"
         )
         findings.append(Finding(Severity.WARNING, "bare-site", text, first.name))
     origin = Origin(round(home.lat_deg, 9), round(home.lon_deg, 9), round(home.height_ellipsoid_m, 3))
@@ -258,7 +265,7 @@ def missions_as_plan(
     InfeasibleError
         Nothing on this site can be covered under the constraints.
     """
-    monitor.report("reading the mission", 0, 1)
+    monitor.report(say("reading the mission"), 0, 1)
     return plan_of_missions(read_mission_files(paths, strict=strict), site_model, profile_id, constraints, monitor)
 
 

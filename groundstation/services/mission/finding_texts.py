@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 
 from groundstation.services.units import UnitSystem, length_unit, minutes_text, sampling_unit, speed_unit
 from planning.base.findings import Finding, Severity
+from planning.base.messages import say
 
 SEVERITIES = (Severity.ERROR, Severity.WARNING, Severity.NOTE, Severity.OK)
 """The gravest first."""
@@ -50,4 +51,4 @@ def measured_text(value: float, unit: str, system: UnitSystem) -> str:
         case "deg":
             return f"{value:.1f}°"
         case _:
-            return f"{round(value, 3):g} {unit}".rstrip()
+            return say(f"{{:g}} {unit}", round(value, 3)) if unit else f"{round(value, 3):g}"

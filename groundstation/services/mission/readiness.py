@@ -20,6 +20,7 @@ from groundstation.services.mission.item_limit import too_long
 from groundstation.services.site.sun import sun_place_deg
 from missions.mavlink.autopilots import Autopilot
 from planning.base.findings import Finding, Severity, is_flyable
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.checks import check_case
 from planning.checks.case import Case
@@ -98,18 +99,21 @@ def _coverage(case: Case) -> Iterator[Finding]:
     covered = int(np.count_nonzero(case.measures.counts))
     bound = case.plan.coverage.reachable_upper_bound
     if bound and covered < FAR_BELOW * bound:
-        text = (
-            f"{covered} of the {bound} sections that flights can cover are covered ({covered / bound:.0%}): plan with "
-            "more --views, or a --coverage"
+        text = say(
+            "{} of the {} sections that flights can cover are covered ({:.0%}): plan with more --views, or a "
+            "--coverage",
+            covered,
+            bound,
+            covered / bound,
         )
         yield Finding(Severity.WARNING, "coverage-far", text, "", 100.0 * covered / bound, 100.0 * FAR_BELOW, "%")
 
 
 def _place(case: Case) -> Iterator[Finding]:
     if case.site_model.site.place_from == "ifc-site":
-        text = (
-            "the site lies where its BIM file says, which is often just the city: compare it with a map, and give its "
-            "--origin"
+        text = say(
+            "the site lies where its BIM file says, which is often just the city: compare it with a map, and "
+            "give its --origin"
         )
         yield Finding(Severity.WARNING, "place", text)
 
@@ -119,9 +123,12 @@ def _items(case: Case) -> Iterator[Finding]:
     known = [autopilot for autopilot in Autopilot if autopilot.value == plan.profile]
     found = too_long(plan, known) if known else None
     if found is not None:
-        text = (
-            f"a sortie has {found.longest} photos, and {found.autopilot.product} keeps items for {found.limit}: it is "
-            "shared out among more sorties before it is uploaded"
+        text = say(
+            "a sortie has {} photos, and {} keeps items for {}: it is shared out among more sorties before "
+            "it is uploaded",
+            found.longest,
+            found.autopilot.product,
+            found.limit,
         )
         yield Finding(Severity.WARNING, "autopilot-items", text, "", float(found.longest), float(found.limit), "photos")
 
@@ -135,8 +142,17 @@ def _glass(case: Case) -> Iterator[Finding]:
     nearest_m = min(case.measures.solid_gaps.legs_m.values())
     is_near = nearest_m < NEAR_GLASS_M
     text = (
-        f"obstacle sensing does not see glass: the distance kept, {nearest_m:.1f} m at the least, rests on the "
-        f"position alone{'; fly with RTK' if is_near else ''}"
+        say(
+            "obstacle sensing does not see glass: the distance kept, {:.1f} m at the least, rests on the "
+            "position alone; fly with RTK",
+            nearest_m,
+        )
+        if is_near
+        else say(
+            "obstacle sensing does not see glass: the distance kept, {:.1f} m at the least, rests on the "
+            "position alone",
+            nearest_m,
+        )
     )
     severity = Severity.WARNING if is_near else Severity.NOTE
     yield Finding(severity, "glass-sensing", text, "", nearest_m, NEAR_GLASS_M, "m")
@@ -149,29 +165,33 @@ def _sun(case: Case, at: datetime | None) -> Iterator[Finding]:
     if not case.plan.viewpoints:
         return
     if at is None:
-        yield Finding(Severity.NOTE, "sun", "where the sun stands is not looked at: no time is planned (--at)")
+        yield Finding(Severity.NOTE, "sun", say("where the sun stands is not looked at: no time is planned (--at)"))
         return
     origin = case.site_model.site.origin
     _, elevation_deg = sun_place_deg(origin.lat_deg, origin.lon_deg, at)
     if elevation_deg <= 0.0:
-        text = f"the sun is below the horizon ({elevation_deg:.0f} degrees) at the planned time"
+        text = say("the sun is below the horizon ({:.0f} degrees) at the planned time", elevation_deg)
         yield Finding(Severity.WARNING, "sun", text, "", elevation_deg, 0.0, "deg")
         return
     dazzled = dazzled_views(case, at)
     total = len(case.plan.viewpoints)
     if not dazzled.all():
         best, n_best = _best_time(case, at)
-        better = f"; at {best:%H:%M} it would be {n_best}" if n_best < dazzled.count else ""
+        better = say("; at {:%H:%M} it would be {}", best, n_best) if n_best < dazzled.count else ""
         if dazzled.direct:
-            text = f"the sun is in the picture of {len(dazzled.direct)} of {total} photos at the planned time{better}"
+            text = say(
+                "the sun is in the picture of {} of {} photos at the planned time{}", len(dazzled.direct), total, better
+            )
             n = float(len(dazzled.direct))
             yield Finding(Severity.WARNING, "sun-direct", text, dazzled.direct[0], n, 0.0, "photos")
         if dazzled.mirrored:
-            text = f"glass mirrors the sun into {len(dazzled.mirrored)} of {total} photos at the planned time{better}"
+            text = say(
+                "glass mirrors the sun into {} of {} photos at the planned time{}", len(dazzled.mirrored), total, better
+            )
             n = float(len(dazzled.mirrored))
             yield Finding(Severity.WARNING, "sun-mirrored", text, dazzled.mirrored[0], n, 0.0, "photos")
     else:
-        text = "the sun is in no photo at the planned time, and no glass mirrors it into one"
+        text = say("the sun is in no photo at the planned time, and no glass mirrors it into one")
         yield Finding(Severity.OK, "sun", text, "", elevation_deg, 0.0, "deg")
 
 
@@ -287,19 +307,25 @@ def _cold(case: Case, temperature_c: float | None) -> Iterator[Finding]:
     if not plan.sorties:
         return
     if temperature_c is None:
-        yield Finding(Severity.NOTE, "cold", "what cold takes from the batteries is not looked at (--temperature)")
+        yield Finding(Severity.NOTE, "cold", say("what cold takes from the batteries is not looked at (--temperature)"))
         return
     share = charge_at(temperature_c)
     usable_s = plan.aircraft.endurance_s * max(0.0, share - plan.rules.battery_reserve)
     longest = max(range(len(plan.sorties)), key=lambda n: plan.sorties[n].duration_s)
-    takes_s, place = plan.sorties[longest].duration_s, f"sortie {longest + 1}"
+    takes_s, place = plan.sorties[longest].duration_s, say("sortie {}", longest + 1)
     if takes_s > usable_s:
-        text = (
-            f"at {temperature_c:g} degrees a battery gives some {share:.0%} of its charge, {usable_s:.0f} s above the "
-            f"reserve, and the longest sortie takes {takes_s:.0f} s: warm the batteries to 20 degrees, or plan shorter "
-            "sorties with a larger --reserve"
+        text = say(
+            "at {:g} degrees a battery gives some {:.0%} of its charge, {:.0f} s above the reserve, and the "
+            "longest sortie takes {:.0f} s: warm the batteries to 20 degrees, or plan shorter sorties with a "
+            "larger --reserve",
+            temperature_c,
+            share,
+            usable_s,
+            takes_s,
         )
         yield Finding(Severity.WARNING, "cold", text, place, takes_s, usable_s, "s")
     else:
-        text = f"at {temperature_c:g} degrees a battery gives some {share:.0%} of its charge, and that is enough"
+        text = say(
+            "at {:g} degrees a battery gives some {:.0%} of its charge, and that is enough", temperature_c, share
+        )
         yield Finding(Severity.OK, "cold", text, place, takes_s, usable_s, "s")

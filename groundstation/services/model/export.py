@@ -16,6 +16,7 @@ from planning.base.errors import InputError
 from planning.base.files import read_given
 from planning.base.folders import check_ending, check_folder_name
 from planning.base.json_file import check_output
+from planning.base.messages import say
 from planning.base.plugins import Plugin, PluginGroup, expect_type, guarded, load_plugins, told_problem
 from planning.base.progress import QUIET, Monitor, Stop, Trace
 
@@ -46,8 +47,8 @@ class ModelFormat(StrEnum):
 
 Gaussians = Literal["numbers", "spz", "points"]
 
-TWO_LAYERS = "CesiumJS: show gaussians.json and panels.json as two layers"
-NO_CESIUM = (
+TWO_LAYERS = say("CesiumJS: show gaussians.json and panels.json as two layers")
+NO_CESIUM = say(
     "CesiumJS stops at Gaussians that are not compressed: for it, show panels.json alone, or write --gaussians spz"
 )
 
@@ -192,7 +193,7 @@ def _shown(
         known = [component.name for component in whole.components]
         unknown = next((name for name in wanted.components if name not in known), None)
         if unknown is not None:
-            raise InputError(f"--components: there is no component '{unknown}'; known are {', '.join(known)}")
+            raise InputError(say("--components: there is no component '{}'; known are {}", unknown, ", ".join(known)))
         chosen = tuple(component for component in whole.components if component.name in wanted.components)
         scene = replace(whole, components=chosen)
     if not exporter.has_colours:
@@ -200,13 +201,15 @@ def _shown(
     if not needs_baking(trained.model):
         if type(trained.model.shader) is not Shader:
             notes.append(
-                "what this method's shading adds is not in the file: its Gaussians have their own colours only"
+                say("what this method's shading adds is not in the file: its Gaussians have their own colours only")
             )
     elif wanted.baked:
         scene = baked(scene, trained.model, monitor)
-        notes.append("mirrored light is in the colours, as harmonics of degree 3: blurred, and it stays on the panes")
+        notes.append(
+            say("mirrored light is in the colours, as harmonics of degree 3: blurred, and it stays on the panes")
+        )
     else:
-        notes.append("panels show their own colour only, and mirror nothing")
+        notes.append(say("panels show their own colour only, and mirror nothing"))
     return scene, notes
 
 
@@ -256,13 +259,13 @@ def _web(export: ModelToExport) -> list[str]:
         )
         page = write_web(export.scene, export.out, export.rows, options, export.monitor)
     told = (
-        (page.n_strays, "{0} records of objects that the model lacks are left out"),
+        (page.n_strays, say("{{0}} records of objects that the model lacks are left out")),
         (
             page.n_missing,
-            "{0} files of records are missing or changed: the page says so; copy them back beside the records",
+            say("{{0}} files of records are missing or changed: the page says so; copy them back beside the records"),
         ),
-        (page.n_damaged, "{0} pictures of records cannot be read: the page says so; attach them again"),
-        (page.n_large, "{0} documents are too large for the page, which names them; pass them on by themselves"),
+        (page.n_damaged, say("{{0}} pictures of records cannot be read: the page says so; attach them again")),
+        (page.n_large, say("{{0}} documents are too large for the page, which names them; pass them on by themselves")),
     )
     return [text.format(n) for n, text in told if n]
 
@@ -285,7 +288,9 @@ def _tiles(export: ModelToExport) -> list[str]:
         sh_degree=export.degree(3), place=place, gaussians=gaussians, compression=_compression(export)
     )
     write_tiles(export.scene, export.out, options, export.attributes, export.monitor)
-    notes = [] if place == "earth" else ["the place on Earth is not known: tiles stay in the site's own frame"]
+    notes: list[str] = (
+        [] if place == "earth" else [say("the place on Earth is not known: tiles stay in the site's own frame")]
+    )
     return notes + {"spz": [TWO_LAYERS], "numbers": [NO_CESIUM], "points": []}[gaussians]
 
 
@@ -322,7 +327,7 @@ def _mesh(export: ModelToExport) -> list[str]:
     from reconstruction.exports.mesh import write_mesh
 
     write_mesh(export.scene, export.trained.model, export.out, attributes=export.attributes, monitor=export.monitor)
-    return ["each panel is a picture of its front: mirror images in it belong to that view alone"]
+    return [say("each panel is a picture of its front: mirror images in it belong to that view alone")]
 
 
 def _cityjson(export: ModelToExport) -> list[str]:
@@ -411,7 +416,9 @@ def model_exporter(name: str) -> ModelExporter:
     if name not in model_exporters():
         problem = told_problem(PluginGroup.MODEL_FORMATS, name)
         known = ", ".join(model_exporters())
-        raise InputError(f"there is no model format '{name}'; known are: {known}" if problem is None else str(problem))
+        raise InputError(
+            say("there is no model format '{}'; known are: {}", name, known) if problem is None else str(problem)
+        )
     return model_exporters()[name]
 
 
@@ -423,11 +430,13 @@ def _compression(export: ModelToExport) -> Compression:
 
 
 def _left_out(done: Compressed) -> list[str]:
-    found = []
+    found: list[str] = []
     if done.n_left_out:
-        found.append(f"{done.n_left_out} Gaussians that nobody sees are left out")
+        found.append(say("{} Gaussians that nobody sees are left out", done.n_left_out))
     if done.n_resized:
-        found.append(f"{done.n_resized} Gaussians are larger or smaller than the format has, and have its nearest size")
+        found.append(
+            say("{} Gaussians are larger or smaller than the format has, and have its nearest size", done.n_resized)
+        )
     return found
 
 

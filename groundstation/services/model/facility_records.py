@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from groundstation.services.model.scene_records import object_rows, user_name
 from planning.base.errors import InputError
+from planning.base.json_file import plain_values
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 
 if TYPE_CHECKING:
@@ -143,8 +145,6 @@ def object_content(book: RecordBook, name: str) -> dict[str, Any]:
     InputError
         There is no such object.
     """
-    import msgspec
-
     from reconstruction.records.entries import KINDS
 
     with book.database.snapshot():
@@ -155,21 +155,19 @@ def object_content(book: RecordBook, name: str) -> dict[str, Any]:
             "corners_enu_m": row.corners_enu_m,
         }
         for kind in KINDS:
-            content[kind.table] = [msgspec.to_builtins(entry) for entry in book.entries(kind.record, row.global_id)]
+            content[kind.table] = [plain_values(entry) for entry in book.entries(kind.record, row.global_id)]
     return content
 
 
 def plain_records(book: RecordBook) -> dict[str, list[dict[str, Any]]]:
     """All entries of all objects by GlobalId, as plain values with their `record` (such as `defect`) first."""
-    import msgspec
-
     from reconstruction.records.entries import KINDS
 
     found: dict[str, list[dict[str, Any]]] = {}
     with book.database.snapshot():
         for kind in KINDS:
             for entry in book.entries(kind.record):
-                fields = {name: value for name, value in msgspec.to_builtins(entry).items() if name != "global_id"}
+                fields = {name: value for name, value in plain_values(entry).items() if name != "global_id"}
                 found.setdefault(entry.global_id, []).append({"record": kind.name, **fields})
     return found
 
@@ -349,7 +347,7 @@ def export_ifc(
 
 
 def _listed(names: Sequence[str]) -> str:
-    return ", ".join(names[:10]) + (f" and {len(names) - 10} more" if len(names) > 10 else "")
+    return ", ".join(names[:10]) + (say(" and {} more", len(names) - 10) if len(names) > 10 else "")
 
 
 def _object(row: ObjectRow) -> dict[str, Any]:

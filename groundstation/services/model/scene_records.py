@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from planning.base.errors import InputError
 from planning.base.files import read_given
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 
 if TYPE_CHECKING:
@@ -116,7 +117,7 @@ def attachments_of(
         return found
     with RecordBook(folder / FILE) as book:
         for number, name in enumerate(sorted(names)):
-            monitor.report("reading what is attached", number, len(names))
+            monitor.report(say("reading what is attached"), number, len(names))
             found[name] = Attachment()
             with suppress(InputError):
                 content = read_given(stored_path(book, name), DOCUMENT_FILE)

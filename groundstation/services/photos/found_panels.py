@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from groundstation.services.photos.panels import site_facade
 from groundstation.services.site.edits import with_site
 from planning.base.errors import InputError
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.photos.record import PhotoMetadata
 from planning.site.records import SiteModel
@@ -83,10 +84,10 @@ def search_panels(
     """
     if not len(model.building.triangles):
         raise InputError(
-            "this site has no building mesh, and panels are found on one; import the coarse model of the building"
+            say("this site has no building mesh, and panels are found on one; import the coarse model of the building")
         )
     if not photos:
-        raise InputError("none of the photos says where it was taken, so that panels cannot be put into 3-D")
+        raise InputError(say("none of the photos says where it was taken, so that panels cannot be put into 3-D"))
     by_path = {data.path: data for data in metadata}
 
     def load(photo: PosedPhoto) -> NDArray[np.uint8]:
@@ -105,7 +106,7 @@ def solved_draft(draft: PanelDraft, monitor: Monitor = QUIET) -> PanelDraft:
     """
     facades = []
     for number, facade in enumerate(draft.found.facades):
-        monitor.report("solving facades", number, len(draft.found.facades))
+        monitor.report(say("solving facades"), number, len(draft.found.facades))
         if facade.id in draft.unsolved:
             grids = {photo: grid for (name, photo), grid in draft.found.grids.items() if name == facade.id}
             facade = solve_facade(facade.id, draft.photos, grids, draft.found.fits[facade.id])
@@ -125,5 +126,5 @@ def with_found_panels(model: SiteModel, draft: PanelDraft) -> SiteModel:
         raise ValueError(f"expected a solved draft, got corrections of {sorted(draft.unsolved)}")
     facades = tuple(site_facade(one) for one in draft.found.facades if one.panels)
     if not facades:
-        raise InputError("no panel is left: put one back before these panels are used")
+        raise InputError(say("no panel is left: put one back before these panels are used"))
     return with_site(model, replace(model.site, facades=facades))

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from groundstation.services.photos.found_panels import GridPlace, PanelDraft
 from groundstation.services.photos.grids import LEAST_APART_PX, cell_at, cell_middle, lines_of, room_for_line
 from planning.base.errors import InputError
+from planning.base.messages import say
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.panels.search.cells import facade_grid
 from reconstruction.panels.search.record import FacadeGrid, GridLine
@@ -39,8 +40,10 @@ def move_line(draft: PanelDraft, place: GridPlace, axis: Axis, index: int, posit
     low, high = room_for_line(grid, axis, index)
     if not low <= position_px <= high:
         raise InputError(
-            "a line can be moved as far as its neighbours and the edge of the picture; remove the line that is in the "
-            "way first"
+            say(
+                "a line can be moved as far as its neighbours and the edge of the picture; remove the line that "
+                "is in the way first"
+            )
         )
     old = lines_of(grid, axis)[index]
     return _with_lines_changed(draft, place, axis, old.position_px, position_px, old.width_px)
@@ -56,7 +59,7 @@ def add_line(draft: PanelDraft, place: GridPlace, axis: Axis, position_px: float
     """
     lines = lines_of(draft.grid(place), axis)
     if any(abs(line.position_px - position_px) < LEAST_APART_PX for line in lines):
-        raise InputError("there is a line already; point at a place between two lines, or beyond the last")
+        raise InputError(say("there is a line already; point at a place between two lines, or beyond the last"))
     width = float(np.median([line.width_px for line in lines])) if lines else 0.0
     return _with_lines_changed(draft, place, axis, None, position_px, width)
 
@@ -71,7 +74,9 @@ def remove_line(draft: PanelDraft, place: GridPlace, axis: Axis, index: int) -> 
     """
     lines = lines_of(draft.grid(place), axis)
     if len(lines) <= 2:
-        raise InputError("a facade needs two lines in each direction at least; add another line before this one goes")
+        raise InputError(
+            say("a facade needs two lines in each direction at least; add another line before this one goes")
+        )
     return _with_lines_changed(draft, place, axis, lines[index].position_px, None, 0.0)
 
 

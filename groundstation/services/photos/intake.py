@@ -15,6 +15,7 @@ from groundstation.services.project.input_files import read_given_plan, read_giv
 from planning.aircraft.catalogue import profile
 from planning.base.effects import Decision
 from planning.base.findings import Finding, Severity
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.coverage.model import CoverageModel
 from planning.parameters import DEFAULT_PROFILE, Constraints
@@ -132,7 +133,7 @@ def take_in_photos(
     )
     usable = tuple(found is not None for found in quality.photos)
     coverage = None if counted is None else _achieved(counted, photos, usable, model, flown, monitor)
-    text = "the site has no panels yet, so nothing is said of what the photos show of them"
+    text = say("the site has no panels yet, so nothing is said of what the photos show of them")
     shown = (Finding(Severity.NOTE, NO_PANELS, text),) if coverage is None else coverage.findings
     everything = (*read.findings, *still_true(posed.findings, better), *better.findings, *quality.findings, *shown)
     return PhotoIntake(

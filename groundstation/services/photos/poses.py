@@ -11,6 +11,7 @@ import numpy as np
 
 from planning.base.errors import InputError
 from planning.base.findings import Finding, Severity
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.colmap.folder import read_model
@@ -67,7 +68,7 @@ class RefineRequest:
         whole = photos.absolute()
         if not whole.name:
             raise InputError(
-                f"{photos}: is a whole drive, and refined poses cannot lie beside it; copy the photos first"
+                say("is a whole drive, and refined poses cannot lie beside it; copy the photos first", place=photos)
             )
         return whole.with_name(whole.name + REFINED_SUFFIX)
 
@@ -223,7 +224,7 @@ def _kept(where: Path, photos: Sequence[PosedPhoto], wish: RefineRequest) -> Kep
     try:
         kept = read_refined(where, photos)
     except InputError as error:
-        raise InputError(f"{error}; remove the folder {where} to have the poses refined again") from error
+        raise InputError(say("{}; remove the folder {} to have the poses refined again", error, where)) from error
     size = wish.max_image_size_px
     is_same = kept.photos_sha256 == fingerprint(photos)
     return kept if is_same and size in (None, kept.parameters.max_image_size_px) else None
@@ -246,13 +247,19 @@ def _judged(photos: Sequence[PosedPhoto], kept: KeptRefinement, where: Path, *, 
 
 def _outcome_finding(outcome: RefinedOutcome) -> Finding:
     if not outcome.n_refined:
-        text = f"none of the {outcome.n_photos} photos has a refined pose; all keep their own"
+        text = say("none of the {} photos has a refined pose; all keep their own", outcome.n_photos)
         return Finding(Severity.WARNING, "poses-refined", text, "", 0.0, None, "photos")
     (usual_m, most_m), (usual_deg, most_deg) = outcome.moved_m, outcome.turned_deg
-    text = (
-        f"{outcome.n_refined} of {outcome.n_photos} photos have refined poses and lenses, moved by {usual_m:.3f} m and "
-        f"turned by {usual_deg:.2f} degrees in the middle, by {most_m:.3f} m and {most_deg:.2f} degrees at most; image "
-        f"points are off by {outcome.reprojection_px:.2f} px"
+    text = say(
+        "{} of {} photos have refined poses and lenses, moved by {:.3f} m and turned by {:.2f} degrees "
+        "in the middle, by {:.3f} m and {:.2f} degrees at most; image points are off by {:.2f} px",
+        outcome.n_refined,
+        outcome.n_photos,
+        usual_m,
+        usual_deg,
+        most_m,
+        most_deg,
+        outcome.reprojection_px,
     )
     return Finding(Severity.NOTE, "poses-refined", text, "", float(outcome.n_refined), None, "photos")
 

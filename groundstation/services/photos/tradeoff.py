@@ -11,6 +11,7 @@ import numpy as np
 
 from groundstation.services.photos.found_panels import PanelDraft
 from planning.base.errors import InfeasibleError
+from planning.base.messages import say
 from planning.base.progress import QUIET, Clock, Monitor
 from planning.photos.record import PhotoMetadata
 from reconstruction.panels.rectify.view import SurfaceView, surface_view
@@ -80,7 +81,7 @@ def facade_trials(
             # The first search of a process loads the compiled kernels, which is no part of any scale's time.
             segment_view(image, view, _parameters(scales[0]), monitor, facade_id)
         for step, scale in enumerate(scales):
-            monitor.report("trying scales", done * len(scales) + step, n_steps)
+            monitor.report(say("trying scales"), done * len(scales) + step, n_steps)
             started = clock()
             grids[scale][number] = segment_view(image, view, _parameters(scale), QUIET, facade_id)
             spent_s[scale][number] = clock() - started

@@ -7,8 +7,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import msgspec
-
 from groundstation.services.mission.files import missions_as_plan
 from groundstation.services.project.document import PlanEntry
 from groundstation.services.project.input_files import FileKind, kind_of, read_given_plan, read_given_site
@@ -16,6 +14,8 @@ from planning.aircraft.catalogue import profiles
 from planning.base.errors import InputError
 from planning.base.files import real_path
 from planning.base.findings import Finding, Severity
+from planning.base.json_file import plain_values
+from planning.base.messages import about, say
 from planning.base.progress import QUIET, Monitor
 from planning.insight.comparison import Comparison, compare_plans
 from planning.plan import Plan
@@ -45,7 +45,7 @@ def compare(
         The site cannot be prepared: home cannot be used, or no allowed viewpoint sees anything.
     """
     if len(plans) < 2:
-        raise InputError(f"expected two plans or more to compare, got {len(plans)}")
+        raise InputError(say("expected two plans or more to compare, got {}", len(plans)))
     for plan, name in zip(plans, names, strict=True):
         _check_same_place(plan, name, site_model)
     if prepared is None:
@@ -57,8 +57,19 @@ def _check_same_place(plan: Plan, name: str, site_model: SiteModel) -> None:
     site = site_model.site
     if plan.site != site.name or (plan.origin is not None and plan.origin != site.origin):
         raise InputError(
-            f"{name}: this plan was made for site '{plan.site}', the site here is '{site.name}'"
-            f"{'' if plan.site != site.name else ' at another origin'}; compare plans of one site"
+            say(
+                "this plan was made for site '{}', the site here is '{}'; compare plans of one site",
+                plan.site,
+                site.name,
+                place=name,
+            )
+            if plan.site != site.name
+            else say(
+                "this plan was made for site '{}', the site here is '{}' at another origin; compare plans of one site",
+                plan.site,
+                site.name,
+                place=name,
+            )
         )
 
 
@@ -75,7 +86,7 @@ def compare_files(plan_paths: Sequence[Path], site_path: Path, monitor: Monitor 
     """
     for number, path in enumerate(plan_paths):
         if real_path(path) in [real_path(other) for other in plan_paths[:number]]:
-            raise InputError(f"{path}: this plan is named twice; name each plan once")
+            raise InputError(say("this plan is named twice; name each plan once", place=path))
     names = [_name_of(path) for path in plan_paths]
     if len(set(names)) < len(names):
         names = [str(path) for path in plan_paths]
@@ -84,7 +95,7 @@ def compare_files(plan_paths: Sequence[Path], site_path: Path, monitor: Monitor 
     for path, name in zip(plan_paths[1:], names[1:], strict=True):
         if kind_of(path) is FileKind.MISSION:
             plan, found = _plan_of_mission(path, site_model, first, monitor)
-            notes += [f"{name}: {finding.message}" for finding in found if finding.severity is not Severity.OK]
+            notes += [about(name, finding.message) for finding in found if finding.severity is not Severity.OK]
         else:
             plan = read_given_plan(path)
         plans.append(plan)
@@ -102,8 +113,11 @@ def _plan_of_mission(
 ) -> tuple[Plan, tuple[Finding, ...]]:
     if first.profile not in profiles():
         raise InputError(
-            f"{path}: expected a plan file, found a mission file, and the first plan does not name an aircraft of the "
-            "catalogue to read it for; make a plan of it first ('import' with --profile)"
+            say(
+                "expected a plan file, found a mission file, and the first plan does not name an aircraft of the "
+                "catalogue to read it for; make a plan of it first ('import' with --profile)",
+                place=path,
+            )
         )
     return missions_as_plan((path,), site_model, first.profile, first.constraints, monitor)
 
@@ -139,7 +153,7 @@ def comparison_summary(comparison: Comparison) -> dict[str, Any]:
     """What `compare --json` prints."""
     return {
         "plans": list(comparison.names),
-        "constraints": msgspec.to_builtins(comparison.constraints),
+        "constraints": plain_values(comparison.constraints),
         "notes": list(comparison.notes),
-        "rows": [{**msgspec.to_builtins(row), "best": list(row.best)} for row in comparison.rows],
+        "rows": [{**plain_values(row), "best": list(row.best)} for row in comparison.rows],
     }

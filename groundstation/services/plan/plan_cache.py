@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.aircraft.catalogue import profile
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.checks.measures import pose_of
 from planning.coverage.sections import NOT_SEEN
@@ -126,7 +127,7 @@ def take_in_hand(
     reasons = groundwork.reasons
     if reasons is None:
         reasons = section_reasons(site_model, groundwork.prepared, monitor=monitor)
-    monitor.report("measuring the plan", 0, 1)
+    monitor.report(say("measuring the plan"), 0, 1)
     revision = revise(plan, groundwork.prepared)
     return ActivePlan(PreparedSite(groundwork.prepared, reasons), revision, insight_of(revision, reasons))
 

@@ -8,8 +8,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import msgspec
-
 from groundstation.services.mission.preflight import preflight
 from groundstation.services.mission.readiness import UNKNOWN_DAY, FlightDay
 from groundstation.services.project.input_files import read_given_plan, read_given_site
@@ -18,7 +16,8 @@ from planning.aircraft.catalogue import profile
 from planning.base.errors import InputError
 from planning.base.findings import Finding, Severity
 from planning.base.jit import is_compiled
-from planning.base.json_file import check_output
+from planning.base.json_file import check_output, plain_values
+from planning.base.messages import glue, say
 from planning.base.progress import QUIET, Monitor, Stop, Trace, never
 from planning.checks.flight_rules import sharpness
 from planning.checks.geometry_rules import low_flight_allowed
@@ -96,7 +95,7 @@ def plan_document_site(
     )
     findings = [*planned.findings, *_shortfalls(request, planned)]
     if compiled_s > 0.0:
-        text = f"compiled for this computer in {compiled_s:.0f} s, once; the time budget began behind it"
+        text = say("compiled for this computer in {:.0f} s, once; the time budget began behind it", compiled_s)
         findings.append(Finding(Severity.NOTE, "compiled", text, "", compiled_s, None, "s"))
     return replace(planned, findings=tuple(findings))
 
@@ -111,7 +110,7 @@ def _compile_once(monitor: Monitor) -> float:
         return 0.0
     from planning.warm_up import compile_kernels
 
-    monitor.report("compiling for this computer, once", 0, 1)
+    monitor.report(say("compiling for this computer, once"), 0, 1)
     started_s = time.perf_counter()
     compile_kernels()
     return time.perf_counter() - started_s
@@ -138,8 +137,10 @@ def locked_viewpoints(plan_path: Path) -> tuple[Viewpoint, ...]:
     locked = tuple(viewpoint for viewpoint in read_given_plan(plan_path).viewpoints if viewpoint.locked)
     if not locked:
         raise InputError(
-            f'{plan_path}: none of the viewpoints is locked; expected some with "locked": true, which the Plan tab\'s '
-            "lock sets"
+            say(
+                'none of the viewpoints is locked; expected some with "locked": true, which the Plan tab\'s lock sets',
+                place=plan_path,
+            )
         )
     return locked
 
@@ -152,27 +153,34 @@ def _shortfalls(request: PlanRequest, planned: Planned) -> Iterator[Finding]:
     yield from _too_coarse(plan)
     if planned.n_left_out:
         n_left_out = planned.n_left_out
-        text = f"{n_left_out} views were left out, since the time did not last for ways to them; allow it more time"
+        text = say(
+            "{} views were left out, since the time did not last for ways to them; allow it more time", n_left_out
+        )
         yield Finding(Severity.WARNING, "time-budget", text, "", float(n_left_out), 0.0, "views")
     n_views = len(plan.viewpoints)
     if request.n_views is not None and n_views < request.n_views and not planned.n_left_out:
-        text = (
-            f"{n_views} views instead of the {request.n_views} asked for: more would show nothing new or could not be "
-            "flown"
+        text = say(
+            "{} views instead of the {} asked for: more would show nothing new or could not be flown",
+            n_views,
+            request.n_views,
         )
         yield Finding(Severity.NOTE, "fewer-views", text, "", float(n_views), float(request.n_views), "views")
     n_sorties, n_batteries = len(plan.sorties), request.n_batteries
     if n_batteries is not None and n_sorties < n_batteries:
-        text = f"takes {n_sorties} of {n_batteries} batteries: more views would show nothing new or could not be flown"
+        text = say(
+            "takes {} of {} batteries: more views would show nothing new or could not be flown", n_sorties, n_batteries
+        )
         yield Finding(Severity.NOTE, "fewer-sorties", text, "", float(n_sorties), float(n_batteries), "sorties")
     if request.share is None:
         return
     share = plan.coverage.covered / max(plan.coverage.reachable_upper_bound, 1)
     if share < request.share:
-        text = f"covers {100.0 * share:.2f} % of what is possible at most, {100.0 * request.share:g} % were asked for"
+        text = say(
+            "covers {:.2f} % of what is possible at most, {:g} % were asked for", 100.0 * share, 100.0 * request.share
+        )
         if request.method != "greedy":
-            advice = "the method flies a pattern of its own"
-            text = f"{text}; {advice}"
+            advice = say("the method flies a pattern of its own")
+            text = glue(text, "; ", advice)
         yield Finding(Severity.WARNING, "less-coverage", text, "", share, request.share)
         if request.method == "greedy":
             yield from why_open(planned)
@@ -187,20 +195,30 @@ def _too_coarse(plan: Plan) -> Iterator[Finding]:
 def why_open(planned: Planned) -> Iterator[Finding]:
     """Which sections stay open, by what keeps them from being covered."""
     plan, panels = planned.plan, planned.prepared.site_model.site.panels
-    time_helps = "allow it more time" if planned.prepared.is_cut_short else "more time does not help"
+    time_helps = say("allow it more time") if planned.prepared.is_cut_short else say("more time does not help")
     texts = {
-        WhyOpen.UNDECIDED: "have no place from which they are known to be seen, and no proof that there is none, so "
-        f"that they count as possible; {time_helps}",
-        WhyOpen.CUT_OFF: "are only seen from places to which no way from home was found that keeps "
-        f"{plan.constraints.min_distance_m:g} m from everything; move home, or lower the minimum distance",
-        WhyOpen.SPACING: f"are only seen from places less than {plan.aircraft.min_waypoint_spacing_m:g} m from other "
-        f"viewpoints, which {plan.aircraft.name} refuses; more time does not help",
-        WhyOpen.SEARCH: "can be covered; allow it more time",
+        WhyOpen.UNDECIDED: say(
+            "have no place from which they are known to be seen, and no proof that there is none, so that "
+            "they count as possible; {}",
+            time_helps,
+        ),
+        WhyOpen.CUT_OFF: say(
+            "are only seen from places to which no way from home was found that keeps {:g} m from "
+            "everything; move home, or lower the minimum distance",
+            plan.constraints.min_distance_m,
+        ),
+        WhyOpen.SPACING: say(
+            "are only seen from places less than {:g} m from other viewpoints, which {} refuses; more time "
+            "does not help",
+            plan.aircraft.min_waypoint_spacing_m,
+            plan.aircraft.name,
+        ),
+        WhyOpen.SEARCH: say("can be covered; allow it more time"),
     }
     for why, text in texts.items():
         on = [panels[each.panel].id for each in planned.open_sections if each.why is why]
         if on:
-            message = f"{len(on)} sections (on {len(set(on))} panels, the first is '{on[0]}') {text}"
+            message = say("{} sections (on {} panels, the first is '{}') {}", len(on), len(set(on)), on[0], text)
             yield Finding(Severity.WARNING, f"open-{why}", message, on[0], float(len(on)), 0.0, "sections")
 
 
@@ -232,8 +250,8 @@ def planned_summary(planned: Planned, seconds: float) -> dict[str, Any]:
         "length_m": round(sum(sortie.length_m for sortie in plan.sorties), 1),
         "lowest_height_m": None if low is None else round(low.lowest_m, 2),
         "below_10_m_s": None if low is None or low.below_s is None else round(low.below_s, 1),
-        "depth": msgspec.to_builtins(planned.depth),
-        "effects": msgspec.to_builtins(plan.effects),
+        "depth": plain_values(planned.depth),
+        "effects": plain_values(plan.effects),
         "open": [
             {"panel": panels[each.panel].id, "section": each.section, "why": each.why.value}
             for each in planned.open_sections
@@ -246,5 +264,5 @@ def planned_summary(planned: Planned, seconds: float) -> dict[str, Any]:
 
 def finding_summary(finding: Finding) -> dict[str, Any]:
     """A finding as JSON."""
-    content: dict[str, Any] = msgspec.to_builtins(finding)
+    content: dict[str, Any] = plain_values(finding)
     return content

@@ -20,6 +20,7 @@ from missions.mission.resume import Resumed, resume_sortie
 from planning.base.errors import InfeasibleError, InputError
 from planning.base.findings import Finding, Severity
 from planning.base.json_file import check_output
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor, Stop, Trace, never
 from planning.plan import Plan, Viewpoint, viewpoint_arrays, write_plan
 from planning.revision.top_up import TopUp, TopUpRequest, WhyMissing, top_up
@@ -27,9 +28,9 @@ from planning.site.records import SiteModel
 from planning.viewpoints.prepare import Prepared
 
 WHY_TEXTS = {
-    WhyMissing.UNREACHABLE: "cannot be seen from any allowed place that was found on the site as it is now",
-    WhyMissing.BATTERY: "can be seen, but the batteries allowed do not last for them; change the battery",
-    WhyMissing.SPACING: "can only be seen from places closer together than aircraft accept",
+    WhyMissing.UNREACHABLE: say("cannot be seen from any allowed place that was found on the site as it is now"),
+    WhyMissing.BATTERY: say("can be seen, but the batteries allowed do not last for them; change the battery"),
+    WhyMissing.SPACING: say("can only be seen from places closer together than aircraft accept"),
 }
 
 
@@ -77,20 +78,27 @@ def flown_plan(flight: Flight, plan: Plan, site_model: SiteModel) -> FlownPlan:
     origins = (flight.origin, plan.origin or site.origin, site.origin)
     if len({flight.site, plan.site, site.name}) > 1 or len(set(origins)) > 1:
         raise InputError(
-            f"flight ('{flight.site}'), plan ('{plan.site}') and site ('{site.name}') do not have the same name and "
-            "origin; name the plan and the site file that this flight was flown with"
+            say(
+                "flight ('{}'), plan ('{}') and site ('{}') do not have the same name and origin; name the plan "
+                "and the site file that this flight was flown with",
+                flight.site,
+                plan.site,
+                site.name,
+            )
         )
     matching = match_flight(plan, flight.sorties)
     n_photos = sum(len(record.photos) for record in flight.sorties)
     is_other = bool(flight.plan_sha256) and flight.plan_sha256 != plan_sha256(plan)
     if is_other or (n_photos and not any(match.photo is not None for match in matching.views)):
         found = (
-            "its plan has another checksum"
+            say("its plan has another checksum")
             if is_other
-            else f"none of its {n_photos} photos was taken near a view of it"
+            else say("none of its {} photos was taken near a view of it", n_photos)
         )
         raise InputError(
-            f"this is a flight of another plan: {found}; name the plan file that it was flown with, as it was then"
+            say(
+                "this is a flight of another plan: {}; name the plan file that it was flown with, as it was then", found
+            )
         )
     poses = taken_poses(plan, flight.sorties, matching)
     findings = _flight_findings(plan, site_model, matching, n_photos - len(poses))
@@ -101,19 +109,23 @@ def _flight_findings(
     plan: Plan, site_model: SiteModel, matching: Matching, n_without_direction: int
 ) -> Iterator[Finding]:
     if plan.site_sha256 and plan.site_sha256 != site_model.sha256:
-        text = "the site file has changed since the plan was made; what is missing is planned on the site as it is now"
+        text = say(
+            "the site file has changed since the plan was made; what is missing is planned on the site as it is now"
+        )
         yield Finding(Severity.WARNING, "site-changed", text)
     n_lost = sum(match.reason is Reason.REPORT_LOST for match in matching.views)
     if n_lost:
-        text = (
-            f"{n_lost} views were photographed, but the camera's reports were lost on the radio; what they show counts "
-            "as missing. The autopilot's log (.BIN, .ulg) tells of them: name it instead of the flight file"
+        text = say(
+            "{} views were photographed, but the camera's reports were lost on the radio; what they show "
+            "counts as missing. The autopilot's log (.BIN, .ulg) tells of them: name it instead of the "
+            "flight file",
+            n_lost,
         )
         yield Finding(Severity.WARNING, "reports-lost", text, "", float(n_lost), 0.0, "views")
     if n_without_direction:
-        text = (
-            f"{n_without_direction} photos belong to no view, and nothing says where they look; what they show "
-            "counts as missing"
+        text = say(
+            "{} photos belong to no view, and nothing says where they look; what they show counts as missing",
+            n_without_direction,
         )
         yield Finding(Severity.WARNING, "photo-direction", text, "", float(n_without_direction), 0.0, "photos")
 
@@ -149,11 +161,13 @@ def top_up_flight(
 
 def _missing_findings(found: TopUp) -> Iterator[Finding]:
     if found.is_negligible:
-        text = f"{found.wanted} of {found.aimed} sections are missing, too few for a flight unasked; {_cost(found)}"
+        text = say(
+            "{} of {} sections are missing, too few for a flight unasked; {}", found.wanted, found.aimed, _cost(found)
+        )
         yield Finding(Severity.NOTE, "negligible-rest", text, "", float(found.wanted), float(found.aimed), "sections")
     panels = {why: {s.panel_id for s in found.missing if s.why is why} for why in WhyMissing}
     for why, n in sorted(Counter(section.why for section in found.missing).items()):
-        text = f"{n} of the {found.wanted} missing sections (on {len(panels[why])} panels) {WHY_TEXTS[why]}"
+        text = say("{} of the {} missing sections (on {} panels) {}", n, found.wanted, len(panels[why]), WHY_TEXTS[why])
         yield Finding(Severity.WARNING, f"left-open-{why}", text, "", float(n), 0.0, "sections")
 
 
@@ -161,10 +175,13 @@ def _cost(found: TopUp) -> str:
     """What closing the rest would take."""
     plan = found.plan
     if plan is None:
-        return "none of them can be shown"
-    return (
-        f"showing {found.closed} of them takes {plan.duration_s / 60.0:.1f} min in the air (views: "
-        f"{len(plan.viewpoints)}, batteries: {len(plan.sorties)})"
+        return say("none of them can be shown")
+    return say(
+        "showing {} of them takes {:.1f} min in the air (views: {}, batteries: {})",
+        found.closed,
+        plan.duration_s / 60.0,
+        len(plan.viewpoints),
+        len(plan.sorties),
     )
 
 
@@ -198,20 +215,28 @@ def resume_flight(
         unfinished = flown.unfinished_sorties()
         if not unfinished:
             raise InputError(
-                "no sortie of this plan was interrupted: those that were flown are complete; the next one is flown "
-                "from the plan itself"
+                say(
+                    "no sortie of this plan was interrupted: those that were flown are complete; the next one is "
+                    "flown from the plan itself"
+                )
             )
         number = unfinished[0]
     elif not 1 <= number <= len(plan.sorties):
-        raise InputError(f"sortie: expected 1 to {len(plan.sorties)}, got {number}")
+        raise InputError(say("sortie: expected 1 to {}, got {}", len(plan.sorties), number))
     rest = resume_sortie(plan, flown.site_model, number, flown.taken, prepared=prepared, monitor=monitor)
     duration_s = rest.plan.sorties[0].duration_s
     charge = 1.0 if battery is None else battery
     usable_s = plan.aircraft.endurance_s * (charge - plan.rules.battery_reserve)
     if duration_s > usable_s:
         raise InfeasibleError(
-            f"the rest of sortie {number} takes {duration_s:.0f} s, but a battery at {charge:.0%} allows "
-            f"{max(0.0, usable_s):.0f} s above the reserve; change the battery, or plan a top-up, which fits it"
+            say(
+                "the rest of sortie {} takes {:.0f} s, but a battery at {:.0%} allows {:.0f} s above the "
+                "reserve; change the battery, or plan a top-up, which fits it",
+                number,
+                duration_s,
+                charge,
+                max(0.0, usable_s),
+            )
         )
     return rest
 

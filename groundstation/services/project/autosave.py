@@ -17,8 +17,6 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
-import msgspec
-
 from groundstation.services.project.document import Document
 from groundstation.services.project.folder import save_project
 from groundstation.services.project.lock import ProjectLock, lock_project
@@ -26,7 +24,8 @@ from groundstation.services.project.project_file import is_project, json_bytes, 
 from groundstation.services.project.store import in_words
 from groundstation.services.settings import data_folder
 from planning.base.errors import GroundStationError
-from planning.base.json_file import write_atomically
+from planning.base.json_file import plain_values, write_atomically
+from planning.base.messages import say
 
 AUTOSAVE_FOLDER, HEADER_FILE = ".autosave", "autosave.json"
 
@@ -161,8 +160,11 @@ class Autosave:
             if not told:
                 cause = str(error) if isinstance(error, (GroundStationError, OSError)) else repr(error)
                 self._report(
-                    f"unsaved work could not be copied for after a crash: {cause}. Nothing is lost while this window "
-                    "is open; make room or save the project in another folder"
+                    say(
+                        "unsaved work could not be copied for after a crash: {}. Nothing is lost while this window is "
+                        "open; make room or save the project in another folder",
+                        cause,
+                    )
                 )
         else:
             self._has_failed = False
@@ -177,4 +179,4 @@ class Autosave:
             self._place.mkdir(exist_ok=True)
         save_project(self._place, document, name=name, site_source=source)
         header = AutosaveHeader(based_on, self._clock().isoformat(timespec="seconds"), os.getpid(), platform.node())
-        write_atomically(self._place / HEADER_FILE, json_bytes(msgspec.to_builtins(header), HEADER_FILE))
+        write_atomically(self._place / HEADER_FILE, json_bytes(plain_values(header), HEADER_FILE))

@@ -10,6 +10,7 @@ from groundstation.services.project.project_file import ProjectRecord
 from groundstation.services.project.store import current_content, digest, holds, may_replace
 from planning.base.errors import InputError
 from planning.base.findings import Finding, Severity
+from planning.base.messages import say
 from reconstruction.panels.solving.accuracy import FoundFacades, facades_of, facades_path, read_facades
 
 
@@ -52,7 +53,7 @@ def read_project_facades(folder: Path, record: ProjectRecord) -> tuple[FoundFaca
         path, written = current_content(folder, record.facades, record.facades_sha256)
         return facades_of(written, path), []
     except InputError as error:
-        text = f"{error}; how good the panels are was left out"
+        text = say("{}; how good the panels are was left out", error)
         return None, [Finding(Severity.WARNING, "facades-left-out", text)]
 
 

@@ -8,8 +8,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import msgspec
-
 from groundstation.services.project.document import Document
 from groundstation.services.project.facades import facades_to_write, read_project_facades
 from groundstation.services.project.migration import FORMAT, VERSION, free_name
@@ -43,7 +41,8 @@ from groundstation.services.project.store import (
 from planning.base.errors import InputError
 from planning.base.files import read_given, real_path
 from planning.base.findings import Finding, Severity
-from planning.base.json_file import JSON_FILE
+from planning.base.json_file import JSON_FILE, plain_values
+from planning.base.messages import glue, say
 from planning.request import PlanRequest
 from planning.site.file import site_of
 from planning.site.records import SiteModel
@@ -236,7 +235,7 @@ def _opened(folder: Path, index: ProjectIndex) -> OpenedProject:
     record = index.record
     notes = [*_migration_notes(folder, index)]
     if not os.access(folder, os.W_OK):
-        text = f"{folder}: this folder cannot be written; changes can only be saved as another project"
+        text = say("this folder cannot be written; changes can only be saved as another project", place=folder)
         notes.append(Finding(Severity.WARNING, "read-only", text))
     site = None if not record.site else _read_site(folder, record)
     entries = []
@@ -246,7 +245,7 @@ def _opened(folder: Path, index: ProjectIndex) -> OpenedProject:
         entries += [] if entry is None else [entry]
     ids = [entry.id for entry in entries]
     current = record.current_plan_id if record.current_plan_id in ids else (ids[-1] if ids else "")
-    request, found = read_request(record.request, "the next plan")
+    request, found = read_request(record.request, say("the next plan"))
     notes += found
     facades, found = read_project_facades(folder, record)
     notes += found
@@ -258,15 +257,22 @@ def _opened(folder: Path, index: ProjectIndex) -> OpenedProject:
 
 def _migration_notes(folder: Path, index: ProjectIndex) -> Iterator[Finding]:
     if index.version == 0:
-        text = (
-            f"{folder}: there is no {PROJECT_FILE} here, so '{index.record.site}' and the plans beside it (found: "
-            f"{len(index.record.plans)}) were taken as a project; saving makes it one, with copies of its own"
+        text = say(
+            "there is no {} here, so '{}' and the plans beside it (found: {}) were taken as a project; "
+            "saving makes it one, with copies of its own",
+            PROJECT_FILE,
+            index.record.site,
+            len(index.record.plans),
+            place=folder,
         )
         yield Finding(Severity.NOTE, "loose-files", text)
     elif index.version < VERSION:
-        text = (
-            f"{folder}: this project is in format '{FORMAT}{index.version}'; saving brings it to '{FORMAT}{VERSION}' "
-            f"and keeps the old {PROJECT_FILE} beside it"
+        text = say(
+            "this project is in format '{}'; saving brings it to '{}' and keeps the old {} beside it",
+            glue(FORMAT, index.version),
+            glue(FORMAT, VERSION),
+            PROJECT_FILE,
+            place=folder,
         )
         yield Finding(Severity.NOTE, "old-format", text)
 
@@ -277,8 +283,11 @@ def _read_site(folder: Path, record: ProjectRecord) -> SiteModel:
         return site_of(written, path)
     except InputError as error:
         raise InputError(
-            f"{error}; a project cannot be opened without its site: put the file back from a copy, or make a new "
-            "project with 'project new' and add the plans to it"
+            say(
+                "{}; a project cannot be opened without its site: put the file back from a copy, or make a new "
+                "project with 'project new' and add the plans to it",
+                error,
+            )
         ) from error
 
 
@@ -298,9 +307,9 @@ def create_project(folder: Path, document: Document, *, name: str = "", site_sou
         There is a project already, or the folder cannot be made or written.
     """
     if is_project(folder):
-        raise InputError(f"{folder}: there is a project here already; open it, or name another folder")
+        raise InputError(say("there is a project here already; open it, or name another folder", place=folder))
     if folder.exists() and not folder.is_dir():
-        raise InputError(f"{folder}: expected a folder for the project, found a file; name another folder")
+        raise InputError(say("expected a folder for the project, found a file; name another folder", place=folder))
     made = [path for path in (folder, *(folder / part for part in FOLDERS)) if not path.exists()]
     try:
         with in_words(folder):
@@ -363,7 +372,7 @@ def save_project(folder: Path, document: Document, *, name: str = "", site_sourc
         site_sha256="" if site is None else site.sha256,
         plans=tuple(plans),
         current_plan_id=document.current_plan_id,
-        request=msgspec.to_builtins(document.request),
+        request=plain_values(document.request),
         facades=facades.file,
         facades_sha256=facades.sha256,
     )

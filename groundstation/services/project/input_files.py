@@ -19,6 +19,7 @@ from missions.formats.registry import HEAD_BYTES, is_mission
 from planning.base.errors import InputError, MissionError
 from planning.base.files import ANY_FILE, open_given
 from planning.base.json_file import read_json
+from planning.base.messages import say
 from planning.plan import PLAN_FORMAT, Plan, read_plan
 from planning.site.file import read_site
 from planning.site.records import SITE_FORMAT, SiteModel
@@ -46,32 +47,32 @@ class FileKind(Enum):
 
 
 EXPECTED = {
-    FileKind.PLAN: "a plan file (such as office.plan.json)",
-    FileKind.SITE: "a site file (such as office.site.json)",
-    FileKind.PROJECT: f"the folder of a project or its {PROJECT_FILE}",
-    FileKind.MISSION: "a mission file (.kmz, .plan, .waypoints, .kml or .csv)",
-    FileKind.BUILDING: "a building model (.ifc, .gml, .xml, .json, .obj, .ply, .glb or .stl)",
-    FileKind.TSPLIB: "a TSPLIB instance (.tsp or .atsp)",
-    FileKind.PHOTO: "a photo (JPEG, PNG, TIFF or BMP)",
+    FileKind.PLAN: say("a plan file (such as office.plan.json)"),
+    FileKind.SITE: say("a site file (such as office.site.json)"),
+    FileKind.PROJECT: say("the folder of a project or its {}", PROJECT_FILE),
+    FileKind.MISSION: say("a mission file (.kmz, .plan, .waypoints, .kml or .csv)"),
+    FileKind.BUILDING: say("a building model (.ifc, .gml, .xml, .json, .obj, .ply, .glb or .stl)"),
+    FileKind.TSPLIB: say("a TSPLIB instance (.tsp or .atsp)"),
+    FileKind.PHOTO: say("a photo (JPEG, PNG, TIFF or BMP)"),
 }
 """Kinds that are asked for."""
 
 ADVICE = {
-    (FileKind.PLAN, FileKind.SITE): "'plan' makes a plan of it",
-    (FileKind.PLAN, FileKind.MISSION): "import it first ('import', or Mission > Import mission files)",
+    (FileKind.PLAN, FileKind.SITE): say("'plan' makes a plan of it"),
+    (FileKind.PLAN, FileKind.MISSION): say("import it first ('import', or Mission > Import mission files)"),
     (
         FileKind.PLAN,
         FileKind.BUILDING,
-    ): "import it first ('site import', or Site > Import), and plan a flight over that",
-    (FileKind.SITE, FileKind.PLAN): "name the site file that it was made for",
-    (FileKind.SITE, FileKind.MISSION): "it knows no building; name the site file that it is flown at",
-    (FileKind.SITE, FileKind.BUILDING): "import it first ('site import', or Site > Import)",
-    (FileKind.PROJECT, FileKind.SITE): "'project new' makes a project of it",
-    (FileKind.PROJECT, FileKind.PLAN): "'project add' puts it into a project",
-    (FileKind.MISSION, FileKind.PLAN): "it needs no import; 'export' makes a mission of it",
-    (FileKind.MISSION, FileKind.SITE): "it goes behind --site; name the mission file as well",
-    (FileKind.BUILDING, FileKind.SITE): "it needs no import; 'plan' takes it as it is",
-    (FileKind.TSPLIB, FileKind.PLAN): "'tradeoff route' takes plans",
+    ): say("import it first ('site import', or Site > Import), and plan a flight over that"),
+    (FileKind.SITE, FileKind.PLAN): say("name the site file that it was made for"),
+    (FileKind.SITE, FileKind.MISSION): say("it knows no building; name the site file that it is flown at"),
+    (FileKind.SITE, FileKind.BUILDING): say("import it first ('site import', or Site > Import)"),
+    (FileKind.PROJECT, FileKind.SITE): say("'project new' makes a project of it"),
+    (FileKind.PROJECT, FileKind.PLAN): say("'project add' puts it into a project"),
+    (FileKind.MISSION, FileKind.PLAN): say("it needs no import; 'export' makes a mission of it"),
+    (FileKind.MISSION, FileKind.SITE): say("it goes behind --site; name the mission file as well"),
+    (FileKind.BUILDING, FileKind.SITE): say("it needs no import; 'plan' takes it as it is"),
+    (FileKind.TSPLIB, FileKind.PLAN): say("'tradeoff route' takes plans"),
 }
 """What to do, by what was expected and what was found."""
 
@@ -85,9 +86,9 @@ READERS_KNOW_BETTER = (
 """Where the reader's own message says more: it lists all formats, or what the folder lacks."""
 
 ADVICE_FOR_ALL = {
-    FileKind.FOLDER: "name a file in it",
-    FileKind.EMPTY: "copy it again or make it anew",
-    FileKind.NOTHING: "check the path",
+    FileKind.FOLDER: say("name a file in it"),
+    FileKind.EMPTY: say("copy it again or make it anew"),
+    FileKind.NOTHING: say("check the path"),
 }
 
 
@@ -133,7 +134,7 @@ def expecting(wanted: FileKind, path: Path) -> Iterator[None]:
         if found is None or found is wanted or (wanted, found) in READERS_KNOW_BETTER:
             raise
         raise InputError(
-            f"{path}: expected {EXPECTED[wanted]}, found {found.value}; {_advice(wanted, found, path)}"
+            say("expected {}, found {}; {}", EXPECTED[wanted], found.value, _advice(wanted, found, path), place=path)
         ) from error
 
 
@@ -197,18 +198,18 @@ def _project_record(path: Path) -> ProjectRecord | None:
 def _advice(wanted: FileKind, found: FileKind, path: Path) -> str:
     if found is FileKind.PROJECT:
         return _advice_on_project(wanted, path)
-    return ADVICE.get((wanted, found), ADVICE_FOR_ALL.get(found, "name another file"))
+    return ADVICE.get((wanted, found), ADVICE_FOR_ALL.get(found, say("name another file")))
 
 
 def _advice_on_project(wanted: FileKind, path: Path) -> str:
     """Which file of a project can be named instead."""
     folder, record = project_folder(path), _project_record(path)
     if record is None:
-        return "name a file in it"
+        return say("name a file in it")
     if wanted is FileKind.SITE and record.site:
-        return f"its site is {folder / record.site}"
+        return say("its site is {}", folder / record.site)
     if wanted is FileKind.PLAN and record.plans:
-        return "name one of its plans: " + ", ".join(str(folder / plan.file) for plan in record.plans)
+        return say("name one of its plans: ") + ", ".join(str(folder / plan.file) for plan in record.plans)
     if wanted is FileKind.PLAN and record.site:
-        return f"it has no plan yet; 'plan {folder / record.site} -o PLAN' makes one"
-    return "name a file in it"
+        return say("it has no plan yet; 'plan {} -o PLAN' makes one", folder / record.site)
+    return say("name a file in it")

@@ -15,11 +15,10 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING
 
-import msgspec
-
 from groundstation.services.project.project_file import json_bytes
 from planning.base.errors import InputError
-from planning.base.json_file import read_json, to_record, write_atomically
+from planning.base.json_file import plain_values, read_json, to_record, write_atomically
+from planning.base.messages import say
 
 if TYPE_CHECKING:
     from filelock import BaseFileLock
@@ -51,9 +50,17 @@ class ProjectInUse(InputError):  # noqa: N818  (the name says what happened)
     """Another window has the project open."""
 
     def __init__(self, folder: Path, holder: Holder) -> None:
-        who = f"process {holder.process} on {holder.computer} since {holder.since}" if holder.process else "unknown"
+        who = (
+            say("process {} on {} since {}", holder.process, holder.computer, holder.since)
+            if holder.process
+            else "unknown"
+        )
         super().__init__(
-            f"{folder}: this project is open in another Reflight ({who}); close it there first, or copy the folder"
+            say(
+                "this project is open in another Reflight ({}); close it there first, or copy the folder",
+                who,
+                place=folder,
+            )
         )
         self.holder = holder
 
@@ -94,7 +101,7 @@ def lock_project(folder: Path) -> ProjectLock:
     from filelock import Timeout
 
     if not folder.is_dir():
-        raise InputError(f"{folder}: expected the folder of a project, found nothing of that name")
+        raise InputError(say("expected the folder of a project, found nothing of that name", place=folder))
     lock = _file_lock(folder, WAIT_S)
     try:
         lock.acquire()
@@ -102,12 +109,15 @@ def lock_project(folder: Path) -> ProjectLock:
         raise ProjectInUse(folder, _read_holder(folder)) from error
     except OSError as error:
         raise InputError(
-            f"{folder}: this project cannot be locked for editing ({error.strerror or error}); it can be looked at, "
-            "and saved as another project"
+            say(
+                "this project cannot be locked for editing ({}); it can be looked at, and saved as another project",
+                error.strerror or error,
+                place=folder,
+            )
         ) from error
     holder = Holder(os.getpid(), platform.node(), datetime.now(UTC).isoformat(timespec="seconds"))
     with contextlib.suppress(InputError):  # a full disk: the lock is held, others only cannot tell by whom
-        write_atomically(folder / HOLDER_FILE, json_bytes(msgspec.to_builtins(holder), HOLDER_FILE))
+        write_atomically(folder / HOLDER_FILE, json_bytes(plain_values(holder), HOLDER_FILE))
     return ProjectLock(folder, lock)
 
 

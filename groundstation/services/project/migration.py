@@ -12,6 +12,7 @@ from typing import Any
 
 from groundstation.services.project.document import first_free
 from planning.base.errors import InputError
+from planning.base.messages import say
 from planning.plan import PLAN_FORMAT
 from planning.site.records import SITE_FORMAT
 
@@ -51,13 +52,19 @@ def from_loose_files(content: Content, listing: Listing) -> Content:
     plans = sorted(name for name, file_format in listing.items() if file_format == PLAN_FORMAT)
     if not sites:
         raise InputError(
-            "there is no project in this folder: expected project.json, or a site file with plans beside it; "
-            "'project new' makes a project"
+            say(
+                "there is no project in this folder: expected project.json, or a site file with plans beside it; "
+                "'project new' makes a project"
+            )
         )
     if len(sites) > 1:
         raise InputError(
-            f"expected one site file in a folder without project.json, found {len(sites)} ({', '.join(sites)}); make "
-            "a project of one with 'project new'"
+            say(
+                "expected one site file in a folder without project.json, found {} ({}); make a project of one "
+                "with 'project new'",
+                len(sites),
+                ", ".join(sites),
+            )
         )
     return {**content, "format": f"{FORMAT}1", "site": sites[0], "plans": plans}
 
@@ -66,7 +73,7 @@ def name_plans(content: Content, _listing: Listing) -> Content:
     """Version 1 to 2: plans get identifiers and titles after their files; the last one is the current one."""
     files = content.get("plans", [])
     if not isinstance(files, list) or not all(isinstance(file, str) for file in files):
-        raise InputError("plans: expected a list of file names")
+        raise InputError(say("plans: expected a list of file names"))
     plans: list[Content] = []
     for file in files:
         name = title_of(file)

@@ -7,8 +7,6 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-import msgspec
-
 from groundstation.services.project.document import Document, PlanEntry
 from groundstation.services.project.input_files import read_given_plan
 from groundstation.services.project.migration import free_name, title_of
@@ -18,7 +16,8 @@ from groundstation.services.project.store import PROJECT_FILE, current_content, 
 from planning.base.errors import InputError
 from planning.base.files import read_given
 from planning.base.findings import Finding, Severity
-from planning.base.json_file import JSON_FILE, to_record
+from planning.base.json_file import JSON_FILE, plain_values, to_record
+from planning.base.messages import say
 from planning.plan import plan_of, plan_to_json
 from planning.request import PlanRequest
 from planning.site.file import is_planned_on
@@ -31,13 +30,13 @@ def read_entry(folder: Path, record: PlanRecord) -> tuple[PlanEntry | None, list
         path, written = current_content(folder, record.file, record.sha256)
         plan = plan_of(written, path)
     except InputError as error:
-        text = f"{error}; the plan '{title}' was left out"
+        text = say("{}; the plan '{}' was left out", error, title)
         return None, [Finding(Severity.WARNING, "plan-left-out", text, record.id)]
     if record.sha256 and digest(written) != record.sha256:
         # What was asked for and the bound belong to the plan that was there before.
-        text = f"{path}: another program has changed the plan '{title}' since the project was saved"
+        text = say("another program has changed the plan '{}' since the project was saved", title, place=path)
         return PlanEntry(record.id, title, plan), [Finding(Severity.NOTE, "plan-changed", text, record.id)]
-    request, notes = read_request(record.request, f"the plan '{title}'")
+    request, notes = read_request(record.request, say("the plan '{}'", title))
     return PlanEntry(record.id, title, plan, request, record.bound_for_views), notes
 
 
@@ -48,7 +47,7 @@ def read_request(content: dict[str, Any] | None, what: str) -> tuple[PlanRequest
     try:
         return to_record(content, PlanRequest, Path(PROJECT_FILE)), []
     except InputError as error:
-        text = f"{error}; what was asked of {what} was left out"
+        text = say("{}; what was asked of {} was left out", error, what)
         return None, [Finding(Severity.WARNING, "request-left-out", text)]
 
 
@@ -72,7 +71,7 @@ def plan_file(
     InputError
         A number in the plan is not finite.
     """
-    content = json_bytes(plan_to_json(entry.plan), f"plan '{entry.title}'")
+    content = json_bytes(plan_to_json(entry.plan), say("plan '{}'", entry.title))
     known = before.plan(entry.id)
     if known is not None:
         with contextlib.suppress(InputError):  # what cannot be read does not hold the plan
@@ -93,7 +92,7 @@ def plan_file(
         file=file,
         title=entry.title,
         sha256=digest(content),
-        request=None if entry.request is None else msgspec.to_builtins(entry.request),
+        request=None if entry.request is None else plain_values(entry.request),
         bound_for_views=entry.bound_for_views,
     )
     return record, None if holds(folder / file, content) else content
@@ -126,11 +125,13 @@ def add_plans(document: Document, paths: Sequence[Path]) -> tuple[Document, tupl
         plan = read_given_plan(path)
         same = next((entry for entry in document.plans if entry.plan == plan), None)
         if same is not None:
-            raise InputError(f"{path}: the project holds this plan already, as '{same.title}'; leave it out")
+            raise InputError(say("the project holds this plan already, as '{}'; leave it out", same.title, place=path))
         site = document.site
         is_ours = site is not None and bool(site.sha256) and is_planned_on(plan.site_sha256, site)
         if site is not None and plan.site_sha256 and not is_ours:
-            text = f"{path}: this plan was made for another state of the site, or for another site ('{plan.site}')"
+            text = say(
+                "this plan was made for another state of the site, or for another site ('{}')", plan.site, place=path
+            )
             notes.append(Finding(Severity.WARNING, "site-changed", text))
         title = title_of(path.name)
         plan_id = free_name(title, {entry.id for entry in document.plans})

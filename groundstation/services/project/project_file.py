@@ -8,13 +8,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import msgspec
-
 from groundstation.services.project.migration import FORMAT, VERSION, Content, Listing, migrate
 from groundstation.services.project.store import PROJECT_FILE, digest
 from planning.base.errors import InputError
 from planning.base.files import read_given
-from planning.base.json_file import JSON_FILE, parse_json, read_json, to_record
+from planning.base.json_file import JSON_FILE, parse_json, plain_values, read_json, to_record
+from planning.base.messages import about, glue, say
 from planning.plan import PLAN_FORMAT
 from planning.site.records import SITE_FORMAT
 
@@ -132,8 +131,8 @@ def project_folder(path: Path) -> Path:
         return path
     if path.name == PROJECT_FILE and path.is_file():
         return path.parent
-    found = "a file" if path.is_file() else "nothing of that name"
-    raise InputError(f"{path}: expected the folder of a project or its {PROJECT_FILE}, found {found}")
+    found = say("a file") if path.is_file() else say("nothing of that name")
+    raise InputError(say("expected the folder of a project or its {}, found {}", PROJECT_FILE, found, place=path))
 
 
 def is_project(path: Path) -> bool:
@@ -149,7 +148,7 @@ def check_not_index(path: Path) -> None:
     InputError
     """
     if path.name == PROJECT_FILE and path.is_file():
-        raise InputError(f"{path}: would replace what holds a project together; name another file")
+        raise InputError(say("would replace what holds a project together; name another file", place=path))
 
 
 def project_name(path: Path) -> str:
@@ -185,14 +184,14 @@ def read_index(folder: Path) -> ProjectIndex:
         try:
             content = migrate({}, 0, _listing(folder))
         except InputError as error:
-            raise InputError(f"{folder}: {error}") from error
+            raise InputError(about(folder, error)) from error
         return ProjectIndex(to_record(content, ProjectRecord, folder), content, 0, b"")
     content = parse_json(written, file, names_files=True)
     version = _version(content, file)
     try:
         content = migrate(content, version, {})
     except InputError as error:
-        raise InputError(f"{file}: {error}") from error
+        raise InputError(about(file, error)) from error
     return ProjectIndex(to_record(content, ProjectRecord, file), content, version, written)
 
 
@@ -200,12 +199,18 @@ def _version(content: Any, file: Path) -> int:
     found = content.get("format") if isinstance(content, dict) else None
     number = re.fullmatch(re.escape(FORMAT) + r"([1-9]\d{0,8})", found) if isinstance(found, str) else None
     if number is None:
-        raise InputError(f"{file}: format: expected '{FORMAT}{VERSION}', got {found!r}; is it the right file?")
+        raise InputError(
+            say("format: expected '{}', got {}; is it the right file?", glue(FORMAT, VERSION), repr(found), place=file)
+        )
     version = int(number[1])
     if version > VERSION:
         raise InputError(
-            f"{file}: a newer Reflight wrote this project (format '{found}', this one knows up to "
-            f"'{FORMAT}{VERSION}'); open it with that one"
+            say(
+                "a newer Reflight wrote this project (format '{}', this one knows up to '{}'); open it with that one",
+                found,
+                glue(FORMAT, VERSION),
+                place=file,
+            )
         )
     return version
 
@@ -240,7 +245,7 @@ def index_bytes(record: ProjectRecord, present: Content) -> bytes:
 
 
 def _fields(record: ProjectRecord | PlanRecord) -> Content:
-    content: Content = msgspec.to_builtins(record)
+    content: Content = plain_values(record)
     return content
 
 
@@ -255,7 +260,7 @@ def json_bytes(content: Content, what: str) -> bytes:
     try:
         return json.dumps(content, indent=1, allow_nan=False).encode()
     except ValueError as error:
-        raise InputError(f"{what}: cannot be saved: a number in it is NaN or infinite ({error})") from error
+        raise InputError(say("cannot be saved: a number in it is NaN or infinite ({})", error, place=what)) from error
 
 
 def check_inside(file: str, name: str) -> None:

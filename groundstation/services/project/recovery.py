@@ -20,6 +20,7 @@ from groundstation.services.project.store import in_words
 from groundstation.services.settings import data_folder
 from planning.base.errors import InputError
 from planning.base.json_file import read_json, to_record
+from planning.base.messages import say
 
 REMAINS_S = 3600.0
 """A place that was made so long ago is in use, or never will be."""
@@ -95,7 +96,7 @@ def _looked_at_again(folder: Path) -> Recovery | None:
     except ProjectInUse:
         return None
     except InputError as error:
-        problem = f"{error}; this copy of unsaved work is damaged and cannot be taken over"
+        problem = say("{}; this copy of unsaved work is damaged and cannot be taken over", error)
         return Recovery(folder, None, (), False, None, problem)
     return _recovery(folder, header, copy)
 
@@ -198,24 +199,24 @@ def _changes(folder: Path, copy: OpenedProject) -> tuple[str, ...]:
         if copy.document.site is None and not copy.document.plans:
             return ()
         if not is_project(folder):
-            return ("all of it: it was never saved as a project",)
-        return (f"all of it: the project that was saved cannot be opened ({error})",)
+            return (say("all of it: it was never saved as a project"),)
+        return (say("all of it: the project that was saved cannot be opened ({})", error),)
     left_out = {note.place for note in copy.notes if note.code == "plan-left-out"}
     return tuple(_differences(saved, copy.document, left_out))
 
 
 def _differences(before: Document, after: Document, left_out: set[str]) -> list[str]:
-    found = [] if same_site(before.site, after.site) else ["the site"]
+    found: list[str] = [] if same_site(before.site, after.site) else [say("the site")]
     for entry in after.plans:
         known = before.entry(entry.id)
         if known is None:
-            found.append(f"plan '{entry.title}' is new")
+            found.append(say("plan '{}' is new", entry.title))
         elif not _same_entry(known, entry):
-            found.append(f"plan '{entry.title}' was changed")
+            found.append(say("plan '{}' was changed", entry.title))
     for entry in before.plans:
         if after.entry(entry.id) is None and entry.id not in left_out:
-            found.append(f"plan '{entry.title}' was removed")
-    return found if before.request == after.request else [*found, "what is asked of the next plan"]
+            found.append(say("plan '{}' was removed", entry.title))
+    return found if before.request == after.request else [*found, say("what is asked of the next plan")]
 
 
 def _same_entry(one: PlanEntry, other: PlanEntry) -> bool:

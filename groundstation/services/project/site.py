@@ -20,6 +20,7 @@ from groundstation.services.project.store import digest, holds
 from planning.base.errors import InputError
 from planning.base.files import read_given, real_path, sha256_given
 from planning.base.json_file import JSON_FILE, parse_json, to_record
+from planning.base.messages import say
 from planning.geo.mesh import MESH_FILE, TriangleMesh, empty_mesh, ply_bytes, read_mesh
 from planning.site.file import site_bytes
 from planning.site.records import Obstacle, Site, SiteModel
@@ -142,7 +143,9 @@ def _site_bytes(site: Site) -> bytes:
     try:
         return site_bytes(site)
     except ValueError as error:
-        raise InputError(f"site '{site.name}': cannot be saved: a text in it is no valid Unicode ({error})") from error
+        raise InputError(
+            say("site '{}': cannot be saved: a text in it is no valid Unicode ({})", site.name, error)
+        ) from error
 
 
 def _unchanged(source: Path, model: SiteModel) -> bytes | None:

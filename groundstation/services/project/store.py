@@ -16,6 +16,7 @@ from pathlib import Path
 from planning.base.errors import InputError
 from planning.base.files import read_given, sha256_given
 from planning.base.json_file import JSON_FILE, write_atomically
+from planning.base.messages import say
 
 PROJECT_FILE = "project.json"
 
@@ -170,7 +171,9 @@ def in_words(place: Path) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        raise InputError(f"{error.filename or place}: cannot be written ({error.strerror or error})") from error
+        raise InputError(
+            say("cannot be written ({})", error.strerror or error, place=error.filename or place)
+        ) from error
 
 
 def _staged(path: Path) -> Path:

@@ -16,6 +16,7 @@ from planning.base.errors import InputError
 from planning.base.files import real_path
 from planning.base.folders import make_folder
 from planning.base.json_file import expect_format, read_json, to_record, write_atomically
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor, QualityPoint
 from planning.site.records import Site
 from reconstruction.light.photo_set import PhotoSet, read_photo_set
@@ -81,7 +82,7 @@ def read_data_set(folder: Path, monitor: Monitor = QUIET) -> DataSetCard:
     InputError
         It is none, or damaged.
     """
-    monitor.report("reading the data set", 0, 0)
+    monitor.report(say("reading the data set"), 0, 0)
     source = read_photo_set(folder)
     path = folder / DATA_SET
     known = to_record(read_json(path, names_files=True), _Description, path)
@@ -213,7 +214,7 @@ def read_model_card(folder: Path) -> ModelCard:
     """
     path = folder / MODEL
     if not path.is_file():
-        raise InputError(f"{folder}: holds no finished model")
+        raise InputError(say("holds no finished model", place=folder))
     content = read_json(path, names_files=True)
     found = to_record(content, _Model, path)
     panels = tuple(panel.corners_enu_m for panel in found.site.panels)

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from groundstation.services.reconstruct.messages import Look, PhotoError, Probe, Probed, Seen, Subject, WatchErrors
 from groundstation.services.reconstruct.shown_models import ShownModel, ShownModels, probed, shown_of, tinted
 from planning.base.errors import GroundStationError
+from planning.base.messages import say
 from reconstruction.training.layers import PICTURE
 
 if TYPE_CHECKING:
@@ -101,7 +102,7 @@ MOST_PHOTOS = 8
 JUDGING_SHARE = 0.03
 """Of a training's time, for looking at photos one by one."""
 
-NO_MODEL = "there is no model yet: it is being prepared"
+NO_MODEL = say("there is no model yet: it is being prepared")
 
 
 class RenderQueue:
@@ -169,7 +170,9 @@ class RenderQueue:
         except GroundStationError as error:
             return Seen(look, None, problem=str(error))
         except (MemoryError, RuntimeError) as error:
-            return Seen(look, None, problem=f"the picture could not be rendered ({error}); make the window smaller")
+            return Seen(
+                look, None, problem=say("the picture could not be rendered ({}); make the window smaller", error)
+            )
 
     def _rendered(self, look: Look, shown: ShownModel, begun_s: float) -> Seen:
         from reconstruction.splats.rasterising.views import View
@@ -202,7 +205,7 @@ class RenderQueue:
         except GroundStationError as error:
             return Probed(probe, None, None, str(error))
         except (MemoryError, RuntimeError) as error:
-            return Probed(probe, None, None, f"the place could not be looked at ({error})")
+            return Probed(probe, None, None, say("the place could not be looked at ({})", error))
 
     def _photo(self, look: Look) -> NDArray[np.uint8]:
         import cv2
@@ -288,5 +291,5 @@ def _decoded(source: PhotoSet, name: str) -> NDArray[np.uint8]:
 
     photos = source.named((name,))
     if not photos:
-        raise InputError(f"{source.folder}: has no photo '{name}'")
+        raise InputError(say("has no photo '{}'", name, place=source.folder))
     return decode_photo(source, photos[0], Decoding(), 1).display

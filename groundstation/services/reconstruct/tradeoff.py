@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from groundstation.services.reconstruct.training import TrainRequest, config_of_wish
 from planning.base.errors import InputError
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.tradeoff.runner import Compared, Subject, compare
 
@@ -46,7 +47,9 @@ def train_tradeoff(
         base = replace(base, score_every_s=min(base.score_every_s, base.time_limit_s / POINTS))
     settings = settings_of(base, knobs)
     if not (dataset / "dataset.json").is_file():
-        raise InputError(f"{dataset}: has no dataset.json; name a folder that `prepare` or `scene render` has finished")
+        raise InputError(
+            say("has no dataset.json; name a folder that `prepare` or `scene render` has finished", place=dataset)
+        )
     title = f"{dataset.name}: facades of unseen views"
     subject: Subject[tuple[Trial, ...]] = Subject("train", ERROR_AXIS, trial_rows, lambda _: title, trial_panels)
     return compare(subject, out, lambda _: run_settings(dataset, settings, monitor))

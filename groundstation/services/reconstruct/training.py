@@ -12,6 +12,7 @@ from groundstation.services.reconstruct.request import DEFAULT_PRESET, TrainRequ
 from planning.base.errors import InputError
 from planning.base.folders import check_ending, make_folder
 from planning.base.json_file import check_output, read_toml, write_atomically
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor, Stop, Trace, never
 
 if TYPE_CHECKING:
@@ -168,8 +169,11 @@ def light_of_scene(dataset: Path, wish: TrainRequest, monitor: Monitor = QUIET) 
     rays = glass_rays(source, learned, config.memory_bytes, config.seed, monitor)
     if not len(rays):
         raise InputError(
-            f"{dataset}: none of {len(learned)} photos has a pixel that lies whole on a panel; take larger photos or "
-            "come closer"
+            say(
+                "none of {} photos has a pixel that lies whole on a panel; take larger photos or come closer",
+                len(learned),
+                place=dataset,
+            )
         )
     tried = replace(config.reflections, seed=config.seed, threads=config.threads, memory_bytes=config.memory_bytes)
     return choose_light(rays, source.panels, tried, monitor, device=config.device)
@@ -184,7 +188,7 @@ def _trained(
     checkpoint = out / CHECKPOINT
     if resume:
         if not checkpoint.is_file():
-            raise InputError(f"{out}: holds no training that was interrupted; begin the training anew")
+            raise InputError(say("holds no training that was interrupted; begin the training anew", place=out))
         return resume_model(dataset, checkpoint, watching, method=wish.method, ranks=ranks, watch=watch)
     config = config_of_wish(wish)
     if ranks.is_first:
@@ -196,10 +200,16 @@ def _check_begin(dataset: Path, out: Path, checkpoint: Path) -> None:
     """See that a training can begin, and make its folder."""
     if checkpoint.is_file():
         raise InputError(
-            f"{out}: holds a training that was interrupted; resume it, name another folder, or delete {checkpoint}"
+            say(
+                "holds a training that was interrupted; resume it, name another folder, or delete {}",
+                checkpoint,
+                place=out,
+            )
         )
     if not (dataset / "dataset.json").is_file():
-        raise InputError(f"{dataset}: has no dataset.json; name a folder that `prepare` or `scene render` has finished")
+        raise InputError(
+            say("has no dataset.json; name a folder that `prepare` or `scene render` has finished", place=dataset)
+        )
     make_folder(out)
     check_output(checkpoint)
 

@@ -9,12 +9,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import msgspec
 import numpy as np
 
 from groundstation.services.scenes.views import SITE_FILE, SceneRequest, as_written, given_scene, scene_views
 from planning.base.errors import InputError
 from planning.base.findings import Finding, Severity
+from planning.base.json_file import plain_values
+from planning.base.messages import about, say
 from planning.base.parallel_map import cluster_client
 from planning.base.progress import QUIET, Monitor
 from planning.geo.mesh import join
@@ -79,7 +80,7 @@ def _photographed(
     wish: SceneRequest, folder: Path, n_processes: int | None, monitor: Monitor, cluster: Any
 ) -> RenderedScene:
     started_s = time.perf_counter()
-    monitor.report("building the scene", 0, 1)
+    monitor.report(say("building the scene"), 0, 1)
     taking = USUAL_TAKING if wish.camera is None else read_taking(wish.camera)
     scene, made_from = given_scene(wish)
     written_site, companions = as_written(scene.site)
@@ -105,7 +106,7 @@ def _lens(wish: SceneRequest, camera: Camera, taking: Taking) -> Intrinsics:
     try:
         return lens_of(camera, wish.width_px, taking)
     except InputError as error:
-        raise InputError(f"{wish.camera}: {error}") from error
+        raise InputError(about(wish.camera, error)) from error
 
 
 def _walled_in(photos: Sequence[PosedPhoto], model: SiteModel) -> Iterator[Finding]:
@@ -129,7 +130,7 @@ def rendered_summary(rendered: RenderedScene) -> dict[str, Any]:
         "scene": rendered.scene,
         "photos": len(written.photos),
         "kept": written.n_kept,
-        "effects": msgspec.to_builtins(written.decisions),
-        "findings": msgspec.to_builtins(rendered.findings),
+        "effects": plain_values(written.decisions),
+        "findings": plain_values(rendered.findings),
         "seconds": round(rendered.seconds, 3),
     }

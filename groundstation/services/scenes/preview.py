@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.effects import Decision, Wish, decide
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor, Stop, Trace, never
 from planning.geo.mesh import join
 from planning.geo.solids import Solids
@@ -151,7 +152,7 @@ def site_photo(
     InputError
         The site has no panels, or more than a photo can number.
     """
-    monitor.report("building the scene", 0, 1)
+    monitor.report(say("building the scene"), 0, 1)
     _KEPT.clear()
     _KEPT.append(_Studio(model, wish))
     return _KEPT[0].photo(wish, monitor)
@@ -194,10 +195,10 @@ class _Studio:
         from reconstruction.scenes.photos.renderer import Renderer, RenderSettings
 
         asked = [effect for effect in effects() if effect.name not in OF_FILES and effect.name not in LEFT_OUT]
-        monitor.report("choosing what to simulate", 0, len(asked))
+        monitor.report(say("choosing what to simulate"), 0, len(asked))
         probe, decisions = Probe(self._scene, [photo]), []
         for done, effect in enumerate(asked):
-            monitor.report("choosing what to simulate", done, len(asked))
+            monitor.report(say("choosing what to simulate"), done, len(asked))
             decisions.append(decide(effect, probe))
         chosen = frozenset(found.effect for found in decisions if found.on)
         if self._fine is None or self._fine[0] != chosen:
@@ -216,7 +217,7 @@ def _taken(renderer: Renderer, photo: PosedPhoto, monitor: Monitor) -> Photograp
     rows = max(1, STRIP_PX // width)
     strips = []
     for top in range(0, height, rows):
-        monitor.report("rendering the photo", top, height)
+        monitor.report(say("rendering the photo"), top, height)
         strips.append(_strip(renderer, photo, top, min(top + rows, height)))
     layers: dict[str, Any] = {name: np.concatenate([getattr(s, name) for s in strips]) for name in _layers(strips[0])}
     return replace(strips[0], **layers)

@@ -12,6 +12,7 @@ from groundstation.services.scenes.views import SceneRequest, given_scene, plan_
 from planning.aircraft.catalogue import profile
 from planning.base.effects import Decision
 from planning.base.errors import InputError
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.tradeoff.runner import Compared, Subject, compare
 from reconstruction.base.cameras import PosedPhoto
@@ -149,7 +150,9 @@ def _physically_based() -> MakeRenderer:
     try:
         mitsuba()
     except InputError as error:
-        raise InputError(f"{error}; or let the embedded renderer be the truth (--truth-rays 0, no --rays)") from error
+        raise InputError(
+            say("{}; or let the embedded renderer be the truth (--truth-rays 0, no --rays)", error)
+        ) from error
     return MitsubaRenderer
 
 

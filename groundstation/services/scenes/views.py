@@ -8,8 +8,6 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-import msgspec
-
 from groundstation.services.plan.planning import plan_document_site
 from groundstation.services.plan.top_up import flown_plan
 from groundstation.services.project.input_files import read_given_plan, read_given_site
@@ -21,6 +19,7 @@ from missions.flight.record import TakenPhoto
 from planning.aircraft.catalogue import profile
 from planning.base.errors import InputError
 from planning.base.findings import Finding, Severity
+from planning.base.json_file import plain_values
 from planning.base.progress import QUIET, Monitor
 from planning.geo.mesh import ply_bytes
 from planning.parameters import DEFAULT_PROFILE, Constraints, GreedyParameters
@@ -196,7 +195,7 @@ def given_scene(wish: SceneRequest) -> tuple[Scene, dict[str, Any]]:
         )
     model = read_given_site(path)
     look = None if wish.look is None else read_look(wish.look)
-    made_from = {"site": model.site.name, "look": None if look is None else msgspec.to_builtins(look)}
+    made_from = {"site": model.site.name, "look": None if look is None else plain_values(look)}
     return build_scene(model, look, wish.seed), made_from
 
 

@@ -15,6 +15,7 @@ import numpy as np
 
 from groundstation.services.project.document import first_free
 from planning.base.errors import InputError
+from planning.base.messages import say
 from planning.geo.frames import Origin, Vec3
 from planning.geo.geoid import amsl_from_ellipsoid_m, ellipsoid_from_amsl_m
 from planning.geo.mesh import TriangleMesh
@@ -47,7 +48,9 @@ def input_checked() -> Iterator[None]:
 def _check_extent(low_enu_m: Sequence[float], high_enu_m: Sequence[float]) -> None:
     for axis, low, high in zip(("east", "north", "up"), low_enu_m, high_enu_m, strict=True):
         if not low < high:
-            raise InputError(f"{axis}: expected the first value below the second, got {low:g} m and {high:g} m")
+            raise InputError(
+                say("expected the first value below the second, got {:g} m and {:g} m", low, high, place=axis)
+            )
 
 
 def with_site(model: SiteModel, site: Site, obstacles: tuple[TriangleMesh, ...] | None = None) -> SiteModel:
@@ -72,9 +75,9 @@ def index_of(ids: Iterable[str], wanted: str, kind: str) -> int:
 def check_new_name(name: str, taken: Iterable[str], kind: str) -> None:
     """Raise `InputError` unless `name` says something and is free."""
     if not name.strip():
-        raise InputError(f"name: expected a name for the {kind}, got an empty text")
+        raise InputError(say("name: expected a name for the {}, got an empty text", kind))
     if name in taken:
-        raise InputError(f"name: there is a {kind} '{name}' already; choose another name")
+        raise InputError(say("name: there is a {} '{}' already; choose another name", kind, name))
 
 
 def obstacle_ids(model: SiteModel) -> list[str]:
@@ -163,7 +166,7 @@ def set_zone(
         As `add_zone`, or the ceiling is not above the floor.
     """
     zones = list(model.site.airspace.no_fly)
-    index = index_of((zone.id for zone in zones), zone_id, "no-fly zone")
+    index = index_of((zone.id for zone in zones), zone_id, say("no-fly zone"))
     with input_checked():
         zones[index] = NoFlyZone(zone_id, polygon_enu_m, floor_m, ceiling_m)
     return with_zones(model, zones)
@@ -232,7 +235,7 @@ def move_rally_point(model: SiteModel, point_id: str, position_enu_m: Vec3, *, o
         The place is too far away.
     """
     points = list(model.site.rally_points)
-    index = index_of(rally_ids(model), point_id, "rally point")
+    index = index_of(rally_ids(model), point_id, say("rally point"))
     east, north, up = position_enu_m
     with input_checked():
         place = _rounded((east, north, model.site.airspace.ground_z_m if on_ground else up))

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from planning.base.errors import InfeasibleError
 from planning.base.findings import Finding, Severity
+from planning.base.messages import say, without_place
 from planning.base.progress import QUIET, Monitor
 from planning.coverage.sections import PanelFrames, panel_frames
 from planning.geo.line_of_sight import OCCLUSION_OFFSET_M
@@ -36,21 +37,21 @@ def site_findings(
 
     Takes up to a second on large meshes.
     """
-    monitor.report("checking the site", 0, 2)
+    monitor.report(say("checking the site"), 0, 2)
     found: list[Finding] = []
     try:
         space = free_space(model, min_distance_m)
     except InfeasibleError as error:
-        found.append(Finding(Severity.ERROR, "home-unusable", str(error).removeprefix("home_enu_m: "), "home"))
+        found.append(Finding(Severity.ERROR, "home-unusable", without_place(str(error), "home_enu_m"), "home"))
         space = unchecked_space(model, min_distance_m)
-    monitor.report("checking the site", 1, 2)
+    monitor.report(say("checking the site"), 1, 2)
     found += [finding for finding in rally_findings(model, space) if finding.severity is not Severity.OK]
     return (*found, *_no_panels(model), *_heights(model), *_without_effect(model), *_facades_in_reach(model, space))
 
 
 def _no_panels(model: SiteModel) -> Iterator[Finding]:
     if model.site.n_panels == 0:
-        text = "there are no panels yet: find them in photos (Photos tab), or draw a panel grid on the building"
+        text = say("there are no panels yet: find them in photos (Photos tab), or draw a panel grid on the building")
         yield Finding(Severity.WARNING, "no-panels", text, "building")
 
 
@@ -60,8 +61,11 @@ def _heights(model: SiteModel) -> Iterator[Finding]:
         yield Finding(
             Severity.WARNING,
             "airspace-below-ground",
-            f"the airspace begins at {airspace.min_enu_m[2]:g} m, below the ground at {airspace.ground_z_m:g} m; raise "
-            "its floor",
+            say(
+                "the airspace begins at {:g} m, below the ground at {:g} m; raise its floor",
+                airspace.min_enu_m[2],
+                airspace.ground_z_m,
+            ),
             "airspace",
             airspace.min_enu_m[2],
             airspace.ground_z_m,
@@ -71,7 +75,7 @@ def _heights(model: SiteModel) -> Iterator[Finding]:
         yield Finding(
             Severity.WARNING,
             "home-below-ground",
-            f"home lies at {home_z:g} m, below the ground at {airspace.ground_z_m:g} m; put it on the ground",
+            say("home lies at {:g} m, below the ground at {:g} m; put it on the ground", home_z, airspace.ground_z_m),
             "home",
             home_z,
             airspace.ground_z_m,
@@ -85,7 +89,7 @@ def _without_effect(model: SiteModel) -> Iterator[Finding]:
             yield Finding(
                 Severity.NOTE,
                 "no-fly-outside",
-                f"no-fly zone '{zone.id}' lies outside the airspace, so it changes nothing",
+                say("no-fly zone '{}' lies outside the airspace, so it changes nothing", zone.id),
                 f"no-fly/{zone.id}",
             )
 
@@ -109,8 +113,14 @@ def _facades_in_reach(model: SiteModel, space: FreeSpace) -> Iterator[Finding]:
             yield Finding(
                 Severity.WARNING,
                 "facade-out-of-reach",
-                f"facade '{facade.id}': there is no free airspace {low_m:.0f} to {high_m:.0f} m in front of its panels "
-                f"({n_panels}) from which they are seen; turn it to the other side, widen the airspace, or remove it",
+                say(
+                    "facade '{}': there is no free airspace {:.0f} to {:.0f} m in front of its panels ({}) from "
+                    "which they are seen; turn it to the other side, widen the airspace, or remove it",
+                    facade.id,
+                    low_m,
+                    high_m,
+                    n_panels,
+                ),
                 f"facade/{facade.id}",
             )
 

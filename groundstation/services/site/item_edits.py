@@ -16,6 +16,7 @@ from groundstation.services.site.edits import (
     with_zones,
 )
 from groundstation.services.site.panel_edits import with_facades
+from planning.base.messages import say
 from planning.site.records import Facade, NoFlyZone, Obstacle, Panel, RallyPoint, Site, SiteModel
 
 Named = TypeVar("Named", Obstacle, NoFlyZone, Panel, RallyPoint)
@@ -43,7 +44,7 @@ def remove_item(model: SiteModel, item: Item) -> SiteModel:
                 model, replace(site, obstacles=obstacles), model.obstacles[:index] + model.obstacles[index + 1 :]
             )
         case ItemKind.NO_FLY:
-            index = index_of((zone.id for zone in site.airspace.no_fly), item.id, "no-fly zone")
+            index = index_of((zone.id for zone in site.airspace.no_fly), item.id, say("no-fly zone"))
             return with_zones(model, site.airspace.no_fly[:index] + site.airspace.no_fly[index + 1 :])
         case ItemKind.FACADE:
             index = index_of((facade.id for facade in site.facades), item.id, "facade")
@@ -54,7 +55,7 @@ def remove_item(model: SiteModel, item: Item) -> SiteModel:
             facade = (replace(site.facades[index], panels=rest),) if rest else ()
             return with_facades(model, site.facades[:index] + facade + site.facades[index + 1 :])
         case ItemKind.RALLY:
-            index = index_of(rally_ids(model), item.id, "rally point")
+            index = index_of(rally_ids(model), item.id, say("rally point"))
             return with_rally_points(model, site.rally_points[:index] + site.rally_points[index + 1 :])
         case _:
             raise ValueError(f"a site always has its {item.kind}")
@@ -78,8 +79,8 @@ def rename_item(model: SiteModel, item: Item, name: str) -> SiteModel:
             check_new_name(name, obstacle_ids(model), "obstacle")
             return with_site(model, replace(site, obstacles=_renamed(site.obstacles, item.id, name, "obstacle")))
         case ItemKind.NO_FLY:
-            check_new_name(name, (zone.id for zone in site.airspace.no_fly), "no-fly zone")
-            return with_zones(model, _renamed(site.airspace.no_fly, item.id, name, "no-fly zone"))
+            check_new_name(name, (zone.id for zone in site.airspace.no_fly), say("no-fly zone"))
+            return with_zones(model, _renamed(site.airspace.no_fly, item.id, name, say("no-fly zone")))
         case ItemKind.FACADE:
             check_new_name(name, (facade.id for facade in site.facades), "facade")
             index = index_of((facade.id for facade in site.facades), item.id, "facade")
@@ -92,8 +93,8 @@ def rename_item(model: SiteModel, item: Item, name: str) -> SiteModel:
             facade = replace(site.facades[index], panels=panels)
             return with_facades(model, (*site.facades[:index], facade, *site.facades[index + 1 :]))
         case ItemKind.RALLY:
-            check_new_name(name, rally_ids(model), "rally point")
-            return with_rally_points(model, _renamed(site.rally_points, item.id, name, "rally point"))
+            check_new_name(name, rally_ids(model), say("rally point"))
+            return with_rally_points(model, _renamed(site.rally_points, item.id, name, say("rally point")))
         case _:
             raise ValueError(f"the {item.kind} of a site has no name")
 

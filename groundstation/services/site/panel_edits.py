@@ -11,6 +11,7 @@ import numpy as np
 from groundstation.services.project.document import first_free
 from groundstation.services.site.edits import index_of, input_checked, with_site
 from planning.base.errors import InputError
+from planning.base.messages import say
 from planning.geo.frames import Vec3
 from planning.site.bundled import Rectangle
 from planning.site.importing.facades import facade_name
@@ -87,7 +88,7 @@ def with_facades(model: SiteModel, facades: Iterable[Facade]) -> SiteModel:
     kept = tuple(facades)
     if model.site.building_mesh is None and not any(facade.panels for facade in kept):
         raise InputError(
-            "panels: a site without a building needs at least one panel; add the new ones first, then remove these"
+            say("panels: a site without a building needs at least one panel; add the new ones first, then remove these")
         )
     with input_checked():
         site = replace(model.site, facades=kept)

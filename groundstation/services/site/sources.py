@@ -10,6 +10,7 @@ import numpy as np
 from groundstation.services.project.document import Document
 from groundstation.services.project.input_files import read_given_site
 from planning.base.errors import InputError
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.geo.frames import Vec3
 from planning.geo.mesh import MAX_COORDINATE_M
@@ -84,7 +85,7 @@ def bundled_site(name: str) -> SiteModel:
         There is none of that name.
     """
     if name not in SCENES:
-        raise InputError(f"there is no bundled site '{name}'; known are: {', '.join(sorted(SCENES))}")
+        raise InputError(say("there is no bundled site '{}'; known are: {}", name, ", ".join(sorted(SCENES))))
     model = SCENES[name]()
     return replace(model, sha256=site_sha256(model.site))
 
@@ -97,7 +98,7 @@ def open_site(path: Path, monitor: Monitor = QUIET) -> SiteModel:
     InputError
         As `groundstation.services.project.input_files.read_given_site`: a building model is told from a site file.
     """
-    monitor.report("reading the site", 0, 0)
+    monitor.report(say("reading the site"), 0, 0)
     return read_given_site(path)
 
 

@@ -22,12 +22,13 @@ from missions.mavlink.messages import Message, MissionItemInt, Received
 from missions.mavlink.transfer.download import Download, DownloadOutcome
 from missions.mavlink.transfer.exchange import Ending, MissionType, Result, Route
 from missions.mavlink.transfer.rounding import compare
+from planning.base.messages import say
 
-RESTARTED = "the vehicle was restarted"
-SILENT = "the vehicle was not heard for a while"
-CHANGED = "the vehicle says that it holds something else now"
-WRITTEN = "another ground station has written to the vehicle"
-UNREAD = "it could not be read"
+RESTARTED = say("the vehicle was restarted")
+SILENT = say("the vehicle was not heard for a while")
+CHANGED = say("the vehicle says that it holds something else now")
+WRITTEN = say("another ground station has written to the vehicle")
+UNREAD = say("it could not be read")
 """Why what is on board is not known any more."""
 
 READ_PAUSE_S = 5.0
@@ -90,7 +91,7 @@ class BoardReread:
     @property
     def progress(self) -> tuple[str, float, float]:
         """Of the list that is being read."""
-        return ("reading back", 0.0, 0.0) if self._download is None else self._download.progress
+        return (say("reading back"), 0.0, 0.0) if self._download is None else self._download.progress
 
     def start(self, now_s: float) -> list[Message]:
         """Ask for the first list."""
@@ -124,11 +125,11 @@ class BoardReread:
 def _compared(board_list: BoardList, read: DownloadOutcome, autopilot: Autopilot) -> ListRead:
     what = board_list.what
     if read.ending is not Ending.DONE:
-        return ListRead(board_list, None, f"the {what} on board could not be read again ({read.ending.value})")
+        return ListRead(board_list, None, say("the {} on board could not be read again ({})", what, read.ending.value))
     differences = compare(board_list.messages, read.items, autopilot, board_list.route.mission_type)
     if differences:
-        return ListRead(board_list, False, f"the vehicle has another {what} now: {differences[0]}")
-    return ListRead(board_list, True, f"the {what} on board is the one that was uploaded")
+        return ListRead(board_list, False, say("the vehicle has another {} now: {}", what, differences[0]))
+    return ListRead(board_list, True, say("the {} on board is the one that was uploaded", what))
 
 
 # What may have changed it

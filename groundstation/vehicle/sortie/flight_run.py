@@ -51,6 +51,7 @@ from missions.mavlink.transfer.exchange import Ending, MissionType, Route
 from missions.mavlink.transfer.verified import NotVerified, Verified, VerifiedUpload
 from missions.mavlink.transfer.wire_items import to_wire
 from planning.base.errors import LinkRejected, LinkTimeout, MissionError
+from planning.base.messages import glue, joined, say
 
 MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, MAV_CMD_MISSION_START = 246, 300
 MAV_CMD_COMPONENT_ARM_DISARM = 400
@@ -113,15 +114,20 @@ def _connect(run: SortieRun) -> Steps:
     while run.state.autopilot is None:
         if run.now_s > deadline_s:
             raise LinkTimeout(
-                f"{run.link_name}: no ArduPilot or PX4 was heard within {run.options.connect_s:g} s; is the vehicle "
-                "on, and the address right?"
+                say(
+                    "no ArduPilot or PX4 was heard within {:g} s; is the vehicle on, and the address right?",
+                    run.options.connect_s,
+                    place=run.link_name,
+                )
             )
         yield None
     expected, found = run.options.autopilot, run.state.autopilot
     if expected is not None and found is not expected:
-        raise LinkRejected(f"{run.link_name}: expected {expected.value}, found {found.value}; name the other autopilot")
+        raise LinkRejected(
+            say("expected {}, found {}; name the other autopilot", expected.value, found.value, place=run.link_name)
+        )
     if run.state.is_armed:
-        raise LinkRejected(f"{run.link_name}: the vehicle is armed already; land and disarm it first")
+        raise LinkRejected(say("the vehicle is armed already; land and disarm it first", place=run.link_name))
     run.recorder = Recorder(f"{found.value}, {run.link_name}", run.state.address)
 
 
@@ -158,7 +164,7 @@ def _read_parameters(run: SortieRun) -> Steps:
     unknown = [name for name in wanted if name not in values]
     if unknown and not run.has_told_unknown:
         run.has_told_unknown = True
-        run.note("parameter", f"the vehicle does not know these parameters: {', '.join(unknown)}")
+        run.note("parameter", say("the vehicle does not know these parameters: {}", ", ".join(unknown)))
 
 
 def _set_parameters(run: SortieRun, changes: tuple[ParameterChange, ...]) -> Steps:
@@ -182,11 +188,13 @@ def _ask_for_telemetry(run: SortieRun, *, must_answer: bool = True) -> Steps:
     autopilot, address = vehicle_of(run)
     run.asked_s = run.now_s
     for command in message_requests(autopilot, address):
-        outcome: CommandOutcome = yield CommandCall("sending telemetry", command, run.own)
+        outcome: CommandOutcome = yield CommandCall(say("sending telemetry"), command, run.own)
         if outcome.answer is Answer.NO_ANSWER and not must_answer:
             return
         if outcome.answer is Answer.NO_ANSWER:
-            raise LinkTimeout(f"{run.link_name}: the vehicle is heard but does not answer; does the link go both ways?")
+            raise LinkTimeout(
+                say("the vehicle is heard but does not answer; does the link go both ways?", place=run.link_name)
+            )
 
 
 def _reboot(run: SortieRun) -> Steps:
@@ -201,15 +209,19 @@ def _reboot(run: SortieRun) -> Steps:
     before_s = run.state.boot_time_s or 0.0
     outcome: CommandOutcome = yield CommandCall("rebooting", command, run.own, n_attempts=1)
     if outcome.answer is Answer.REFUSED:
-        raise LinkRejected(f"{outcome.text}; {names} take effect after a reboot only: restart the vehicle")
-    run.note("reboot", f"the autopilot restarts, so that {names} take effect")
+        raise LinkRejected(say("{}; {} take effect after a reboot only: restart the vehicle", outcome.text, names))
+    run.note("reboot", say("the autopilot restarts, so that {} take effect", names))
     began_anew = yield from _wait(run, lambda state: (state.boot_time_s or before_s) < before_s, REBOOT_PAUSE_S)
     run.state = after_restart(run.state)
     is_back = yield from _wait(run, lambda state: state.heartbeat is not None and state.heartbeat.value > 1, REBOOT_S)
     if not is_back:
-        raise LinkTimeout(f"{run.link_name}: the vehicle did not come back within {REBOOT_S:g} s of its reboot")
+        raise LinkTimeout(
+            say("the vehicle did not come back within {:g} s of its reboot", REBOOT_S, place=run.link_name)
+        )
     if not began_anew and run.state.boot_time_s is not None and run.state.boot_time_s >= before_s:
-        raise LinkRejected(f"{run.link_name}: the vehicle was not rebooted; {names} take effect then: restart it")
+        raise LinkRejected(
+            say("the vehicle was not rebooted; {} take effect then: restart it", names, place=run.link_name)
+        )
     yield from _ask_for_telemetry(run)
 
 
@@ -222,10 +234,10 @@ def _check(run: SortieRun) -> Steps:
     while not is_ready(checks := run.checks()):
         bad = [check.text for check in checks if check.verdict is Verdict.BAD]
         if bad and run.options.starts_itself:
-            raise MissionError("not ready for take-off: " + "; ".join(bad))
+            raise MissionError(say("not ready for take-off: ") + joined("; ", bad))
         if run.now_s > deadline_s and run.options.starts_itself:
             missing = [f"{check.code}: {check.text}" for check in checks if not is_ready((check,))]
-            raise LinkTimeout(f"not ready for take-off after {run.options.ready_s:g} s: " + "; ".join(missing))
+            raise LinkTimeout(say("not ready for take-off after {:g} s: ", run.options.ready_s) + joined("; ", missing))
         yield None
         yield from _keep_up(run)
 
@@ -260,7 +272,7 @@ def _keep_up(run: SortieRun) -> Steps:
 def _set_mode(run: SortieRun, name: str) -> Steps:
     autopilot, address = vehicle_of(run)
     command = set_mode_command(autopilot, name, address.system, address.component)
-    outcome: CommandOutcome = yield CommandCall(f"the mode {name}", command, run.own)
+    outcome: CommandOutcome = yield CommandCall(say("the mode {}", name), command, run.own)
     if not outcome.is_accepted:
         raise LinkRejected(f"{outcome.text}{_last_complaint(run)}")
 
@@ -317,7 +329,7 @@ def _start_once(run: SortieRun) -> Steps:
         yield from _set_mode(run, MISSION_MODE[autopilot])
         yield from _stop_where_doubted(run)
         command = CommandLong(address.system, address.component, MAV_CMD_MISSION_START)
-        outcome: CommandOutcome = yield CommandCall("starting the mission", command, run.own)
+        outcome: CommandOutcome = yield CommandCall(say("starting the mission"), command, run.own)
         if not outcome.is_accepted:
             raise LinkRejected(f"{outcome.text}{_last_complaint(run)}")
     else:
@@ -334,8 +346,8 @@ def _start_once(run: SortieRun) -> Steps:
     in_mode = yield from _wait(run, lambda state: state.mode is not None and state.mode.value == wanted, MODE_S)
     if not in_mode and not run.was_ordered_away:
         found = "unknown" if run.state.mode is None else run.state.mode.value
-        raise LinkRejected(f"the vehicle is in mode {found} and not in {wanted}{_last_complaint(run)}")
-    run.note("started", f"sortie {run.orders.number}")
+        raise LinkRejected(say("the vehicle is in mode {} and not in {}", found, glue(wanted, _last_complaint(run))))
+    run.note("started", say("sortie {}", run.orders.number))
 
 
 def _refuse_what_is_not_ours(run: SortieRun, *, is_armed: bool = False) -> None:
@@ -343,22 +355,37 @@ def _refuse_what_is_not_ours(run: SortieRun, *, is_armed: bool = False) -> None:
     for ours in run.lists:
         if run.on_board.of(ours.route.mission_type) is False:
             raise LinkRejected(
-                f"the {ours.what} on the vehicle is not the one that was uploaded; it was not started: upload it again"
+                say(
+                    "the {} on the vehicle is not the one that was uploaded; it was not started: upload it again",
+                    ours.what,
+                )
             )
     checks = overruled(run.on_board.failsafes, run.options.overrules)
     bad = [check.text for check in checks if check.verdict is Verdict.BAD]
     if bad:
-        raise LinkRejected(f"{bad[0]}; it was not started")
+        raise LinkRejected(say("{}; it was not started", bad[0]))
     home_m = run.state.home_altitude_amsl_m
     off_m = 0.0 if home_m is None else stands_above_m(run.state, run.orders, home_m)
     if is_armed and abs(off_m) > HOME_HEIGHT_M and "home-height" not in run.options.overrules:
         raise LinkRejected(
-            f"the vehicle counts its heights from {abs(off_m):.1f} m {'above' if off_m > 0.0 else 'below'} the planned "
-            "home; it was not started: set its home anew where it stands"
+            say(
+                "the vehicle counts its heights from {:.1f} m above the planned home; it was not started: set "
+                "its home anew where it stands",
+                abs(off_m),
+            )
+            if off_m > 0.0
+            else say(
+                "the vehicle counts its heights from {:.1f} m below the planned home; it was not started: set "
+                "its home anew where it stands",
+                abs(off_m),
+            )
         )
     if run.on_board.doubt:
         raise _NotKnownError(
-            f"what is on the vehicle is not known ({run.on_board.doubt}); it was not started: wait until it is read"
+            say(
+                "what is on the vehicle is not known ({}); it was not started: wait until it is read",
+                run.on_board.doubt,
+            )
         )
 
 
@@ -385,7 +412,7 @@ def _fly(run: SortieRun) -> Steps:
     # Without a link nobody knows: what is heard when it is back decides.
     is_known = run.state.is_link_alive(run.now_s)
     if is_known and not (took_off and (run.state.is_armed or _is_flying(run.state))):
-        raise MissionError(f"the aircraft did not take off{_last_complaint(run)}")
+        raise MissionError(say("the aircraft did not take off{}", _last_complaint(run)))
     limit_s = (run.state.boot_time_s or 0.0) + 2.0 * run.orders.mission.aircraft.endurance_s
     landed_s: float | None = None
     was_up_m = 0.0
@@ -394,10 +421,13 @@ def _fly(run: SortieRun) -> Steps:
         heartbeat = run.state.heartbeat
         if heartbeat is not None and heartbeat.age_s(run.now_s) > run.options.link_lost_s:
             raise LinkTimeout(
-                f"the vehicle was not heard for {run.options.link_lost_s:g} s in flight; what was recorded ends there"
+                say(
+                    "the vehicle was not heard for {:g} s in flight; what was recorded ends there",
+                    run.options.link_lost_s,
+                )
             )
         if (run.state.boot_time_s or 0.0) > limit_s:
-            raise LinkTimeout("the aircraft is armed for longer than any battery lasts; look at what it does")
+            raise LinkTimeout(say("the aircraft is armed for longer than any battery lasts; look at what it does"))
         landed = run.state.landed
         is_down = landed is not None and landed.value is Landed.ON_GROUND
         landed_s = (landed_s or run.now_s) if is_down else None
@@ -409,7 +439,11 @@ def _fly(run: SortieRun) -> Steps:
         yield None
     if was_up_m > MOTORS_OFF_M:
         raise MissionError(
-            f"the motors stopped {was_up_m:.0f} m above take-off: the aircraft fell; look for it{_last_complaint(run)}"
+            say(
+                "the motors stopped {:.0f} m above take-off: the aircraft fell; look for it{}",
+                was_up_m,
+                _last_complaint(run),
+            )
         )
     if run.camera_reports.count is not None:
         run.camera_reports.ask_count()
@@ -454,7 +488,7 @@ def _pause(run: SortieRun, duration_s: float) -> Steps:
 def _last_complaint(run: SortieRun) -> str:
     """The autopilot's own last words, warnings or worse, in brackets."""
     text = next((text.text for text in reversed(run.state.texts) if text.severity <= 4), "")
-    return f" ({text})" if text else ""
+    return glue(" (", text, ")") if text else ""
 
 
 # What has to be on board
@@ -486,17 +520,17 @@ def _put_rally_points(run: SortieRun) -> Steps:
     autopilot, address = vehicle_of(run)
     route = Route(run.own, address, MissionType.RALLY)
     items = rally_messages(run.orders, autopilot) if run.orders.rally else ()
-    ours = BoardList("list of rally points", route, items)
+    ours = BoardList(say("list of rally points"), route, items)
     if items:
         yield from _put(run, ours)
         return
     read: DownloadOutcome = yield Download(route)
     text = ""
     if read.ending is Ending.SILENT:
-        text = "the vehicle does not say whether it has rally points; look before it returns by itself"
+        text = say("the vehicle does not say whether it has rally points; look before it returns by itself")
     elif read.items:
         yield from _put(run, ours)
-        text = f"the vehicle had {len(read.items)} rally points of another flight; they are cleared"
+        text = say("the vehicle had {} rally points of another flight; they are cleared", len(read.items))
     elif read.ending is Ending.DONE:
         run.lists = (*run.lists, ours)
         run.on_board = replace(run.on_board, rally=True)
@@ -509,7 +543,7 @@ def _put_rally_points(run: SortieRun) -> Steps:
 def _put(run: SortieRun, ours: BoardList) -> Steps:
     outcome: Verified | NotVerified = yield VerifiedUpload(ours.route, ours.messages, vehicle_of(run)[0])
     if isinstance(outcome, NotVerified):
-        raise LinkRejected(f"the {ours.what} is not on the vehicle: {outcome}")
+        raise LinkRejected(say("the {} is not on the vehicle: {}", ours.what, outcome))
     run.note("uploaded", f"{ours.what}: {len(outcome.items)} items, read back and equal")
     run.lists = (*run.lists, ours)
     run.on_board = run.on_board.known(ours.route.mission_type, True)

@@ -40,6 +40,7 @@ from missions.mavlink.transfer.download import Download
 from missions.mavlink.transfer.exchange import MissionType
 from missions.mavlink.transfer.verified import VerifiedUpload
 from planning.base.errors import GroundStationError
+from planning.base.messages import say
 
 WATCH_EVERY_S = 0.5
 LONGEST_WAIT_S = 0.25
@@ -263,9 +264,9 @@ class SortieRun:
         has_link = self.state.is_link_alive(self.now_s)
         if has_link != self._had_link and self.recorder is not None:
             if has_link:
-                self.note("link-found", "the vehicle is heard again")
+                self.note("link-found", say("the vehicle is heard again"))
             else:
-                self.note("link-lost", "no heartbeat; the aircraft goes on by itself")
+                self.note("link-lost", say("no heartbeat; the aircraft goes on by itself"))
         if has_link and not self._had_link:
             self._doubt(SILENT)
         self._had_link = has_link
@@ -278,7 +279,7 @@ class SortieRun:
         """Something may have changed what is on board."""
         on_board = doubted(self.on_board, reason) if reason else self.on_board
         if on_board is not self.on_board and on_board.doubt != self.on_board.doubt:
-            self.note("board-doubted", f"what is on board is not known any more: {reason}")
+            self.note("board-doubted", say("what is on board is not known any more: {}", reason))
         self.on_board = on_board
 
     def take_reads(self, reads: tuple[ListRead, ...]) -> None:

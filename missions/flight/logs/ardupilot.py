@@ -12,6 +12,7 @@ from missions.flight.logs.dataflash import Table, binary_tables, column, looks_b
 from missions.flight.logs.raw import NOT_KNOWN, RawLog, RawPhoto, Row
 from missions.flight.record import FlightEvent
 from missions.mavlink.autopilots import Autopilot
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 
 WANTED = frozenset(
@@ -145,4 +146,6 @@ def _modes(table: Table) -> list[tuple[float, str]]:
         return names
     rows = _rows(table, "ModeNum") or _rows(table, "Mode")
     known = mavutil.mode_mapping_acm
-    return [(time_s, known.get(int(number), f"mode {number:g}")) for time_s, number in rows if np.isfinite(number)]
+    return [
+        (time_s, known.get(int(number), say("mode {:g}", number))) for time_s, number in rows if np.isfinite(number)
+    ]

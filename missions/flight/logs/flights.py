@@ -18,6 +18,7 @@ from missions.flight.record import FlightEvent, FlightRecord, TakenPhoto, Track
 from missions.mavlink.autopilots import Autopilot
 from planning.base.errors import InputError
 from planning.base.findings import Finding, Severity
+from planning.base.messages import say
 from planning.geo.frames import wrap_heading_deg, wrap_heading_rad
 from planning.geo.mesh import MAX_COORDINATE_M
 from planning.site.records import HEIGHT_DIFFERENCE_M, MAX_DISTANCE_M, Site
@@ -175,7 +176,7 @@ def _height_findings(rows: Floats, site: Site, points: Floats, heights: HeightSo
     median_m = float(np.median(apart[np.isfinite(apart)]))
     if abs(median_m) <= HEIGHT_DIFFERENCE_M:
         return []
-    used, not_used = ("take-off", "sea level") if heights == "takeoff" else ("sea level", "take-off")
+    used, not_used = ("take-off", say("sea level")) if heights == "takeoff" else (say("sea level"), "take-off")
     text = f"heights are counted from {used}; counted from {not_used} they would be {median_m:+.1f} m"
     return [Finding(Severity.NOTE, "height-reference", text, "", median_m, HEIGHT_DIFFERENCE_M, "m")]
 

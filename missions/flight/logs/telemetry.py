@@ -17,6 +17,7 @@ from missions.mavlink import messages
 from missions.mavlink.autopilots import Autopilot, facts
 from missions.mavlink.messages import Address, Message, Received
 from missions.mavlink.mode_numbers import mode_name
+from planning.base.messages import say
 
 REBOOT_S = 5.0
 """A time since boot that falls by more than this began again, and another clock is off by more than this."""
@@ -232,4 +233,4 @@ def _mode_name(heartbeat: messages.Heartbeat) -> str:
     from pymavlink import mavutil
 
     names = mavutil.mode_mapping_bynumber(heartbeat.type) or {}
-    return str(names.get(heartbeat.custom_mode, f"mode {heartbeat.custom_mode}"))
+    return str(names.get(heartbeat.custom_mode, say("mode {}", heartbeat.custom_mode)))

@@ -19,6 +19,7 @@ from missions.flight.logs.raw import RawLog, RawPhoto, Row
 from missions.flight.record import FlightEvent
 from missions.mavlink.autopilots import Autopilot
 from planning.base.errors import InputError
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 
 if TYPE_CHECKING:
@@ -231,7 +232,7 @@ def _events(log: RawLog, topics: dict[str, Columns], source: ULog) -> None:
         time_s = (int(message.timestamp) - int(source.start_timestamp)) / 1e6
         log.events.append(FlightEvent(time_s, "text", message.message.strip()))
     for time_s, state in _rows(topics, "vehicle_status", "nav_state"):
-        log.mode(time_s, NAVIGATION_STATES.get(int(state), f"mode {state:g}"))
+        log.mode(time_s, NAVIGATION_STATES.get(int(state), say("mode {:g}", state)))
     armed = [(t, value > 0) for t, value in _rows(topics, "actuator_armed", "armed")]
     states = [(t, value == ARMED_STATE) for t, value in _rows(topics, "vehicle_status", "arming_state")]
     for time_s, is_armed in armed or states:

@@ -34,6 +34,7 @@ from missions.mavlink.messages import (
     Received,
 )
 from missions.mavlink.transfer.exchange import DEFAULT_TIMING, NOT_YET, Ending, Patience, Result, Route, Timing
+from planning.base.messages import say
 
 
 class DownloadState(Enum):
@@ -89,7 +90,7 @@ class Download:
     @property
     def progress(self) -> tuple[str, float, float]:
         """Items that came so far."""
-        return "reading back", len(self._items), self._count or 0
+        return say("reading back"), len(self._items), self._count or 0
 
     def start(self, now_s: float) -> list[Message]:
         """Ask how many there are."""

@@ -16,6 +16,7 @@ from missions.mavlink.messages import MissionItemInt
 from missions.mavlink.transfer.exchange import MissionType
 from missions.mavlink.transfer.wire_items import has_home, has_place
 from planning.base.json_file import read_toml
+from planning.base.messages import say
 from planning.geo.frames import wrap_heading_deg
 
 DATA_PATH = Path(__file__).parents[2] / "data" / "mavlink_rounding.toml"
@@ -99,8 +100,8 @@ class Difference:
 
     def __str__(self) -> str:
         if self.field == COUNT:
-            return f"{self.sent:g} items were sent, {self.read_back:g} are on the vehicle"
-        return f"item {self.seq}, {self.field}: sent {self.sent:.10g}, on the vehicle {self.read_back:.10g}"
+            return say("{:g} items were sent, {:g} are on the vehicle", self.sent, self.read_back)
+        return say("item {}, {}: sent {:.10g}, on the vehicle {:.10g}", self.seq, self.field, self.sent, self.read_back)
 
 
 @cache

@@ -47,6 +47,7 @@ from missions.mavlink.transfer.exchange import (
     Timing,
 )
 from missions.mavlink.transfer.rounding import Difference, compare
+from planning.base.messages import glue, joined, say
 
 # Clearing a list on the vehicle.
 #
@@ -406,32 +407,34 @@ class NotVerified:
 
     def _what_is_on_board(self) -> str:
         if self.on_board is None:
-            return "what is on the vehicle now could not be read: do not fly before it was"
+            return say("what is on the vehicle now could not be read: do not fly before it was")
         if not self.on_board:
-            return "nothing is on the vehicle now"
-        listed = "; ".join(map(str, self.differences[:3]))
-        more = f"; and {len(self.differences) - 3} more" if len(self.differences) > 3 else ""
-        return f"{len(self.on_board)} items are on the vehicle, and not those that were sent ({listed}{more})"
+            return say("nothing is on the vehicle now")
+        listed = joined("; ", map(str, self.differences[:3]))
+        more = say("; and {} more", len(self.differences) - 3) if len(self.differences) > 3 else ""
+        return say(
+            "{} items are on the vehicle, and not those that were sent ({})", len(self.on_board), glue(listed, more)
+        )
 
 
 def _why(upload: UploadOutcome | None) -> str:
     if upload is None:
-        return "the list could not be cleared"
-    place = "" if upload.seq is None else f" at item {upload.seq}"
+        return say("the list could not be cleared")
+    place = "" if upload.seq is None else say(" at item {}", upload.seq)
     match upload.ending:
         case Ending.REFUSED:
             known = {result.value: result.name for result in Result}
-            return f"the vehicle refused the upload{place} ({known.get(upload.result or 0, upload.result)})"
+            return say("the vehicle refused the upload{} ({})", place, known.get(upload.result or 0, upload.result))
         case Ending.DONE:
-            return "the vehicle accepted every item"
+            return say("the vehicle accepted every item")
         case Ending.UNCONFIRMED:
-            return "every item was sent, but the vehicle did not confirm them"
+            return say("every item was sent, but the vehicle did not confirm them")
         case Ending.SILENT:
-            return f"the vehicle stopped answering{place}"
+            return say("the vehicle stopped answering{}", place)
         case Ending.STALLED:
-            return f"the upload did not get on{place}"
+            return say("the upload did not get on{}", place)
         case Ending.OUT_OF_STEP:
-            return f"the vehicle did not keep to the items{place}"
+            return say("the vehicle did not keep to the items{}", place)
 
 
 @dataclass(slots=True)

@@ -13,6 +13,7 @@ from missions.mavlink.items import MissionItem
 from missions.mavlink.messages import MissionItemInt
 from missions.mavlink.transfer.exchange import MissionType
 from planning.base.errors import MissionError
+from planning.base.messages import say
 
 SCALE = 1e7
 LARGEST = 2**31 - 1
@@ -47,7 +48,7 @@ def to_wire(
     MissionError
         A value has no place in the message.
     """
-    messages = [_message(item, f"item {number}", mission_type) for number, item in enumerate(items, 1)]
+    messages = [_message(item, say("item {}", number), mission_type) for number, item in enumerate(items, 1)]
     if has_home(autopilot, mission_type) and messages:
         messages.insert(0, HOME)
     return tuple(messages)

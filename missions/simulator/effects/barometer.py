@@ -8,6 +8,7 @@ from missions.simulator.effects.facts import BarometerFacts, effect_facts
 from missions.simulator.effects.gnss import AboveStart
 from missions.simulator.scene import FlightScene
 from planning.base.effects import Assessment
+from planning.base.messages import say
 from planning.geo.frames import Vec3
 
 COST_PER_STEP_S = 1e-6
@@ -36,18 +37,18 @@ class DriftingBarometer:
 class BarometerDrift:
     """The effect: error of the height at the shutter, in the middle of the flight."""
 
-    name = "barometer drift"
-    unit = "m at the shutter"
+    name = say("barometer drift")
+    unit = say("m at the shutter")
     tolerance = 0.05
     """A tenth of the 0.5 m by which a photo may be off its viewpoint."""
 
     def assess(self, scene: FlightScene) -> Assessment:
         """Drift over half the flight, 1 sigma."""
         if scene.conditions.height_by_gnss:
-            return Assessment(0.0, "the height comes from the GNSS receiver", 0.0)
+            return Assessment(0.0, say("the height comes from the GNSS receiver"), 0.0)
         facts = effect_facts().barometer
-        reason = (
-            f"the weather drifts by {facts.drift_hpa_per_h:g} hPa an hour over a flight of {scene.duration_s:.0f} s"
+        reason = say(
+            "the weather drifts by {:g} hPa an hour over a flight of {:.0f} s", facts.drift_hpa_per_h, scene.duration_s
         )
         size = 0.5 * scene.duration_s * drift_m_s(facts)
         return Assessment(size, reason, scene.n_steps * COST_PER_STEP_S)

@@ -8,6 +8,7 @@ from missions.simulator.airframe.state import Battery
 from missions.simulator.effects.facts import BatteryFacts, effect_facts
 from missions.simulator.scene import FlightScene
 from planning.base.effects import Assessment
+from planning.base.messages import say
 from planning.geo.frames import Vec3
 
 GRAVITY_M_S2 = 9.80665
@@ -66,8 +67,8 @@ class SaggingPack:
 class BatterySag:
     """The effect: share of the battery that a flight takes more or less than its time says."""
 
-    name = "battery sag"
-    unit = "of the battery"
+    name = say("battery sag")
+    unit = say("of the battery")
     tolerance = 0.02
     """A tenth of the reserve."""
 
@@ -79,8 +80,11 @@ class BatterySag:
         share = scene.hover_share
         ratio = (share * hovering + (1.0 - share) * flying) / power_ratio(facts.endurance_speed_m_s, 0.0, facts)
         size = abs(ratio - 1.0) * scene.duration_s / scene.aircraft.endurance_s
-        reason = (
-            f"{share:.0%} of the flight is hovered in {wind_m_s:g} m/s of wind: {ratio:.0%} of the power for which the "
-            "endurance is stated"
+        reason = say(
+            "{:.0%} of the flight is hovered in {:g} m/s of wind: {:.0%} of the power for which the "
+            "endurance is stated",
+            share,
+            wind_m_s,
+            ratio,
         )
         return Assessment(size, reason, scene.n_steps * COST_PER_STEP_S)

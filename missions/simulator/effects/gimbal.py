@@ -9,6 +9,7 @@ import numpy as np
 from missions.simulator.effects.facts import effect_facts
 from missions.simulator.scene import FlightScene
 from planning.base.effects import Assessment
+from planning.base.messages import say
 
 COST_PER_STEP_S = 5e-7
 
@@ -39,18 +40,18 @@ class LaggingGimbal:
 class GimbalLag:
     """The effect: how far the camera is from its pitch at the shutter."""
 
-    name = "gimbal lag"
-    unit = "deg at the shutter"
+    name = say("gimbal lag")
+    unit = say("deg at the shutter")
     tolerance = 0.2
     """A tenth of the 2 deg by which a photo's pitch may be off."""
 
     def assess(self, scene: FlightScene) -> Assessment:
         """The largest turn between photos, after turning at the full rate and settling as planned."""
         if len(scene.pitch_rad) == 0:
-            return Assessment(0.0, "there are no views", 0.0)
+            return Assessment(0.0, say("there are no views"), 0.0)
         largest = float(np.abs(np.diff(scene.pitch_rad, prepend=0.0)).max())
         rate_rad_s = math.radians(scene.aircraft.max_gimbal_rate_deg_s)
         time_s = largest / rate_rad_s + scene.rules.settle_s
         left = lagging_rad(largest, time_s, rate_rad_s, effect_facts().gimbal.lag_s)
-        reason = f"turns of up to {math.degrees(largest):.0f} deg have {scene.rules.settle_s:g} s to settle"
+        reason = say("turns of up to {:.0f} deg have {:g} s to settle", math.degrees(largest), scene.rules.settle_s)
         return Assessment(math.degrees(left), reason, scene.n_steps * COST_PER_STEP_S)

@@ -11,6 +11,7 @@ from missions.simulator.effects.facts import ReceiverFacts, effect_facts
 from missions.simulator.effects.noise import SmoothNoise
 from missions.simulator.scene import FlightScene
 from planning.base.effects import Assessment
+from planning.base.messages import say
 from planning.geo.frames import Vec3
 
 COST_PER_STEP_S = 5e-6
@@ -55,8 +56,8 @@ class NoisyReceiver:
 class GnssNoise:
     """The effect: error of the position at the shutter."""
 
-    name = "GNSS noise"
-    unit = "m at the shutter"
+    name = say("GNSS noise")
+    unit = say("m at the shutter")
     tolerance = 0.05
     """A tenth of the 0.5 m by which a photo may be off its viewpoint."""
 
@@ -69,6 +70,10 @@ class GnssNoise:
         half_s = 0.5 * scene.duration_s / facts.correlation_s
         apart = 2.0 * (1.0 - (1.0 + half_s) * math.exp(-half_s))
         size = math.sqrt(2.0 * facts.horizontal_m**2 + apart * vertical_m**2)
-        names = {"rtk-fixed": "an RTK fix", "rtk-float": "RTK without fixed ambiguities", "single": "no RTK"}
-        reason = f"{names[conditions.fix]}: {math.sqrt(2.0) * facts.horizontal_m:.2g} m horizontally"
+        names = {
+            "rtk-fixed": say("an RTK fix"),
+            "rtk-float": say("RTK without fixed ambiguities"),
+            "single": say("no RTK"),
+        }
+        reason = say("{:.2g} m horizontally", math.sqrt(2.0) * facts.horizontal_m, place=names[conditions.fix])
         return Assessment(size, reason, scene.n_steps * COST_PER_STEP_S)

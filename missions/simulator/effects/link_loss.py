@@ -11,6 +11,7 @@ from missions.mavlink.messages import Message, Received
 from missions.simulator.conditions import Conditions
 from missions.simulator.scene import FlightScene
 from planning.base.effects import Assessment, Decision
+from planning.base.messages import say
 
 FlightClock = Callable[[], float]
 """Seconds since take-off, simulated; minus infinity before."""
@@ -63,8 +64,8 @@ class LossyLink:
 class LinkLoss:
     """The effect: share of the messages that get lost."""
 
-    name = "link loss"
-    unit = "of the messages"
+    name = say("link loss")
+    unit = say("of the messages")
     tolerance = 0.0
     """None: whatever is lost has to be sent again."""
 
@@ -74,8 +75,8 @@ class LinkLoss:
         out_s = sum(max(0.0, min(end, duration_s) - min(begin, duration_s)) for begin, end in conditions.outages_s)
         out = min(1.0, out_s / duration_s)
         size = out + (1.0 - out) * conditions.message_loss
-        reason = f"{conditions.message_loss:.0%} of the messages and {out_s:.0f} s are said to be lost"
-        return Assessment(size, reason if size else "no loss is said to be expected", 0.0)
+        reason = say("{:.0%} of the messages and {:.0f} s are said to be lost", conditions.message_loss, out_s)
+        return Assessment(size, reason if size else say("no loss is said to be expected"), 0.0)
 
 
 def through_air(

@@ -22,6 +22,7 @@ from missions.simulator.effects.gnss import AboveStart
 from missions.simulator.effects.noise import SmoothNoise
 from missions.simulator.scene import FlightScene
 from planning.base.effects import Assessment
+from planning.base.messages import say
 from planning.geo.frames import Vec3
 from planning.site.records import SiteModel, panel_corners, panel_triangles
 
@@ -195,7 +196,7 @@ class Multipath:
     """The effect: error of the position at the shutter by reflections."""
 
     name = "multipath"
-    unit = "m at the shutter"
+    unit = say("m at the shutter")
     tolerance = 0.05
     """A tenth of the 0.5 m by which a photo may be off its viewpoint."""
 
@@ -203,7 +204,7 @@ class Multipath:
         """Root mean square over the views of the error, all axes that the receiver gives."""
         n = len(scene.views_enu_m)
         if n == 0:
-            return Assessment(0.0, "there are no views", 0.0)
+            return Assessment(0.0, say("there are no views"), 0.0)
         facts, kind = effect_facts(), scene.conditions.fix
         sky = GlassSky(scene.site_model, facts.multipath)
         chosen = np.unique(np.linspace(0, n - 1, min(n, MAX_PLACES)).astype(np.int64))
@@ -213,8 +214,15 @@ class Multipath:
             errors[:, 2] = 0.0
         hidden, mirrored = (float(np.mean([getattr(one, name) for one in skies])) for name in ("hidden", "mirrored"))
         reason = (
-            f"at the views {mirrored:.0%} of the sky are mirrored in glass and {hidden:.0%} hidden, "
-            f"{'carrier phase' if kind == 'rtk-fixed' else 'code'} counts"
+            say(
+                "at the views {:.0%} of the sky are mirrored in glass and {:.0%} hidden, carrier phase counts",
+                mirrored,
+                hidden,
+            )
+            if kind == "rtk-fixed"
+            else say(
+                "at the views {:.0%} of the sky are mirrored in glass and {:.0%} hidden, code counts", mirrored, hidden
+            )
         )
         cost_s = scene.n_steps * COST_PER_STEP_S + scene.length_m / MOVED_M * COST_PER_METRE_S
         return Assessment(float(np.sqrt((errors**2).sum(axis=1).mean())), reason, cost_s)

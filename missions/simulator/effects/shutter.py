@@ -8,6 +8,7 @@ from missions.simulator.effects.facts import effect_facts
 from missions.simulator.effects.wind import GustResponse
 from missions.simulator.scene import FlightScene
 from planning.base.effects import Assessment
+from planning.base.messages import say
 from planning.geo.frames import Vec3
 
 
@@ -25,8 +26,8 @@ def blur_px(
 class PhotoTiming:
     """The effect: blur of the closest pane in any view."""
 
-    name = "photo latency and blur"
-    unit = "px of blur"
+    name = say("photo latency and blur")
+    unit = say("px of blur")
     tolerance = 0.5
     """Half a pixel is less than a lens blurs."""
 
@@ -38,8 +39,11 @@ class PhotoTiming:
             spread = GustResponse(effect_facts().wind, conditions.wind_m_s, scene.height_m).spread()
             speed_m_s = math.sqrt(float(spread[:, 2, 2].sum()))
         blur = speed_m_s * conditions.exposure_s / scene.gsd_m
-        reason = (
-            f"photos are taken at rest, where gusts leave {speed_m_s:.2f} m/s; the shutter is open for "
-            f"{1000.0 * conditions.exposure_s:.3g} ms, a pixel is {1000.0 * scene.gsd_m:.1f} mm on the glass"
+        reason = say(
+            "photos are taken at rest, where gusts leave {:.2f} m/s; the shutter is open for {:.3g} ms, a "
+            "pixel is {:.1f} mm on the glass",
+            speed_m_s,
+            1000.0 * conditions.exposure_s,
+            1000.0 * scene.gsd_m,
         )
         return Assessment(blur, reason, 0.0)

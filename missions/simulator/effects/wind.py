@@ -12,6 +12,7 @@ from missions.simulator.effects.noise import covariance_root
 from missions.simulator.scene import FlightScene
 from planning.base.effects import Assessment
 from planning.base.errors import InfeasibleError
+from planning.base.messages import say
 from planning.geo.frames import Vec3
 
 Floats = NDArray[np.float64]
@@ -126,8 +127,13 @@ class GustyAir:
         speed, most = math.hypot(*wind_enu_m_s), highest_airspeed_m_s(facts)
         if not speed < most:
             raise InfeasibleError(
-                f"wind of {speed:g} m/s carries the aircraft away, which leans {facts.tilt_deg:g} deg at most and so "
-                f"flies {most:.1f} m/s through the air; wait for less wind"
+                say(
+                    "wind of {:g} m/s carries the aircraft away, which leans {:g} deg at most and so flies {:.1f} "
+                    "m/s through the air; wait for less wind",
+                    speed,
+                    facts.tilt_deg,
+                    most,
+                )
             )
         self._mean, self._airspeed_m_s, self._drag_per_s = wind_enu_m_s, most, facts.drag_per_s
         self._rng = rng
@@ -175,7 +181,7 @@ class Wind:
     """The effect: how far gusts push the aircraft off at the shutter."""
 
     name = "wind"
-    unit = "m at the shutter"
+    unit = say("m at the shutter")
     tolerance = 0.05
     """A tenth of the 0.5 m by which a photo may be off its viewpoint."""
 
@@ -183,8 +189,8 @@ class Wind:
         """Root mean square of the offset in the long run, all three axes."""
         wind_m_s = scene.conditions.wind_m_s
         if wind_m_s == 0.0:
-            return Assessment(0.0, "no wind is expected", 0.0)
+            return Assessment(0.0, say("no wind is expected"), 0.0)
         spread = GustResponse(effect_facts().wind, wind_m_s, scene.height_m).spread()
         sigma = gust_sigma_m_s(wind_m_s, scene.height_m)[0]
-        reason = f"wind of {wind_m_s:g} m/s with gusts of {sigma:.1f} m/s (1 sigma) at {scene.height_m:.0f} m"
+        reason = say("wind of {:g} m/s with gusts of {:.1f} m/s (1 sigma) at {:.0f} m", wind_m_s, sigma, scene.height_m)
         return Assessment(math.sqrt(float(spread[:, 1, 1].sum())), reason, scene.n_steps * COST_PER_STEP_S)

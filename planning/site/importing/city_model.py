@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InputError
+from planning.base.messages import say
 from planning.base.progress import Monitor
 from planning.geo.crs import crs_conversion
 from planning.geo.mesh import from_corners, join
@@ -137,14 +138,14 @@ def city_source(
     """
     solid = [building for building in buildings if len(building.points())]
     if not solid:
-        raise InputError(f"{path}: there is no building with surfaces in this file")
+        raise InputError(say("there is no building with surfaces in this file", place=path))
     if options.panels_required and not options.panel_grids and not any(building.windows for building in solid):
         raise InputError(f"{path}: no building in this file has windows; {HOW_TO_GET_PANELS}")
     chosen, choice = _choose(path, solid, crs, options)
     wanted = merged(chosen)
     corners = wanted.triangles()
     if not len(corners):
-        raise InputError(f"{path}: building '{wanted.id}' has no surface with an area")
+        raise InputError(say("building '{}' has no surface with an area", wanted.id, place=path))
     stands = stand(
         corners.reshape(-1, 3),
         np.arange(3 * len(corners)).reshape(-1, 3),
@@ -164,12 +165,18 @@ def city_source(
     notes = [*placement.georeference.notes, *choice, *stands.notes]
     if others:
         notes.append(
-            f"other buildings in the file: {len(near)} within reach of the airspace, kept as obstacles; "
-            f"{len(others) - len(near)} further away, left out"
+            say(
+                "other buildings in the file: {} within reach of the airspace, kept as obstacles; {} further "
+                "away, left out",
+                len(near),
+                len(others) - len(near),
+            )
         )
     notes += left_out_notes(wanted.left_out)
     if local.n_unread_windows:
-        notes.append(f"windows given as a shared prototype (implicit geometry), not read: {local.n_unread_windows}")
+        notes.append(
+            say("windows given as a shared prototype (implicit geometry), not read: {}", local.n_unread_windows)
+        )
     return SourceModel(
         name=local.name,
         windows=tuple(_windows(local)),
@@ -190,8 +197,9 @@ def _ground_surface(building: CityBuilding) -> StatedGround | None:
     """
     if not building.faces:
         lowest = float(building.points()[:, 2].min())
-        note = (
-            f"ground: the file holds windows alone, the lowest at z = {lowest:.2f}, which is taken; check it (--ground)"
+        note = say(
+            "ground: the file holds windows alone, the lowest at z = {:.2f}, which is taken; check it (--ground)",
+            lowest,
         )
         return StatedGround(lowest, note)
     rings = [surface[0] for surface in building.ground]
@@ -206,11 +214,17 @@ def _ground_surface(building: CityBuilding) -> StatedGround | None:
         return None
     if high - low <= EVEN_M:
         middle = float(heights[order][np.searchsorted(share, 0.5)])
-        return StatedGround(middle, f"ground: z = {middle:.2f} of the file, its GroundSurface (--ground names another)")
+        return StatedGround(
+            middle, say("ground: z = {:.2f} of the file, its GroundSurface (--ground names another)", middle)
+        )
     return StatedGround(
         high,
-        f"ground: the file's GroundSurface lies between z = {low:.2f} and {high:.2f}; the highest is taken, so that "
-        "heights above ground are safe on every side (--ground names another)",
+        say(
+            "ground: the file's GroundSurface lies between z = {:.2f} and {:.2f}; the highest is taken, so "
+            "that heights above ground are safe on every side (--ground names another)",
+            low,
+            high,
+        ),
     )
 
 
@@ -234,7 +248,10 @@ def _placement(crs: str | None, points: Array, ground_z: float, options: ImportO
             found = crs_conversion(crs, points, options.axis_order, options.height_reference)
         except InputError as error:
             raise InputError(
-                f"{error}; where the coordinates are local ones, give --origin LAT,LON,HEIGHT (of their zero point)"
+                say(
+                    "{}; where the coordinates are local ones, give --origin LAT,LON,HEIGHT (of their zero point)",
+                    error,
+                )
             ) from error
     return place(found, points, ground_z, options)
 
@@ -250,25 +267,27 @@ def _choose(
         for building in buildings:
             if options.building in (building.id, *building.part_ids):
                 return [building], ()
-        raise InputError(f"{path}: there is no building '{options.building}'; there are {_listed(buildings)}")
+        raise InputError(
+            say("there is no building '{}'; there are {}", options.building, _listed(buildings), place=path)
+        )
     if len(buildings) == 1:
         return buildings, ()
     if options.panel_grids:
         nearest = _nearest(buildings, np.array(options.panel_grids[0].corners), crs, options)
-        return [nearest], (f"the panel grid is on building '{nearest.id}'",)
+        return [nearest], (say("the panel grid is on building '{}'", nearest.id),)
     with_windows = sorted((b for b in buildings if b.windows), key=lambda b: -len(b.windows))
     if not with_windows:
         largest = max(buildings, key=lambda building: len(building.faces))
-        return [largest], (f"no building in the file has windows; '{largest.id}' has the most surfaces",)
+        return [largest], (say("no building in the file has windows; '{}' has the most surfaces", largest.id),)
     points = with_windows[0].points()
     placement = _placement(crs, points, float(points[:, 2].min()), options)
     local = [building.at(placement) for building in with_windows]
     beside = _near(local[0].points(), local[1:], JOINED_GAP_M)
     chosen = [with_windows[0], *(b for b, moved in zip(with_windows[1:], local[1:], strict=True) if moved in beside)]
     left = [building for building in with_windows if building not in chosen]
-    note = f"the site is {_listed(chosen)}"
+    note = say("the site is {}", _listed(chosen))
     if left:
-        note += f"; {_listed(left)} further away, to be imported with --building ID"
+        note += say("; {} further away, to be imported with --building ID", _listed(left))
     return chosen, (note,)
 
 
@@ -291,10 +310,10 @@ def _listed(buildings: list[CityBuilding]) -> str:
     """The first few identifiers, those with most windows first."""
     order = sorted(buildings, key=lambda building: -len(building.windows))
     named = [
-        f"'{building.id}'" + (f" (windows: {len(building.windows)})" if building.windows else "")
+        f"'{building.id}'" + (say(" (windows: {})", len(building.windows)) if building.windows else "")
         for building in order[:MAX_NAMED]
     ]
-    rest = f" and {len(order) - MAX_NAMED} more" if len(order) > MAX_NAMED else ""
+    rest = say(" and {} more", len(order) - MAX_NAMED) if len(order) > MAX_NAMED else ""
     return f"{', '.join(named)}{rest}"
 
 

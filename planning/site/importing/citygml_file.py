@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from planning.base.errors import InputError
 from planning.base.files import MIB, FileLimit, HostileXml, parse_xml, read_given
+from planning.base.messages import say
 from planning.base.progress import Monitor
 from planning.base.step_physical_file import real_name
 from planning.site.importing.city_model import MIN_RING_POINTS, CityBuilding, Rings, city_source
@@ -21,7 +22,7 @@ from planning.site.importing.source import SourceModel
 
 Array = NDArray[np.float64]
 
-CITYGML_FILE = FileLimit("a CityGML file", 512 * MIB, "cut out the buildings wanted")
+CITYGML_FILE = FileLimit(say("a CityGML file"), 512 * MIB, say("cut out the buildings wanted"))
 
 WINDOWS = ("Window", "WindowSurface")
 """CityGML 1 and 2, and CityGML 3."""
@@ -69,13 +70,13 @@ def read_citygml(path: Path, options: ImportOptions, monitor: Monitor) -> Source
     """
     root = _parse(path)
     if _local(root) != "CityModel":
-        raise InputError(f"{path}: expected a CityGML file (root element CityModel), found '{_local(root)}'")
+        raise InputError(say("expected a CityGML file (root element CityModel), found '{}'", _local(root), place=path))
     crs = next((element.attrib["srsName"] for element in root.iter() if element.get("srsName")), None)
     buildings = []
     elements = list(_buildings(root))
     for done, element in enumerate(elements):
-        monitor.report("reading buildings", done, len(elements))
-        buildings.append(_building(path, element, f"building {done + 1}"))
+        monitor.report(say("reading buildings"), done, len(elements))
+        buildings.append(_building(path, element, say("building {}", done + 1)))
     return city_source(path, buildings, crs, options, monitor)
 
 
@@ -83,9 +84,9 @@ def _parse(path: Path) -> Any:
     try:
         return parse_xml(read_given(path, CITYGML_FILE), path, forbid_dtd=False)
     except HostileXml as error:
-        raise InputError(f"{path}: the XML {error}, which a CityGML file has no need of; refused") from error
+        raise InputError(say("the XML {}, which a CityGML file has no need of; refused", error, place=path)) from error
     except ValueError as error:
-        raise InputError(f"{path}: not valid XML ({error})") from error
+        raise InputError(say("not valid XML ({})", error, place=path)) from error
 
 
 def _local(element: Element) -> str:
@@ -114,7 +115,7 @@ def _building(path: Path, element: Element, number: str) -> CityBuilding:
     try:
         _walk(element, reading, _Place())
     except RecursionError as error:
-        raise InputError(f"{path}: nested too deeply for a CityGML file") from error
+        raise InputError(say("nested too deeply for a CityGML file", place=path)) from error
     building = CityBuilding(
         id=_id(element) or number,
         name=real_name(_name(element), _id(element)),

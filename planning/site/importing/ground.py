@@ -16,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from planning.base.messages import say
 from planning.site.importing.options import ImportOptions
 from planning.site.importing.placement import Placement
 
@@ -273,8 +274,13 @@ def stand(vertices: Array, triangles: NDArray[np.int64], stated: StatedGround | 
     if not is_kept.all():
         tops = local[triangles[~is_kept]][..., 2]
         notes.append(
-            f"left out as strays, below the ground or far from everything else: {int((~is_kept).sum())} triangles, "
-            f"from {_z(in_file(float(tops.min())))} to {_z(in_file(float(tops.max())))} in the file's heights"
+            say(
+                "left out as strays, below the ground or far from everything else: {} triangles, from {} to {} "
+                "in the file's heights",
+                int((~is_kept).sum()),
+                _z(in_file(float(tops.min()))),
+                _z(in_file(float(tops.max()))),
+            )
         )
     terrain = None if ground is None or ground.terrain is None else _moved(ground.terrain, shift)
     return Standing(placement, moved, is_kept, terrain, question, tuple(notes))
@@ -303,38 +309,52 @@ def _z(value: float) -> str:
 def _how(ground: Ground, in_file: Callable[[float], float]) -> str:
     z, low, high = (_z(in_file(height)) for height in (ground.z_m, ground.lowest_m, ground.highest_m))
     if ground.terrain is None:
-        return (
-            f"ground: z = {z} of the file, where the outer walls end, as there is no ground around the building in the "
-            "file (--ground names another)"
+        return say(
+            "ground: z = {} of the file, where the outer walls end, as there is no ground around the "
+            "building in the file (--ground names another)",
+            z,
         )
     if ground.highest_m - ground.lowest_m <= EVEN_M:
-        return (
-            f"ground: z = {z} of the file, by the open ground along {100.0 * ground.outline_share:.0f} % of the "
-            f"building's outline, which lies between {low} and {high} (--ground names another)"
+        return say(
+            "ground: z = {} of the file, by the open ground along {:.0f} % of the building's outline, which "
+            "lies between {} and {} (--ground names another)",
+            z,
+            100.0 * ground.outline_share,
+            low,
+            high,
         )
-    return (
-        f"ground: along the building's outline it lies between z = {low} and {high} of the file; the highest is taken, "
-        "so that heights above ground are safe on every side (--ground names another)"
+    return say(
+        "ground: along the building's outline it lies between z = {} and {} of the file; the highest is "
+        "taken, so that heights above ground are safe on every side (--ground names another)",
+        low,
+        high,
     )
 
 
 def _question(ground: Ground, in_file: Callable[[float], float]) -> str:
     z = _z(in_file(ground.z_m))
     if not ground.is_known:
-        return (
-            "the file shows neither open ground around the building nor walls that reach down to it; its lowest "
-            f"surface is at z = {z}. Name the height of the ground in the file with --ground Z"
+        return say(
+            "the file shows neither open ground around the building nor walls that reach down to it; its "
+            "lowest surface is at z = {}. Name the height of the ground in the file with --ground Z",
+            z,
         )
     if ground.other_m is None:
         return ""
     low, high = (_z(in_file(height)) for height in sorted((ground.z_m, ground.other_m)))
     what = (
-        f"z = {low}, where the building's foot is, and z = {high}, a deck all around its upper part"
+        say("z = {}, where the building's foot is, and z = {}, a deck all around its upper part", low, high)
         if ground.is_deck
-        else f"z = {low}, where its lowest outer walls end, and z = {high}, where others do (a cellar, a slope, a torn "
-        "edge, or storeys that hang over)"
+        else say(
+            "z = {}, where its lowest outer walls end, and z = {}, where others do (a cellar, a slope, a "
+            "torn edge, or storeys that hang over)",
+            low,
+            high,
+        )
     )
-    return f"two heights of the file may be the ground: {what}. Say which with --ground {low} or --ground {high}"
+    return say(
+        "two heights of the file may be the ground: {}. Say which with --ground {} or --ground {}", what, low, high
+    )
 
 
 # --- strays ---

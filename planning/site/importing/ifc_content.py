@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InputError
+from planning.base.messages import say
 from planning.base.step_physical_file import mended, real_name
 from planning.site.importing.ifc_place import MapParameters, SitePlace, map_parameters, site_place, true_north_rad
 from planning.site.importing.polygons import area_vector
@@ -263,13 +264,13 @@ def extract(
         model = ifcopenshell.open(str(path)) if better is None else _model_of(better.content)
     except Exception as error:  # the parser raises whatever goes wrong in it
         raise InputError(
-            f"{path}: this IFC file cannot be read ({error}); IFC 2x3, IFC 4 and IFC 4.3 are read"
+            say("this IFC file cannot be read ({}); IFC 2x3, IFC 4 and IFC 4.3 are read", error, place=path)
         ) from error
     try:
         shapes = _one_by_one(announce) if announce is not None else _shapes(n_threads, report)
         return _extract(model, deflection_m, shapes, fatal, () if better is None else better.broken)
     except BROKEN as error:
-        raise InputError(f"{path}: this IFC file is broken ({type(error).__name__}: {error})") from error
+        raise InputError(say("this IFC file is broken ({}: {})", type(error).__name__, error, place=path)) from error
 
 
 def _model_of(content: bytes) -> Any:
@@ -446,9 +447,9 @@ def _panes(elements: _Elements, shapes: dict[str, Shape]) -> tuple[dict[str, Pan
     for shape in shapes.values():
         if shape.kind == "IfcCurtainWall" and len(shape.glass):
             panes |= {f"{shape.guid}#{k}": pane for k, pane in enumerate(skin_panes(shape))}
-    notes = [f"windows: {n_windows}; plates: {len(plates)}, of which glazed: {len(glazed)}"]
+    notes: list[str] = [say("windows: {}; plates: {}, of which glazed: {}", n_windows, len(plates), len(glazed))]
     if n_windows < len(elements.windows):
-        notes.append(f"windows left out because they have no geometry: {len(elements.windows) - n_windows}")
+        notes.append(say("windows left out because they have no geometry: {}", len(elements.windows) - n_windows))
     return panes, notes, broken
 
 

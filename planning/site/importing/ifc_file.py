@@ -20,6 +20,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InputError
+from planning.base.json_file import encoded
+from planning.base.messages import say
 from planning.base.progress import Monitor
 from planning.base.step_physical_file import check_ends
 from planning.geo.crs import CrsConversion, HeightReference, crs_conversion, horizontal_part, parse_crs
@@ -95,7 +97,7 @@ def ifc_georeference(content: IfcContent, options: ImportOptions) -> Georeferenc
     except InputError as error:
         if content.site is None or options.crs is not None:
             raise
-        note = f"the map conversion is left aside ({error})"
+        note = say("the map conversion is left aside ({})", error)
         return _site_frame(content.site, content.north_rad, (note,))
 
 
@@ -103,7 +105,7 @@ def _map_frame(found: MapParameters, unit_m: float, options: ImportOptions) -> M
     """Frame on the map of the file, or on the one the user names."""
     name = options.crs or found.crs
     if name is None:
-        raise InputError("the map conversion names no coordinate reference system; give it with --crs EPSG:CODE")
+        raise InputError(say("the map conversion names no coordinate reference system; give it with --crs EPSG:CODE"))
     vertical_code = re.search(r"(?i)epsg\D*(\d+)", found.vertical or "")
     if options.crs is None and vertical_code and not parse_crs(name).is_compound:
         name = f"{name}+{vertical_code[1]}"
@@ -129,7 +131,7 @@ def _map_frame(found: MapParameters, unit_m: float, options: ImportOptions) -> M
         shift=(east, north, found.height * map_unit_m / height_unit_m),
         units_per_m=(scale / axis_unit_m, scale_z / height_unit_m),
         turn_rad=math.atan2(found.ordinate, found.abscissa),
-        notes=("place and rotation from IfcMapConversion", *note, *conversion.notes),
+        notes=(say("place and rotation from IfcMapConversion"), *note, *conversion.notes),
     )
 
 
@@ -139,10 +141,14 @@ def _true_scale(given: float, map_unit_per_file_unit: float) -> tuple[float, tup
     if abs(true - 1.0) <= SCALE_TOLERANCE:
         return true, ()
     if abs(given - 1.0) <= SCALE_TOLERANCE:
-        return given, ("the scale of IfcMapConversion leaves out the change of units, which is put right",)
+        return given, (say("the scale of IfcMapConversion leaves out the change of units, which is put right"),)
     raise InputError(
-        f"IfcMapConversion has the scale {given:g}, which is neither near 1 nor the change of units "
-        f"({1.0 / map_unit_per_file_unit:g}); give the place with --origin"
+        say(
+            "IfcMapConversion has the scale {:g}, which is neither near 1 nor the change of units ({:g}); "
+            "give the place with --origin",
+            given,
+            1.0 / map_unit_per_file_unit,
+        )
     )
 
 
@@ -151,11 +157,20 @@ def _site_frame(site: SitePlace, north_rad: float, notes: tuple[str, ...] = ()) 
     height_m = float(ellipsoid_from_amsl_m(site.lat_deg, site.lon_deg, site.altitude_amsl_m))
     geoid_m = float(undulation_m(site.lat_deg, site.lon_deg))
     notes += (
-        "place from latitude and longitude of IfcSite, which is often just the city that the BIM program assumes: "
-        "check it, or give --origin",
-        f"elevation of IfcSite ({site.altitude_amsl_m:g} m) is above sea level; EGM96, here {geoid_m:.1f} m above the "
-        "ellipsoid, makes it ellipsoidal, to about 1 m",
-        f"true north is {round(math.degrees(north_rad), 2) + 0.0:g} degrees counter-clockwise from the model's y axis",
+        say(
+            "place from latitude and longitude of IfcSite, which is often just the city that the BIM program "
+            "assumes: check it, or give --origin"
+        ),
+        say(
+            "elevation of IfcSite ({:g} m) is above sea level; EGM96, here {:.1f} m above the ellipsoid, "
+            "makes it ellipsoidal, to about 1 m",
+            site.altitude_amsl_m,
+            geoid_m,
+        ),
+        say(
+            "true north is {:g} degrees counter-clockwise from the model's y axis",
+            round(math.degrees(north_rad), 2) + 0.0,
+        ),
     )
     origin = Origin(site.lat_deg, site.lon_deg, height_m)
     return LocalFrame(origin, site.zero_m, north_rad, notes, place_from="ifc-site")
@@ -206,8 +221,12 @@ def read_in_worker(path: Path, deflection_m: float, monitor: Monitor) -> tuple[I
             raise InputError(run.refusal)
         if run.is_dead:
             raise InputError(
-                f"{path}: the geometry kernel crashed on this IFC file (status {run.status}), so something in it goes "
-                "in circles or beyond all bounds; open and export it again in a BIM program"
+                say(
+                    "the geometry kernel crashed on this IFC file (status {}), so something in it goes in circles or "
+                    "beyond all bounds; open and export it again in a BIM program",
+                    run.status,
+                    place=path,
+                )
             )
         content = msgspec.json.decode((Path(folder) / "content.json").read_bytes(), type=IfcContent)
         return content, np.load(Path(folder) / "triangles.npy")
@@ -253,7 +272,7 @@ def _follow(process: subprocess.Popen[bytes], monitor: Monitor) -> tuple[str | N
         try:
             line = lines.get(timeout=POLL_S)
         except queue.Empty:
-            monitor.report("building geometry", done, 100)
+            monitor.report(say("building geometry"), done, 100)
             continue
         if line is None:
             reader.join()
@@ -261,7 +280,7 @@ def _follow(process: subprocess.Popen[bytes], monitor: Monitor) -> tuple[str | N
         message = json.loads(line)
         done, refusal = message.get("done", done), message.get("refused", refusal)
         element = message.get("element", element)
-        monitor.report("building geometry", done, 100)
+        monitor.report(say("building geometry"), done, 100)
 
 
 def _read_lines(stream: IO[bytes], lines: queue.Queue[bytes | None]) -> None:
@@ -288,7 +307,7 @@ def main(arguments: list[str]) -> int:
     except InputError as error:
         say({"refused": str(error)})
         return EXIT_REFUSED
-    (folder / "content.json").write_bytes(msgspec.json.encode(content))
+    (folder / "content.json").write_bytes(encoded(content))
     np.save(folder / "triangles.npy", triangles)
     return 0
 
@@ -307,7 +326,7 @@ def read_ifc(path: Path, options: ImportOptions, monitor: Monitor) -> SourceMode
     """
     check_ends(path)
     if not options.deflection_m > 0.0:
-        raise InputError(f"--deflection {options.deflection_m:g}: expected a positive length in metres")
+        raise InputError(say("--deflection {:g}: expected a positive length in metres", options.deflection_m))
     return ifc_source(path, *read_in_worker(path, options.deflection_m, monitor), options)
 
 
@@ -320,7 +339,7 @@ def ifc_source(path: Path, content: IfcContent, triangles: Array, options: Impor
         There is no geometry or no glass, or the place is not known.
     """
     if len(triangles) == 0:
-        raise InputError(f"{path}: no building element in this file has geometry")
+        raise InputError(say("no building element in this file has geometry", place=path))
     if options.panels_required and not content.pane_ids and not options.panel_grids:
         raise InputError(f"{path}: there is neither a window nor a glazed plate with geometry; {HOW_TO_GET_PANELS}")
     points = triangles.reshape(-1, 3)
@@ -334,7 +353,7 @@ def ifc_source(path: Path, content: IfcContent, triangles: Array, options: Impor
     stated = stated_ground(options)
     if stated is None and ground_z is not None:
         stated = StatedGround(
-            ground_z, f"ground: z = {ground_z:.2f} of the model, the zero of IfcSite (--ground names another)"
+            ground_z, say("ground: z = {:.2f} of the model, the zero of IfcSite (--ground names another)", ground_z)
         )
     stands = stand(
         points,

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from planning.base.errors import InputError
+from planning.base.messages import say
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,7 +123,11 @@ def site_place(model: Any, unit_m: float) -> SitePlace | None:
             continue
         if abs(lat_deg) > 90.0 or abs(lon_deg) > 180.0:
             raise InputError(
-                f"IfcSite lies at latitude {lat_deg:g}, longitude {lon_deg:g}, which is nowhere on earth; give --origin"
+                say(
+                    "IfcSite lies at latitude {:g}, longitude {:g}, which is nowhere on earth; give --origin",
+                    lat_deg,
+                    lon_deg,
+                )
             )
         x, y, z = (float(v) * unit_m for v in get_local_placement(site.ObjectPlacement)[:3, 3])
         return SitePlace(lat_deg, lon_deg, float(site.RefElevation or 0.0) * unit_m, (x, y, z))

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InputError
+from planning.base.messages import joined, say
 from planning.base.progress import QUIET, Monitor
 from planning.geo.frames import Vec3
 from planning.geo.mesh import MESH_SUFFIXES, closed_parts
@@ -76,16 +77,17 @@ def assemble(path: Path, source: SourceModel, options: ImportOptions, monitor: M
     corners = np.concatenate([panes.corners, *(grid.corners for grid in grids)])
     if len(corners) == 0:
         n = len(source.windows)
-        found = f"no window of {n} is a pane that faces the open" if n else "there are no windows"
+        found = say("no window of {} is a pane that faces the open", n) if n else say("there are no windows")
         if options.panels_required:
             raise InputError(f"{path}: {found}; {HOW_TO_GET_PANELS}")
-        bare = (
-            f"{found}, so the site has no panels yet: find them in photos ('panels' or the Photos tab), or draw them "
-            "on the building (the Site tab, or --panel-grid)"
+        bare = say(
+            "{}, so the site has no panels yet: find them in photos ('panels' or the Photos tab), or draw "
+            "them on the building (the Site tab, or --panel-grid)",
+            found,
         )
         return site_of_facades(path, source, (), options, (*source.notes, *panes.notes, bare, *_solid_notes(source)))
     ids = [*panes.source_ids, *[None] * (len(corners) - len(panes.corners))]
-    monitor.report("grouping facades", 0, 1)
+    monitor.report(say("grouping facades"), 0, 1)
     groups = group_facades(corners)
     facades = tuple(_facade(facade_name(k), corners[group], [ids[i] for i in group]) for k, group in enumerate(groups))
     grid_notes = [note for grid in grids for note in grid.notes]
@@ -139,9 +141,9 @@ def read_source(path: Path, options: ImportOptions, monitor: Monitor = QUIET) ->
     """
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:
-        raise InputError(f"{path}: expected a file ending in {', '.join(SUFFIXES)}, got '{suffix}'")
+        raise InputError(say("expected a file ending in {}, got '{}'", ", ".join(SUFFIXES), suffix, place=path))
     if not path.exists():
-        raise InputError(f"{path}: there is no such file")
+        raise InputError(say("there is no such file", place=path))
     if suffix in IFC_SUFFIXES:
         from planning.site.importing.ifc_file import read_ifc
 
@@ -176,8 +178,15 @@ def _check_extent(path: Path, source: SourceModel, options: ImportOptions) -> No
     if max(size_m) > MAX_BUILDING_M:
         east, north, up = _sides(size_m)
         raise InputError(
-            f"{path}: the building would be {east} x {north} x {up} m, at most {MAX_BUILDING_M / 1000.0:g} km are "
-            f"expected; {_advice_on_units(path, size_m, options)}"
+            say(
+                "the building would be {:m} x {:m} x {} m, at most {:g} km are expected; {}",
+                east,
+                north,
+                up,
+                MAX_BUILDING_M / 1000.0,
+                _advice_on_units(path, size_m, options),
+                place=path,
+            )
         )
 
 
@@ -191,8 +200,23 @@ def _size_notes(path: Path, source: SourceModel, options: ImportOptions) -> tupl
         return ()
     east, north, up = _sides(size_m)
     return (
-        f"the model is {east} x {north} x {up} m, implausibly {'small' if is_small else 'large'} for a building: "
-        f"{_advice_on_units(path, size_m, options)}",
+        (
+            say(
+                "the model is {:m} x {:m} x {} m, implausibly small for a building: {}",
+                east,
+                north,
+                up,
+                _advice_on_units(path, size_m, options),
+            )
+            if is_small
+            else say(
+                "the model is {:m} x {:m} x {} m, implausibly large for a building: {}",
+                east,
+                north,
+                up,
+                _advice_on_units(path, size_m, options),
+            )
+        ),
     )
 
 
@@ -212,17 +236,17 @@ def _sides(size_m: tuple[float, float, float]) -> tuple[str, str, str]:
 def _advice_on_units(path: Path, size_m: tuple[float, float, float], options: ImportOptions) -> str:
     """Units in which the building would have a plausible size, as far as the user has the choice."""
     if path.suffix.lower() not in MESH_SUFFIXES or options.crs is not None:
-        return "the unit or the scale that the file states is wrong; put it right in the program that wrote it"
+        return say("the unit or the scale that the file states is wrong; put it right in the program that wrote it")
     fitting = []
     for unit, length_m in UNITS_M.items():
         factor = length_m / UNITS_M[options.unit]
         other_m = (size_m[0] * factor, size_m[1] * factor, size_m[2] * factor)
         if unit not in (options.unit, "us-ft") and LEAST_SIDE_M <= max(other_m) <= WIDE_M and other_m[2] <= HIGH_M:
             east, north, up = _sides(other_m)
-            fitting.append(f"--units {unit} makes it {east} x {north} x {up} m (factor {factor:g})")
+            fitting.append(say("--units {} makes it {:m} x {:m} x {} m (factor {:g})", unit, east, north, up, factor))
     if fitting:
-        return f"if its unit is not what was read, {' and '.join(fitting)}"
-    return "no unit makes it plausible, so it is no model of true size; scale it in the program that wrote it"
+        return say("if its unit is not what was read, {}", joined(" and ", fitting))
+    return say("no unit makes it plausible, so it is no model of true size; scale it in the program that wrote it")
 
 
 def _facade(name: str, corners: Array, source_ids: list[str | None]) -> Facade:
@@ -243,11 +267,13 @@ def _vertices(quad: Array) -> tuple[Vec3, Vec3, Vec3, Vec3]:
 
 def _facade_note(corners: Array, groups: list[NDArray[np.int64]]) -> str:
     largest, n_single = quad_areas(corners[groups[0]]), sum(len(group) == 1 for group in groups)
-    note = (
-        f"facades, by plane or smoothly curved surface: {len(groups)}, the one with most glass first (A: "
-        f"{len(groups[0])} panels, {largest.sum():.0f} m2)"
+    note = say(
+        "facades, by plane or smoothly curved surface: {}, the one with most glass first (A: {} panels, {:.0f} m2)",
+        len(groups),
+        len(groups[0]),
+        largest.sum(),
     )
-    return note + (f"; with one panel only: {n_single}" if n_single else "")
+    return note + (say("; with one panel only: {}", n_single) if n_single else "")
 
 
 def _solid_notes(source: SourceModel) -> tuple[str, ...]:
@@ -260,6 +286,9 @@ def _solid_notes(source: SourceModel) -> tuple[str, ...]:
     if open_share < 0.005:
         return ()
     return (
-        f"{100.0 * open_share:.0f} % of the building's surface does not close (gaps and overlaps in the model): the "
-        "distance to it is kept all the same, but the space behind it does not count as solid",
+        say(
+            "{:.0f} % of the building's surface does not close (gaps and overlaps in the model): the "
+            "distance to it is kept all the same, but the space behind it does not count as solid",
+            100.0 * open_share,
+        ),
     )

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from planning.base.errors import InputError
 from planning.base.json_file import parse_json
+from planning.base.messages import say
 from planning.base.progress import Monitor
 from planning.geo.mesh import TriangleMesh, check_mesh_size, empty_mesh, load_triangles, mesh_content
 from planning.site.importing.ground import stand, stated_ground
@@ -81,9 +82,11 @@ def read_mesh_parts(path: Path, max_coordinate: float) -> tuple[TriangleMesh, tu
     inside = found.triangles[in_range]
     is_whole = (np.abs(found.vertices[inside]) <= max_coordinate).all(axis=(1, 2)) if len(inside) else np.zeros(0, bool)
     n_broken = len(found.triangles) - int(is_whole.sum())
-    left_out = [*found.left_out, *["a triangle without one of its corners"] * n_broken]
+    left_out = [*found.left_out, *[say("a triangle without one of its corners")] * n_broken]
     if not is_whole.any():
-        raise InputError(f"{path}: the mesh has no triangles that are whole (a point cloud cannot serve as a building)")
+        raise InputError(
+            say("the mesh has no triangles that are whole (a point cloud cannot serve as a building)", place=path)
+        )
     vertices = np.where(np.abs(found.vertices) <= max_coordinate, found.vertices, 0.0)
     return TriangleMesh(vertices, inside[is_whole]), tuple(left_out)
 
@@ -121,11 +124,11 @@ def _obj(content: bytes, kind: str, path: Path) -> _Found:
         words = line.split()
         if words[:1] == [b"v"]:
             point = _numbers(words[1:4])
-            left_out += [f"line {number}"] * (point is None)
+            left_out += [say("line {}", number)] * (point is None)
             vertices.append(point or [np.nan] * 3)
         elif words[:1] == [b"f"]:
             polygon = _references(words[1:], len(vertices))
-            left_out += [f"line {number}"] * (polygon is None)
+            left_out += [say("line {}", number)] * (polygon is None)
             polygons += [] if polygon is None else [polygon]
     return _Found(np.array(vertices, np.float64).reshape(-1, 3), _fans(polygons), left_out)
 
@@ -158,8 +161,12 @@ def _stl(content: bytes, kind: str, path: Path) -> _Found:
         n_wanted, n_there = STL_HEADER.unpack_from(content)[1], (len(content) - STL_HEADER.size) // STL_FACET_BYTES
         if n_there < n_wanted:
             raise InputError(
-                f"{path}: the file is cut off: it announces {n_wanted} triangles, and {n_there} are there; copy or "
-                "export it again"
+                say(
+                    "the file is cut off: it announces {} triangles, and {} are there; copy or export it again",
+                    n_wanted,
+                    n_there,
+                    place=path,
+                )
             )
         return _Found(*load_triangles(content, kind, path), [])
     found = _as_usual(content, kind, path)
@@ -173,7 +180,7 @@ def _stl(content: bytes, kind: str, path: Path) -> _Found:
         if len(points) == 3:
             corners.append(points)
         else:
-            left_out.append(f"facet {number}")
+            left_out.append(say("facet {}", number))
     vertices = np.array(corners, np.float64).reshape(-1, 3)
     return _Found(vertices, np.arange(len(vertices), dtype=np.int64).reshape(-1, 3), left_out)
 
@@ -184,8 +191,11 @@ def _ply(content: bytes, kind: str, path: Path) -> _Found:
     if head is None:
         if found is None:
             raise InputError(
-                f"{path}: this PLY file cannot be read: it is cut off, or its header announces something else than "
-                "what is there; copy or export it again"
+                say(
+                    "this PLY file cannot be read: it is cut off, or its header announces something else than what "
+                    "is there; copy or export it again",
+                    place=path,
+                )
             )
         return found
     elements = [
@@ -195,8 +205,12 @@ def _ply(content: bytes, kind: str, path: Path) -> _Found:
     n_wanted = sum(count for _, count in elements)
     if len(rows) < n_wanted:
         raise InputError(
-            f"{path}: the file is cut off: it announces {n_wanted} rows, and {len(rows)} are there; copy or export it "
-            "again"
+            say(
+                "the file is cut off: it announces {} rows, and {} are there; copy or export it again",
+                n_wanted,
+                len(rows),
+                place=path,
+            )
         )
     n_faces = sum(count for name, count in elements if name == "face")
     if found is not None and len(found.triangles) >= n_faces and np.isfinite(found.vertices).all():
@@ -209,11 +223,11 @@ def _ply(content: bytes, kind: str, path: Path) -> _Found:
         words = row.split()
         if name == "vertex":
             point = _numbers(words[:3])
-            left_out += [f"line {first_line + number}"] * (point is None)
+            left_out += [say("line {}", first_line + number)] * (point is None)
             vertices.append(point or [np.nan] * 3)
         elif name == "face":
             polygon = _counted(words)
-            left_out += [f"line {first_line + number}"] * (polygon is None)
+            left_out += [say("line {}", first_line + number)] * (polygon is None)
             polygons += [] if polygon is None else [polygon]
     return _Found(np.array(vertices, np.float64).reshape(-1, 3), _fans(polygons), left_out)
 
@@ -290,7 +304,7 @@ def _take_out(document: dict[str, Any], n_bytes: int) -> Iterator[str]:
         kept = [each for each in primitives or () if _is_readable(each, readable)]
         name = mesh.get("name") if isinstance(mesh, dict) else None
         for _ in range(len(primitives or ()) - len(kept)):
-            yield f"mesh '{name or number}'"
+            yield say("mesh '{}'", name or number)
         if not isinstance(mesh, dict) or len(kept) < len(primitives or ()):
             meshes[number] = {**mesh, "primitives": kept} if isinstance(mesh, dict) else {"primitives": []}
     empty = {number for number, mesh in enumerate(meshes) if not mesh.get("primitives")}
@@ -301,7 +315,7 @@ def _take_out(document: dict[str, Any], n_bytes: int) -> Iterator[str]:
             continue
         is_known = isinstance(wanted, int) and 0 <= wanted < len(meshes)
         if not is_known:
-            yield f"node '{node.get('name') or number}'"
+            yield say("node '{}'", node.get("name") or number)
         if not is_known or wanted in empty:
             del node["mesh"]
 
@@ -361,27 +375,32 @@ def read_mesh_source(path: Path, options: ImportOptions, monitor: Monitor) -> So
             "of a facade, seen from outside), or import the building alone with --without-panels and find them in "
             "photos with 'panels'"
         )
-    monitor.report("reading the mesh", 0, 1)
+    monitor.report(say("reading the mesh"), 0, 1)
     mesh, left_out = read_mesh_parts(path, MAX_SOURCE_COORDINATE)
     vertices, triangles = mesh.vertices_enu_m, mesh.triangles
     up = options.up or ("y" if path.suffix.lower() == ".glb" else "z")
     if up == "y":
         vertices = np.stack([vertices[:, 0], -vertices[:, 2], vertices[:, 1]], axis=-1)
-    notes = [f"axes: {up} is up" + (" (glTF's rule)" if up == "y" and options.up is None else "") + " (--up)"]
+    notes = [
+        say("axes: {} is up", up) + (say(" (glTF's rule)") if up == "y" and options.up is None else "") + " (--up)"
+    ]
     unit_m = UNITS_M[options.unit]
     if options.crs is None:
         vertices = vertices * unit_m
-        notes.append(f"lengths are in {options.unit} (--units)")
+        notes.append(say("lengths are in {} (--units)", options.unit))
     elif options.unit != "m":
         raise InputError(
-            "--units and --crs both say what the coordinates are in; the system of --crs has its own units"
+            say("--units and --crs both say what the coordinates are in; the system of --crs has its own units")
         )
     used = np.unique(triangles)
     step_m = float(np.spacing(np.abs(vertices[used]).max().astype(np.float32)))
     if step_m > COARSE_M and (vertices[used] / unit_m == (vertices[used] / unit_m).astype(np.float32)).all():
         notes.append(
-            f"the file stores coordinates this far from zero in steps of {step_m:.2g} m (single precision), so the "
-            "building's shape is that rough; export it again with a local offset"
+            say(
+                "the file stores coordinates this far from zero in steps of {:.2g} m (single precision), so the "
+                "building's shape is that rough; export it again with a local offset",
+                step_m,
+            )
         )
     stands = stand(vertices, triangles, stated_ground(options), lambda points, z: place(None, points, z, options))
     return SourceModel(

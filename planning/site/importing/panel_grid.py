@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InputError
+from planning.base.messages import about, glue, say
 from planning.geo.line_of_sight import OCCLUSION_OFFSET_M, line_of_sight
 from planning.geo.mesh import TriangleMesh
 from planning.geo.solids import Solids
@@ -79,8 +80,8 @@ def grid_panels(grid: PanelGrid, source: SourceModel, tolerance_m: float) -> Gri
             GridField.CORNERS: f"--panel-grid {_text(grid)}",
             GridField.GAP: f"--gap {grid.gap_m:g}",
         }
-        advice = "; check the corners, --units and --up, or allow more with --grid-tolerance"
-        raise InputError(f"{options[error.field]}: {error}{advice if error.is_off_building else ''}") from error
+        advice = say("; check the corners, --units and --up, or allow more with --grid-tolerance")
+        raise InputError(about(options[error.field], glue(error, advice if error.is_off_building else ""))) from error
 
 
 def panels_on_building(
@@ -117,29 +118,38 @@ def _rectangle_panels(rectangle: Array, counts: tuple[int, int], gap_m: float) -
     n_rows, n_columns = counts
     if n_rows < 1 or n_columns < 1 or n_rows * n_columns > MAX_PANELS:
         raise PanelGridError(
-            GridField.COUNTS, f"expected 1 to {MAX_PANELS} panels in all, got {n_rows} rows and {n_columns} columns"
+            GridField.COUNTS,
+            say("expected 1 to {} panels in all, got {} rows and {} columns", MAX_PANELS, n_rows, n_columns),
         )
     low, right, up = rectangle
     across, along = right - low, up - low
     width_m, height_m = float(np.linalg.norm(across)), float(np.linalg.norm(along))
     if min(width_m, height_m) < MIN_SIDE_M:
         raise PanelGridError(
-            GridField.CORNERS, f"the rectangle is {width_m:.2f} x {height_m:.2f} m, no facade; place its corners apart"
+            GridField.CORNERS,
+            say("the rectangle is {:.2f} x {:.2f} m, no facade; place its corners apart", width_m, height_m),
         )
     cosine = float(across @ along) / (width_m * height_m)
     if abs(cosine) > MAX_SKEW:
         angle_deg = np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
         raise PanelGridError(
             GridField.CORNERS,
-            f"the angle at the lower left corner is {angle_deg:.0f} degrees; expected a rectangle, given by its lower "
-            "left, lower right and upper left corner as seen from outside",
+            say(
+                "the angle at the lower left corner is {:.0f} degrees; expected a rectangle, given by its lower "
+                "left, lower right and upper left corner as seen from outside",
+                angle_deg,
+            ),
         )
     cell_m = (width_m / n_columns, height_m / n_rows)
     if not 0.0 <= gap_m <= min(cell_m) - MIN_SIDE_M:
         raise PanelGridError(
             GridField.GAP,
-            f"a gap of {gap_m:g} m leaves no glass between the mullions: the grid's cells measure {cell_m[0]:.2f} x "
-            f"{cell_m[1]:.2f} m",
+            say(
+                "a gap of {:g} m leaves no glass between the mullions: the grid's cells measure {:.2f} x {:.2f} m",
+                gap_m,
+                cell_m[0],
+                cell_m[1],
+            ),
         )
     # Exactly at right angles, so that panels are rectangles: the lower edge stays, the side is straightened.
     along = along - across * (along @ across) / (across @ across)
@@ -156,9 +166,16 @@ def _check_distance(corners: Array, building: TriangleMesh, tolerance_m: float) 
         points = building.corners_enu_m.reshape(-1, 3)
         raise PanelGridError(
             GridField.CORNERS,
-            f"its panels lie {median_m:.1f} m from the building (median; nearest {distance.min():.1f} m, allowed "
-            f"{tolerance_m:g} m). In local metres the grid's middle is {_point(centres.mean(axis=0))} and the building "
-            f"reaches from {_point(points.min(axis=0))} to {_point(points.max(axis=0))}",
+            say(
+                "its panels lie {:.1f} m from the building (median; nearest {:.1f} m, allowed {:g} m). In local "
+                "metres the grid's middle is {} and the building reaches from {} to {}",
+                median_m,
+                distance.min(),
+                tolerance_m,
+                _point(centres.mean(axis=0)),
+                _point(points.min(axis=0)),
+                _point(points.max(axis=0)),
+            ),
             is_off_building=True,
         )
 
@@ -175,12 +192,20 @@ def _check_side(corners: Array, building: TriangleMesh) -> tuple[str, ...]:
     if 2 * n_blind > len(corners) and np.median(behind) > np.median(ahead) + UNDECIDED:
         raise PanelGridError(
             GridField.CORNERS,
-            f"{n_blind} of {len(corners)} panels look into the building, and their backs look out; name the corners as "
-            "seen from outside (lower left, lower right, upper left)",
+            say(
+                "{} of {} panels look into the building, and their backs look out; name the corners as seen from "
+                "outside (lower left, lower right, upper left)",
+                n_blind,
+                len(corners),
+            ),
         )
     return (
-        f"{n_blind} of {len(corners)} panels of the grid see nothing of the open, as the mesh covers them: move the "
-        "grid outwards, or they cannot be photographed with occlusion on",
+        say(
+            "{} of {} panels of the grid see nothing of the open, as the mesh covers them: move the grid "
+            "outwards, or they cannot be photographed with occlusion on",
+            n_blind,
+            len(corners),
+        ),
     )
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
+from planning.base.messages import glue, say
 from planning.base.progress import Monitor
 from planning.geo.line_of_sight import OCCLUSION_OFFSET_M, line_of_sight
 from planning.geo.mesh import TriangleMesh
@@ -119,30 +120,30 @@ class Panes:
 
 def panes_outdoors(source: SourceModel, monitor: Monitor) -> Panes:
     """Find the panels among the windows of a building."""
-    monitor.report("fitting panels", 0, len(source.windows))
+    monitor.report(say("fitting panels"), 0, len(source.windows))
     quads = [fit_quad(window.outline_enu_m) for window in source.windows]
     fitted = [(window, quad) for window, quad in zip(source.windows, quads, strict=True) if quad is not None]
-    notes = _counted("windows left out as slivers or without area", len(source.windows) - len(fitted))
+    notes = _counted(say("windows left out as slivers or without area"), len(source.windows) - len(fitted))
     if not fitted:
         return Panes(np.zeros((0, 4, 3)), (), tuple(notes))
     windows = [window for window, _ in fitted]
     sides = _sides(windows, np.array([quad.corners for _, quad in fitted]), source.building, monitor)
     kept = np.flatnonzero(sides.is_outdoors)
-    notes += _counted("windows left out as indoor ones, which see nothing of the open", len(windows) - len(kept))
+    notes += _counted(say("windows left out as indoor ones, which see nothing of the open"), len(windows) - len(kept))
     if source.repeats_panes:
         n_outdoors = len(kept)
         kept = kept[without_duplicates(sides.corners[kept])]
-        notes += _counted("windows left out because another one shows the same pane", n_outdoors - len(kept))
+        notes += _counted(say("windows left out because another one shows the same pane"), n_outdoors - len(kept))
     else:
         pairs = [(windows[kept[i]], windows[kept[j]]) for i, j in coincident_pairs(sides.corners[kept])]
         twice = [f"{first.source_id} = {second.source_id}" for first, second in pairs]
-        notes += _counted("windows that lie exactly on others, where both stay", len(twice), twice)
+        notes += _counted(say("windows that lie exactly on others, where both stay"), len(twice), twice)
     odd = [windows[i].source_id for i in kept if not fitted[i][1].is_exact]
-    notes += _counted("windows that are no quads, for which a rectangle of the same area stands in", len(odd), odd)
+    notes += _counted(say("windows that are no quads, for which a rectangle of the same area stands in"), len(odd), odd)
     against = [windows[i].source_id for i in kept if sides.is_turned[i]]
-    notes += _counted("windows that the file has facing into the building, turned around", len(against), against)
+    notes += _counted(say("windows that the file has facing into the building, turned around"), len(against), against)
     n_undecided = int((~sides.is_decided[kept]).sum())
-    notes += _counted("windows open on both sides, taken to face away from the building", n_undecided)
+    notes += _counted(say("windows open on both sides, taken to face away from the building"), n_undecided)
     corners = np.array([start_lower_left(quad) for quad in sides.corners[kept]]).reshape(-1, 4, 3)
     if len(corners):
         notes.append(_view(corners, sides.open_share[kept], source.building))
@@ -152,7 +153,7 @@ def panes_outdoors(source: SourceModel, monitor: Monitor) -> Panes:
 def _sides(windows: list[SourceWindow], corners: Array, building: TriangleMesh, monitor: Monitor) -> Sides:
     triangles = np.concatenate([building.corners_enu_m, panel_triangles(corners)])
     middle = 0.5 * (triangles.min(axis=(0, 1)) + triangles.max(axis=(0, 1)))
-    monitor.report("looking outdoors", 0, 1)
+    monitor.report(say("looking outdoors"), 0, 1)
     thickness_m = np.array([window.thickness_m for window in windows])
     is_oriented = np.array([window.is_oriented for window in windows])
     return turn_outwards(corners, thickness_m, middle, line_of_sight(triangles), is_oriented)
@@ -163,11 +164,14 @@ def _view(corners: Array, open_share: Array, building: TriangleMesh) -> str:
     normals = unit_normals(corners)
     targets = corners.mean(axis=1) + OCCLUSION_OFFSET_M * normals
     own = 1.0 - open_shares(targets, normals, line_of_sight(building.corners_enu_m), OWN_REACH_M)
-    return (
-        f"{OCCLUSION_OFFSET_M:g} m in front of the panels the building hides "
-        f"{100.0 * (1.0 - open_share.mean()):.0f} % of the directions (worst panel "
-        f"{100.0 * (1.0 - open_share.min()):.0f} %); their own frames and reveals hide {100.0 * own.mean():.0f} % "
-        f"(worst {100.0 * own.max():.0f} %)"
+    return say(
+        "{:g} m in front of the panels the building hides {:.0f} % of the directions (worst panel {:.0f} "
+        "%); their own frames and reveals hide {:.0f} % (worst {:.0f} %)",
+        OCCLUSION_OFFSET_M,
+        100.0 * (1.0 - open_share.mean()),
+        100.0 * (1.0 - open_share.min()),
+        100.0 * own.mean(),
+        100.0 * own.max(),
     )
 
 
@@ -176,4 +180,4 @@ def _counted(what: str, n: int, names: Sequence[str] = ()) -> list[str]:
     if n == 0:
         return []
     more = ", ..." if len(names) > MAX_NAMED else ""
-    return [f"{what}: {n}" + (f" ({', '.join(names[:MAX_NAMED])}{more})" if names else "")]
+    return [glue(what, f": {n}", f" ({', '.join(names[:MAX_NAMED])}{more})" if names else "")]

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InputError
+from planning.base.messages import say
 from planning.geo.crs import HeightReference, crs_conversion
 from planning.geo.enu import Geodetic, enu_from_geodetic, geodetic_from_enu
 from planning.geo.frames import Origin, Vec3
@@ -142,7 +143,7 @@ def place(
     low, high = points.min(axis=0), points.max(axis=0)
     middle = (float(low[0] + high[0]) / 2.0, float(low[1] + high[1]) / 2.0, ground_z)
     if options.origin is not None and options.crs is not None:
-        raise InputError("--origin and --crs both say where the file is; give one of them")
+        raise InputError(say("--origin and --crs both say where the file is; give one of them"))
     if options.origin is not None:
         origin, note = _named_origin(options.origin, options.height_reference)
         return _at_named_origin(origin, note, float(np.abs([low[:2], high[:2]]).max()), middle, north_rad)
@@ -150,42 +151,52 @@ def place(
         found = crs_conversion(options.crs, points, options.axis_order, options.height_reference)
     if found is None:
         raise InputError(
-            "the file does not say where on earth it is; give --origin LAT,LON,HEIGHT (of its zero point) or "
-            "--crs EPSG:CODE (of its coordinates)"
+            say(
+                "the file does not say where on earth it is; give --origin LAT,LON,HEIGHT (of its zero point) or "
+                "--crs EPSG:CODE (of its coordinates)"
+            )
         )
     if isinstance(found, LocalFrame):
         away_m = float(np.hypot(middle[0] - found.zero[0], middle[1] - found.zero[1]))
         if away_m > FAR_FROM_ZERO_M:
             raise InputError(
-                f"the building lies {away_m / 1000.0:.0f} km from the point whose place the file gives, so its "
-                "coordinates are projected ones; name their system with --crs EPSG:CODE"
+                say(
+                    "the building lies {:.0f} km from the point whose place the file gives, so its coordinates are "
+                    "projected ones; name their system with --crs EPSG:CODE",
+                    away_m / 1000.0,
+                )
             )
     lat, lon, height = (float(value[0]) for value in found.geodetic(np.array([middle])))
     try:
         origin = Origin(round(lat, 9), round(lon, 9), round(height, 4))
     except ValueError as error:
-        raise InputError(f"the building would stand at an impossible place ({error}); check --crs and units") from error
+        raise InputError(
+            say("the building would stand at an impossible place ({}); check --crs and units", error)
+        ) from error
     return Placement(origin, found, 0.0, middle)
 
 
 def _named_origin(named: Origin, height_reference: HeightReference) -> tuple[Origin, str]:
     """The origin that the user means, and what its height was taken for."""
     if height_reference != "orthometric":
-        return named, "its height is above the ellipsoid (--height-reference orthometric for sea level)"
+        return named, say("its height is above the ellipsoid (--height-reference orthometric for sea level)")
     height_m = float(ellipsoid_from_amsl_m(named.lat_deg, named.lon_deg, named.ellipsoid_height_m))
-    note = f"its height above sea level is {height_m:.1f} m above the ellipsoid (EGM96, good to about 1 m)"
+    note = say("its height above sea level is {:.1f} m above the ellipsoid (EGM96, good to about 1 m)", height_m)
     return Origin(named.lat_deg, named.lon_deg, round(height_m, 4)), note
 
 
 def _at_named_origin(origin: Origin, note: str, far_m: float, middle: Vec3, north_rad: float) -> Placement:
     """The file's zero at the origin, or the building's middle where the coordinates reach `far_m` too far from zero."""
     if far_m <= FAR_FROM_ZERO_M:
-        notes = ("the file's zero point is at the origin you named", note)
+        notes = (say("the file's zero point is at the origin you named"), note)
         return Placement(origin, LocalFrame(origin, north_rad=north_rad, notes=notes), middle[2], middle)
     notes = (
-        f"the file's coordinates lie up to {far_m / 1000.0:.0f} km from zero, so the origin you named is taken as the "
-        "middle of the building's footprint, on the ground; if they are projected coordinates, --crs converts them "
-        "exactly (grid north is not true north)",
+        say(
+            "the file's coordinates lie up to {:.0f} km from zero, so the origin you named is taken as the "
+            "middle of the building's footprint, on the ground; if they are projected coordinates, --crs "
+            "converts them exactly (grid north is not true north)",
+            far_m / 1000.0,
+        ),
         note,
     )
     return Placement(origin, LocalFrame(origin, middle, north_rad, notes), 0.0, middle)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from planning.base.messages import glue, joined, say
 from planning.geo.frames import Vec3
 from planning.geo.mesh import TriangleMesh
 from planning.site.importing.ground import Terrain
@@ -32,11 +33,14 @@ def left_out_notes(names: Sequence[str]) -> tuple[str, ...]:
     """What was left out of a file because it is broken, by identifier, as a note; none where nothing was."""
     if not names:
         return ()
-    different = list(dict.fromkeys(name or "without an identifier" for name in names))
+    different = list(dict.fromkeys(name or say("without an identifier") for name in names))
     more = ", ..." if len(different) > MAX_NAMED else ""
     return (
-        f"left out, because they are broken (such as outlines of fewer than three points) or not read: {len(names)} "
-        f"({', '.join(different[:MAX_NAMED])}{more})",
+        say(
+            "left out, because they are broken (such as outlines of fewer than three points) or not read: {} ({})",
+            len(names),
+            glue(joined(", ", different[:MAX_NAMED]), more),
+        ),
     )
 
 

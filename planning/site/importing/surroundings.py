@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InputError
+from planning.base.messages import say
 from planning.geo.frames import Vec3
 from planning.site.importing.ground import Terrain
 from planning.site.importing.options import ImportOptions
@@ -34,9 +35,10 @@ HOME_STEP_M = 2.0
 N_BEARINGS = 36
 
 
-NO_HOME = (
-    f"there is no place for home inside the airspace that is at least {LEAST_CLEARANCE_M:g} m from every wall; widen "
-    "it with --airspace-margin, or name a place with --home E,N,U"
+NO_HOME = say(
+    "there is no place for home inside the airspace that is at least {:g} m from every wall; widen "
+    "it with --airspace-margin, or name a place with --home E,N,U",
+    LEAST_CLEARANCE_M,
 )
 
 
@@ -86,10 +88,15 @@ def surroundings(
             min_height_above_ground_m=options.min_height_m,
         )
     except ValueError as error:
-        raise InputError(f"--airspace-margin, --floor and --ceiling leave no airspace: {error}") from error
+        raise InputError(say("--airspace-margin, --floor and --ceiling leave no airspace: {}", error)) from error
     notes = [
-        f"airspace: {margin:g} m around the building, from {airspace.min_enu_m[2]:g} to {airspace.max_enu_m[2]:g} m "
-        "(--airspace-margin, --floor, --ceiling); no-fly zones and obstacles on site are yours to add"
+        say(
+            "airspace: {:g} m around the building, from {:g} to {:g} m (--airspace-margin, --floor, "
+            "--ceiling); no-fly zones and obstacles on site are yours to add",
+            margin,
+            airspace.min_enu_m[2],
+            airspace.max_enu_m[2],
+        )
     ]
     if options.home_enu_m is not None:
         try:
@@ -102,14 +109,30 @@ def surroundings(
     if here_m is not None:
         home = (home[0], home[1], _rounded(here_m))
     notes.append(
-        f"home: {home[0]:g}, {home[1]:g}, {home[2]:g} m, on the ground "
-        f"{'in front of the largest facade' if len(panels) else 'beside the building'}, "
-        f"{clearance_m:.0f} m from the nearest wall (--home)"
+        say(
+            "home: {:gm}, {:gm}, {:g} m, on the ground in front of the largest facade, {:.0f} m from the "
+            "nearest wall (--home)",
+            home[0],
+            home[1],
+            home[2],
+            clearance_m,
+        )
+        if len(panels)
+        else say(
+            "home: {:gm}, {:gm}, {:g} m, on the ground beside the building, {:.0f} m from the nearest wall (--home)",
+            home[0],
+            home[1],
+            home[2],
+            clearance_m,
+        )
     )
     if clearance_m < HOME_CLEARANCE_M:
         notes.append(
-            f"no place inside the airspace is {HOME_CLEARANCE_M:g} m from every wall, so home is tight: choose one "
-            "with --home, or widen --airspace-margin"
+            say(
+                "no place inside the airspace is {:g} m from every wall, so home is tight: choose one with "
+                "--home, or widen --airspace-margin",
+                HOME_CLEARANCE_M,
+            )
         )
     return Surroundings(airspace, home, tuple(notes))
 

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from planning.base.messages import say
 from planning.base.progress import Monitor
 
 Floats = NDArray[np.float32]
@@ -102,7 +103,7 @@ def palette(vectors: Floats, size: int, seed: int, monitor: Monitor) -> Palette:
     counts = _shared_out(spread, np.array([len(rows) for _, rows in members]), size)
     colours, sizes = [], np.zeros(len(groups), np.int64)
     for (group, rows), count in zip(members, counts, strict=True):
-        monitor.report("finding colours", group, len(groups))
+        monitor.report(say("finding colours"), group, len(groups))
         own = _lloyd(vectors[rows], int(count), rng)
         colours.append(own)
         sizes[group] = len(own)

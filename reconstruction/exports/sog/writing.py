@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from planning.base.errors import InputError
 from planning.base.json_file import write_atomically
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from reconstruction.exports.component_parts import check_scene
 from reconstruction.exports.compression import PRESETS, Compressed, Compression
@@ -98,7 +99,9 @@ def write_sog(
     found = _gathered(scene, path, compression, axes, monitor)
     n = len(found.means_m)
     if max(image_size(n)) > LONGEST_SIDE_PX:
-        raise InputError(f"{path}: not written: {n} Gaussians are more than fit into an image; write single facades")
+        raise InputError(
+            say("not written: {} Gaussians are more than fit into an image; write single facades", n, place=path)
+        )
     meta: dict[str, Any] = {"version": VERSION, "asset": _asset(scene, axes), "count": n}
     # One of both: who knows of antialiasing draws the third size, which is next to nothing, too.
     if is_antialiased(scene):
@@ -107,14 +110,14 @@ def write_sog(
         meta["model"] = "2dgs"
     images: dict[str, bytes] = {}
     step = _put_means(found, meta, images)
-    monitor.report("writing images", 2, 7)
+    monitor.report(say("writing images"), 2, 7)
     codes = codebook(found.log_scales)
     images["scales.webp"] = rows_as_image(nearest_codes(found.log_scales, codes))
     meta["scales"] = {"codebook": _told(codes), "files": ["scales.webp"]}
-    monitor.report("writing images", 3, 7)
+    monitor.report(say("writing images"), 3, 7)
     images["quats.webp"] = rows_as_image(found.quats)
     meta["quats"] = {"files": ["quats.webp"]}
-    monitor.report("writing images", 4, 7)
+    monitor.report(say("writing images"), 4, 7)
     codes = codebook(found.colours)
     pixels = np.column_stack([nearest_codes(found.colours, codes), found.opacities])
     images["sh0.webp"] = rows_as_image(pixels)
@@ -132,7 +135,7 @@ def write_sog(
 def _gathered(scene: GsScene, path: Path, compression: Compression, axes: Axes, monitor: Monitor) -> _Gathered:
     parts = [
         (block.means_m, log_scales(block), block.sh[:, 0].copy(), _shares(block.opacities), _quaternions(block.quats))
-        for block in blocks_of(scene, axes, compression.least_opacity, monitor, "reading Gaussians")
+        for block in blocks_of(scene, axes, compression.least_opacity, monitor, say("reading Gaussians"))
     ]
     expect_some(sum(len(part[0]) for part in parts), path)
     means, scales, colours, opacities, quats = (np.concatenate([part[at] for part in parts]) for at in range(5))
@@ -191,10 +194,10 @@ def _put_palette(
             yield slice(start, start + len(block)), np.ascontiguousarray(rest).reshape(len(block), -1)
             start += len(block)
 
-    sample = np.concatenate([vectors[chosen[rows]] for rows, vectors in blocks("choosing samples")])
+    sample = np.concatenate([vectors[chosen[rows]] for rows, vectors in blocks(say("choosing samples"))])
     found = palette(sample, size, SEED, monitor)
     labels = np.empty(n, np.int64)
-    for rows, vectors in blocks("choosing colours"):
+    for rows, vectors in blocks(say("choosing colours")):
         labels[rank[rows]] = found.labels(vectors)
     codes = codebook(found.colours)
     images["shN_centroids.webp"] = _palette_image(found, codes)

@@ -15,6 +15,7 @@ import numpy as np
 
 from planning.base.errors import InputError
 from planning.base.json_file import write_atomically
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from reconstruction.exports.component_parts import check_scene
 from reconstruction.exports.compression import PRESETS, Compressed, Compression
@@ -86,21 +87,23 @@ def spz_of(
         There is nothing to see, or a place is too far away for the format.
     """
     least = compression.least_opacity
-    means = [block.means_m for block in blocks_of(scene, axes, least, monitor, "reading Gaussians")]
+    means = [block.means_m for block in blocks_of(scene, axes, least, monitor, say("reading Gaussians"))]
     n = sum(map(len, means))
     expect_some(n, path)
     places_m = np.concatenate(means)
     furthest_m = float(np.abs(places_m).max())
     fraction = fraction_bits(furthest_m)
     if fraction is None:
-        raise InputError(f"{path}: not written: a Gaussian lies {furthest_m:.3g} m from the origin; train again")
+        raise InputError(
+            say("not written: a Gaussian lies {:.3g} m from the origin; train again", furthest_m, place=path)
+        )
     rank = np.empty(n, np.int64)
     rank[morton_order(places_m)] = np.arange(n)
     del means, places_m
     streams = {name: np.empty((n, size), np.uint8) for name, size in sizes_of(compression.degree).items()}
     start, resized = 0, 0
     n_sizes = FLAT if are_discs(scene) else SOLID
-    for block in blocks_of(scene, axes, least, monitor, "packing Gaussians"):
+    for block in blocks_of(scene, axes, least, monitor, say("packing Gaussians")):
         rows = rank[start : start + len(block)]
         for name, values in packed(block, fraction, compression).items():
             streams[name][rows] = values

@@ -10,6 +10,7 @@ import torch
 from numpy.typing import NDArray
 
 from planning.base.errors import InputError
+from planning.base.messages import say
 from reconstruction.exports.ellipsoids import Ellipsoids
 from reconstruction.objects.gs_scene import GsElement, GsScene
 from reconstruction.objects.opening import largest, middle_of, outward
@@ -59,7 +60,7 @@ def described_panes(scene: GsScene, elements: Sequence[GsElement]) -> dict[str, 
     origin = np.asarray(scene.origin_enu_m, np.float64)
     corners = [np.asarray(element.corners_enu_m, np.float64) - origin for element in elements]
     if not all(np.isfinite(each).all() for each in corners):
-        raise InputError("corners of a panel hold numbers that are not finite")
+        raise InputError(say("corners of a panel hold numbers that are not finite"))
     return {
         "facades": [{"id": facade.global_id, "name": facade.name} for facade in facades],
         "parts": [{"id": part.global_id, "name": part.name} for part in scene.components if part not in facades],

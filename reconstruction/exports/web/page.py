@@ -22,6 +22,7 @@ import numpy as np
 from planning.base.errors import InputError
 from planning.base.files import MIB, FileLimit, open_given
 from planning.base.folders import make_folder
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from reconstruction.exports.ellipsoids import Ellipsoids, ellipsoids_of_all
 from reconstruction.exports.gaussian_blocks import raster_of
@@ -42,7 +43,7 @@ SOURCES = Path(__file__).parent / "data"
 SCRIPTS = ("words", "geometry", "order", "shaders", "picture", "colours", "records", "motion", "loading", "page")
 LAST = "scripting"
 
-PAGE_FILE = FileLimit("a web page", 4096 * MIB)
+PAGE_FILE = FileLimit(say("a web page"), 4096 * MIB)
 
 MAX_TEXT_BYTES = 64 * 2**20
 """Of records and panes."""
@@ -165,7 +166,7 @@ def write_web(
     def parts() -> Iterator[bytes]:
         yield head
         for number, chunk in enumerate(chunks.chunks()):
-            monitor.report("writing the page", number * N_AT_ONCE, len(chunks))
+            monitor.report(say("writing the page"), number * N_AT_ONCE, len(chunks))
             yield _block("g", number, chunk)
         for kind, contents in (("p", files.pictures), ("d", files.documents)):
             for number, content in enumerate(contents.values()):
@@ -185,35 +186,46 @@ def _check_folder(folder: Path) -> None:
         if not folder.exists():
             return
         if not folder.is_dir():
-            raise InputError(f"{folder}: cannot be written: this is a file; name a folder")
+            raise InputError(say("cannot be written: this is a file; name a folder", place=folder))
         page = folder / PAGE
         if page.is_file():
             with open_given(page, PAGE_FILE) as stream:
                 if SIGN.encode() in stream.read(1000):
                     return
-            raise InputError(f"{page}: is a page of somebody else's; name another folder")
+            raise InputError(say("is a page of somebody else's; name another folder", place=page))
         if any(folder.iterdir()):
-            raise InputError(f"{folder}: has other files and no page of ours; name an empty folder, or a new one")
+            raise InputError(
+                say("has other files and no page of ours; name an empty folder, or a new one", place=folder)
+            )
     except OSError as error:
-        raise InputError(f"{folder}: cannot be read ({error.strerror or error}); name another folder") from error
+        raise InputError(
+            say("cannot be read ({}); name another folder", error.strerror or error, place=folder)
+        ) from error
 
 
 def _gaussians(scene: GsScene, elements: Sequence[GsElement], options: WebOptions, folder: Path) -> Ellipsoids:
     if not scene.components:
-        raise InputError(f"{folder}: not written: the scene has no components; export at least one facade")
+        raise InputError(say("not written: the scene has no components; export at least one facade", place=folder))
     if len(elements) > MAX_PANES:
-        raise InputError(f"{folder}: not written: {len(elements)} panels, a page bears {MAX_PANES}; export one facade")
+        raise InputError(
+            say("not written: {} panels, a page bears {}; export one facade", len(elements), MAX_PANES, place=folder)
+        )
     gaussians = ellipsoids_of_all(scene.components)
     for name in ("means_m", "quats", "scales_m", "opacities", "sh"):
         if not np.isfinite(getattr(gaussians, name)).all():
             raise InputError(
-                f"{folder}: not written: {name} of the scene's Gaussians holds numbers that are not finite"
+                say("not written: {} of the scene's Gaussians holds numbers that are not finite", name, place=folder)
             )
     n_kept = min(len(gaussians), options.most or len(gaussians))
     if n_kept > MAX_GAUSSIANS:
         raise InputError(
-            f"{folder}: not written: {n_kept} Gaussians, a page bears {MAX_GAUSSIANS}; keep the most visible ones "
-            "alone (most), or export one facade"
+            say(
+                "not written: {} Gaussians, a page bears {}; keep the most visible ones alone (most), or export "
+                "one facade",
+                n_kept,
+                MAX_GAUSSIANS,
+                place=folder,
+            )
         )
     return gaussians
 
@@ -226,7 +238,9 @@ def _head(described: Mapping[str, Any], title: str) -> bytes:
     for character in "<>&":
         text = text.replace(character, f"\\u{ord(character):04x}")
     if len(text) > MAX_TEXT_BYTES:
-        raise InputError(f"records and panels: more than {MAX_TEXT_BYTES // 2**20} MiB of text; export one facade")
+        raise InputError(
+            say("records and panels: more than {} MiB of text; export one facade", MAX_TEXT_BYTES // 2**20)
+        )
     parts = {
         "SIGN": SIGN,
         "SCRIPT_HASH": _hash(script),

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InputError
+from planning.base.messages import say
 from planning.base.progress import Monitor
 from reconstruction.photos.decode import decoded
 from reconstruction.records.entries import is_address
@@ -91,7 +92,7 @@ def files_of(
     found = WebFiles({}, {}, {}, {})
     n_bytes = 0
     for number, name in enumerate(sorted(pictures)):
-        monitor.report("reading pictures", number, len(pictures))
+        monitor.report(say("reading pictures"), number, len(pictures))
         content = content_of(name)
         try:
             if content is None:
@@ -104,8 +105,12 @@ def files_of(
         n_bytes += len(found.pictures[name])
         if n_bytes > MAX_PICTURE_BYTES:
             raise InputError(
-                f"pictures of defects: more than {MAX_PICTURE_BYTES // 2**20} MiB after {number + 1} of "
-                f"{len(pictures)}, even made small; leave some out"
+                say(
+                    "pictures of defects: more than {} MiB after {} of {}, even made small; leave some out",
+                    MAX_PICTURE_BYTES // 2**20,
+                    number + 1,
+                    len(pictures),
+                )
             )
     _take_documents(found, sorted(documents - pictures), content_of, monitor)
     return found
@@ -115,7 +120,7 @@ def _take_documents(
     found: WebFiles, names: Sequence[str], content_of: Callable[[str], bytes | None], monitor: Monitor
 ) -> None:
     for number, name in enumerate(names):
-        monitor.report("reading documents", number, len(names))
+        monitor.report(say("reading documents"), number, len(names))
         content = content_of(name)
         if content is None:
             found.states[name] = "missing"
@@ -143,13 +148,13 @@ def small_jpeg(name: str, content: bytes, longest_px: int = LONGEST_PX) -> bytes
     InputError
         It is no JPEG, PNG or WebP file, is damaged, or larger than any camera's.
     """
-    place = f"picture '{name[:80]}'"
+    place = say("picture '{}'", name[:80])
     if len(content) > MAX_FILE_BYTES:
-        raise InputError(f"{place}: has more than {MAX_FILE_BYTES // 2**20} MiB; save it smaller")
+        raise InputError(say("has more than {} MiB; save it smaller", MAX_FILE_BYTES // 2**20, place=place))
     picture = np.asarray(decoded(content, cv2.IMREAD_COLOR, place, MAX_PIXELS), np.uint8)
     is_good, written = cv2.imencode(".jpg", _shrunk(picture, longest_px), (cv2.IMWRITE_JPEG_QUALITY, QUALITY))
     if not is_good:
-        raise InputError(f"{place}: cannot be written as JPEG")
+        raise InputError(say("cannot be written as JPEG", place=place))
     return written.tobytes()
 
 

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from planning.base.errors import InputError
+from planning.base.messages import say
 from planning.geo.frames import Vec3
 from reconstruction.objects.gs_scene import GsElement
 
@@ -63,7 +64,7 @@ def by_object(rows: Iterable[Row], known: frozenset[str]) -> tuple[dict[str, lis
     n_strays = 0
     for number, row in enumerate(rows, 1):
         if number > MAX_RECORDS:
-            raise InputError(f"records: there are more than {MAX_RECORDS}; leave some out")
+            raise InputError(say("records: there are more than {}; leave some out", MAX_RECORDS))
         record = _checked(row, number)
         global_id = row["global_id"]
         if global_id in known:
@@ -74,13 +75,21 @@ def by_object(rows: Iterable[Row], known: frozenset[str]) -> tuple[dict[str, lis
 
 
 def _checked(row: Row, number: int) -> dict[str, Any]:
-    place = f"record {number}"
+    place = say("record {}", number)
     if not isinstance(row.get("global_id"), str):
-        raise InputError(f"{place}: global_id: expected the GlobalId of an object, got {row.get('global_id')!r:.60}")
+        raise InputError(
+            say(
+                "expected the GlobalId of an object, got {}",
+                f"{row.get('global_id')!r:.60}",
+                place=f"{place}: global_id",
+            )
+        )
     if row.get("record") not in RECORDS:
-        raise InputError(f"{place}: record: expected one of {', '.join(RECORDS)}, got {row.get('record')!r:.60}")
+        raise InputError(
+            say("record: expected one of {}, got {}", ", ".join(RECORDS), f"{row.get('record')!r:.60}", place=place)
+        )
     if len(row) > MAX_FIELDS:
-        raise InputError(f"{place}: has {len(row)} fields; at most {MAX_FIELDS} are shown")
+        raise InputError(say("has {} fields; at most {} are shown", len(row), MAX_FIELDS, place=place))
     return {
         name: _plain(value, f"{place}: {name:.60}")
         for name, value in row.items()
@@ -93,7 +102,7 @@ def _plain(value: Any, place: str) -> Any:
         return value
     if isinstance(value, str):
         if len(value) > MAX_TEXT:
-            raise InputError(f"{place}: expected at most {MAX_TEXT} characters, got {len(value)}")
+            raise InputError(say("expected at most {} characters, got {}", MAX_TEXT, len(value), place=place))
         return value
     if isinstance(value, int | float):
         try:
@@ -101,11 +110,13 @@ def _plain(value: Any, place: str) -> Any:
         except OverflowError:
             number = math.inf
         if not math.isfinite(number):
-            raise InputError(f"{place}: expected a finite number, got {value!r:.60}")
+            raise InputError(say("expected a finite number, got {}", f"{value!r:.60}", place=place))
         return int(number) if number.is_integer() and abs(number) < 2**53 else number
     if isinstance(value, list | tuple) and len(value) <= MAX_PLACES and all(_is_place(each) for each in value):
         return [[float(u), float(v)] for u, v in value]
-    raise InputError(f"{place}: expected a text, a number, yes or no, or places on a pane; got {type(value).__name__}")
+    raise InputError(
+        say("expected a text, a number, yes or no, or places on a pane; got {}", type(value).__name__, place=place)
+    )
 
 
 def _is_place(value: Any) -> bool:

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InfeasibleError
+from planning.base.messages import say
 from reconstruction.panels.rectify.surface import FacadeSurface
 
 Array = NDArray[np.float64]
@@ -126,7 +127,9 @@ def _sample(points_enu_m: Array, parameters: FitParameters) -> Array:
         raise ValueError(f"points_enu_m: expected shape (n, 3), got {points.shape}")
     points = np.asarray(points[np.isfinite(points).all(axis=1)], float)
     if len(points) < MIN_POINTS:
-        raise InfeasibleError(f"a surface needs at least {MIN_POINTS} points of the coarse model, found {len(points)}")
+        raise InfeasibleError(
+            say("a surface needs at least {} points of the coarse model, found {}", MIN_POINTS, len(points))
+        )
     if len(points) <= parameters.max_points:
         return points
     chosen = np.random.default_rng(parameters.seed).choice(len(points), parameters.max_points, replace=False)
@@ -143,7 +146,7 @@ def _first_plane(points: Array, outside: Array, parameters: FitParameters) -> Fa
     lengths = np.linalg.norm(normals, axis=1)
     size = float(np.abs(centred).max())
     if size == 0.0 or lengths.max() < 1e-9 * size * size:
-        raise InfeasibleError("the points of the coarse model lie on a line: they do not make a surface")
+        raise InfeasibleError(say("the points of the coarse model lie on a line: they do not make a surface"))
     good = lengths > 1e-3 * lengths.max()
     normals, offsets = normals[good] / lengths[good, None], triples[good, 0]
     distances = np.abs(centred @ normals.T - (offsets * normals).sum(axis=1))
@@ -156,7 +159,7 @@ def _frame(near: Array, middle: Array, outside: Array) -> FacadeSurface:
     centre = near.mean(axis=0)
     _, spread, axes = np.linalg.svd(near - centre, full_matrices=False)
     if spread[1] < 1e-6 * spread[0]:
-        raise InfeasibleError("the points of the coarse model lie on a line: they do not make a surface")
+        raise InfeasibleError(say("the points of the coarse model lie on a line: they do not make a surface"))
     normal = axes[2]
     normal = normal if normal @ (outside - middle - centre) > 0.0 else -normal
     upwards = np.array([0.0, 0.0, 1.0]) if abs(normal[2]) < VERTICAL_SLOPE else np.array([0.0, 1.0, 0.0])

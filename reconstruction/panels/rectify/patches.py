@@ -14,6 +14,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.geo.mesh import TriangleMesh
 from reconstruction.base.cameras import PosedPhoto
@@ -105,14 +106,14 @@ def facades_in_photo(
         The coarse model of the building, ENU.
     """
     parameters = parameters or PatchParameters()
-    monitor.report("casting rays", 0, 1)
+    monitor.report(say("casting rays"), 0, 1)
     hits = _cast(photo, model, parameters.rays)
     left = np.ones(len(hits.points), bool)
     least = max(12, int(parameters.least_share * len(hits.points)))
     rng = np.random.default_rng(parameters.seed)
     found: list[FacadePatch] = []
     while len(found) < parameters.max_facades and left.sum() >= least:
-        monitor.report("looking for facades", len(found), parameters.max_facades)
+        monitor.report(say("looking for facades"), len(found), parameters.max_facades)
         inside = _largest(hits, left, photo.pose.position_enu_m, parameters, rng)
         if inside.sum() < least:
             break

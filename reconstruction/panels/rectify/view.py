@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InfeasibleError
+from planning.base.messages import say
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.panels.rectify.surface import FacadeSurface
 
@@ -164,12 +165,12 @@ def surface_view(
     with np.errstate(invalid="ignore"):
         shown = np.isfinite(st).all(axis=1) & (cosines > GRAZING) & (st >= low).all(axis=1) & (st <= high).all(axis=1)
     if shown.sum() < 4:
-        raise InfeasibleError(f"{photo.name}: the photo does not show this facade from its front")
+        raise InfeasibleError(say("the photo does not show this facade from its front", place=photo.name))
     spacing = _spacing(np.where(shown[:, None], st, np.nan).reshape(BORDER_SAMPLES, BORDER_SAMPLES, 2))
     seen_low = np.where(np.isfinite(low), np.maximum(low, st[shown].min(axis=0) - spacing), st[shown].min(axis=0))
     seen_high = np.where(np.isfinite(high), np.minimum(high, st[shown].max(axis=0) + spacing), st[shown].max(axis=0))
     if not (seen_high - seen_low > 0.0).all():
-        raise InfeasibleError(f"{photo.name}: the photo shows no area of this facade")
+        raise InfeasibleError(say("the photo shows no area of this facade", place=photo.name))
     density = scale * _px_per_m(photo, surface, st[shown])
     largest = float((seen_high - seen_low).max())
     return SurfaceView(photo, surface, seen_low, seen_high, min(density, MAX_SIDE_PX / largest))

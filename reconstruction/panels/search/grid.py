@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from reconstruction.panels.search.edges import (
     EdgeMap,
@@ -440,7 +441,7 @@ def find_grid(
     columns: tuple[GridLine, ...] = ()
     rows: tuple[GridLine, ...] = ()
     for done in range(EXTENT_ROUNDS if parameters.find_extent else 1):
-        monitor.report("find lines", done, EXTENT_ROUNDS)
+        monitor.report(say("find lines"), done, EXTENT_ROUNDS)
         before = y_extent, x_extent
         columns = search(down, y_extent, parameters, crossed_by(across.edges.is_edge, rows, x_extent), _n_panes(rows))
         if len(rows) < 2 and len(columns) > 1 and parameters.find_extent:

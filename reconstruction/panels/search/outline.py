@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from planning.base.effects import Assessment, Decision, decide
 from planning.base.jit import kernel
+from planning.base.messages import say
 from reconstruction.panels.search.cells import LEAST_NEAR_GRID, LEAST_WITNESSES, Panes, Pieces, cuts_of
 from reconstruction.panels.search.evidence import FINE, MOST_SEEN
 from reconstruction.panels.search.extent import best_stretch, seen_along
@@ -308,14 +309,14 @@ class InclinedEdges:
     """The effect: it is on where so many edge pixels lie on one inclined line that they may be those of a profile."""
 
     tolerance: float
-    name: str = "inclined lines"
-    unit: str = "edge pixels on one line"
+    name: str = say("inclined lines")
+    unit: str = say("edge pixels on one line")
 
     def assess(self, scene: tuple[Candidate, ...]) -> Assessment:
         """From the candidates, the strongest first."""
         if not scene:
-            return Assessment(0.0, "no inclined line has edges enough for a profile through three panes", 0.0)
-        reason = f"{len(scene)} inclined lines have edges enough for a profile through three panes"
+            return Assessment(0.0, say("no inclined line has edges enough for a profile through three panes"), 0.0)
+        reason = say("{} inclined lines have edges enough for a profile through three panes", len(scene))
         return Assessment(float(scene[0].votes), reason, SECONDS_EACH * len(scene))
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.jit import run_parallel
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from reconstruction.panels.rectify.rectification import Rectification
 from reconstruction.panels.rectify.warp import warp
@@ -112,10 +113,10 @@ def refined_lines(
     monitor: Monitor = QUIET,
 ) -> tuple[tuple[GridLine, ...], tuple[GridLine, ...]]:
     """Lines of a coarse picture, measured in a view with `scale` times as many pixels along each side."""
-    monitor.report("refine lines", 0, 2)
+    monitor.report(say("refine lines"), 0, 2)
     x_span, y_span = _span(columns, scale), _span(rows, scale)
     finer_columns = _measured(image, view, scale, columns, y_span, is_row=False)
-    monitor.report("refine lines", 1, 2)
+    monitor.report(say("refine lines"), 1, 2)
     return _measured(image, view, scale, rows, x_span, is_row=True), finer_columns
 
 

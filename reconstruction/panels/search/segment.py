@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InfeasibleError
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.site.importing.facades import facade_name
 from reconstruction.panels.rectify.rectification import Rectification
@@ -127,7 +128,7 @@ def segment_image(
     checked = checked_image(image)
     height, width = checked.shape[:2]
     if rectifications is None:
-        monitor.report("find vanishing points", 0, 1)
+        monitor.report(say("find vanishing points"), 0, 1)
         views: Sequence[Rectification] = views_without_pose(
             grey(checked), parameters.max_tilt_deg, parameters.long_side_px, parameters.seed
         )
@@ -135,7 +136,7 @@ def segment_image(
         views = rectifications
     facades = []
     for number, view in enumerate(views):
-        monitor.report("find facades", number, len(views))
+        monitor.report(say("find facades"), number, len(views))
         facades.append(segment_view(checked, view, parameters, monitor, facade_name(number)))
     return Segmentation(name, width, height, tuple(facades))
 
@@ -214,7 +215,7 @@ def segment_views(
     scale = min(1.0, parameters.long_side_px / max((max(v.width_px, v.height_px) for v in views), default=1))
     small: list[Rectification] = [scaled_view(view, scale) for view in views]
     axes = _fused_axes(images, small, parameters)
-    monitor.report("fuse views", 0, 1)
+    monitor.report(say("fuse views"), 0, 1)
     rows, columns = find_grid(axes, parameters, monitor)
     if parameters.straighten and rows and columns:
         last = straightening_of_grid(axes.down.edges, axes.across.edges, rows, columns)

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.jit import chunks
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 
 C1 = (0.01 * 255.0) ** 2
@@ -119,6 +120,6 @@ def posterior(rows: Rows, intensity: Array, beta: float, monitor: Monitor = QUIE
     prior = normalised_intensity(intensity)
     result = np.empty(n)
     for start, stop in chunks(n, BLOCK):
-        monitor.report("compare rows", start, n)
+        monitor.report(say("compare rows"), start, n)
         result[start:stop] = softmax(rows.similarity(start, stop), beta) @ prior
     return result

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InfeasibleError
+from planning.base.messages import say
 from reconstruction.base.cameras import Pose, PosedPhoto
 from reconstruction.panels.rectify.fit import SurfaceFit, changed
 from reconstruction.panels.rectify.surface import FacadeSurface
@@ -86,7 +87,7 @@ def adjust(photos: Sequence[PosedPhoto], fit: SurfaceFit, groups: Sequence[LineG
         There are no lines, or one of them is on no photo's side of the surface any more.
     """
     if not groups:
-        raise InfeasibleError("no line of a grid was found in any photo of this facade")
+        raise InfeasibleError(say("no line of a grid was found in any photo of this facade"))
     numbers = sorted({line.photo for group in groups for line in group.members})
     state = _State(
         fit.surface,
@@ -216,7 +217,7 @@ class _Problem:
         photo, lines, groups = state.photos[number], self.lines[number], self.groups[number]
         here = coordinates(photo, state.surface, lines)
         if not np.isfinite(here).all():
-            raise InfeasibleError(f"{photo.name}: its pose was moved until the facade fell out of sight")
+            raise InfeasibleError(say("its pose was moved until the facade fell out of sight", place=photo.name))
         k = here.shape[1]
         sigma = np.repeat(self.sigmas[number], k)
         design = np.zeros((here.size, size))

@@ -10,6 +10,7 @@ import numpy as np
 from planning.base.effects import Decision, Wish, decide
 from planning.base.errors import InfeasibleError
 from planning.base.findings import Finding, Severity
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.geo.mesh import TriangleMesh
 from planning.site.importing.facades import facade_name
@@ -49,9 +50,11 @@ def reduced_panels(facade: SolvedFacade) -> list[Finding]:
     many = [outline for outline in outlines if len(outline) > 4]
     if not many:
         return []
-    text = (
-        f"{len(many)} of {len(facade.panels)} panels have more than four corners; a site's panels have four, so that "
-        "the largest four-cornered part of each is kept"
+    text = say(
+        "{} of {} panels have more than four corners; a site's panels have four, so that the largest "
+        "four-cornered part of each is kept",
+        len(many),
+        len(facade.panels),
     )
     return [Finding(Severity.NOTE, "panels-with-more-corners", text, facade.id, float(len(many)))]
 
@@ -65,10 +68,12 @@ def photos_a_panel_apart(facade: SolvedFacade, photos: Sequence[PosedPhoto]) -> 
     sigmas = [reach_m(photos[number], facade.surface) / REACH_SIGMAS for number in facade.pose_changes]
     if not steps or max(sigmas, default=0.0) <= 0.5 * min(steps):
         return []
-    text = (
-        f"panels repeat every {min(steps):.2f} m, and a photo may lie {max(sigmas):.2f} m off (one standard "
-        "deviation), so that the facade may stand a panel off, or photos were matched a panel apart; refine the poses, "
-        "or compare with a measured corner"
+    text = say(
+        "panels repeat every {:.2f} m, and a photo may lie {:.2f} m off (one standard deviation), so "
+        "that the facade may stand a panel off, or photos were matched a panel apart; refine the poses, "
+        "or compare with a measured corner",
+        min(steps),
+        max(sigmas),
     )
     return [Finding(Severity.WARNING, "photos-a-panel-apart", text, facade.id, max(sigmas))]
 
@@ -140,13 +145,14 @@ def search_facade(
         return SearchedFacade(grids, (unrolling, fusion))
     together = search_together(photos, facade, numbers, load, parameters.segmentation, monitor, name)
     if together is None or not holds_enough(together, grids):
-        text = f"{len(grids)} photos searched together showed no more than each by itself"
+        text = say("{} photos searched together showed no more than each by itself", len(grids))
         return SearchedFacade(
             grids, (unrolling, fusion), (Finding(Severity.NOTE, "photos-together-in-vain", text, name),)
         )
-    text = (
-        f"its lines were found in {len(together.grids)} photos together, which were moved onto one another by up to "
-        f"{together.moved_px:.1f} px"
+    text = say(
+        "its lines were found in {} photos together, which were moved onto one another by up to {:.1f} px",
+        len(together.grids),
+        together.moved_px,
     )
     found = Finding(Severity.NOTE, "photos-together", text, name, together.moved_px, None, "px")
     return SearchedFacade(together.grids, (unrolling, fusion), (found,))
@@ -252,13 +258,16 @@ def find_panels(
     by_hand = files_by_photo(photos, given or {})
     patches = []
     for number, photo in enumerate(photos):
-        monitor.report("looking for facades", number, len(photos))
+        monitor.report(say("looking for facades"), number, len(photos))
         patches.append(facades_in_photo(photo, model, parameters.patches))
     facades = building_facades(photos, patches, parameters.curvature)
     if not facades:
         raise InfeasibleError(
-            f"none of the {len(photos)} photos shows an upright facade of the coarse model; do poses and model belong "
-            "to the same origin?"
+            say(
+                "none of the {} photos shows an upright facade of the coarse model; do poses and model belong to "
+                "the same origin?",
+                len(photos),
+            )
         )
     solved: list[SolvedFacade] = []
     grids: dict[tuple[str, int], FacadeGrid] = {}
@@ -267,17 +276,24 @@ def find_panels(
     search_decisions: dict[str, tuple[Decision, ...]] = {}
     findings: list[Finding] = []
     for order, facade in enumerate(facades):
-        monitor.report("finding panels", order, len(facades))
+        monitor.report(say("finding panels"), order, len(facades))
         name = facade_name(len(solved))
         found = search_facade(photos, facade, name, load, parameters, by_hand, monitor)
         try:
             result = solve_facade(name, photos, found.grids, facade.fit)
         except InfeasibleError as error:
-            findings.append(Finding(Severity.NOTE, "facade-without-grid", f"a facade was left out: {error}", name))
+            findings.append(
+                Finding(Severity.NOTE, "facade-without-grid", say("a facade was left out: {}", error), name)
+            )
             continue
         if len(result.panels) < parameters.least_panels:
             findings.append(
-                Finding(Severity.NOTE, "facade-too-small", f"a wall with {len(result.panels)} panel was left out", name)
+                Finding(
+                    Severity.NOTE,
+                    "facade-too-small",
+                    say("a wall with {} panel was left out", len(result.panels)),
+                    name,
+                )
             )
             continue
         findings += [*found.findings, *facade_findings(result, photos)]
@@ -286,5 +302,7 @@ def find_panels(
         search_decisions[name] = found.decisions
         grids |= {(name, number): grid for number, grid in found.grids.items()}
     if not solved:
-        raise InfeasibleError("no grid of panels was found on any facade; choose sharper photos taken from the front")
+        raise InfeasibleError(
+            say("no grid of panels was found on any facade; choose sharper photos taken from the front")
+        )
     return FoundPanels(tuple(solved), grids, fits, decisions, tuple(findings), search_decisions)

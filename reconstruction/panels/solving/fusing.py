@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from planning.base.effects import Assessment
 from planning.base.errors import InfeasibleError
+from planning.base.messages import say
 from planning.base.progress import Monitor
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.panels.rectify.surface import FacadeSurface
@@ -149,7 +150,7 @@ def search_together(
         return None
     images = []
     for done, number in enumerate(views):
-        monitor.report("fuse views", done, len(views))
+        monitor.report(say("fuse views"), done, len(views))
         images.append(load(photos[number]))
     placed = registered(images, list(views.values()), parameters.seed)
     kept = [i for i, one in enumerate(placed) if one.agreement >= LEAST_AGREEMENT]

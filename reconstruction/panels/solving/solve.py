@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InfeasibleError
+from planning.base.messages import say
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.panels.rectify.fit import SurfaceFit, changed
 from reconstruction.panels.rectify.surface import FacadeSurface
@@ -290,7 +291,7 @@ def solve_facade(
     groups = associate(seen, 2.0 * max((reach_m(photos[number], fit.surface) for number in grids), default=0.0))
     n_columns = sum(group.axis == "column" for group in groups)
     if min(n_columns, len(groups) - n_columns) < 2:
-        raise InfeasibleError(f"facade {facade_id}: no photo shows a grid with at least one panel")
+        raise InfeasibleError(say("facade {}: no photo shows a grid with at least one panel", facade_id))
     adjusted = adjust(photos, fit, groups)
     is_row = np.array([group.axis == "row" for group in groups])
     order = np.lexsort((adjusted.positions_m, is_row))

@@ -14,6 +14,7 @@ from typing import Any
 from planning.base.errors import InputError
 from planning.base.folders import make_folder
 from planning.base.json_file import write_together
+from planning.base.messages import say
 from reconstruction.records.book import RecordBook
 from reconstruction.records.csv.cells import NO, YES, guarded, number_cell
 from reconstruction.records.entries import COMPUTED, KINDS, STANDARD, TYPES, Attribute, AttributeType, Kind
@@ -144,6 +145,6 @@ class TableError(InputError):
     """
 
     def __init__(self, path: Path, problems: tuple[str, ...], shown: int = 20) -> None:
-        more = f"; and {len(problems) - shown} more" if len(problems) > shown else ""
+        more = say("; and {} more", len(problems) - shown) if len(problems) > shown else ""
         super().__init__(f"{path}: nothing was taken over: {'; '.join(problems[:shown])}{more}")
         self.path, self.problems = path, problems

@@ -8,6 +8,7 @@ from typing import Any
 import msgspec
 
 from planning.base.errors import InputError
+from planning.base.messages import say
 from reconstruction.records.global_ids import global_id_of
 from reconstruction.records.ifc.extract import open_model
 from reconstruction.records.ifc.sets import OUR_SETS, Property, PropertySet
@@ -62,7 +63,7 @@ def extension(path: Path, sets: dict[str, tuple[PropertySet, ...]], known: froze
         extended = tuple(global_id for global_id in elements if sets.get(global_id))
         return Extension(tuple(f"{line};" for line in lines), replaced, len(list(model)), extended, missing)
     except (RuntimeError, AttributeError, TypeError, ValueError, KeyError, IndexError) as error:
-        raise InputError(f"{path}: this IFC file is broken ({type(error).__name__}: {error})") from error
+        raise InputError(say("this IFC file is broken ({}: {})", type(error).__name__, error, place=path)) from error
 
 
 def added_set(model: Any, element: Any, wanted: PropertySet) -> list[Any]:

@@ -10,6 +10,7 @@ from typing import Any
 import msgspec
 
 from planning.base.errors import InputError
+from planning.base.messages import say
 from reconstruction.records.ifc.sets import Property, PropertyKind
 
 MAX_PARTS = 200
@@ -85,7 +86,7 @@ def open_model(path: Path) -> Any:
         return ifcopenshell.open(str(path))
     except Exception as error:  # the parser raises whatever goes wrong in it
         raise InputError(
-            f"{path}: this IFC file cannot be read ({error}); IFC 2x3, IFC 4 and IFC 4.3 are read"
+            say("this IFC file cannot be read ({}); IFC 2x3, IFC 4 and IFC 4.3 are read", error, place=path)
         ) from error
 
 
@@ -107,7 +108,7 @@ def extract(path: Path, global_ids: frozenset[str]) -> IfcProperties:
         }
         return IfcProperties(model.schema, tuple(_element(each, unit_m, global_ids) for each in products.values()))
     except (RuntimeError, AttributeError, TypeError, ValueError, KeyError, IndexError) as error:
-        raise InputError(f"{path}: this IFC file is broken ({type(error).__name__}: {error})") from error
+        raise InputError(say("this IFC file is broken ({}: {})", type(error).__name__, error, place=path)) from error
 
 
 def _element(product: Any, unit_m: float, known: frozenset[str]) -> Element:

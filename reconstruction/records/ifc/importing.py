@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from planning.base.errors import InputError
+from planning.base.messages import about
 from planning.base.progress import QUIET, Monitor
 from planning.base.step_physical_file import real_name
 from reconstruction.records.book import RecordBook
@@ -87,7 +88,7 @@ def read_ifc_records(book: RecordBook, path: Path, all_sets: bool = False, monit
                 try:
                     changes.put(entry)
                 except InputError as error:
-                    notes.append(f"{names[element.global_id]}: {error}")
+                    notes.append(about(names[element.global_id], error))
         n_changed = changes.n_changed
     if not read.elements:
         notes.append(f"none of the {len(names)} objects has its GlobalId in this file")
@@ -171,7 +172,7 @@ def _material(element: Element, name: str, notes: list[str]) -> Iterator[Attribu
         if element.thickness_m is not None:
             yield Attribute(element.global_id, "thickness", round(1000.0 * element.thickness_m, 3), "number", "mm")
     except InputError as error:
-        notes.append(f"{name}: {error}")
+        notes.append(about(name, error))
 
 
 def _condition(element: Element, name: str, notes: list[str]) -> Iterator[Inspection]:

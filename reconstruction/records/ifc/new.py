@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from planning.base.errors import InputError
 from planning.base.json_file import check_output, write_atomically
+from planning.base.messages import say
 from planning.geo.frames import Origin
 from planning.geo.geoid import undulation_m
 from planning.geo.mesh import TriangleMesh
@@ -75,7 +76,7 @@ def write_new_ifc(book: RecordBook, out: Path, mesh: TriangleMesh | None = None)
         sets = property_sets(book)
         attributes = {(each.global_id, each.name): each.value for each in book.entries(Attribute)}
     if not rows:
-        raise InputError(f"{book.path}: holds no objects yet; 'records FOLDER make' takes them from a site")
+        raise InputError(say("holds no objects yet; 'records FOLDER make' takes them from a site", place=book.path))
     building = _Building(rows, origin)
     for row in rows:
         building.add(row, attributes)
@@ -86,8 +87,8 @@ def write_new_ifc(book: RecordBook, out: Path, mesh: TriangleMesh | None = None)
         for wanted in (*sets.get(row.global_id, ()), *_standard_sets(row.global_id, attributes), *_outside(row)):
             added_set(building.model, building.elements[row.global_id], wanted)
     write_atomically(out, building.model.to_string().encode("ascii", "replace"))
-    notes = () if origin is not None else ("the place on earth is not known to the records: IfcSite has none",)
-    return (*notes, *(() if mesh is not None else ("the building behind the panes is not in the file",)))
+    notes = () if origin is not None else (say("the place on earth is not known to the records: IfcSite has none"),)
+    return (*notes, *(() if mesh is not None else (say("the building behind the panes is not in the file"),)))
 
 
 class _Building:

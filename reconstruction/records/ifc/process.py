@@ -19,7 +19,8 @@ import msgspec
 
 from planning.base.errors import InputError
 from planning.base.files import read_given
-from planning.base.json_file import check_output, write_atomically
+from planning.base.json_file import check_output, encoded, write_atomically
+from planning.base.messages import about
 from planning.base.progress import QUIET, Monitor
 from planning.base.step_physical_file import END, IFC_FILE, check_ends
 from reconstruction.records.ifc.extend import Extension, extension
@@ -110,7 +111,7 @@ def read_properties(path: Path, global_ids: frozenset[str], monitor: Monitor = Q
     """
     check_ends(path)
     with tempfile.TemporaryDirectory(prefix="reflight-ifc-") as folder:
-        return _run("read", path, Path(folder), msgspec.json.encode(global_ids), IfcProperties, monitor)
+        return _run("read", path, Path(folder), encoded(global_ids), IfcProperties, monitor)
 
 
 def extend_copy(
@@ -130,7 +131,7 @@ def extend_copy(
     check_ends(path)
     check_output(out, [path])
     with tempfile.TemporaryDirectory(prefix="reflight-ifc-") as folder:
-        found = _run("extend", path, Path(folder), msgspec.json.encode(_Sets(sets, known)), Extension, monitor)
+        found = _run("extend", path, Path(folder), encoded(_Sets(sets, known)), Extension, monitor)
         write_atomically(out, (Path(folder) / COPY).read_bytes())
     return found
 
@@ -179,7 +180,7 @@ def main(arguments: list[str]) -> int:
     except InputError as error:
         (folder / "refused.txt").write_text(str(error), "utf-8")
         return EXIT_REFUSED
-    (folder / "result.json").write_bytes(msgspec.json.encode(result))
+    (folder / "result.json").write_bytes(encoded(result))
     return 0
 
 
@@ -189,7 +190,7 @@ def _extend(path: Path, copy: Path, wanted: _Sets) -> Extension:
     try:
         copy.write_bytes(edited(read_given(path, IFC_FILE), found.lines, found.replaced))
     except InputError as error:
-        raise InputError(f"{path}: {error}") from error
+        raise InputError(about(path, error)) from error
     n_instances = len(list(open_model(copy)))
     if n_instances != found.n_instances:
         raise InputError(

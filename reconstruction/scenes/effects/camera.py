@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from planning.base.effects import Assessment
+from planning.base.messages import say
 from reconstruction.scenes.effect_names import DISTORTION, NOISE, VIGNETTING
 from reconstruction.scenes.effects.probe import Probe
 from reconstruction.scenes.effects.terms import SECONDS_PER_ANGLE, TOLERANCE_GREY, TOLERANCE_PX, cost_s
@@ -29,14 +30,14 @@ class Distortion:
         lenses = {photo.intrinsics for photo in probe.photos}
         bent = [lens for lens in lenses if not lens.is_straight]
         if not bent:
-            return Assessment(0.0, "the pictures are straight already", 0.0)
+            return Assessment(0.0, say("the pictures are straight already"), 0.0)
         size = 0.0
         for lens in bent:
             x, y = np.meshgrid(np.linspace(0, lens.width_px, 21), np.linspace(0, lens.height_px, 21))
             places = np.column_stack([x.ravel(), y.ravel()])
             straight = lens.straight().pixels(lens.rays(places))
             size = max(size, float(np.linalg.norm(straight - places, axis=1).max()))
-        return Assessment(size, "the lens bends straight lines", cost_s(probe, 1.0, SECONDS_PER_BEND))
+        return Assessment(size, say("the lens bends straight lines"), cost_s(probe, 1.0, SECONDS_PER_BEND))
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,13 +47,13 @@ class Vignetting:
     sensor: Sensor = USUAL_SENSOR
     tolerance: float = TOLERANCE_GREY
     name = VIGNETTING
-    unit = "grey levels"
+    unit = say("grey levels")
 
     def assess(self, probe: Probe) -> Assessment:
         """Of middle grey, in a corner."""
         kept = 1.0 - self.sensor.corner_loss
         size = float(grey_levels(np.array(MIDDLE_GREY)) - grey_levels(np.array(MIDDLE_GREY * kept)))
-        reason = f"the lens loses {100.0 * self.sensor.corner_loss:.0f} % of the light in the corners"
+        reason = say("the lens loses {:.0f} % of the light in the corners", 100.0 * self.sensor.corner_loss)
         return Assessment(size, reason, probe.n_pixels * SECONDS_PER_ANGLE)
 
 
@@ -63,11 +64,11 @@ class Noise:
     sensor: Sensor = USUAL_SENSOR
     tolerance: float = TOLERANCE_GREY
     name = NOISE
-    unit = "grey levels"
+    unit = say("grey levels")
 
     def assess(self, probe: Probe) -> Assessment:
         """Of middle grey."""
         grey = np.array(MIDDLE_GREY)
         size = float(grey_levels(grey + self.sensor.noise(grey)) - grey_levels(grey))
-        reason = f"a white pixel holds {self.sensor.white_e:.0f} electrons"
+        reason = say("a white pixel holds {:.0f} electrons", self.sensor.white_e)
         return Assessment(size, reason, 3.0 * probe.n_pixels * SECONDS_PER_ANGLE)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.effects import Assessment
+from planning.base.messages import say
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.scenes.effect_names import EXPOSURE, GIMBAL_ERROR, MOTION_BLUR, POSITION_ERROR
 from reconstruction.scenes.effects.probe import N_PHOTOS, QUANTILE, Probe, spread
@@ -43,16 +44,21 @@ class MotionBlur:
         ways_m = np.array([moment.moved_m for moment in probe.moments])
         if not ways_m.any():
             is_open = any(moment.exposure_s > 0.0 for moment in probe.moments)
-            return Assessment(0.0, "the camera is held still for every photo" if is_open else "no shutter opens", 0.0)
+            return Assessment(
+                0.0, say("the camera is held still for every photo") if is_open else say("no shutter opens"), 0.0
+            )
         direct, images = [], []
         for number in np.argsort(-ways_m, kind="stable")[:N_PHOTOS]:
             of_things, of_images = _ways_px(probe, int(number))
             direct.append(of_things)
             images.append(of_images)
         seen_px, mirrored_px = (_usual_px(np.concatenate(ways)) for ways in (direct, images))
-        reason = (
-            f"the camera moves up to {1000.0 * ways_m.max():.0f} mm while the shutter is open; what is seen moves "
-            f"{seen_px:.1f} px, what is mirrored {mirrored_px:.1f} px"
+        reason = say(
+            "the camera moves up to {:.0f} mm while the shutter is open; what is seen moves {:.1f} px, what "
+            "is mirrored {:.1f} px",
+            1000.0 * ways_m.max(),
+            seen_px,
+            mirrored_px,
         )
         size = max(seen_px, mirrored_px)
         places = 2.0 ** np.ceil(np.log2(np.clip(FURTHER * size / PX_PER_TIME, 1.0, MOST_TIMES)))
@@ -90,12 +96,12 @@ class ExposureChanges:
 
     tolerance: float = TOLERANCE_GREY
     name = EXPOSURE
-    unit = "grey levels"
+    unit = say("grey levels")
 
     def assess(self, probe: Probe) -> Assessment:
         """Metered on the rays of the probe."""
         if probe.taking.exposure == "locked":
-            return Assessment(0.0, "one exposure is locked for all photos", 0.0)
+            return Assessment(0.0, say("one exposure is locked for all photos"), 0.0)
         means = np.array([light.mean() for light in probe.lights])
         own = in_stops(MIDDLE_GREY / np.maximum(means, DARKEST) / probe.exposure)
         changes = [
@@ -104,7 +110,7 @@ class ExposureChanges:
         ]
         size = float(np.sqrt((np.concatenate(changes) ** 2).mean()))
         darkest, brightest = np.log2([own.min(), own.max()])
-        reason = f"photos would be exposed {darkest:+.1f} to {brightest:+.1f} stops apart from one exposure"
+        reason = say("photos would be exposed {:+.1f} to {:+.1f} stops apart from one exposure", darkest, brightest)
         return Assessment(size, reason, 0.0)
 
 
@@ -119,10 +125,12 @@ class PositionError:
     def assess(self, probe: Probe) -> Assessment:
         """With the very errors that the photos would get."""
         horizontal_m, vertical_m = probe.taking.position.total_m
-        what = "with RTK" if probe.taking.position.fix == "rtk" else "without RTK"
-        reason = (
-            f"{what}, positions are off by {_length(horizontal_m)} horizontally on each axis and "
-            f"{_length(vertical_m)} vertically"
+        what = say("with RTK") if probe.taking.position.fix == "rtk" else say("without RTK")
+        reason = say(
+            "{}, positions are off by {} horizontally on each axis and {} vertically",
+            what,
+            _length(horizontal_m),
+            _length(vertical_m),
         )
         return Assessment(_told_px(probe, positions=True), reason, 0.0)
 
@@ -139,12 +147,12 @@ class GimbalError:
         """With the very errors that the photos would get."""
         gimbal = probe.taking.gimbal
         heading, pitch, roll = np.hypot(gimbal.bias_deg, gimbal.deviation_deg)
-        reason = f"headings are off by {heading:.2g} degrees, pitch by {pitch:.2g}, roll by {roll:.2g}"
+        reason = say("headings are off by {:.2g} degrees, pitch by {:.2g}, roll by {:.2g}", heading, pitch, roll)
         return Assessment(_told_px(probe, positions=False), reason, 0.0)
 
 
 def _length(metres: float) -> str:
-    return f"{metres:.1f} m" if metres >= 0.995 else f"{100.0 * metres:.1f} cm"
+    return f"{metres:.1f} m" if metres >= 0.995 else say("{:.1f} cm", 100.0 * metres)
 
 
 def _told_px(probe: Probe, *, positions: bool) -> float:

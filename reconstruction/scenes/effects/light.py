@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from planning.base.effects import Assessment
+from planning.base.messages import say
 from reconstruction.scenes.effect_names import INTERIOR, OCCLUSION, SHADOW, SKY_OCCLUSION
 from reconstruction.scenes.effects.probe import Probe
 from reconstruction.scenes.effects.terms import NO_GLASS, SECONDS_PER_SHADOW, TOLERANCE_GREY, cost_s
@@ -28,14 +29,14 @@ class SkyOcclusion:
 
     tolerance: float = TOLERANCE_GREY
     name = SKY_OCCLUSION
-    unit = "grey levels"
+    unit = say("grey levels")
 
     def assess(self, probe: Probe) -> Assessment:
         """Both ways with the rays of the probe."""
         if not probe.scene.bodies:
-            return Assessment(0.0, "there is nothing that light falls on", 0.0)
+            return Assessment(0.0, say("there is nothing that light falls on"), 0.0)
         light = probe.surroundings_light()
-        reason = f"what is seen gets {100.0 * light.share:.0f} % of the light of an open sky"
+        reason = say("what is seen gets {:.0f} % of the light of an open sky", 100.0 * light.share)
         return Assessment(light.change_grey, reason, light.n_places * PLACES_PER_PROBED * SECONDS_PER_PLACE)
 
 
@@ -49,14 +50,14 @@ class Shadow:
 
     tolerance: float = TOLERANCE_GREY
     name = SHADOW
-    unit = "grey levels"
+    unit = say("grey levels")
 
     def assess(self, probe: Probe) -> Assessment:
         """Both ways with the rays of the probe."""
         sky = probe.scene.sky
         if sky.sun_elevation_deg <= 0.0 or not any(sky.sun):
-            return Assessment(0.0, "there is no sun", 0.0)
-        reason = f"the sun stands {sky.sun_elevation_deg:.0f} degrees high"
+            return Assessment(0.0, say("there is no sun"), 0.0)
+        reason = say("the sun stands {:.0f} degrees high", sky.sun_elevation_deg)
         return Assessment(probe.change_without(Switches(shadow=False)), reason, cost_s(probe, 1.0, SECONDS_PER_SHADOW))
 
 
@@ -66,7 +67,7 @@ class Interior:
 
     tolerance: float = TOLERANCE_GREY
     name = INTERIOR
-    unit = "grey levels"
+    unit = say("grey levels")
 
     def assess(self, probe: Probe) -> Assessment:
         """Both ways with the rays of the probe."""
@@ -74,12 +75,12 @@ class Interior:
         if not len(seen):
             return Assessment(0.0, NO_GLASS, 0.0)
         if scene.interiors is None:
-            return Assessment(0.0, "there are no rooms behind the panes", 0.0)
+            return Assessment(0.0, say("there are no rooms behind the panes"), 0.0)
         kinds = scene.panes.glass[seen.met.panes]
         through = np.zeros(len(seen))
         for number, glass in enumerate(scene.glasses):
             through[kinds == number] = pane_light(seen.cosines[kinds == number], glass)[2].mean(axis=1)
-        reason = f"panes let {100.0 * through.mean():.0f} % of the light through that comes from behind them"
+        reason = say("panes let {:.0f} % of the light through that comes from behind them", 100.0 * through.mean())
         cost = cost_s(probe, probe.glass_share, SECONDS_PER_ROOM)
         return Assessment(probe.change_without(Switches(interior=False)), reason, cost)
 
@@ -90,13 +91,13 @@ class Occlusion:
 
     tolerance: float = TOLERANCE_GREY
     name = OCCLUSION
-    unit = "grey levels"
+    unit = say("grey levels")
 
     def assess(self, probe: Probe) -> Assessment:
         """Both ways with the rays of the probe; what is left out is still mirrored."""
         share = probe.hidden_share()
         if share == 0.0:
-            return Assessment(0.0, "nothing near stands before the facade", 0.0)
-        reason = f"what is near hides {100.0 * share:.1f} % of the facade"
+            return Assessment(0.0, say("nothing near stands before the facade"), 0.0)
+        reason = say("what is near hides {:.1f} % of the facade", 100.0 * share)
         # Without it, rays have further to go.
         return Assessment(probe.change_without(Switches(occlusion=False)), reason, 0.0)

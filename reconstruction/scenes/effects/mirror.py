@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.effects import Assessment
+from planning.base.messages import say
 from reconstruction.scenes.effect_names import CURVATURE, DOUBLING, FRESNEL, NEAR_FIELD, SECOND_BOUNCE, TILT
 from reconstruction.scenes.effects.probe import Probe
 from reconstruction.scenes.effects.terms import (
@@ -52,9 +53,11 @@ class NearField:
         shaded = cost_s(probe, probe.glass_share * share, SECONDS_PER_SHADOW)
         cost = max(shaded - 2.0 * ROWS * ROWS * SECONDS_PER_RAY, 0.0)
         if share == 0.0:
-            return Assessment(0.0, "the panes mirror nothing but the sky and the building itself", cost)
+            return Assessment(0.0, say("the panes mirror nothing but the sky and the building itself"), cost)
         away = np.median(seen.path_m[seen.is_around])
-        reason = f"{percent(seen.is_around)} of the mirrored rays meet what is around, {away:.0f} m from the panes"
+        reason = say(
+            "{} of the mirrored rays meet what is around, {:.0f} m from the panes", percent(seen.is_around), away
+        )
         return Assessment(probe.displacement_px(seen.parallax_rad), reason, cost)
 
 
@@ -64,7 +67,7 @@ class Fresnel:
 
     tolerance: float = TOLERANCE_GREY
     name = FRESNEL
-    unit = "grey levels"
+    unit = say("grey levels")
 
     def assess(self, probe: Probe) -> Assessment:
         """Both ways with the rays of the probe."""
@@ -72,7 +75,7 @@ class Fresnel:
         if not len(seen):
             return Assessment(0.0, NO_GLASS, 0.0)
         steep, flat = np.degrees(np.arccos(np.clip(np.quantile(seen.cosines, [0.95, 0.05]), 0.0, 1.0)))
-        reason = f"light falls on the panes at {steep:.0f} to {flat:.0f} degrees"
+        reason = say("light falls on the panes at {:.0f} to {:.0f} degrees", steep, flat)
         cost = cost_s(probe, probe.glass_share, SECONDS_PER_ANGLE)
         return Assessment(probe.change_without(Switches(fresnel=False)), reason, cost)
 
@@ -83,7 +86,7 @@ class SecondBounce:
 
     tolerance: float = TOLERANCE_GREY
     name = SECOND_BOUNCE
-    unit = "grey levels"
+    unit = say("grey levels")
 
     def assess(self, probe: Probe) -> Assessment:
         """Nothing where no mirrored ray meets a pane."""
@@ -91,7 +94,7 @@ class SecondBounce:
         if not len(seen):
             return Assessment(0.0, NO_GLASS, 0.0)
         meets = seen.after.panes >= 0
-        reason = f"{percent(meets)} of the mirrored rays meet glass"
+        reason = say("{} of the mirrored rays meet glass", percent(meets))
         size = probe.change_without(Switches(second_bounce=False)) if meets.any() else 0.0
         return Assessment(size, reason, cost_s(probe, probe.glass_share * float(meets.mean()), SECONDS_PER_RAY))
 
@@ -110,7 +113,7 @@ class Tilt:
         if not len(seen):
             return Assessment(0.0, NO_GLASS, 0.0)
         share = np.where(seen.is_sky, 1.0, 1.0 / (1.0 + seen.sight_m / seen.path_m))
-        reason = f"panes are tilted by up to {np.degrees(seen.tilts_rad.max()):.2f} degrees"
+        reason = say("panes are tilted by up to {:.2f} degrees", np.degrees(seen.tilts_rad.max()))
         cost = cost_s(probe, probe.glass_share, SECONDS_PER_ANGLE)
         return Assessment(probe.displacement_px(2.0 * share * seen.tilts_rad), reason, cost)
 
@@ -131,11 +134,13 @@ class Curvature:
         turns = np.degrees(np.arctan(np.abs(bows) * half_sides_m(probe.scene.panes, probe.geometry.pane_frames)))
         most = float(turns[seen.met.panes].max())
         if most == 0.0:
-            return Assessment(0.0, "the panes are flat", 0.0)
+            return Assessment(0.0, say("the panes are flat"), 0.0)
         # As of a spherical mirror's image, seen from s and t away: 1 / (1 + 2 s t / (R (s + t))).
         between = 1.0 / (1.0 / np.maximum(seen.sight_m, NEAREST_M) + 1.0 / np.maximum(seen.path_m, NEAREST_M))
         size = np.median(1.0 / np.abs(1.0 + 2.0 * between * bows[seen.met.panes, 0]))
-        reason = f"panes turn by up to {most:.2f} degrees to their edges; mirror images appear {size:.2f} times as wide"
+        reason = say(
+            "panes turn by up to {:.2f} degrees to their edges; mirror images appear {:.2f} times as wide", most, size
+        )
         cost = cost_s(probe, probe.glass_share, SECONDS_PER_ANGLE)
         return Assessment(probe.displacement_px(probe.bent_rad()), reason, cost)
 
@@ -156,13 +161,13 @@ class Doubling:
         gaps = np.array([glass.gap_m if glass.sheets == 2 else 0.0 for glass in scene.glasses])
         gap = gaps[scene.panes.glass[seen.met.panes]]
         if not gap.any():
-            return Assessment(0.0, "the panes are single", 0.0)
+            return Assessment(0.0, say("the panes are single"), 0.0)
         shift = 2.0 * gap * np.sqrt(np.clip(1.0 - seen.cosines**2, 0.0, 1.0))
         away = seen.sight_m + seen.path_m
-        reason = f"sheets are {1000.0 * gap.max():.0f} mm apart, the mirror images {_far(away[seen.is_around])}"
+        reason = say("sheets are {:.0f} mm apart, the mirror images {}", 1000.0 * gap.max(), _far(away[seen.is_around]))
         size = probe.displacement_px(shift / away)
         return Assessment(size, reason, cost_s(probe, probe.glass_share, SECONDS_PER_RAY))
 
 
 def _far(metres: Array) -> str:
-    return f"{np.median(metres):.0f} m away" if len(metres) else "as far as the sky"
+    return say("{:.0f} m away", np.median(metres)) if len(metres) else say("as far as the sky")

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from planning.base.effects import Assessment
 from planning.base.jit import kernel
+from planning.base.messages import say
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.scenes.effect_names import SUN_GLARE
 from reconstruction.scenes.effects.probe import Probe
@@ -46,21 +47,21 @@ class SunGlare:
 
     tolerance: float = TOLERANCE_GREY
     name = SUN_GLARE
-    unit = "grey levels"
+    unit = say("grey levels")
 
     def assess(self, probe: Probe) -> Assessment:
         """Root mean square over all photos of the flight."""
         sun = Sun(probe.scene.sky)
         if not sun.is_up:
-            return Assessment(0.0, "there is no sun", 0.0)
+            return Assessment(0.0, say("there is no sun"), 0.0)
         finder = _Finder(probe, sun)
         found = [finder.images(photo) for photo in probe.photos]
         changes = [_mean_square(p, images, probe.exposure) for p, images in zip(probe.photos, found, strict=True)]
         n_direct, n_mirrored = (sum(any(i.is_mirrored == way for i in images) for images in found) for way in (0, 1))
         n = len(probe.photos)
-        reason = f"{n_direct} of {n} photos see the sun, {n_mirrored} its mirror image"
+        reason = say("{} of {} photos see the sun, {} its mirror image", n_direct, n, n_mirrored)
         if not n_direct and not n_mirrored:
-            reason = "no photo sees the sun or its mirror image"
+            reason = say("no photo sees the sun or its mirror image")
         sizes = [photo.intrinsics.width_px * photo.intrinsics.height_px for photo in probe.photos]
         bright = sum(size for size, images in zip(sizes, found, strict=True) if images)
         size = math.sqrt(np.average(changes, weights=sizes))

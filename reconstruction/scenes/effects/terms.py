@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from planning.base.messages import say
 from reconstruction.scenes.effects.probe import Probe
 
 TOLERANCE_PX = 0.5
@@ -20,7 +21,7 @@ SECONDS_PER_RAY, SECONDS_PER_SHADOW, SECONDS_PER_ANGLE = 7e-7, 2.5e-7, 5e-8
 """Of one core: for a ray cast and shaded, for one that asks for the sun or shades alone, and for arithmetic on one;
 measured on `planar` and `court`, where 0.8 million rays with their mirror images take 1.2 s."""
 
-NO_GLASS = "no photo shows glass"
+NO_GLASS = say("no photo shows glass")
 
 
 def cost_s(probe: Probe, share: float, seconds_per_ray: float) -> float:

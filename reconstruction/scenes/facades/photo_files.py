@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from planning.base.errors import InputError
 from planning.base.json_file import write_atomically
+from planning.base.messages import say
 from planning.geo.frames import Origin
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.photos.write import photo_jpeg, photo_name
@@ -41,6 +42,6 @@ def write_photos(
             folder.mkdir(parents=True, exist_ok=True)
             write_atomically(path, photo_jpeg(picture, photo, origin, taken_at))
         except OSError as error:
-            raise InputError(f"{path}: cannot be written ({error.strerror or error})") from error
+            raise InputError(say("cannot be written ({})", error.strerror or error, place=path)) from error
         paths.append(path)
     return tuple(paths)

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from planning.base.effects import Decision, Wish
 from planning.base.errors import InputError
 from planning.base.jit import chunks, run_chunks
+from planning.base.messages import say
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.scenes.effect_names import (
     CURVATURE,
@@ -166,7 +167,9 @@ class Renderer:
     def __init__(self, scene: Scene, settings: RenderSettings) -> None:
         n_panes = len(scene.panes.corners_enu_m)
         if n_panes > MOST_PANES:
-            raise InputError(f"{scene.name}: expected at most {MOST_PANES} panels, got {n_panes}; render it in parts")
+            raise InputError(
+                say("expected at most {} panels, got {}; render it in parts", MOST_PANES, n_panes, place=scene.name)
+            )
         self._settings = settings
         self._tracer = Tracer(scene, settings.switches, environment_rows=settings.environment_rows)
 

@@ -26,6 +26,7 @@ import planning
 import reconstruction
 from planning.base.errors import GroundStationError, InputError, ReconstructionError
 from planning.base.json_file import write_atomically
+from planning.base.messages import about
 from planning.base.progress import Monitor
 from reconstruction.scenes.runs.photo_job import PATIENCE_S, PhotoJob, RenderWorker, written
 
@@ -151,7 +152,7 @@ def _files(future: Any, name: str, folder: Path) -> dict[str, str]:
         text = f"{error.allowed_failures + 1} workers ended while they rendered it, perhaps for want of memory"
     else:
         text = str(error) if isinstance(error, GroundStationError) else f"a worker could not render it: {error!r}"
-    raise ReconstructionError(f"{name}: {text}") from error
+    raise ReconstructionError(about(name, text)) from error
 
 
 @contextmanager

@@ -21,6 +21,7 @@ from planning.base.effects import Decision
 from planning.base.errors import InputError
 from planning.base.files import read_given
 from planning.base.json_file import write_atomically
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.geo.mesh import TriangleMesh, from_corners, join
 from planning.site.records import panel_triangles
@@ -114,7 +115,9 @@ def _make_folders(folder: Path) -> None:
         for name in ("images", *ARRAYS, *PICTURES):
             (folder / name).mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise InputError(f"{folder}: cannot be made ({error.strerror or error}); name another folder") from error
+        raise InputError(
+            say("cannot be made ({}); name another folder", error.strerror or error, place=folder)
+        ) from error
 
 
 def _check_room(folder: Path, photos: Sequence[PosedPhoto], n_missing: int) -> None:
@@ -143,7 +146,7 @@ def _write_records(job: PhotoJob, folder: Path, decisions: Sequence[Decision], m
         monitor.report("colouring points", done, len(job.photos))
         picture = decoded(read_given(photo.path, PICTURE_FILE), cv2.IMREAD_COLOR, str(photo.path))
         points.add(photo, np.asarray(picture, np.uint8), everything)
-    monitor.report("writing cameras and points", 0, 1)
+    monitor.report(say("writing cameras and points"), 0, 1)
     # What an earlier end of this run left; models are written into empty folders only.
     shutil.rmtree(folder / "sparse" / "0", ignore_errors=True)
     write_records(folder, job.photos, job.scene.site.site, points, decisions, 1)

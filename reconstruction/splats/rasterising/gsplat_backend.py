@@ -25,6 +25,7 @@ import torch
 from torch import Tensor
 
 from planning.base.errors import InputError
+from planning.base.messages import say
 from reconstruction.splats.rasterising.footprints import shown_opacities
 from reconstruction.splats.rasterising.projection import Projected, blurred, depths_of, project, rotations
 from reconstruction.splats.rasterising.raster_types import SOLID, Raster, RasterSettings, steepest
@@ -84,12 +85,14 @@ class _Seen:
 def why_not_gsplat() -> str:
     """What keeps gsplat from working here; empty where nothing does. Its kernels are compiled on the first call."""
     if not torch.cuda.is_available():
-        return "torch finds no CUDA device"
+        return say("torch finds no CUDA device")
     if importlib.util.find_spec("gsplat") is None:
-        return "gsplat is not installed (pip install 'reflight[cuda]')"
+        return say("gsplat is not installed (pip install 'reflight[cuda]')")
     from gsplat.cuda import _backend
 
-    return "" if _backend._C is not None else "gsplat's kernels are not compiled, which takes NVIDIA's CUDA toolkit"
+    return (
+        "" if _backend._C is not None else say("gsplat's kernels are not compiled, which takes NVIDIA's CUDA toolkit")
+    )
 
 
 def rasterise_gsplat(
@@ -114,7 +117,7 @@ def rasterise_gsplat(
     """
     reason = why_not_gsplat()
     if reason:
-        raise InputError(f"splats on CUDA are drawn by gsplat, and {reason}; or compute on the processor")
+        raise InputError(say("splats on CUDA are drawn by gsplat, and {}; or compute on the processor", reason))
     usual = RasterSettings()
     if (settings.low_pass_px, settings.min_alpha) != (usual.low_pass_px, usual.min_alpha):
         raise ValueError(f"low_pass_px, min_alpha: gsplat has {usual.low_pass_px} and {usual.min_alpha} compiled in")

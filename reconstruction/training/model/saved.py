@@ -22,6 +22,7 @@ from torch import Tensor
 from planning.base.errors import InputError
 from planning.base.folders import make_folder
 from planning.base.json_file import expect_format, part_files, read_json, to_record, write_atomically
+from planning.base.messages import say
 from planning.base.progress import QualityPoint
 from reconstruction.base.tensor_files import tensor_bytes
 from reconstruction.splats.ply import Kind, render_mode, write_splats
@@ -113,7 +114,7 @@ def save_model(trained: TrainedModel, folder: Path) -> None:
         if not was_there:
             (folder / name).unlink(missing_ok=True)
         if isinstance(error, OSError):
-            raise InputError(f"{folder}: the model cannot be written ({error.strerror or error})") from error
+            raise InputError(say("the model cannot be written ({})", error.strerror or error, place=folder)) from error
         raise
     for old in folder.glob("weights-*.safetensors"):
         if old.name != name:
@@ -153,13 +154,15 @@ class _Replaced(Exception):  # noqa: N818
 def _read(folder: Path) -> TrainedModel:
     path = folder / MODEL
     if not path.is_file():
-        advice = "resume its training" if (folder / CHECKPOINT).is_file() else "name one of `train`"
-        raise InputError(f"{folder}: holds no finished model; {advice}")
+        advice = say("resume its training") if (folder / CHECKPOINT).is_file() else say("name one of `train`")
+        raise InputError(say("holds no finished model; {}", advice, place=folder))
     content = read_json(path, names_files=True)
     expect_format(content, FORMAT, path)
     saved = to_record(content, _File, path)
     if Path(saved.weights.file).name != saved.weights.file or not saved.weights.file:
-        raise InputError(f"{path}: weights.file: expected the name of a file beside it, got '{saved.weights.file}'")
+        raise InputError(
+            say("weights.file: expected the name of a file beside it, got '{}'", saved.weights.file, place=path)
+        )
     weights = folder / saved.weights.file
     try:
         tensors = _read_tensors(weights, saved.weights.sha256)
@@ -217,22 +220,24 @@ def tensors_of(trained: TrainedModel) -> dict[str, Tensor]:
 def _read_tensors(path: Path, sha256: str) -> dict[str, Tensor]:
     content = tensor_bytes(path)
     if hashlib.sha256(content).hexdigest() != sha256:
-        raise InputError(f"{path}: is not the file that {MODEL} was written with; was it changed or cut off?")
+        raise InputError(say("is not the file that {} was written with; was it changed or cut off?", MODEL, place=path))
     try:
         return load(content)
     except (SafetensorError, KeyError, ValueError, TypeError) as error:
-        raise InputError(f"{path}: is no safetensors file, or damaged: {error}") from error
+        raise InputError(say("is no safetensors file, or damaged: {}", error, place=path)) from error
 
 
 def _filled(record: ModelRecord, tensors: Mapping[str, Tensor], path: Path) -> tuple[SceneModel, Exposures]:
     """The model that a record and weights make."""
     for name, value in tensors.items():
         if value.is_floating_point() and not bool(torch.isfinite(value).all()):
-            raise InputError(f"{path}: {name}: holds numbers that are not finite; train again")
+            raise InputError(say("holds numbers that are not finite; train again", place=f"{path}: {name}"))
     found = {name.removeprefix("splats."): value for name, value in tensors.items() if name.startswith("splats.")}
     splats_from_tensors(found, str(path))
     if len(found["panels"]) and int(found["panels"].max()) >= len(record.site.panels):
-        raise InputError(f"{path}: has splats on panel {int(found['panels'].max()) + 1} of {len(record.site.panels)}")
+        raise InputError(
+            say("has splats on panel {} of {}", int(found["panels"].max()) + 1, len(record.site.panels), place=path)
+        )
     try:
         model, exposures = empty_model(record, tensors)
         gains: dict[str, Any] = {
@@ -241,6 +246,8 @@ def _filled(record: ModelRecord, tensors: Mapping[str, Tensor], path: Path) -> t
         model.load({name: value for name, value in tensors.items() if not name.startswith(GAINS)})
         exposures.load_state_dict(gains)
     except (KeyError, ValueError, RuntimeError) as error:
-        raise InputError(f"{path}: holds the weights of another model than {MODEL} describes ({error})") from error
+        raise InputError(
+            say("holds the weights of another model than {} describes ({})", MODEL, error, place=path)
+        ) from error
     model.eval()
     return model, exposures

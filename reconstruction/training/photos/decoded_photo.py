@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from planning.base.errors import InputError
 from planning.base.json_file import read_json, to_record
+from planning.base.messages import say
 from reconstruction.base.cameras import Intrinsics, PosedPhoto
 from reconstruction.dataset.layers import normals_from_16_bit, straightening_maps
 from reconstruction.dataset.prepare import layer_path
@@ -100,7 +101,12 @@ def reduced(lens: Intrinsics, reduce: int) -> Intrinsics:
     width, height = lens.width_px // reduce, lens.height_px // reduce
     if not (width and height):
         raise InputError(
-            f"photos of {lens.width_px} x {lens.height_px} pixels cannot be made {reduce} times smaller; choose less"
+            say(
+                "photos of {} x {} pixels cannot be made {} times smaller; choose less",
+                lens.width_px,
+                lens.height_px,
+                reduce,
+            )
         )
     straight = lens.straight()
     return replace(
@@ -193,7 +199,9 @@ def _panels(source: PhotoSet, photo: PosedPhoto) -> NDArray[np.uint16]:
     n_panels = len(source.panels.corners_enu_m)
     if numbers.max(initial=0) > n_panels:
         path = layer_path(source.folder, "panels", photo.name)
-        raise InputError(f"{path}: has panel {numbers.max()}, and dataset.json {n_panels}; is it of another run?")
+        raise InputError(
+            say("has panel {}, and dataset.json {}; is it of another run?", numbers.max(), n_panels, place=path)
+        )
     return numbers
 
 
@@ -220,10 +228,16 @@ def _layer(folder: Path, layer: str, photo: PosedPhoto, step: int, *types: type[
     expected = -(-lens.height_px // step), -(-lens.width_px // step)
     if values.dtype not in types or (values.shape[2] if values.ndim == 3 else 1) != n_channels:
         bits = " or ".join(str(8 * np.dtype(each).itemsize) for each in types)
-        raise InputError(f"{path}: expected {n_channels} channel(s) of {bits} bit; make the folder again")
+        raise InputError(say("expected {} channel(s) of {} bit; make the folder again", n_channels, bits, place=path))
     if values.shape[:2] != expected:
         raise InputError(
-            f"{path}: expected {expected[1]} x {expected[0]} pixels by its camera, got {values.shape[1]} x "
-            f"{values.shape[0]}; make the folder again"
+            say(
+                "expected {} x {} pixels by its camera, got {} x {}; make the folder again",
+                expected[1],
+                expected[0],
+                values.shape[1],
+                values.shape[0],
+                place=path,
+            )
         )
     return values

