@@ -51,6 +51,8 @@ def in_words_of_options(record: type[Any] = PlanParameters) -> Iterator[None]:
 def add_parameter(place: Any, each: Declared, *, unset: str = "") -> None:
     """Add the option of a parameter to a parser or a group of one; only what is typed stands in the options then.
 
+    Words that can be listed are wrong usage unless they are; with a `metavar` the record itself refuses them.
+
     Parameters
     ----------
     unset
@@ -66,10 +68,10 @@ def add_parameter(place: Any, each: Declared, *, unset: str = "") -> None:
     if each.kind is bool and not words:
         place.add_argument(known.option, action="store_true", **facts)
         return
-    if words:
-        facts["choices"] = words
-    elif known.metavar:
+    if known.metavar:
         facts["metavar"] = known.metavar
+    elif words:
+        facts["choices"] = words
     place.add_argument(known.option, type={int: int, float: number}.get(each.kind, str), **facts)
 
 

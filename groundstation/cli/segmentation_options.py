@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import argparse
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from planning.base.errors import InputError
+from groundstation.cli.options import in_words_of_options, typed_values
+from planning.base.parameters import with_values
 
 if TYPE_CHECKING:
     from reconstruction.panels.search.parameters import SegmentationParameters
-
-OPTIONS = {"long_side_px": "--long-side", "n_samples": "--samples", "detector": "--detector"}
-"""Options by the settings that they change."""
 
 
 def parameters_of(options: argparse.Namespace) -> SegmentationParameters:
@@ -26,9 +23,5 @@ def parameters_of(options: argparse.Namespace) -> SegmentationParameters:
     from reconstruction.panels.search.parameters import SegmentationParameters, read_parameters
 
     base = SegmentationParameters() if options.parameters is None else read_parameters(options.parameters)
-    typed = {name: getattr(options, option[2:].replace("-", "_")) for name, option in OPTIONS.items()}
-    try:
-        return replace(base, **{name: value for name, value in typed.items() if value is not None})
-    except ValueError as error:
-        name, colon, rest = str(error).partition(":")
-        raise InputError(f"{OPTIONS.get(name, name)}{colon}{rest}") from error
+    with in_words_of_options(SegmentationParameters):
+        return with_values(base, typed_values(options, SegmentationParameters))

@@ -98,7 +98,7 @@ def request_of(options: argparse.Namespace) -> PlanRequest:
     typed = typed_values(options, PlanParameters)
     if any((name,) in typed for name in GOALS):
         base = replace(base, n_views=None, share=None, n_batteries=None)
-    with in_words_of_options():
+    with in_words_of_options(PlanParameters):
         wanted = with_values(base, typed)
         if options.max_gsd is not None:
             constraints = replace(wanted.constraints, max_distance_m=_max_distance_m(wanted, options.max_gsd))

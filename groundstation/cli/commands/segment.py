@@ -6,7 +6,9 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from groundstation.cli.options import json_file
+from groundstation.cli.options import add_parameter, json_file
+from planning.base.parameters import declared
+from reconstruction.panels.search.parameters import SegmentationParameters
 
 EPILOG = """Writes reflight-panels/1 (docs/reference/file-formats.md): corners of every panel in pixels of the photo, by
 facade, row and column, and how sure each is.
@@ -36,16 +38,16 @@ def add_parser(subparsers: Any) -> None:
 
 def add_parameter_arguments(parser: Any) -> None:
     """How panels are looked for; shared with other commands that look for them."""
-    how = parser.add_argument_group("how").add_argument
-    how(
+    how = parser.add_argument_group("how")
+    how.add_argument(
         "--parameters",
         type=Path,
         metavar="FILE",
         help="TOML file with settings of the search (docs/reference/settings.md)",
     )
-    how("--long-side", type=int, metavar="PX", help="shrink photos to this size before lines are looked for")
-    how("--samples", type=int, metavar="N", help="pixels of a row or column that are compared; 0 for all")
-    how("--detector", metavar="NAME", help="what finds lines: gradient, hough, lsd, edlines or fld")
+    for each in declared(SegmentationParameters).values():
+        if each.parameter.option:
+            add_parameter(how, each)
 
 
 def run(options: argparse.Namespace) -> int:

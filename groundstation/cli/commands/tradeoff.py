@@ -348,7 +348,9 @@ def run_segment(options: argparse.Namespace) -> int:
         )
     except ValueError as error:
         raise InputError(str(error)) from error
-    request = score_request_of(argparse.Namespace(**{**vars(options), "samples": None}))
+    request = score_request_of(
+        argparse.Namespace(**{name: each for name, each in vars(options).items() if name != "samples"})
+    )
     return show_tradeoff(
         "segment",
         options.json,

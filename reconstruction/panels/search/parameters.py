@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import Any, Literal
 
 from planning.base.effects import Wish
-from planning.base.json_file import check_settings, read_toml, to_record
+from planning.base.parameters import Choice, check, like, parameter
+from planning.parameters import PlanParameters
 
 Detector = Literal["gradient", "hough", "lsd", "edlines", "fld"]
 """What finds line segments: our own along the axes of the picture, OpenCV's probabilistic Hough transform (the
@@ -22,14 +23,8 @@ class SegmentationParameters:
 
     Parameters
     ----------
-    long_side_px
-        Pictures are made this long, at most, before lines are looked for. Shorter is faster and finds coarser edges.
     refined_long_side_px
         The edges of found lines are measured again in a picture of this size, at most.
-    n_samples
-        Pixels of a row or column that are compared in Eqs. 3 and 4, with `use_posterior`; 0 for all.
-    detector
-        Of lines in the rectified view.
     min_segment_px
         Shortest segment, for detectors of segments.
     beta
@@ -60,43 +55,51 @@ class SegmentationParameters:
         Of everything random.
     """
 
-    long_side_px: int = 1600
-    refined_long_side_px: int = 5280
-    n_samples: int = 512
-    detector: Detector = "gradient"
-    min_segment_px: float = 12.0
-    beta: float = 20.0
-    n_bands: int = 48
-    min_panel_px: float = 10.0
-    max_frame_px: float = 40.0
-    max_frame_share: float = 0.5
-    least_seen: float = 0.35
-    straighten: bool = True
-    max_tilt_deg: float = 6.0
-    use_posterior: bool = False
-    use_spacing: bool = True
-    use_stillness: bool = True
-    find_extent: bool = True
-    inclined: Wish = "auto"
-    seed: int = 0
+    long_side_px: int = parameter(
+        1600,
+        "shrink photos to this size, at most, before lines are looked for; shorter is faster and finds coarser edges",
+        unit="px",
+        least=16,
+        option="--long-side",
+        metavar="PX",
+    )
+    refined_long_side_px: int = parameter(5280, unit="px", least=16)
+    n_samples: int = parameter(
+        512,
+        "pixels of a row or column that are compared in Eqs. 3 and 4, with use_posterior; 0 for all",
+        least=0,
+        expected="0 (all) or more",
+        option="--samples",
+        metavar="N",
+    )
+    detector: Detector = parameter(
+        "gradient",
+        "what finds lines in the rectified view: gradient, hough, lsd, edlines or fld",
+        choices=tuple(Choice(name) for name in DETECTORS),
+        expected=f"one of {', '.join(DETECTORS)}",
+        option="--detector",
+        metavar="NAME",
+    )
+    min_segment_px: float = parameter(12.0, unit="px", above=0.0)
+    beta: float = parameter(20.0, above=0.0)
+    n_bands: int = parameter(48, least=16)
+    min_panel_px: float = parameter(10.0, unit="px", above=0.0)
+    max_frame_px: float = parameter(40.0, unit="px", above=0.0)
+    max_frame_share: float = parameter(0.5, unit="share", above=0.0)
+    least_seen: float = parameter(0.35, unit="share", least=0.05, most=0.9)
+    straighten: bool = parameter(True)
+    max_tilt_deg: float = parameter(
+        6.0, "how much rotation and perspective `straighten` takes out", unit="deg", above=0.0, most=20.0
+    )
+    use_posterior: bool = parameter(False)
+    use_spacing: bool = parameter(True)
+    use_stillness: bool = parameter(True)
+    find_extent: bool = parameter(True)
+    inclined: Wish = parameter("auto", choices=(Choice("auto"), Choice("on"), Choice("off")))
+    seed: int = like(PlanParameters, "seed", 0, help="", option="", row="")
 
     def __post_init__(self) -> None:
-        for name in ("long_side_px", "refined_long_side_px", "n_bands"):
-            if getattr(self, name) < 16:
-                raise ValueError(f"{name}: expected 16 or more, got {getattr(self, name)}")
-        if self.n_samples < 0:
-            raise ValueError(f"n_samples: expected 0 (all) or more, got {self.n_samples}")
-        if self.detector not in DETECTORS:
-            raise ValueError(f"detector: expected one of {', '.join(DETECTORS)}, got {self.detector}")
-        if self.inclined not in ("auto", "on", "off"):
-            raise ValueError(f"inclined: expected auto, on or off, got {self.inclined}")
-        for name in ("min_segment_px", "beta", "min_panel_px", "max_frame_px", "max_frame_share", "max_tilt_deg"):
-            if not getattr(self, name) > 0.0:
-                raise ValueError(f"{name}: expected more than 0, got {getattr(self, name)}")
-        if not 0.05 <= self.least_seen <= 0.9:
-            raise ValueError(f"least_seen: expected 0.05 to 0.9, got {self.least_seen}")
-        if self.max_tilt_deg > 20.0:
-            raise ValueError(f"max_tilt_deg: expected 20 at most, got {self.max_tilt_deg}")
+        check(self)
 
 
 def read_parameters(path: Path) -> SegmentationParameters:
@@ -107,6 +110,6 @@ def read_parameters(path: Path) -> SegmentationParameters:
     InputError
         The file cannot be read, or a key or value is none of ours; the message names it.
     """
-    content = read_toml(path, dict[str, Any])
-    check_settings(content, SegmentationParameters, path)
-    return to_record(content, SegmentationParameters, path)
+    from planning.base.json_file import read_toml, settings_over  # not at the top: the command line describes itself
+
+    return settings_over(SegmentationParameters(), read_toml(path, dict[str, Any]), path)

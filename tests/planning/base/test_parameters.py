@@ -15,8 +15,9 @@ from planning.base.errors import InputError
 from planning.base.json_file import settings_over
 from planning.base.parameters import Choice, Parameter, check, declared, like, parameter, with_values
 from planning.parameters import METHOD_NAMES, Constraints, FlightRules, PlanParameters
+from reconstruction.panels.search.parameters import SegmentationParameters
 
-RECORDS = [PlanParameters, Conditions]
+RECORDS = [PlanParameters, Conditions, SegmentationParameters]
 
 
 @dataclass(frozen=True, slots=True)
