@@ -5226,7 +5226,7 @@ Damit weiterarbeiten?</translation>
     </message>
     <message>
         <source>note</source>
-        <translation>Bemerkung</translation>
+        <translation>Hinweis</translation>
     </message>
     <message>
         <source>kind</source>
