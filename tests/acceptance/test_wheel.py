@@ -48,6 +48,10 @@ class Installed:
         """The same, as `python -m groundstation`."""
         return self._ended([self.program.with_name("python"), "-m", "groundstation"], arguments, 0)
 
+    def run_python(self, *arguments: object) -> subprocess.CompletedProcess[str]:
+        """The interpreter that the program is installed for."""
+        return self._ended([self.program.with_name("python")], arguments, 0)
+
     def _ended(self, program, arguments, status):
         done = subprocess.run(
             [*program, *map(str, arguments)], cwd=self.folder, env=self._environment, capture_output=True,
@@ -100,6 +104,11 @@ def test_the_program_runs_from_the_wheel_alone(installed):
     assert installed.run("-h").stdout.startswith("usage: reflight")
     assert installed.run_module("--version").stdout == installed.run("--version").stdout
     assert installed.run_module("-h").stdout.startswith("usage: python -m groundstation")
+    for example in ("plan.py", "export.py"):
+        text = (ROOT / "docs" / "reference" / "examples" / example).read_text("utf-8")
+        assert installed.run_python("-c", text).stdout
+    installed.run_module("plan", "single-panel.site.json", "-o", "by module.json", "--views", 3)
+    assert (installed.folder / "by module.json").is_file()
     code = "import missions, planning, groundstation as g; print(missions.__file__, planning.__file__, g.__file__)"
     python = installed.program.with_name("python")
     found = subprocess.run(
