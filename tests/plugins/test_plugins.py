@@ -127,3 +127,26 @@ def test_a_method_and_a_model_format_of_plug_ins_are_used_together(reflight, tmp
     done = reflight("export", "model", "--format", "bare-points", "-o", "a.points")
     assert "points have no colours" in done.stdout
     assert len((tmp_path / "a.points").read_text().splitlines()) == trained["splats"]
+
+
+def test_the_window_lists_plug_ins_and_says_which_are_left_out(installed, tmp_path):
+    code = """
+import os
+from PySide6.QtWidgets import QApplication, QMessageBox
+application = QApplication([])
+from groundstation.gui.window.menus import Menus
+from groundstation.gui.window.project_controller import ProjectController
+controller = ProjectController(application)
+controller.show()
+next(each for each in vars(controller).values() if isinstance(each, Menus))._show_about()
+(box,) = [each for each in application.topLevelWidgets() if isinstance(each, QMessageBox)]
+print(box.text())
+print(controller.window.messages.texts())
+os._exit(0)
+"""
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join((str(ROOT), str(installed))), "PYTHONUNBUFFERED": "1"}
+    environment |= {"QT_QPA_PLATFORM": "offscreen", "REFLIGHT_CONFIG_DIR": str(tmp_path)}
+    done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=False)
+    about, *messages = done.stdout.splitlines()
+    assert "glider: aircraft (reflight-glider 1.0)" in about
+    assert sum("of reflight-broken 1.0 is left out: " in line for line in messages) == 3
