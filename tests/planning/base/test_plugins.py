@@ -46,7 +46,7 @@ def test_errors_of_this_program_stay(plugin):
 
 def test_a_function_that_returns_something_else_is_refused_by_name(plugin):
     assert guarded(plugin, lambda: 3, int)() == 3
-    with pytest.raises(PluginError, match="'own'.*expected a int from it, got str"):
+    with pytest.raises(PluginError, match=r"'own'.*expected a int from it, got str"):
         guarded(plugin, lambda: "3", int)()
 
 
