@@ -5,6 +5,7 @@ An edit that breaks a rule is carried out all the same: the findings of the new 
 
 from __future__ import annotations
 
+import itertools
 import math
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
@@ -19,7 +20,7 @@ from planning.base.messages import say
 from planning.checks.measures import TimedFlight, flight_key
 from planning.coverage.positions import aimed_views
 from planning.geo.frames import Vec3, heading_difference_rad, wrap_heading_deg
-from planning.motion.sortie_timing import sortie_flight_path, stopping_duration_s
+from planning.motion.sortie_timing import photo_vertices, sortie_flight_path, stopping_duration_s
 from planning.motion.timing import (
     UNKNOWN_TURN_RAD,
     MotionLimits,
@@ -30,10 +31,72 @@ from planning.motion.timing import (
 )
 from planning.plan import ANGLE_DECIMALS, POSITION_DECIMALS, Plan, Sortie, Viewpoint, ViewpointArrays, viewpoint_arrays
 from planning.revision.revision import Revision, with_route
-from planning.revision.route import AT_HOME, cuts, neighbours, place_of, redrawn
-from planning.revision.ways import Ways
+from planning.revision.ways import HOME, Place, Ways
 from planning.routing.roadmap import Roadmap, leg_length
 from planning.site.free_space import LEG_MARGIN_M
+
+Viewpoints = Mapping[str, Viewpoint]
+"""By identifier."""
+
+Neighbours = tuple[str, str]
+"""Identifiers of two stops in a row; home has `AT_HOME`."""
+
+AT_HOME = ""
+
+
+def pieces(sortie: Sortie, by_id: Viewpoints) -> dict[Neighbours, tuple[Vec3, ...]]:
+    """Vertices from each stop of a sortie to the next, both included; empty where its path misses a viewpoint."""
+    vertices = cuts(sortie, by_id)
+    if vertices is None:
+        return {}
+    return {
+        pair: sortie.path_enu_m[start : end + 1]
+        for pair, (start, end) in zip(neighbours(sortie.viewpoint_ids), itertools.pairwise(vertices), strict=True)
+    }
+
+
+def cuts(sortie: Sortie, by_id: Viewpoints) -> list[int] | None:
+    """Vertices of a sortie's path at which it is at a stop, its ends included; None where it misses a viewpoint."""
+    vertices = photo_vertices(sortie, by_id)
+    if vertices is None or len(sortie.path_enu_m) < 2:
+        return None
+    return [0, *vertices.tolist(), len(sortie.path_enu_m) - 1]
+
+
+def neighbours(viewpoint_ids: Sequence[str]) -> list[Neighbours]:
+    """Pairs of stops in a row, from home to home."""
+    return list(itertools.pairwise((AT_HOME, *viewpoint_ids, AT_HOME)))
+
+
+def place_of(stop: str, by_id: Viewpoints) -> Place:
+    """Where a stop is."""
+    return HOME if stop == AT_HOME else by_id[stop].position_enu_m
+
+
+def redrawn(
+    sortie: Sortie, before: Viewpoints, viewpoint_ids: tuple[str, ...], after: Viewpoints, ways: Ways
+) -> Sortie:
+    """A sortie with other stops, or with stops elsewhere; length and duration are still those it had.
+
+    Parameters
+    ----------
+    before, after
+        Viewpoints as they were and as they are.
+    """
+    pairs = neighbours(viewpoint_ids)
+    known = pieces(sortie, before)
+    is_moved = {
+        stop
+        for stop in viewpoint_ids
+        if stop not in before or before[stop].position_enu_m != after[stop].position_enu_m
+    }
+    missing = [pair for pair in pairs if pair not in known or not is_moved.isdisjoint(pair)]
+    found = ways.between([(place_of(a, after), place_of(b, after)) for a, b in missing])
+    legs = {**known, **dict(zip(missing, found, strict=True))}
+    path = [*legs[pairs[0]], *itertools.chain.from_iterable(legs[pair][1:] for pair in pairs[1:])]
+    passing = tuple(each for each in sortie.in_passing_ids if each in viewpoint_ids and each not in is_moved)
+    return Sortie(viewpoint_ids, tuple(path), sortie.length_m, sortie.duration_s, passing)
+
 
 # Where a new viewpoint goes: into a sortie with room, at the place where it costs least time.
 

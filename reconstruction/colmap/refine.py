@@ -8,24 +8,33 @@ observations; and the model laid into the site again, by positions and angles.
 
 from __future__ import annotations
 
+import math
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import sparse
 
 from planning.base.errors import InputError
 from planning.base.findings import Finding, Severity
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
-from reconstruction.base.cameras import PosedPhoto
-from reconstruction.colmap.accuracy import pose_covariances
-from reconstruction.colmap.block_inverse import TooLargeError
+from reconstruction.base.cameras import Intrinsics, PosedPhoto
+from reconstruction.colmap.block_inverse import TooLargeError, inverse_blocks
+from reconstruction.colmap.camera_models import intrinsics_of
 from reconstruction.colmap.folder import read_model
-from reconstruction.colmap.georeference import Georeference, georeference, in_enu, posed_photos
+from reconstruction.colmap.georeference import (
+    Georeference,
+    angle_information,
+    georeference,
+    in_enu,
+    posed_photos,
+    position_covariance,
+)
 from reconstruction.colmap.pycolmap_run import (
     DEFAULT_PARAMETERS,
     LEAST_PHOTOS,
@@ -33,8 +42,175 @@ from reconstruction.colmap.pycolmap_run import (
     RefineParameters,
     load_colmap,
 )
-from reconstruction.colmap.record import ColmapModel
+from reconstruction.colmap.record import ColmapImage, ColmapModel
 from reconstruction.colmap.similarity import Similarity
+
+Array = NDArray[np.float64]
+
+STAGE = say("estimating accuracy")
+
+CHUNK = 200_000
+"""Image points whose part of the normal matrix is computed at a time: some 200 MB."""
+
+LEAST_SIGMA_PX = 0.5
+"""Image points are taken to be no better: their errors go together where the lens model is not perfect."""
+
+STEP = 1e-6
+"""Of the derivatives of the projection, in parts of a point's depth."""
+
+LEAST_STIFFNESS = 1e-9
+"""Of a point's normal matrix, smallest against largest eigenvalue: points on parallel rays have no depth."""
+
+
+def pose_covariances(
+    model: ColmapModel, measured: Mapping[str, PosedPhoto], monitor: Monitor = QUIET
+) -> dict[str, Array]:
+    """Covariances of the poses of a model in the site's frame, shape (6, 6) each, by image name.
+
+    Parameters
+    ----------
+    measured
+        The photo of each image as its metadata have it, by name.
+
+    Returns
+    -------
+    covariances
+        Empty where what was measured does not fix them.
+
+    Raises
+    ------
+    TooLargeError
+        More than a thousand photos are linked with each other so closely that the work would not fit into memory.
+    """
+    images = list(model.images.values())
+    if not images:
+        return {}
+    monitor.report(STAGE, 0, 0)
+    lenses = {camera_id: intrinsics_of(camera) for camera_id, camera in model.cameras.items()}
+    row_of = {point: row for row, point in enumerate(model.points.ids.tolist())}
+    observed = []
+    for number, image in enumerate(images):
+        observed.append(_Observed.of(image, lenses[image.camera_id], model, row_of))
+        monitor.report(STAGE, number, len(images))
+    normal = _normal(model, images, observed, monitor) + _stated(images, measured, len(model.cameras))
+    try:
+        blocks = inverse_blocks(sparse.csr_array(normal), 6, len(images), monitor)
+    except np.linalg.LinAlgError:  # what is not fixed by anything must not come out as known
+        return {}
+    return {image.name: block for image, block in zip(images, blocks, strict=True)}
+
+
+class _Observed:
+    """Derivatives of one image's k observations of points: shapes (k, 2, 7), (k, 2, 3), rows of points (k,)."""
+
+    def __init__(self, pose: Array, point: Array, rows: NDArray[np.int64], errors_px: Array) -> None:
+        self.pose, self.point, self.rows, self.errors_px = pose, point, rows, errors_px
+
+    @classmethod
+    def of(cls, image: ColmapImage, lens: Intrinsics, model: ColmapModel, row_of: Mapping[int, int]) -> _Observed:
+        """Of the observations whose point is in the model and in front of the camera."""
+        rows = np.array([row_of.get(point, -1) for point in image.point_ids.tolist()], np.int64)
+        rotation = image.cam_from_world
+        points_cam = model.points.xyz[rows] @ rotation.T + image.t if len(rows) else np.zeros((0, 3))
+        pixels = lens.pixels(points_cam) if len(rows) else np.zeros((0, 2))
+        kept = (rows >= 0) & np.isfinite(pixels).all(axis=1)
+        rows, points_cam, pixels = rows[kept], points_cam[kept], pixels[kept]
+        step = STEP * points_cam[:, 2:]
+        slopes = np.stack(
+            [
+                (lens.pixels(points_cam + step * axis) - lens.pixels(points_cam - step * axis)) / (2.0 * step)
+                for axis in np.eye(3)
+            ],
+            axis=2,
+        ) if len(rows) else np.zeros((0, 2, 3))  # fmt: skip
+        # A rotation w on the left moves points_cam by w x points_cam; the centre moves them by -R, the point by R.
+        turned = np.cross(np.eye(3)[None], points_cam[:, None, :]).transpose(0, 2, 1)
+        focal = pixels - (lens.cx_px, lens.cy_px)
+        pose = np.concatenate([-slopes @ rotation, slopes @ turned, focal[:, :, None]], axis=2)
+        return cls(pose, slopes @ rotation, rows, pixels - image.points_px[kept])
+
+
+def _rms_px(observed: Sequence[_Observed]) -> float:
+    """Root mean square error of the image points along one axis, by the median, pixels."""
+    lengths = np.concatenate([np.linalg.norm(seen.errors_px, axis=1) for seen in observed])
+    return float(np.median(lengths)) / math.sqrt(2.0 * math.log(2.0)) if len(lengths) else 0.0
+
+
+def _normal(
+    model: ColmapModel, images: Sequence[ColmapImage], observed: Sequence[_Observed], monitor: Monitor
+) -> sparse.csr_array:
+    """Normal matrix of poses, six unknowns each, then of lenses, without the points (Schur complement)."""
+    cameras = {camera_id: index for index, camera_id in enumerate(model.cameras)}
+    n = 6 * len(images) + len(cameras)
+    sigma_px = max(LEAST_SIGMA_PX, _rms_px(observed))
+    own = np.stack(
+        [
+            np.concatenate([6 * i + np.arange(6), [6 * len(images) + cameras[image.camera_id]]])
+            for i, image in enumerate(images)
+        ]
+    )
+    squares = np.stack([np.einsum("kia,kib->ab", seen.pose, seen.pose) for seen in observed]) / sigma_px**2
+    width = own.shape[1]
+    total = sparse.csr_array(
+        (squares.ravel(), (np.repeat(own, width, axis=1).ravel(), np.tile(own, (1, width)).ravel())), shape=(n, n)
+    )
+    rows = np.concatenate([seen.rows for seen in observed])
+    order = np.argsort(rows, kind="stable")
+    of_image = np.repeat(np.arange(len(images)), [len(seen.rows) for seen in observed])[order]
+    rows = rows[order]
+    poses = np.concatenate([seen.pose for seen in observed])[order] / sigma_px
+    points = np.concatenate([seen.point for seen in observed])[order] / sigma_px
+    roots = _roots(points, rows, len(model.points))
+    for part in _parts(rows):
+        monitor.report(STAGE, part.start, len(rows))
+        total = total - _explained(poses[part], points[part], own[of_image[part]], rows[part], roots, n)
+    return total
+
+
+def _roots(points: Array, rows: NDArray[np.int64], n_points: int) -> Array:
+    """Square roots of the inverses of the points' normal matrices, shape (n_points, 3, 3).
+
+    A point without a depth says nothing about it: its pseudo-inverse leaves that direction out.
+    """
+    squares = np.einsum("kia,kib->kab", points, points).reshape(-1, 9)
+    stiffness = np.stack([np.bincount(rows, squares[:, i], n_points) for i in range(9)], axis=1).reshape(-1, 3, 3)
+    values, vectors = np.linalg.eigh(stiffness)
+    good = values > LEAST_STIFFNESS * np.maximum(values[:, 2:], 1e-300)
+    return np.asarray(vectors * np.sqrt(np.where(good, 1.0 / np.where(good, values, 1.0), 0.0))[:, None, :])
+
+
+def _parts(rows: NDArray[np.int64]) -> Iterator[slice]:
+    """Some `CHUNK` image points at a time, all of a point's together; `rows` are sorted."""
+    start = 0
+    while start < len(rows):
+        last = rows[min(start + CHUNK, len(rows)) - 1]
+        stop = int(np.searchsorted(rows, last, side="right"))
+        yield slice(start, stop)
+        start = stop
+
+
+def _explained(
+    poses: Array, points: Array, columns: NDArray[np.int64], rows: NDArray[np.int64], roots: Array, n: int
+) -> sparse.csr_array:
+    """What moving the points takes from the normal matrix, shape (n, n)."""
+    cross = np.einsum("kia,kib->kab", poses, np.einsum("kia,kab->kib", points, roots[rows]))
+    width = columns.shape[1]
+    local = 3 * (rows - rows[0])
+    row_index = np.repeat(columns.ravel(), 3)
+    column_index = np.tile(local[:, None] + np.arange(3), (1, width)).ravel()
+    shape = (n, int(local[-1]) + 3)
+    b = sparse.csr_array((cross.ravel(), (row_index, column_index)), shape=shape)
+    return sparse.csr_array(b @ b.T)
+
+
+def _stated(images: Sequence[ColmapImage], measured: Mapping[str, PosedPhoto], n_lenses: int) -> sparse.csr_array:
+    """Information of the photos' own positions and angles, as the normal matrix has its unknowns."""
+    blocks: list[Array] = []
+    for image in images:
+        photo = measured[image.name]
+        position = np.asarray(np.linalg.inv(position_covariance(photo)), np.float64)
+        blocks += [position, angle_information(photo, len(images))]
+    return sparse.csr_array(sparse.block_diag([*blocks, *[np.zeros((1, 1))] * n_lenses], format="csr"))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

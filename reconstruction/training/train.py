@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import ctypes
 import math
-from contextlib import ExitStack
+import sys
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
@@ -16,7 +19,6 @@ from planning.base.json_file import to_record
 from planning.base.messages import say
 from planning.base.progress import QualityPoint
 from reconstruction.light.photo_set import PhotoSet, read_photo_set
-from reconstruction.training.allocator import freed_memory_kept
 from reconstruction.training.callbacks import Callbacks, HeldOut
 from reconstruction.training.checkpoints import read_checkpoint
 from reconstruction.training.config import TrainConfig
@@ -30,6 +32,45 @@ from reconstruction.training.start import Start, start_model
 from reconstruction.training.strategies import strategy_of
 from reconstruction.training.timer import Timer
 from reconstruction.training.trainer import SHOWN_VIEWS, Trainer
+
+TRIM_THRESHOLD, TOP_PAD, MMAP_THRESHOLD = -1, -2, -3
+"""Parameters of `mallopt` (malloc.h)."""
+
+KEPT, AHEAD, PIECE = 1 << 30, 1 << 26, 1 << 30
+"""Free bytes that are kept, bytes that are asked for beyond what is needed, and size of pieces that are no part of
+either."""
+
+USUAL_KEPT, USUAL_AHEAD, USUAL_PIECE = 1 << 26, 1 << 17, 1 << 25
+"""What the library comes to by itself in a process with large pieces."""
+
+
+@contextmanager
+def freed_memory_kept() -> Iterator[None]:
+    """Keep what is freed within a block, up to `KEPT`; at its end all that is free is given back."""
+    library = _gnu_library()
+    if library is None:
+        yield
+        return
+    _tell(library, KEPT, AHEAD, PIECE)
+    try:
+        yield
+    finally:
+        _tell(library, USUAL_KEPT, USUAL_AHEAD, USUAL_PIECE)
+        library.malloc_trim(0)
+
+
+def _tell(library: Any, kept: int, ahead: int, piece: int) -> None:
+    for parameter, value in ((TRIM_THRESHOLD, kept), (TOP_PAD, ahead), (MMAP_THRESHOLD, piece)):
+        library.mallopt(parameter, value)
+
+
+def _gnu_library() -> Any:
+    """The C library of this process, where it is GNU's."""
+    if sys.platform != "linux":
+        return None
+    library = ctypes.CDLL(None)
+    return library if hasattr(library, "gnu_get_libc_version") else None
+
 
 SHOWN_PX = 512 * 384
 """About as many pixels of them are looked at: larger photos are made smaller, so that looking takes no time."""

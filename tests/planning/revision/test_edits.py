@@ -18,7 +18,7 @@ from planning.motion.sortie_timing import sortie_flight_path, stopping_duration_
 from planning.parameters import FlightRules
 from planning.plan import Plan, Sortie, Viewpoint, plan_to_json, viewpoint_arrays
 from planning.revision import Revision, add, aim_at, delete, lock, move, next_id, revise, unlock
-from planning.revision.route import redrawn
+from planning.revision.edits import redrawn
 from planning.routing.roadmap import build_roadmap
 from planning.site.free_space import free_space
 from planning.viewpoints.prepare import prepare

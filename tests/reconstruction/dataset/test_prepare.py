@@ -22,7 +22,6 @@ from reconstruction.base.cameras import Intrinsics, PosedPhoto
 from reconstruction.base.ray_casting import RayCaster
 from reconstruction.colmap.camera_models import intrinsics_of
 from reconstruction.colmap.folder import read_model
-from reconstruction.dataset.effects import HiddenPanels, LensDistortion, PanelsInPhotos, most_moved_px
 from reconstruction.dataset.grow import frame_width_m, grown_corners
 from reconstruction.dataset.layers import (
     Scene,
@@ -33,7 +32,14 @@ from reconstruction.dataset.layers import (
     straightened,
 )
 from reconstruction.dataset.panel_images import draw_panels
-from reconstruction.dataset.prepare import PrepareParameters, prepare
+from reconstruction.dataset.prepare import (
+    HiddenPanels,
+    LensDistortion,
+    PanelsInPhotos,
+    PrepareParameters,
+    most_moved_px,
+    prepare,
+)
 from reconstruction.dataset.refined_mesh import refine_mesh
 from tests.reconstruction.dataset.test_panel_images import grid
 from tests.reconstruction.panels.rectify.scenes import looking_at, surface_mesh

@@ -19,7 +19,7 @@ from reconstruction.light.photo_set import PanelPlanes, held_out_names, read_pho
 from reconstruction.light.scoring import ReflectionScore, ViewScore, score_views
 from reconstruction.light.shading import display_from_linear, linear_from_display
 from reconstruction.light.training import train_reflections
-from reconstruction.tradeoff.downstream import downstream_psnr
+from reconstruction.tradeoff.scene_downstream import downstream_psnr
 from tests.reconstruction.light.made_folder import far, near, write_folder
 
 SMALL = ReflectionConfig(

@@ -4,14 +4,14 @@ import sys
 
 import pytest
 
-from reconstruction.training.allocator import freed_memory_kept
+from reconstruction.training.train import freed_memory_kept
 
 HAS_GNU_LIBRARY = sys.platform == "linux" and hasattr(ctypes.CDLL(None), "gnu_get_libc_version")
 
 COUNTED = """
 import resource
 import numpy as np
-from reconstruction.training.allocator import freed_memory_kept
+from reconstruction.training.train import freed_memory_kept
 
 def new_pages():
     before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
