@@ -13,6 +13,8 @@ myst_enable_extensions = ["colon_fence"]
 myst_heading_anchors = 4
 # Blocks of a language that Pygments does not know, or cannot read, are an error of the page.
 highlight_language = "text"
+# Two hyphens stay two: they begin options.
+smartquotes = False
 
 html_theme = "furo"
 html_title = "Reflight"
