@@ -206,6 +206,7 @@ def _section(ring: int, sector: int) -> NDArray[np.float64]:
 
 HOUSES = {
     "groundstation.gui": "the window",
+    "groundstation.api": "for other programs",
     "groundstation.cli": "the command line",
     "groundstation.services": "use cases without Qt: a room for each task",
     "groundstation.vehicle": "one vehicle on a link: telemetry, setup, list before take-off, sortie",
