@@ -108,8 +108,8 @@ READERS = {
     "reconstruction/exports/web/page.py",
     "reconstruction/scenes/runs/cluster_workers.py", "reconstruction/scenes/runs/run_record.py",
     "reconstruction/objects/organise.py", "groundstation/services/reconstruct/choices.py",
-    "groundstation/gui/application/collect_messages.py", "groundstation/services/fly/sitl.py",
-    "groundstation/cli/tradeoff_train.py",
+    "groundstation/gui/application/collect_messages.py", "groundstation/services/messages.py",
+    "groundstation/services/fly/sitl.py", "groundstation/cli/tradeoff_train.py",
 }  # fmt: skip
 
 

@@ -5,13 +5,15 @@ from __future__ import annotations
 import json
 import shlex
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar, copy_context
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from groundstation.services.jobs.runner import JobContext, JobEvent, JobProgress, JobRunner
 from planning.base.findings import Finding, Severity
-from planning.base.messages import say
+from planning.base.messages import about, say
 
 if TYPE_CHECKING:
     from missions.flight.outcome import FlightReport
@@ -24,6 +26,29 @@ MARKS = {Severity.ERROR: "ERROR", Severity.WARNING: "warning", Severity.NOTE: "n
 
 MAX_SHOWN = 5
 """Different findings of one kind that are printed before the rest is only counted."""
+
+
+_LANGUAGE: ContextVar[str] = ContextVar("language", default="en")
+
+
+@contextmanager
+def speaking(language: str) -> Iterator[None]:
+    """Messages are in a language meanwhile (one of `groundstation.services.messages.LANGUAGES`)."""
+    before = _LANGUAGE.set(language)
+    try:
+        yield
+    finally:
+        _LANGUAGE.reset(before)
+
+
+def worded(text: str) -> str:
+    """A message in the language of the command line."""
+    if _LANGUAGE.get() == "en":
+        return text
+    from groundstation.services.messages import told, translation
+    from groundstation.services.units import UnitSystem
+
+    return told(text, translation(_LANGUAGE.get()), UnitSystem.METRIC)
 
 
 def program_name() -> str:
@@ -59,6 +84,8 @@ class _ProgressLine:
     def __init__(self) -> None:
         self._shown = False
         self._enabled = sys.stderr.isatty()
+        # Jobs have threads of their own, which do not know what this one speaks.
+        self._context = copy_context()
 
     def show(self, event: JobEvent) -> None:
         """Show where a job stands."""
@@ -66,7 +93,12 @@ class _ProgressLine:
             return
         share = f" {100 * event.done / event.total:3.0f} %" if event.total > 0 else ""
         left = f", {event.remaining_s:.0f} s left" if event.remaining_s is not None else ""
-        print(f"\r\033[K{event.elapsed_s:5.1f} s  {event.stage}{share}{left}", end="", file=sys.stderr, flush=True)
+        print(
+            f"\r\033[K{event.elapsed_s:5.1f} s  {self._context.copy().run(worded, event.stage)}{share}{left}",
+            end="",
+            file=sys.stderr,
+            flush=True,
+        )
         self._shown = True
 
     def clear(self) -> None:
@@ -116,12 +148,14 @@ def print_findings(findings: Iterable[Finding]) -> None:
         for message, equal in list(texts.items())[:MAX_SHOWN]:
             place = equal[0].place
             if len(equal) > 1:
-                message += f" ({len(equal)} times, the first: {place})" if place else say(" ({} times)", len(equal))
+                n = len(equal)
+                message += say(" ({} times, the first: {})", n, place) if place else say(" ({} times)", n)
             elif place and place not in message:
-                message = f"{place}: {message}"
-            print(f"{MARKS[severity]}: {message}", file=sys.stderr)
+                message = about(place, message)
+            print(f"{worded(MARKS[severity])}: {worded(message)}", file=sys.stderr)
         if len(texts) > MAX_SHOWN:
-            print(f"{MARKS[severity]}: {len(texts) - MAX_SHOWN} more like this (--json lists all)", file=sys.stderr)
+            more = say("{} more like this (--json lists all)", len(texts) - MAX_SHOWN)
+            print(f"{worded(MARKS[severity])}: {worded(more)}", file=sys.stderr)
 
 
 def verdict_text(findings: Iterable[Finding]) -> str:
@@ -146,7 +180,7 @@ def flight_status(report: FlightReport) -> int:
     worst = next((finding for finding in report.findings if finding.code in ENDED_BADLY), None)
     if worst is None:
         return 0
-    print(f"error: {worst.place}: {worst.message}", file=sys.stderr)
+    print(f"{worded('error')}: {worded(about(worst.place, worst.message))}", file=sys.stderr)
     return 1
 
 

@@ -11,6 +11,7 @@ import sys
 import tempfile
 import traceback
 from collections.abc import Callable, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -18,7 +19,7 @@ from typing import Any, NoReturn
 
 from groundstation import __version__
 from groundstation.cli import commands
-from groundstation.cli.console import program_name
+from groundstation.cli.console import program_name, speaking, worded
 from groundstation.cli.options import new_folder
 from planning.base.errors import GroundStationError, OperationCancelled, PluginError, shortened
 from planning.base.plugins import PluginGroup, blamed, untold_problems
@@ -93,6 +94,12 @@ def build_parser() -> argparse.ArgumentParser:
         "--version", action="version", version=f"Reflight {__version__}", help="show the version and exit"
     )
     parser.add_argument("--plugins", action=_Plugins, nargs=0, help="list what plug-ins add, and exit")
+    parser.add_argument(
+        "--language",
+        choices=("en", "de"),
+        default="en",
+        help="language of findings, errors and the brief (default: en)",
+    )
     parser.add_argument("--debug", action="store_true", help="show the traceback of an error")
     window = parser.add_argument_group("the window")
     window.add_argument("--open", type=Path, metavar="PATH", help="project folder or site file to begin with")
@@ -137,17 +144,19 @@ def _tell_of_plugins() -> None:
 
 
 def _run(arguments: Sequence[str], open_window: OpenWindow) -> int:
-    try:
-        return _outcome(arguments, open_window)
-    finally:
-        _tell_of_plugins()
+    with ExitStack() as stack:
+        try:
+            return _outcome(arguments, open_window, stack)
+        finally:
+            _tell_of_plugins()
 
 
-def _outcome(arguments: Sequence[str], open_window: OpenWindow) -> int:
+def _outcome(arguments: Sequence[str], open_window: OpenWindow, stack: ExitStack) -> int:
     debug = "--debug" in arguments
     try:
         parser = build_parser()
         options = parser.parse_args(arguments)
+        stack.enter_context(speaking(options.language))
         wish = WindowOptions(options.open, options.screenshots, options.pictured_site)
         if wish.site is not None and wish.screenshots is None:
             parser.error("--site without a command is for --screenshots")
@@ -165,7 +174,7 @@ def _outcome(arguments: Sequence[str], open_window: OpenWindow) -> int:
     except (GroundStationError, OSError) as error:
         if debug:
             traceback.print_exc()
-        print(f"error: {_in_one_line(error)}", file=sys.stderr)
+        print(f"{worded('error')}: {_in_one_line(error)}", file=sys.stderr)
     except Exception as error:
         if debug:
             raise
@@ -189,7 +198,7 @@ def _report(error: BaseException) -> None:
 
 def _in_one_line(error: BaseException) -> str:
     """Message without line ends, and without the control characters that a damaged file can bring into it."""
-    text = str(error)
+    text = worded(str(error))
     if isinstance(error, OSError) and error.strerror:
         text = f"{error.filename}: {error.strerror}" if error.filename else error.strerror
     return shortened("".join(c if c.isprintable() else "?" for c in " ".join(text.split())))

@@ -8,12 +8,19 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from xml.etree import ElementTree
 
+import groundstation
 from groundstation.services.units import UnitSystem, area_unit, distance_unit, length_unit, sampling_unit, speed_unit
 from planning.base.messages import Message
 
 Translate = Callable[[str], str]
 """A template in the user's language; the template itself where there is no translation."""
+
+LANGUAGES = ("en", "de")
+"""English is in the code; the others are read from Qt's files of translations."""
 
 FIELD = re.compile(r"\{(\d+)(?::(m))?\}")
 
@@ -28,6 +35,21 @@ _QUANTITY = re.compile(
 _HELD = 0xE000
 _HELD_PLACES = re.compile(f"[{chr(_HELD)}-{chr(_HELD + 99)}]")
 """Private characters that stand for values while the units of a sentence are changed."""
+
+
+@cache
+def translation(language: str, context: str = "Sentences") -> Translate:
+    """What a text of a context is in a language, without Qt: for the command line."""
+    if language == LANGUAGES[0]:
+        return str
+    path = Path(groundstation.__file__).parent / "gui" / "translations" / f"reflight_{language}.ts"
+    known = {
+        message.findtext("source", ""): message.findtext("translation", "")
+        for each in ElementTree.parse(path).getroot().iter("context")
+        if each.findtext("name") == context
+        for message in each.iter("message")
+    }
+    return lambda text: known.get(text) or text
 
 
 def told(text: str, translate: Translate, units: UnitSystem) -> str:

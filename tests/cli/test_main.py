@@ -307,3 +307,22 @@ def test_every_seed_of_63_bits_is_taken(reflight, pane, seed_data, tmp_path, nam
     words = [str(word).format(pane=pane, out=tmp_path, data=seed_data) for word in SEEDED[name]]
     done = reflight(*words, "--seed", seed)
     assert done.status == 0, done.err
+
+
+def test_findings_errors_and_the_brief_are_german_where_that_is_asked_for(reflight, tmp_path):
+    from planning.site.bundled import write_scene
+
+    done = reflight("--language", "de", "check", tmp_path / "nope.json", tmp_path / "nope.json")
+    assert done.err.startswith("Fehler: ")
+    assert "erwartet wurde eine Plandatei" in done.err
+    site = write_scene("single-panel", tmp_path)
+    plan = tmp_path / "p.plan.json"
+    done = reflight("--language", "de", "plan", site, "--views", 3, "-o", plan)
+    assert done.status == 0
+    assert "warning" not in done.err
+    done = reflight("--language", "de", "brief", plan, site, "-o", tmp_path / "brief.html")
+    assert done.status == 0
+    page = (tmp_path / "brief.html").read_text("utf-8")
+    assert "Flugblatt" in page or "Flugbriefing" in page or "Start und Landung" in page
+    assert "Take-off and landing" not in page
+    assert "error: " in reflight("check", tmp_path / "nope.json", tmp_path / "nope.json").err

@@ -34,10 +34,12 @@ def add_parser(subparsers: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Write the brief; returns the exit status."""
+    from dataclasses import replace
     from datetime import date
 
     from groundstation.cli.console import print_json, run_job
     from groundstation.services.jobs.runner import JobContext
+    from groundstation.services.messages import told, translation
     from groundstation.services.mission.brief import flight_brief
     from groundstation.services.mission.brief_html import brief_html, brief_pictures, sources_in_page
     from groundstation.services.mission.preflight import preflight
@@ -55,14 +57,19 @@ def run(options: argparse.Namespace) -> int:
     check_output(options.out, [options.plan, options.site])
     plan, site_model = read_given_plan(options.plan), read_given_site(options.site)
     units, day = UnitSystem(options.units), flight_day(options)
+    words, titles = translation(options.language), translation(options.language, "Brief")
 
     def work(context: JobContext) -> tuple[str, Readiness, int]:
         found = preflight(plan, site_model, day, context)
         today = date.today().isoformat()
-        brief = flight_brief(site_model, plan, found.findings, today, options.plan.name, day=day)
-        sources = sources_in_page(brief_pictures(site_model, plan, units))
+        findings = tuple(
+            replace(each, message=told(each.message, words, units), place=told(each.place, words, units))
+            for each in found.findings
+        )
+        brief = flight_brief(site_model, plan, findings, today, options.plan.name, day=day)
+        sources = sources_in_page(brief_pictures(site_model, plan, units, titles))
         is_letter = None if options.paper is None else options.paper == "letter"
-        return brief_html(brief, units, sources, is_letter=is_letter), brief.readiness, len(brief.findings)
+        return brief_html(brief, units, sources, titles, is_letter=is_letter), brief.readiness, len(brief.findings)
 
     page, readiness, n_findings = run_job("brief", work)
     write_atomically(options.out, page.encode())

@@ -173,6 +173,10 @@ OPTION_FIELDS = {
 """Fields by the option that says the same, but for declared parameters: context and text of their label."""
 
 WORDS = (
+    QT_TRANSLATE_NOOP("Sentences", "ERROR"),
+    QT_TRANSLATE_NOOP("Sentences", "warning"),
+    QT_TRANSLATE_NOOP("Sentences", "note"),
+    QT_TRANSLATE_NOOP("Sentences", "error"),
     QT_TRANSLATE_NOOP("Sentences", "compressing"),
     QT_TRANSLATE_NOOP("Sentences", "no answer"),
     QT_TRANSLATE_NOOP("Sentences", "preparing the vehicle"),

@@ -5752,6 +5752,10 @@ Damit weiterarbeiten?</translation>
         <translation>die Wayline dauert länger, als das Fluggerät mit einem Akku fliegt; sie teilen</translation>
     </message>
     <message>
+        <source> ({0} times, the first: {1})</source>
+        <translation> ({0}-mal, zuerst: {1})</translation>
+    </message>
+    <message>
         <source>, {0} m</source>
         <translation>, {0} m</translation>
     </message>
@@ -7310,6 +7314,10 @@ Damit weiterarbeiten?</translation>
     <message>
         <source>{0} at most</source>
         <translation>höchstens {0}</translation>
+    </message>
+    <message>
+        <source>{0} more like this (--json lists all)</source>
+        <translation>{0} weitere dieser Art (--json nennt alle)</translation>
     </message>
     <message>
         <source>{0} or more</source>
@@ -12746,6 +12754,22 @@ Damit weiterarbeiten?</translation>
     <message>
         <source>{0}, so the site has no panels yet: find them in photos (Photos tab), or draw them on the building (Site tab)</source>
         <translation>{0}, daher hat der Standort noch keine Scheiben: in Fotos suchen (Reiter Fotos) oder am Gebäude zeichnen (Reiter Standort)</translation>
+    </message>
+    <message>
+        <source>ERROR</source>
+        <translation>FEHLER</translation>
+    </message>
+    <message>
+        <source>warning</source>
+        <translation>Warnung</translation>
+    </message>
+    <message>
+        <source>note</source>
+        <translation>Hinweis</translation>
+    </message>
+    <message>
+        <source>error</source>
+        <translation>Fehler</translation>
     </message>
     <message>
         <source>a divisor of 90 from 1 to 90 degrees</source>

@@ -52,7 +52,10 @@ COMMAND_LINE_ONLY = (
 """Where errors are still raised as plain English: what stands there is met on the command line, for the most part."""
 
 
-TYPED = {"{0}; or let the embedded renderer be the truth (--truth-rays 0, no --rays)"}
+TYPED = {
+    "{0} more like this (--json lists all)",
+    "{0}; or let the embedded renderer be the truth (--truth-rays 0, no --rays)",
+}
 """Said of what only the command line does."""
 
 
