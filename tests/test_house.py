@@ -96,7 +96,7 @@ READERS = {
     "planning/base/files.py", "planning/base/json_file.py", "planning/geo/mesh.py",
     # Behind that: what was read or looked at there is given to the library of its kind.
     "planning/site/importing/ifc_content.py", "reconstruction/records/ifc/extract.py", "missions/mission/safe_files.py",
-    "reconstruction/exports/sog/reading.py", "reconstruction/exports/sog/images.py", "reconstruction/photos/decode.py",
+    "reconstruction/exports/sog/images.py", "reconstruction/photos/decode.py",
     "reconstruction/metrics/lpips_weights.py", "reconstruction/training/checkpoints.py",
     "reconstruction/objects/store.py", "reconstruction/splats/ply_file.py",
     # SQLite looks at its files itself, and texts of one cell are short.
