@@ -111,7 +111,7 @@ class QualityChart(QWidget):
         self.plot = CurvePlot(self.tr("time in s"), self.tr("covered sections"))
         self._words, self._left = QLabel(), QLabel()
         self._words.setWordWrap(True)
-        self.enough = QPushButton(self.tr("Good enough, stop here"))
+        self.enough = QPushButton(self.tr("Stop and keep"))
         self.enough.setToolTip(self.tr("Keep the best views found so far and plan the route"))
         self.enough.setVisible(False)
         below = QHBoxLayout()

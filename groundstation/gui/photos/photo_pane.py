@@ -49,7 +49,7 @@ class PhotoPane(QWidget):
         self.photo, self.rectified = QPushButton(self.tr("Photo")), QPushButton(self.tr("Rectified"))
         self.coverage = QPushButton(self.tr("Coverage in 3-D"))
         self.coverage.setToolTip(self.tr("The panels coloured by what the photos show of them; a click tells which"))
-        self.whole = QPushButton(self.tr("Whole"))
+        self.whole = QPushButton(self.tr("Fit"))
         self.whole.setToolTip(self.tr("Show all of the picture (0)"))
         self.facade.setAccessibleName(self.tr("Facade whose grid is corrected"))
         group = QButtonGroup(self)

@@ -144,7 +144,7 @@ class PlanPage(QObject):
         self._plan_action = QAction(self.tr("Plan the flight"), self)
         self._plan_action.setShortcut(QKeySequence("Ctrl+P"))
         self._plan_action.triggered.connect(self._plan)
-        self._enough_action = QAction(self.tr("Good enough, stop here"), self)
+        self._enough_action = QAction(self.tr("Stop and keep"), self)
         self._enough_action.setShortcut(QKeySequence("Ctrl+Return"))
         self._enough_action.triggered.connect(self.controller.stop_here)
         compare = QAction(self.tr("Compare plans"), self)

@@ -103,7 +103,7 @@ class ChoiceForm(QWidget):
         for number, preset in enumerate(preset_rows()):
             self.time.addItem(times.get(preset.name, preset.name), preset.name)
             self.time.setItemData(number, translated(preset.what, UnitSystem.METRIC), Qt.ItemDataRole.ToolTipRole)
-        self.time.addItem(self.tr("own time"), OWN)
+        self.time.addItem(self.tr("Custom time"), OWN)
         self.device.addItem(self.tr("the processor"))
 
     def _changed(self) -> None:
@@ -135,7 +135,7 @@ class ChoiceSide(QWidget):
         self.form = ChoiceForm()
         self.choose, self.choose_out = QPushButton(self.tr("Choose ...")), QPushButton(self.tr("Choose ..."))
         self.train, self.pause = QPushButton(self.tr("Train")), QPushButton(self.tr("Pause"))
-        self.stop, self.break_off = QPushButton(self.tr("Good enough, stop")), QPushButton(self.tr("Break off"))
+        self.stop, self.break_off = QPushButton(self.tr("Stop and keep")), QPushButton(self.tr("Cancel"))
         self.data_set, self.out, self.there, self.wrong = QLabel(), QLabel(), QLabel(), QLabel()
         self._make()
 
@@ -187,7 +187,7 @@ class ChoiceSide(QWidget):
         if self._controller.is_busy or not self._controller.out.name:
             return ""
         if found.is_interrupted:
-            return self.tr("A training was broken off there: it can be gone on with, as it was begun.")
+            return self.tr("A training was cancelled there: it can be resumed, as it was begun.")
         if found.has_model:
             return self.tr("A finished model stands there. It stays until the new one is whole, and is replaced then.")
         if found.is_foreign:

@@ -270,9 +270,9 @@ class ReconstructController(FolderController):
         self.look_at_out()
         if ended.outcome == "kept" and was in BUSY:
             words = (
-                self.tr("The training was broken off; go on with it whenever you like.")
+                self.tr("The training was cancelled; resume it whenever you like.")
                 if self.standing.is_interrupted
-                else self.tr("The training was broken off before there was anything to keep.")
+                else self.tr("The training was cancelled before there was anything to keep.")
             )
             self._workspace.say(Severity.NOTE, words)
         elif ended.outcome == "done" and was in BUSY:

@@ -254,7 +254,7 @@ class ReconstructPage(QObject):
         if controller.phase is Phase.IDLE and controller.training.ended is not None:
             return {
                 "done": self.tr("The model is finished."),
-                "kept": self.tr("Broken off; the state is kept."),
+                "kept": self.tr("Cancelled; the state is kept."),
                 "failed": self.tr("The training has failed; the message says why."),
             }[controller.training.ended.outcome]
         return stage[:1].upper() + stage[1:]

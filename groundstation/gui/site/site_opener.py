@@ -97,7 +97,7 @@ class SiteOpener(QObject):
         if before.plans:
             self._workspace.say(
                 Severity.NOTE,
-                self.tr("The plans of the site before are put away with it: {0}. Undo brings them back.").format(
+                self.tr("The plans of the site before are removed with it: {0}. Undo brings them back.").format(
                     len(before.plans)
                 ),
             )

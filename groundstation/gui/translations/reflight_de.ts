@@ -584,7 +584,7 @@ Bild in dieser Entfernung: {4} x {5}</translation>
         <translation>über Nacht, 10 Stunden</translation>
     </message>
     <message>
-        <source>own time</source>
+        <source>Custom time</source>
         <translation>eigene Zeit</translation>
     </message>
     <message>
@@ -607,14 +607,6 @@ Bild in dieser Entfernung: {4} x {5}</translation>
         <translation>Anhalten</translation>
     </message>
     <message>
-        <source>Good enough, stop</source>
-        <translation>Gut genug, aufhören</translation>
-    </message>
-    <message>
-        <source>Break off</source>
-        <translation>Abbrechen</translation>
-    </message>
-    <message>
         <source>Go on</source>
         <translation>Fortsetzen</translation>
     </message>
@@ -635,7 +627,15 @@ Bild in dieser Entfernung: {4} x {5}</translation>
         <translation>{0}: {1} Fotos, {2} Scheiben</translation>
     </message>
     <message>
-        <source>A training was broken off there: it can be gone on with, as it was begun.</source>
+        <source>Stop and keep</source>
+        <translation>Beenden und behalten</translation>
+    </message>
+    <message>
+        <source>Cancel</source>
+        <translation>Abbrechen</translation>
+    </message>
+    <message>
+        <source>A training was cancelled there: it can be resumed, as it was begun.</source>
         <translation>Dort wurde ein Training abgebrochen: es kann fortgesetzt werden, wie es begonnen wurde.</translation>
     </message>
     <message>
@@ -3771,8 +3771,8 @@ Blickrichtung: {3}</translation>
         <translation>Die Scheiben gefärbt nach dem, was die Fotos von ihnen zeigen; ein Klick sagt, welche</translation>
     </message>
     <message>
-        <source>Whole</source>
-        <translation>Ganz</translation>
+        <source>Fit</source>
+        <translation>Einpassen</translation>
     </message>
     <message>
         <source>Show all of the picture (0)</source>
@@ -4239,8 +4239,8 @@ Blickrichtung: {3}</translation>
         <translation>Den Flug planen</translation>
     </message>
     <message>
-        <source>Good enough, stop here</source>
-        <translation>Gut genug, hier beenden</translation>
+        <source>Stop and keep</source>
+        <translation>Beenden und behalten</translation>
     </message>
     <message>
         <source>Compare plans</source>
@@ -4729,10 +4729,6 @@ Blickrichtung: {3}</translation>
 <context>
     <name>QualityChart</name>
     <message>
-        <source>Good enough, stop here</source>
-        <translation>Gut genug, hier beenden</translation>
-    </message>
-    <message>
         <source>Keep the best views found so far and plan the route</source>
         <translation>Die besten bisher gefundenen Aufnahmen behalten und die Route planen</translation>
     </message>
@@ -4743,6 +4739,10 @@ Blickrichtung: {3}</translation>
     <message>
         <source>time in s</source>
         <translation>Zeit in s</translation>
+    </message>
+    <message>
+        <source>Stop and keep</source>
+        <translation>Beenden und behalten</translation>
     </message>
     <message>
         <source>Quality against time appears here while a plan runs.</source>
@@ -4934,11 +4934,11 @@ Damit weiterarbeiten?</translation>
 <context>
     <name>ReconstructController</name>
     <message>
-        <source>The training was broken off; go on with it whenever you like.</source>
-        <translation>Das Training wurde abgebrochen; setzen Sie es fort, wann Sie möchten.</translation>
+        <source>The training was cancelled; resume it whenever you like.</source>
+        <translation>Das Training wurde abgebrochen; es kann jederzeit fortgesetzt werden.</translation>
     </message>
     <message>
-        <source>The training was broken off before there was anything to keep.</source>
+        <source>The training was cancelled before there was anything to keep.</source>
         <translation>Das Training wurde abgebrochen, bevor es etwas zu behalten gab.</translation>
     </message>
     <message>
@@ -5037,7 +5037,7 @@ Damit weiterarbeiten?</translation>
         <translation>Das Modell ist fertig.</translation>
     </message>
     <message>
-        <source>Broken off; the state is kept.</source>
+        <source>Cancelled; the state is kept.</source>
         <translation>Abgebrochen; der Stand ist gesichert.</translation>
     </message>
     <message>
@@ -5110,12 +5110,12 @@ Damit weiterarbeiten?</translation>
         <translation>Ändern ...</translation>
     </message>
     <message>
-        <source>Take out</source>
-        <translation>Herausnehmen</translation>
-    </message>
-    <message>
         <source>Undo</source>
         <translation>Rückgängig</translation>
+    </message>
+    <message>
+        <source>Remove</source>
+        <translation>Entfernen</translation>
     </message>
     <message>
         <source>Report as PDF ...</source>
@@ -13178,8 +13178,8 @@ Damit weiterarbeiten?</translation>
         <translation>{0}: Scheiben {1}, Fassaden {2}</translation>
     </message>
     <message>
-        <source>The plans of the site before are put away with it: {0}. Undo brings them back.</source>
-        <translation>Die Pläne des vorigen Standorts verschwinden mit ihm: {0}. „Rückgängig“ holt sie zurück.</translation>
+        <source>The plans of the site before are removed with it: {0}. Undo brings them back.</source>
+        <translation>Die Pläne des vorigen Standorts werden mit entfernt: {0}. Rückgängig holt sie zurück.</translation>
     </message>
 </context>
 <context>

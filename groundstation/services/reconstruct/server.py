@@ -187,7 +187,7 @@ class _Server:
     def report(self, stage: str, done: float, total: float) -> None:
         """Monitor of a training: looks at photos and finished models come between, its own model only in visits."""
         if self._wishes.cancel.is_set():
-            raise OperationCancelled("the training was broken off")
+            raise OperationCancelled("the training was cancelled")
         now = time.monotonic()
         if stage != self._stage or now - self._reported_s >= REPORT_S:
             self._stage, self._reported_s = stage, now
