@@ -258,16 +258,20 @@ def _web(export: ModelToExport) -> list[str]:
             content_of=content_of,
         )
         page = write_web(export.scene, export.out, export.rows, options, export.monitor)
+    strays, missing, damaged, large = page.n_strays, page.n_missing, page.n_damaged, page.n_large
     told = (
-        (page.n_strays, say("{{0}} records of objects that the model lacks are left out")),
+        (strays, say("{} records of objects that the model lacks are left out", strays)),
         (
-            page.n_missing,
-            say("{{0}} files of records are missing or changed: the page says so; copy them back beside the records"),
+            missing,
+            say(
+                "{} files of records are missing or changed: the page says so; copy them back beside the records",
+                missing,
+            ),
         ),
-        (page.n_damaged, say("{{0}} pictures of records cannot be read: the page says so; attach them again")),
-        (page.n_large, say("{{0}} documents are too large for the page, which names them; pass them on by themselves")),
+        (damaged, say("{} pictures of records cannot be read: the page says so; attach them again", damaged)),
+        (large, say("{} documents are too large for the page, which names them; pass them on by themselves", large)),
     )
-    return [text.format(n) for n, text in told if n]
+    return [text for n, text in told if n]
 
 
 def _gltf(export: ModelToExport) -> list[str]:

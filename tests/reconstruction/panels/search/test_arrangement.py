@@ -142,5 +142,5 @@ def test_braces_are_found_at_any_scale(width_px: int) -> None:
 
 
 def test_the_wish_must_be_one_of_three() -> None:
-    with pytest.raises(ValueError, match="inclined: expected auto, on or off, got maybe"):
+    with pytest.raises(ValueError, match="inclined: expected auto, on or off, got 'maybe'"):
         SegmentationParameters(inclined="maybe")  # type: ignore[arg-type]
