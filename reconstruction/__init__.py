@@ -1,1 +1,1 @@
-"""From photos to panels to the Gaussian model; the model itself is not built yet."""
+"""From photos to panels, to the Gaussian model, and to its objects and their records."""

@@ -12,6 +12,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from groundstation.services.jobs.runner import JobContext, JobEvent, JobProgress, JobRunner
+from groundstation.services.messages import LANGUAGES, told, translation
+from groundstation.services.units import UnitSystem
 from planning.base.findings import Finding, Severity
 from planning.base.messages import about, say
 
@@ -28,7 +30,7 @@ MAX_SHOWN = 5
 """Different findings of one kind that are printed before the rest is only counted."""
 
 
-_LANGUAGE: ContextVar[str] = ContextVar("language", default="en")
+_LANGUAGE: ContextVar[str] = ContextVar("language", default=LANGUAGES[0])
 
 
 @contextmanager
@@ -43,11 +45,8 @@ def speaking(language: str) -> Iterator[None]:
 
 def worded(text: str) -> str:
     """A message in the language of the command line."""
-    if _LANGUAGE.get() == "en":
+    if _LANGUAGE.get() == LANGUAGES[0]:
         return text
-    from groundstation.services.messages import told, translation
-    from groundstation.services.units import UnitSystem
-
     return told(text, translation(_LANGUAGE.get()), UnitSystem.METRIC)
 
 

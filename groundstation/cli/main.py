@@ -21,6 +21,7 @@ from groundstation import __version__
 from groundstation.cli import commands
 from groundstation.cli.console import program_name, speaking, worded
 from groundstation.cli.options import new_folder
+from groundstation.services.messages import LANGUAGES
 from planning.base.errors import GroundStationError, OperationCancelled, PluginError, shortened
 from planning.base.plugins import PluginGroup, blamed, untold_problems
 
@@ -96,8 +97,8 @@ def build_parser() -> argparse.ArgumentParser:
     parser.add_argument("--plugins", action=_Plugins, nargs=0, help="list what plug-ins add, and exit")
     parser.add_argument(
         "--language",
-        choices=("en", "de"),
-        default="en",
+        choices=LANGUAGES,
+        default=LANGUAGES[0],
         help="language of findings, errors and the brief (default: en)",
     )
     parser.add_argument("--debug", action="store_true", help="show the traceback of an error")

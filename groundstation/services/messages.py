@@ -10,7 +10,6 @@ import re
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
-from xml.etree import ElementTree
 
 import groundstation
 from groundstation.services.units import UnitSystem, area_unit, distance_unit, length_unit, sampling_unit, speed_unit
@@ -42,6 +41,8 @@ def translation(language: str, context: str = "Sentences") -> Translate:
     """What a text of a context is in a language, without Qt: for the command line."""
     if language == LANGUAGES[0]:
         return str
+    from xml.etree import ElementTree
+
     path = Path(groundstation.__file__).parent / "gui" / "translations" / f"reflight_{language}.ts"
     known = {
         message.findtext("source", ""): message.findtext("translation", "")
@@ -95,7 +96,7 @@ def _value(value: str, translate: Translate, units: UnitSystem) -> str:
         return _in_units(value, units)
     number, _, unit = value.partition(" ")
     if unit and _IS_NUMBER.fullmatch(number):
-        return translate(f"{{0}} {unit}").format(number)
+        return translate(f"{{0}} {unit}").replace("{0}", number)
     return translate(value)
 
 

@@ -1,1 +1,1 @@
-"""Live telemetry of a flying vehicle. This layer holds no code yet: it comes with the flight itself."""
+"""A flying vehicle: its telemetry, the list before take-off, and one sortie from upload to landing. Knows no Qt."""

@@ -206,7 +206,7 @@ _WORDS = {
     "array": "list",
     "object": "object",
     "float": "number",
-    "int": say("whole number"),
+    "int": "whole number",
     "str": "text",
     "null": "nothing",
     "bool": "true/false",

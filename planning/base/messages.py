@@ -127,6 +127,8 @@ def plain(text: str) -> str:
 def about(place: object, text: object) -> Message:
     """A text or an error that says what it is about before a colon; another one it has comes behind."""
     said, where = _text(text, ""), _text(place, "")
+    if not where:
+        return glue(said)
     if isinstance(said, Message) and said.template:
         inner = glue(where, ": ", said.place) if said.place else where
         return Message(f"{where}: {said}", said.template, said.values, inner)

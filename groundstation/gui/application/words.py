@@ -173,6 +173,7 @@ OPTION_FIELDS = {
 """Fields by the option that says the same, but for declared parameters: context and text of their label."""
 
 WORDS = (
+    QT_TRANSLATE_NOOP("Sentences", "whole number"),
     QT_TRANSLATE_NOOP("Sentences", "ERROR"),
     QT_TRANSLATE_NOOP("Sentences", "warning"),
     QT_TRANSLATE_NOOP("Sentences", "note"),

@@ -30,7 +30,7 @@ from planning.plan import Camera, Viewpoint, ViewpointArrays
 
 Array = NDArray[np.float64]
 
-AIRCRAFT_PX, LIVE_MAP_DOT_PX = 16.0, 5.0
+AIRCRAFT_PX, MAP_DOT_PX = 16.0, 5.0
 
 
 class LiveMap(QWidget):
@@ -71,7 +71,7 @@ class LiveMap(QWidget):
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         for place, state in self._views:
             x, y = viewport.screen(place[None])[0]
-            radius = 2.0 * LIVE_MAP_DOT_PX if state is ViewState.NEXT else LIVE_MAP_DOT_PX
+            radius = 2.0 * MAP_DOT_PX if state is ViewState.NEXT else MAP_DOT_PX
             painter.setPen(QPen(QColor(look.base), 1))
             painter.setBrush(state_colour(state, look))
             painter.drawEllipse(QPointF(x, y), radius, radius)

@@ -19,7 +19,14 @@ from PySide6.QtWidgets import (
 
 from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.application.translate import translated_finding
-from groundstation.gui.mission.brief_printer import BriefDocument, page_size, painted_map, print_pages, say, write_pdf
+from groundstation.gui.mission.brief_printer import (
+    BriefDocument,
+    page_size,
+    painted_map,
+    print_pages,
+    translate,
+    write_pdf,
+)
 from groundstation.gui.widgets.inputs import ChoiceBox
 from groundstation.gui.widgets.job_bar import DialogFoot
 from groundstation.gui.widgets.questions import choose_new_file, file_name
@@ -113,7 +120,7 @@ class BriefDialog(QDialog):
         units = self._units
 
         def work(_context: JobContext) -> tuple[dict[str, str | QImage], str]:
-            pictures: dict[str, str | QImage] = {**brief_pictures(site_model, plan, units, say)}
+            pictures: dict[str, str | QImage] = {**brief_pictures(site_model, plan, units, translate)}
             try:
                 if tiles is not None:
                     shapes = site_shapes(site_model), plan_shapes(plan, site_model.site.origin)
@@ -142,7 +149,7 @@ class BriefDialog(QDialog):
             return
         names = {name: name for name in self._pictures}
         is_letter = bool(self._paper.currentData())
-        self._html = brief_html(self._brief, self._units, names, say, is_letter=is_letter)
+        self._html = brief_html(self._brief, self._units, names, translate, is_letter=is_letter)
         self._document = self._fresh()
         self._document.setDocumentMargin(12.0)
         self._page.setDocument(self._document)

@@ -138,7 +138,7 @@ WORDS = (
 """All that a brief says, for the translators; `brief_html` holds the same texts."""
 
 
-def say(text: str) -> str:
+def translate(text: str) -> str:
     """A text of the brief in the user's language."""
     return QCoreApplication.translate("Brief", text)
 
@@ -217,7 +217,7 @@ def paint_page(document: QTextDocument, painter: QPainter, page: int) -> None:
     document.documentLayout().draw(painter, context)
     painter.restore()
     painter.setPen(Qt.GlobalColor.black)
-    number = say("Page {0} of {1}").format(page + 1, document.pageCount())
+    number = translate("Page {0} of {1}").format(page + 1, document.pageCount())
     painter.drawText(QRectF(0.0, height, width, _footer_px(painter)), Qt.AlignmentFlag.AlignRight, number)
 
 

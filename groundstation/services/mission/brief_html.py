@@ -7,10 +7,11 @@ document).
 from __future__ import annotations
 
 import base64
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 
 from groundstation.services.map.shapes import plan_shapes, site_shapes
+from groundstation.services.messages import Translate
 from groundstation.services.mission.brief import FlightBrief
 from groundstation.services.mission.brief_pictures import map_svg, profile_svg
 from groundstation.services.mission.finding_texts import duration_text, measured_text
@@ -32,9 +33,6 @@ from planning.insight.flight_profile import LOW_M
 from planning.plan import Plan
 from planning.site.records import SiteModel
 
-Say = Callable[[str], str]
-"""From the English text to the user's."""
-
 MAP = "map"
 """Name of the map's picture; those of the profiles are `profile_name(number)`."""
 
@@ -47,14 +45,14 @@ def profile_name(number: int) -> str:
     return f"profile-{number}"
 
 
-def brief_pictures(site_model: SiteModel, plan: Plan, units: UnitSystem, say: Say = str) -> dict[str, str]:
+def brief_pictures(site_model: SiteModel, plan: Plan, units: UnitSystem, tr: Translate = str) -> dict[str, str]:
     """All pictures of a brief as SVG, by name."""
     shapes = site_shapes(site_model)
     pictures = {MAP: map_svg(shapes, plan_shapes(plan, site_model.site.origin), units)}
-    height = say("height above take-off [{0}]").format(length_unit(units).symbol)
+    height = tr("height above take-off [{0}]").format(length_unit(units).symbol)
     limits = height_limits(site_model)
     for curves in plan_profiles(plan):
-        svg = profile_svg(curves, limits, units, (height, say("time [min]")))
+        svg = profile_svg(curves, limits, units, (height, tr("time [min]")))
         pictures[profile_name(curves.sortie)] = svg
     return pictures
 
@@ -67,7 +65,11 @@ def sources_in_page(pictures: Mapping[str, str]) -> dict[str, str]:
 
 
 def brief_html(
-    brief: FlightBrief, units: UnitSystem, sources: Mapping[str, str], say: Say = str, is_letter: bool | None = None
+    brief: FlightBrief,
+    units: UnitSystem,
+    sources: Mapping[str, str],
+    tr: Translate = str,
+    is_letter: bool | None = None,
 ) -> str:
     """The page.
 
@@ -75,35 +77,35 @@ def brief_html(
     ----------
     sources
         Where each picture is found, by its name; those without one are left out.
-    say
+    tr
         Brings the page's own words into the user's language; findings stay as they are.
     is_letter
         Paper: US Letter, else A4; by the units where None.
     """
     is_letter = units is UnitSystem.IMPERIAL if is_letter is None else is_letter
-    title = say("Flight brief: {0}").format(brief.site)
+    title = tr("Flight brief: {0}").format(brief.site)
     body = [
         f"<h1>{escape(title)}</h1>",
-        _verdict(brief, say),
-        _table(_overview(brief, units, say)),
-        f"<h2>{escape(say('Take-off and landing'))}</h2>",
-        _table(_takeoff(brief, units, say)),
-        f"<h2>{escape(say('Sorties'))}</h2>",
-        _sorties(brief, units, say),
-        f"<h2>{escape(say('Set on the remote controller'))}</h2>",
-        _table(_settings(brief, units, say)),
-        f"<h2>{escape(say('Findings'))}</h2>",
-        _findings(brief, units, say),
-        f"<h2>{escape(say('Before take-off'))}</h2>",
-        _checklist(_steps(brief, units, say)),
+        _verdict(brief, tr),
+        _table(_overview(brief, units, tr)),
+        f"<h2>{escape(tr('Take-off and landing'))}</h2>",
+        _table(_takeoff(brief, units, tr)),
+        f"<h2>{escape(tr('Sorties'))}</h2>",
+        _sorties(brief, units, tr),
+        f"<h2>{escape(tr('Set on the remote controller'))}</h2>",
+        _table(_settings(brief, units, tr)),
+        f"<h2>{escape(tr('Findings'))}</h2>",
+        _findings(brief, units, tr),
+        f"<h2>{escape(tr('Before take-off'))}</h2>",
+        _checklist(_steps(brief, units, tr)),
     ]
     if MAP in sources:
-        body.append(f'<h2 style="page-break-before: always">{escape(say("Map"))}</h2>')
-        body.append(f'<p><img src="{sources[MAP]}" width="{WIDTH_PX}" alt="{escape(say("Map"))}"></p>')
+        body.append(f'<h2 style="page-break-before: always">{escape(tr("Map"))}</h2>')
+        body.append(f'<p><img src="{sources[MAP]}" width="{WIDTH_PX}" alt="{escape(tr("Map"))}"></p>')
     for sortie in brief.sorties:
         source = sources.get(profile_name(sortie.number))
         if source is not None:
-            heading = escape(say("Height of sortie {0}").format(sortie.number))
+            heading = escape(tr("Height of sortie {0}").format(sortie.number))
             body.append(f'<h3>{heading}</h3><p><img src="{source}" width="{WIDTH_PX}" alt="{heading}"></p>')
     return _PAGE.format(title=escape(title), size="letter" if is_letter else "A4", body="\n".join(body))
 
@@ -126,78 +128,78 @@ th {{ text-align: left; background-color: #e6e9ec; }}
 _TABLE = '<table width="100%" border="1" cellspacing="0" cellpadding="2" style="border-collapse: collapse">'
 
 
-def _verdict(brief: FlightBrief, say: Say) -> str:
+def _verdict(brief: FlightBrief, tr: Translate) -> str:
     if brief.readiness is not Readiness.NOT_READY:
         kept, warned = "All pre-flight rules are kept: ready to fly.", "Ready to fly, but read the warnings."
-        return f"<p><b>{escape(say(kept if brief.readiness is Readiness.READY else warned))}</b></p>"
-    return f'<p><b><span style="color: #b3261e">{escape(say("NOT ready to fly: see the findings."))}</span></b></p>'
+        return f"<p><b>{escape(tr(kept if brief.readiness is Readiness.READY else warned))}</b></p>"
+    return f'<p><b><span style="color: #b3261e">{escape(tr("NOT ready to fly: see the findings."))}</span></b></p>'
 
 
-def _overview(brief: FlightBrief, units: UnitSystem, say: Say) -> Iterable[tuple[str, str]]:
+def _overview(brief: FlightBrief, units: UnitSystem, tr: Translate) -> Iterable[tuple[str, str]]:
     length, speed = length_unit(units), speed_unit(units)
-    yield say("Date"), brief.planned_on
+    yield tr("Date"), brief.planned_on
     if brief.day.at is not None:
-        yield say("Planned for"), f"{brief.day.at:%Y-%m-%d %H:%M}"
+        yield tr("Planned for"), f"{brief.day.at:%Y-%m-%d %H:%M}"
     if brief.day.temperature_c is not None:
-        yield say("Temperature"), f"{brief.day.temperature_c:g} \u00b0C"
-    yield say("Plan"), brief.plan_title
-    yield say("Aircraft and camera"), ", ".join(dict.fromkeys((brief.aircraft, brief.camera)))
-    yield say("Photos"), str(brief.n_photos)
-    yield say("Batteries needed"), str(brief.n_batteries)
+        yield tr("Temperature"), f"{brief.day.temperature_c:g} \u00b0C"
+    yield tr("Plan"), brief.plan_title
+    yield tr("Aircraft and camera"), ", ".join(dict.fromkeys((brief.aircraft, brief.camera)))
+    yield tr("Photos"), str(brief.n_photos)
+    yield tr("Batteries needed"), str(brief.n_batteries)
     total_s = sum(sortie.duration_s for sortie in brief.sorties)
-    yield say("Flight time, all sorties"), duration_text(total_s)
-    yield say("Coverage of what can be covered"), f"{per_cent(brief.covered_share, 1.0):.1f} %"
+    yield tr("Flight time, all sorties"), duration_text(total_s)
+    yield tr("Coverage of what can be covered"), f"{per_cent(brief.covered_share, 1.0):.1f} %"
     if brief.sharp_share is not None and brief.wanted_gsd_mm and brief.coarsest_gsd_mm is not None:
         pixel = sampling_unit(units)
         yield (
-            say("Pixel on the panel"),
-            say("{0} of what is covered with up to {1}, the coarsest with {2}").format(
+            tr("Pixel on the panel"),
+            tr("{0} of what is covered with up to {1}, the coarsest with {2}").format(
                 f"{per_cent(brief.sharp_share, 1.0):.1f} %",
                 pixel.text(brief.wanted_gsd_mm / 1000.0),
                 pixel.text(brief.coarsest_gsd_mm / 1000.0),
             ),
         )
-    yield say("Height above ground"), _heights(brief, units, say)
+    yield tr("Height above ground"), _heights(brief, units, tr)
     near = [s.smallest_clearance_m for s in brief.sorties if s.smallest_clearance_m is not None]
-    kept = say("{0} along the paths, {1} to be kept").format(
-        length.text(min(near)) if near else say("not measured"), length.text(brief.min_distance_m)
+    kept = tr("{0} along the paths, {1} to be kept").format(
+        length.text(min(near)) if near else tr("not measured"), length.text(brief.min_distance_m)
     )
-    yield say("Smallest distance to building and obstacles"), kept
-    wind = say("planned for {0}, the aircraft may fly below {1}")
-    yield say("Wind"), wind.format(speed.text(brief.wind_m_s), speed.text(brief.max_wind_m_s))
+    yield tr("Smallest distance to building and obstacles"), kept
+    wind = tr("planned for {0}, the aircraft may fly below {1}")
+    yield tr("Wind"), wind.format(speed.text(brief.wind_m_s), speed.text(brief.max_wind_m_s))
 
 
-def _heights(brief: FlightBrief, units: UnitSystem, say: Say) -> str:
+def _heights(brief: FlightBrief, units: UnitSystem, tr: Translate) -> str:
     length, low, greatest = length_unit(units), brief.low, length_unit(units).text(brief.max_above_ground_m)
     if low is None:
-        return say("at most {0}").format(greatest)
-    heights = say("{0} to {1}, at least {2} to be kept but at take-off").format(
+        return tr("at most {0}").format(greatest)
+    heights = tr("{0} to {1}, at least {2} to be kept but at take-off").format(
         length.text(low.lowest_m), greatest, length.text(brief.min_height_m)
     )
     if low.below_s is None or low.lowest_m >= LOW_M:
         return heights
-    return say("{0}; {1} below {2}").format(heights, duration_text(low.below_s), length.text(LOW_M))
+    return tr("{0}; {1} below {2}").format(heights, duration_text(low.below_s), length.text(LOW_M))
 
 
-def _takeoff(brief: FlightBrief, units: UnitSystem, say: Say) -> Iterable[tuple[str, str]]:
+def _takeoff(brief: FlightBrief, units: UnitSystem, tr: Translate) -> Iterable[tuple[str, str]]:
     place, length = brief.takeoff, length_unit(units)
-    yield say("Position (WGS 84)"), f"{place.lat_deg:.7f}°, {place.lon_deg:.7f}°"
-    yield say("Height above sea level (EGM96)"), length.text(place.altitude_amsl_m)
-    yield say("Height above the ellipsoid (WGS 84)"), length.text(place.height_ellipsoid_m)
-    yield say("Height above ground"), length.text(place.above_ground_m)
+    yield tr("Position (WGS 84)"), f"{place.lat_deg:.7f}°, {place.lon_deg:.7f}°"
+    yield tr("Height above sea level (EGM96)"), length.text(place.altitude_amsl_m)
+    yield tr("Height above the ellipsoid (WGS 84)"), length.text(place.height_ellipsoid_m)
+    yield tr("Height above ground"), length.text(place.above_ground_m)
 
 
-def _sorties(brief: FlightBrief, units: UnitSystem, say: Say) -> str:
+def _sorties(brief: FlightBrief, units: UnitSystem, tr: Translate) -> str:
     length, distance = length_unit(units), distance_unit(units)
     titles = (
-        say("Sortie"),
-        say("Photos"),
-        say("Time [min]"),
-        say("Length"),
-        say("Battery used"),
-        say("Highest above take-off"),
-        say("Highest above sea (EGM96)"),
-        say("Smallest distance"),
+        tr("Sortie"),
+        tr("Photos"),
+        tr("Time [min]"),
+        tr("Length"),
+        tr("Battery used"),
+        tr("Highest above take-off"),
+        tr("Highest above sea (EGM96)"),
+        tr("Smallest distance"),
     )
     rows = [
         (
@@ -212,29 +214,33 @@ def _sorties(brief: FlightBrief, units: UnitSystem, say: Say) -> str:
         )
         for sortie in brief.sorties
     ]
-    return _grid(titles, rows) if rows else f"<p>{escape(say('The plan has no sorties.'))}</p>"
+    return _grid(titles, rows) if rows else f"<p>{escape(tr('The plan has no sorties.'))}</p>"
 
 
-def _settings(brief: FlightBrief, units: UnitSystem, say: Say) -> Iterable[tuple[str, str]]:
+def _settings(brief: FlightBrief, units: UnitSystem, tr: Translate) -> Iterable[tuple[str, str]]:
     height_m = brief.return_height_m
     yield (
-        say("Return height, above take-off"),
-        say("not known") if height_m is None else length_unit(units).text(height_m),
+        tr("Return height, above take-off"),
+        tr("not known") if height_m is None else length_unit(units).text(height_m),
     )
     links = {
-        LinkLoss.CONTINUE: say("fly the mission to its end"),
-        LinkLoss.GO_HOME: say("return home straight, at the return height"),
+        LinkLoss.CONTINUE: tr("fly the mission to its end"),
+        LinkLoss.GO_HOME: tr("return home straight, at the return height"),
     }
-    yield say("Without radio link"), links[brief.link_loss]
-    yield say("Battery reserve at landing"), f"{brief.battery_reserve:.0%}"
-    yield say("Highest speed"), speed_unit(units).text(brief.max_speed_m_s)
-    yield say("Hover before each photo"), f"{brief.settle_s:g} s"
+    yield tr("Without radio link"), links[brief.link_loss]
+    yield tr("Battery reserve at landing"), f"{brief.battery_reserve:.0%}"
+    yield tr("Highest speed"), speed_unit(units).text(brief.max_speed_m_s)
+    yield tr("Hover before each photo"), f"{brief.settle_s:g} s"
 
 
-def _findings(brief: FlightBrief, units: UnitSystem, say: Say) -> str:
+def _findings(brief: FlightBrief, units: UnitSystem, tr: Translate) -> str:
     if not brief.findings:
-        return f"<p>{escape(say('None: every rule is kept.'))}</p>"
-    words = {Severity.ERROR: say("ERROR"), Severity.WARNING: say("Warning"), Severity.NOTE: say("Note")}
+        return f"<p>{escape(tr('None: every rule is kept.'))}</p>"
+    words = {
+        Severity.ERROR: tr("ERROR"),
+        Severity.WARNING: tr("Warning"),
+        Severity.NOTE: tr("Note"),
+    }
     rows = [
         (
             words[found.severity],
@@ -244,44 +250,44 @@ def _findings(brief: FlightBrief, units: UnitSystem, say: Say) -> str:
         )
         for found in brief.findings
     ]
-    return _grid((say("Severity"), say("Finding"), say("Measured"), say("Place")), rows)
+    return _grid((tr("Severity"), tr("Finding"), tr("Measured"), tr("Place")), rows)
 
 
-def _steps(brief: FlightBrief, units: UnitSystem, say: Say) -> Iterable[str]:
+def _steps(brief: FlightBrief, units: UnitSystem, tr: Translate) -> Iterable[str]:
     length, speed = length_unit(units), speed_unit(units)
-    yield say("Permission for this place and height is at hand; nobody is below the paths")
+    yield tr("Permission for this place and height is at hand; nobody is below the paths")
     if brief.low is not None and brief.low.lowest_m < LOW_M:
-        yield say("Nobody walks and nothing stands or hangs where the paths come down to {0} above the ground").format(
+        yield tr("Nobody walks and nothing stands or hangs where the paths come down to {0} above the ground").format(
             length.text(brief.low.lowest_m)
         )
     if brief.no_fly:
-        yield say("No-fly zones known to everybody: {0}").format(", ".join(brief.no_fly))
-    known = ", ".join(brief.obstacles) if brief.obstacles else say("none")
-    yield say("Nothing stands within {0} of the paths but what the site knows (building; obstacles: {1})").format(
+        yield tr("No-fly zones known to everybody: {0}").format(", ".join(brief.no_fly))
+    known = ", ".join(brief.obstacles) if brief.obstacles else tr("none")
+    yield tr("Nothing stands within {0} of the paths but what the site knows (building; obstacles: {1})").format(
         length.text(brief.min_distance_m), known
     )
-    yield say("Fully charged batteries: {0}; free space for photos: {1}").format(brief.n_batteries, brief.n_photos)
-    yield say("Aircraft stands on the take-off point; GNSS (RTK where there is one) has a fix, compass is calibrated")
+    yield tr("Fully charged batteries: {0}; free space for photos: {1}").format(brief.n_batteries, brief.n_photos)
+    yield tr("Aircraft stands on the take-off point; GNSS (RTK where there is one) has a fix, compass is calibrated")
     if brief.return_height_m is not None:
-        yield say("Return height on the remote controller is at least {0} above take-off").format(
+        yield tr("Return height on the remote controller is at least {0} above take-off").format(
             length.text(brief.return_height_m)
         )
-    yield say("Wind at flight height is below {0}").format(speed.text(brief.max_wind_m_s))
-    yield say("The mission on the remote controller is this plan (photos: {0})").format(brief.n_photos)
-    yield say("Focus, exposure and white balance are fixed on the facade")
+    yield tr("Wind at flight height is below {0}").format(speed.text(brief.max_wind_m_s))
+    yield tr("The mission on the remote controller is this plan (photos: {0})").format(brief.n_photos)
+    yield tr("Focus, exposure and white balance are fixed on the facade")
     for sortie in brief.sorties:
         if sortie.takeoff_check is not None:
-            yield _takeoff_check(sortie.takeoff_check, units, say)
+            yield _takeoff_check(sortie.takeoff_check, units, tr)
 
 
-def _takeoff_check(check: TakeoffCheck, units: UnitSystem, say: Say) -> str:
+def _takeoff_check(check: TakeoffCheck, units: UnitSystem, tr: Translate) -> str:
     length = length_unit(units)
-    seen = say("{0} above take-off").format(length.text(check.above_takeoff_m))
+    seen = tr("{0} above take-off").format(length.text(check.above_takeoff_m))
     if check.facade:
-        edge = say("the upper edge of facade {0}") if check.is_upper_edge else say("the lower edge of facade {0}")
-        side = say("{0} above {1}") if check.above_edge_m >= 0.0 else say("{0} below {1}")
+        edge = tr("the upper edge of facade {0}") if check.is_upper_edge else tr("the lower edge of facade {0}")
+        side = tr("{0} above {1}") if check.above_edge_m >= 0.0 else tr("{0} below {1}")
         seen += ", " + side.format(length.text(abs(check.above_edge_m)), edge.format(check.facade))
-    return say(
+    return tr(
         "Sortie {0}: before any photo the aircraft stops {1}. Where it does not, land: it took off from another height "
         "than planned"
     ).format(check.sortie, seen)

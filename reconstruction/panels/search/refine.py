@@ -25,7 +25,7 @@ BESIDE_PX = 10
 
 """Of the strip on both sides of the profile."""
 
-REFINE_INCLINED_REACH = 1.5
+INCLINED_REACH = 1.5
 """Around a coarse edge, in pixels of the coarse picture, in which the finer one is looked for."""
 
 HALVES = 2
@@ -42,7 +42,7 @@ def refined_inclined(
 
     Their widths shrink by what the glass beside them tells (`frame_edges.py`), the median over all of them.
     """
-    measured = run_parallel(_refine_inclined_measured, [(image, view, scale, line) for line in inclined])
+    measured = run_parallel(_measured_inclined, [(image, view, scale, line) for line in inclined])
     known = [bias for _, bias in measured if np.isfinite(bias)]
     bias = float(np.clip(np.median(known), 0.0, MOST_BIAS_PX)) if known else 0.0
     return tuple(
@@ -53,7 +53,7 @@ def refined_inclined(
     )
 
 
-def _refine_inclined_measured(
+def _measured_inclined(
     image: NDArray[np.uint8], view: Rectification, scale: float, line: InclinedLine
 ) -> tuple[InclinedLine, float]:
     """The line with its edges measured, and by how much its width is too large (NaN where nothing tells)."""
@@ -75,7 +75,7 @@ def _refine_inclined_measured(
     rough = half + 0.5 * scale * line.width_px * np.array([-1.0, 1.0])
     borders = np.linspace(0, strip.shape[0], HALVES + 1).astype(int)
     parts = [slice(a, b) for a, b in pairwise(borders)]
-    found = np.array([[measured_edge(edges, x, rows, REFINE_INCLINED_REACH * scale) for x in rough] for rows in parts])
+    found = np.array([[measured_edge(edges, x, rows, INCLINED_REACH * scale) for x in rough] for rows in parts])
     if (found[:, :, 2] < 3).any():
         return coarse, float("nan")
     middles, widths = found[:, :, 0].mean(axis=1) - half, found[:, 1, 0] - found[:, 0, 0]

@@ -95,7 +95,7 @@ def test_every_word_of_the_page_is_there_for_the_translators(application):
 
     said = set()
 
-    def say(text):
+    def translate(text):
         said.add(text)
         return text
 
@@ -112,11 +112,11 @@ def test_every_word_of_the_page_is_there_for_the_translators(application):
     low = replace(takeoff_check(plan, MODEL.site, 1), is_upper_edge=False, above_edge_m=-2.0)
     high = replace(low, is_upper_edge=True, above_edge_m=2.0)
     sorties = tuple(replace(full.sorties[0], takeoff_check=check) for check in (low, high))
-    pictures = brief_pictures(MODEL, plan, UNITS, say)
+    pictures = brief_pictures(MODEL, plan, UNITS, translate)
     near = replace(full, low=LowFlight(6.0, 12.0, 100.0))
     sharp = replace(full, sharp_share=0.8, wanted_gsd_mm=5.0, coarsest_gsd_mm=9.0)
     for brief in (full, empty, bare, warned, near, sharp, replace(full, sorties=sorties)):
-        brief_html(brief, UNITS, dict.fromkeys(pictures, "x"), say)
+        brief_html(brief, UNITS, dict.fromkeys(pictures, "x"), translate)
     assert said <= set(WORDS)
     assert set(WORDS) - said == {"Page {0} of {1}"}
     assert brief_html_module.MAP in pictures

@@ -1,0 +1,73 @@
+"""Messages hold their parts whatever they are made of, and are told in any language and unit without failing."""
+
+import pickle
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from groundstation.services.messages import LANGUAGES, told, translation
+from groundstation.services.settings import Language
+from groundstation.services.units import UnitSystem
+from planning.base.messages import Message, about, glue, joined, say, without_place
+
+TEXTS = st.one_of(
+    st.text(max_size=12),
+    st.sampled_from(["5 {x}", "3 {}", "{0}", "2 %s", "-1.5 m", "1e9 km", "nan m", "'", ": ", "7 views"]),
+)
+VALUES = st.recursive(
+    st.one_of(TEXTS, st.floats(), st.integers()),
+    lambda inner: st.builds(lambda a, b: say("{}, leg {}", a, b), inner, inner) | st.builds(glue, inner, inner),
+    max_leaves=4,
+)
+
+
+@given(VALUES, VALUES, st.sampled_from(LANGUAGES), st.sampled_from(UnitSystem))
+def test_whatever_stands_in_a_message_it_can_be_told(first, second, language, units):
+    for message in (
+        say("cannot be read ({})", first, place=second),
+        joined("; ", (first, second)),
+        about(first, second),
+    ):
+        assert isinstance(told(message, translation(language), units), str)
+
+
+@given(VALUES, VALUES)
+def test_in_english_and_metres_a_message_is_its_own_text_and_goes_to_other_processes_whole(first, second):
+    message = say("the {} is not on the vehicle: {}", first, second, place="a.json")
+    assert told(message, translation("en"), UnitSystem.METRIC) == message
+    other = pickle.loads(pickle.dumps(message))
+    assert (other, other.template, other.values, other.place) == (
+        *(message, message.template),
+        *(message.values, message.place),
+    )
+    assert type(str(GeneratorExit(message))) is Message
+
+
+@given(TEXTS, st.text(min_size=1, max_size=8).filter(lambda text: ": " not in text and not text.endswith(":")))
+def test_a_place_can_be_taken_off_again(value, place):
+    message = say("cannot be read ({})", value)
+    there = without_place(about(place, message), place)
+    assert (there, there.template, there.values) == (message, message.template, message.values)
+    assert about("", message) == message
+
+
+def test_numbers_with_their_units_and_known_words_are_told_names_are_not():
+    german, metric, imperial = translation("de"), UnitSystem.METRIC, UnitSystem.IMPERIAL
+    limit = say("{}, at least {}", "-74.2 deg", "3 views")
+    assert told(limit, german, metric) == "-74.2°, mindestens 3 Aufnahmen"
+    named = say("obstacle '{}' is a mesh, not a box", "panel")
+    assert told(named, german, metric).startswith("Hindernis 'panel'")
+    low = say("home lies at {} m, below the ground at {} m; put it on the ground", 3.048, 0)
+    assert told(low, german, imperial) == (
+        "der Startplatz liegt bei 10.0 ft, unter dem Boden bei 0.0 ft; ihn auf den Boden setzen"
+    )
+
+
+def test_a_template_takes_as_many_values_as_it_has_fields():
+    with pytest.raises(ValueError, match="expected 1 values"):
+        say("cannot be read ({})")
+
+
+def test_the_command_line_speaks_the_languages_of_the_window():
+    assert set(LANGUAGES) == set(Language) - {Language.SYSTEM}
