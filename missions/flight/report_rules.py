@@ -154,10 +154,15 @@ def _endings(case: Case, records: Sequence[FlightRecord], sorties: Sequence[Sort
 def left_in_air_m(case: Case, record: FlightRecord) -> float | None:
     """Height above take-off at which a record leaves an aircraft in the air; None where it landed, or it does not say.
 
-    It has landed on the ground, on something of the site, or beside home or a rally point.
+    It has landed on the ground, on something of the site, or beside home or a rally point. A height that is older than
+    `FRESH_S` when the motors stop says nothing: the aircraft may have landed unheard.
     """
-    points = record.track.position_enu_m[np.isfinite(record.track.position_enu_m).all(axis=1)]
+    is_known = np.isfinite(record.track.position_enu_m).all(axis=1)
+    points = record.track.position_enu_m[is_known]
     if record.is_disarmed is None or len(points) == 0:
+        return None
+    stopped_s = next((event.time_s for event in reversed(record.events) if event.code == "disarmed"), None)
+    if record.is_disarmed and stopped_s is not None and stopped_s - record.track.time_s[is_known][-1] > FRESH_S:
         return None
     site, last = case.site_model.site, points[-1]
     places = np.array([site.home_enu_m, points[0], *(point.position_enu_m for point in site.rally_points)])
@@ -167,6 +172,9 @@ def left_in_air_m(case: Case, record: FlightRecord) -> float | None:
     on_something = bool(record.is_disarmed) and float(case.space.solids.clearance_m(last[None])[0]) <= UP_M
     return None if is_low or is_at_place or on_something else float(last[2] - site.home_enu_m[2])
 
+
+FRESH_S = 2.0
+"""Age of a height that still tells where motors stopped: autopilots take longer to land from 2 m (0.5 to 0.7 m/s)."""
 
 LANDED_NEAR_M = 10.0
 """Around home and rally points, within which a landing at their height is one there."""

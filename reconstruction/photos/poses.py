@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from planning.base.errors import InputError
 from planning.base.findings import Finding, Severity
-from planning.base.messages import joined, say
+from planning.base.messages import about, joined, say
 from planning.geo.frames import Origin
 from planning.photos.folder import in_order
 from planning.photos.places import (
@@ -265,9 +265,8 @@ def _unposed_findings(unposed: Sequence[Unposed], n_all: int) -> list[Finding]:
 def _lens_findings(lenses: Sequence[Lens]) -> list[Finding]:
     """Where intrinsics are from, and what is wrong with them."""
     sources = Counter(lens.source for lens in lenses)
-    text = "focal lengths are from: " + joined(
-        ", ", (say("{} ({} photos)", source, n) for source, n in sources.items())
-    )
+    counted = joined(", ", (say("{} ({} photos)", source, n) for source, n in sources.items()))
+    text = about("focal lengths are from", counted)
     findings = [Finding(Severity.NOTE, "lens-source", text)]
     n_bent = sum(not lens.is_distortion_known for lens in lenses)
     if n_bent:

@@ -151,7 +151,7 @@ class ChoiceSide(QWidget):
             widget.setEnabled(is_idle)
         self.form.setEnabled(is_idle and not controller.standing.is_interrupted)
         goes_on = controller.standing.is_interrupted and not controller.is_busy
-        self.train.setText(self.tr("Go on") if goes_on else self.tr("Train"))
+        self.train.setText(self.tr("Resume") if goes_on else self.tr("Train"))
         self.train.setEnabled(is_idle and controller.card is not None and bool(controller.out.name))
         can_stop = controller.phase in (Phase.PREPARING, Phase.TRAINING)
         self.pause.setEnabled(can_stop)

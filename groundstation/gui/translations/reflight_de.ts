@@ -607,12 +607,8 @@ Bild in dieser Entfernung: {4} x {5}</translation>
         <translation>Anhalten</translation>
     </message>
     <message>
-        <source>Go on</source>
-        <translation>Fortsetzen</translation>
-    </message>
-    <message>
         <source>Resume</source>
-        <translation>Weiter</translation>
+        <translation>Fortsetzen</translation>
     </message>
     <message>
         <source>The data set is being read ...</source>
@@ -628,7 +624,7 @@ Bild in dieser Entfernung: {4} x {5}</translation>
     </message>
     <message>
         <source>Stop and keep</source>
-        <translation>Beenden und behalten</translation>
+        <translation>Stopp, behalten</translation>
     </message>
     <message>
         <source>Cancel</source>
@@ -4240,7 +4236,7 @@ Blickrichtung: {3}</translation>
     </message>
     <message>
         <source>Stop and keep</source>
-        <translation>Beenden und behalten</translation>
+        <translation>Stopp, behalten</translation>
     </message>
     <message>
         <source>Compare plans</source>
@@ -4742,7 +4738,7 @@ Blickrichtung: {3}</translation>
     </message>
     <message>
         <source>Stop and keep</source>
-        <translation>Beenden und behalten</translation>
+        <translation>Stopp, behalten</translation>
     </message>
     <message>
         <source>Quality against time appears here while a plan runs.</source>

@@ -44,6 +44,7 @@ from groundstation.vehicle.sortie.run_records import Phase
 from groundstation.vehicle.sortie.sortie_run import SortieRun, Steps
 from groundstation.vehicle.state import Landed, VehicleState, after_restart
 from groundstation.vehicle.watch import STALE_S
+from missions.flight.report_rules import FRESH_S
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.messages import Address, CommandLong
 from missions.mavlink.transfer.download import Download, DownloadOutcome
@@ -437,7 +438,8 @@ def _fly(run: SortieRun) -> Steps:
             yield CommandCall("disarming", command, run.own)
             landed_s = run.now_s
         yield None
-    if was_up_m > MOTORS_OFF_M:
+    motion = run.state.motion
+    if was_up_m > MOTORS_OFF_M and motion is not None and motion.age_s(run.now_s) <= FRESH_S:
         raise MissionError(
             say(
                 "the motors stopped {:.0f} m above take-off: the aircraft fell; look for it{}",

@@ -127,8 +127,8 @@ def test_broken_off_it_offers_to_go_on_with_what_was_begun(chosen, tmp_path):
     (tmp_path / "model").mkdir()
     (tmp_path / "model" / "checkpoint.safetensors").write_bytes(b"")
     take(chosen, Ended("kept"))
-    assert "go on with it" in chosen.messages[-1].text
-    assert chosen.side.train.text() == "Go on"
+    assert "resume it" in chosen.messages[-1].text
+    assert chosen.side.train.text() == "Resume"
     assert "form" not in enabled(chosen)
     assert begin(chosen).resume
 

@@ -316,6 +316,14 @@ def test_a_record_that_leaves_the_aircraft_in_the_air_says_so(
         assert found[code].value == pytest.approx(record.track.position_enu_m[-1, 2], abs=0.01)
 
 
+@pytest.mark.parametrize(("silent_s", "has_fallen"), [(0.5, True), (60.0, False)])
+def test_motors_that_stopped_unheard_have_not_stopped_in_the_air(silent_s: float, has_fallen: bool) -> None:
+    cut = cut_at(flown()[0], flown()[0].photos[5].time_s + 0.5)
+    stopped = FlightEvent(float(cut.track.time_s[-1]) + silent_s, "disarmed", "")
+    made = report((replace(cut, is_disarmed=True, events=(stopped,)),))
+    assert any(finding.code == "motors-off" for finding in made.findings) is has_fallen
+
+
 @pytest.mark.parametrize("is_disarmed", [True, False, None])
 def test_a_flight_that_landed_did_not_end_in_the_air(is_disarmed: bool | None) -> None:
     made = report(tuple(replace(record, is_disarmed=is_disarmed) for record in flown()))

@@ -472,6 +472,20 @@ def test_another_vehicle_with_its_own_number_is_told_and_left_alone(orders):
     assert any("others are on the link, too: 2" in text for text in texts)
 
 
+def test_motors_that_stop_unheard_have_not_stopped_in_the_air(orders):
+    # Who was not heard for seconds may have landed meanwhile: its last height says nothing any more.
+    toy = toy_at_home(orders)
+
+    def show(view):
+        if view.phase is Phase.FLYING and len(view.state.photos) == 3 and toy.silent == (0.0, 0.0):
+            toy.silent = (toy.now_s, toy.now_s + 4.0)
+            # Of all streams, the heartbeat is the first to come back.
+            toy.is_armed = toy.tells_all = False
+
+    _, outcome = fly(orders, toy, show=show)
+    assert outcome.succeeded, outcome.error
+
+
 def test_motors_that_stop_in_the_air_are_no_landing(orders):
     toy = toy_at_home(orders)
 
