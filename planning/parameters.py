@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
+from planning.base.effects import EffectSetting
 from planning.base.parameters import Choice, check, parameter
 
 Precision = Literal["f32", "f64"]
@@ -79,7 +80,7 @@ class Constraints:
         row="more",
         suggested=(30.0, 15.0, 10.0, 5.0),
     )
-    occlusion: str = parameter(
+    occlusion: EffectSetting = parameter(
         "auto",
         "whether lines of sight are checked for what stands in them; auto: as the scene calls for",
         choices=(Choice("auto"), Choice("on"), Choice("off")),

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import torch
 
-from planning.base.effects import Wish
+from planning.base.effects import EffectSetting
 from reconstruction.base.cameras import Intrinsics, Pose, PosedPhoto
 from reconstruction.dataset.panel_images import draw_panels
 from reconstruction.light.cube.map import CubeMap
@@ -59,7 +59,7 @@ def compile_kernels() -> None:
     court = bundled_scene("court")
     eastwards = court.panes.corners_enu_m[0].mean(axis=0) + np.array([12.0, 0.0, 0.0])
     facing = PosedPhoto("", Path(), lens, Pose.looking(eastwards, -90.0, 0.0))
-    wishes: tuple[Wish, ...] = ("on", "off")
+    wishes: tuple[EffectSetting, ...] = ("on", "off")
     for near in wishes:
         settings = RenderSettings(samples=1, wishes={NEAR_FIELD: near}, environment_rows=16)
         Renderer(court, settings).render(facing)

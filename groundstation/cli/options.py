@@ -18,7 +18,7 @@ from planning.parameters import DEFAULT_PROFILE, LARGEST_SEED, PlanParameters
 
 if TYPE_CHECKING:
     from groundstation.services.mission.readiness import FlightDay
-    from planning.base.effects import Wish
+    from planning.base.effects import EffectSetting
 
 OPTIONS = {
     "photos_per_facade": "--photos-per-facade",
@@ -209,29 +209,29 @@ def _print_profiles() -> None:
         )
 
 
-def effect_wishes(texts: Sequence[str], effects: Sequence[str]) -> dict[str, Wish]:
-    """Wishes of `--effects`, by the names of `effects`.
+def effect_settings(texts: Sequence[str], effects: Sequence[str]) -> dict[str, EffectSetting]:
+    """Settings of `--effects`, by the names of `effects`.
 
     Raises
     ------
     InputError
-        A text is no wish, or names none of the effects.
+        A text is no setting, or names none of the effects.
     """
     names = {effect.lower().replace(" ", "-"): effect for effect in effects}
-    states: dict[str, Wish] = {"auto": "auto", "on": "on", "off": "off"}
-    all_at_once: dict[str, Wish] = {"auto": "auto", "none": "off", "all": "on"}
-    wishes: dict[str, Wish] = {}
+    states: dict[str, EffectSetting] = {"auto": "auto", "on": "on", "off": "off"}
+    all_at_once: dict[str, EffectSetting] = {"auto": "auto", "none": "off", "all": "on"}
+    settings: dict[str, EffectSetting] = {}
     for text in (part for given in texts for part in given.split(",")):
         name, equals, state = text.strip().partition("=")
         if not equals and name in all_at_once:
-            wishes = dict.fromkeys(names.values(), all_at_once[name])
+            settings = dict.fromkeys(names.values(), all_at_once[name])
         elif name.lower().replace(" ", "-") in names and state in states:
-            wishes[names[name.lower().replace(" ", "-")]] = states[state]
+            settings[names[name.lower().replace(" ", "-")]] = states[state]
         else:
             raise InputError(
                 f"--effects {text}: expected auto, none, all, or NAME=on, off or auto; names are {', '.join(names)}"
             )
-    return wishes
+    return settings
 
 
 def checked_seed(seed: int) -> int:

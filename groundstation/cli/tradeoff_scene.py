@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from groundstation.cli.lists import counts, words
-from groundstation.cli.options import add_profile_argument, checked_seed, effect_wishes, in_words_of_options, number
+from groundstation.cli.options import add_profile_argument, checked_seed, effect_settings, in_words_of_options, number
 from planning.base.errors import InputError
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ def add_arguments(parser: Any) -> None:
     add("--seed", type=int, default=0, metavar="N", help="of everything random (default 0)")
     add("--width", type=int, default=512, metavar="PX", help="of the photos (default 512)")
     add("--truth-rays", type=int, default=256, metavar="N", help="a pixel, of the truth (default 256)")
-    add("--effects", action="append", default=[], metavar="WISH", help="start from: auto, none, all, NAME=on|off|auto")
+    add("--effects", action="append", default=[], metavar="SETTING", help="start: auto, none, all, NAME=on|off|auto")
     add("--tolerance", type=number, default=1.0, metavar="X", help="times each effect's own tolerance (default 1)")
     add(
         "--reflections",
@@ -119,7 +119,7 @@ def _wish(options: argparse.Namespace) -> SceneRequest:
     from reconstruction.scenes.effect_names import EFFECTS
     from reconstruction.scenes.photos.renderer import RenderSettings
 
-    wishes = effect_wishes(options.effects, EFFECTS)
+    wishes = effect_settings(options.effects, EFFECTS)
     with in_words_of_options():
         return SceneRequest(
             scene=options.scene,

@@ -32,7 +32,7 @@ from missions.simulator.effects.multipath import GlassSky, Multipath, ReflectedR
 from missions.simulator.effects.shutter import PhotoTiming
 from missions.simulator.effects.wind import GustyAir, Wind
 from missions.simulator.scene import FlightScene, flight_scene
-from planning.base.effects import Decision, Effect, Wish, decide
+from planning.base.effects import Decision, Effect, EffectSetting, decide
 from planning.base.errors import InputError
 from planning.base.messages import say
 from planning.geo.frames import Vec3
@@ -54,20 +54,20 @@ EFFECTS: tuple[Effect[FlightScene], ...] = (
 """All effects, in the order in which they are shown. The place of each seeds its random numbers: add at the end."""
 
 
-def decide_effects(scene: FlightScene, wishes: Mapping[str, Wish] | None = None) -> tuple[Decision, ...]:
-    """Ask the scene about every effect; `wishes`, by name, overrule it.
+def decide_effects(scene: FlightScene, settings: Mapping[str, EffectSetting] | None = None) -> tuple[Decision, ...]:
+    """Ask the scene about every effect; `settings`, by name, overrule it.
 
     Raises
     ------
     InputError
-        A wish names no effect.
+        A setting names no effect.
     """
-    wishes = wishes or {}
+    settings = settings or {}
     known = [effect.name for effect in EFFECTS]
-    for name in wishes:
+    for name in settings:
         if name not in known:
             raise InputError(say("there is no effect '{}' of the flight; known are: {}", name, ", ".join(known)))
-    return tuple(decide(effect, scene, wishes.get(effect.name, "auto")) for effect in EFFECTS)
+    return tuple(decide(effect, scene, settings.get(effect.name, "auto")) for effect in EFFECTS)
 
 
 def effects_table(decisions: tuple[Decision, ...]) -> str:
@@ -94,7 +94,7 @@ def make_airframe(
     sortie: Sortie | None = None,
     *,
     conditions: Conditions | None = None,
-    wishes: Mapping[str, Wish] | None = None,
+    settings: Mapping[str, EffectSetting] | None = None,
     home_enu_m: Vec3 | None = None,
     seed: int = 0,
     autopilot: Autopilot | None = None,
@@ -107,7 +107,7 @@ def make_airframe(
         One of the plan's; None: effects are decided for all of them together.
     conditions
         None: as in `Conditions`, with the plan's wind.
-    wishes
+    settings
         `on`, `off` or `auto` by the effect's name.
     home_enu_m
         None: the plan's, else the site's.
@@ -119,13 +119,13 @@ def make_airframe(
     Raises
     ------
     InputError
-        A wish names no effect.
+        A setting names no effect.
     InfeasibleError
         The wind carries the aircraft away.
     """
     conditions = Conditions(wind_m_s=plan.rules.wind_m_s) if conditions is None else conditions
     scene = flight_scene(plan, site_model, conditions, sortie)
-    decisions = decide_effects(scene, wishes)
+    decisions = decide_effects(scene, settings)
     low, high = plan.camera.gimbal_pitch_deg
     home = home_enu_m or plan.home_enu_m or site_model.site.home_enu_m
     # The wind is simulated, and the mission says how fast to fly: only the aircraft's own limits count here.

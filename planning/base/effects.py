@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal, Protocol, TypeVar
 
-Wish = Literal["auto", "on", "off"]
+EffectSetting = Literal["auto", "on", "off"]
 """What the user asked for; `auto` leaves it to the scene."""
 
 Scene_contra = TypeVar("Scene_contra", contravariant=True)
@@ -74,14 +74,14 @@ class Effect(Protocol[Scene_contra]):
         """Size, reason and cost of the effect in this scene."""
 
 
-def decide(effect: Effect[Scene_contra], scene: Scene_contra, wish: Wish = "auto") -> Decision:
+def decide(effect: Effect[Scene_contra], scene: Scene_contra, setting: EffectSetting = "auto") -> Decision:
     """Ask the scene, and let the user overrule it."""
     found = effect.assess(scene)
-    on = found.size > effect.tolerance if wish == "auto" else wish == "on"
+    on = found.size > effect.tolerance if setting == "auto" else setting == "on"
     return Decision(
         effect=effect.name,
         on=on,
-        decided_by="scene" if wish == "auto" else "user",
+        decided_by="scene" if setting == "auto" else "user",
         reason=found.reason,
         size=found.size,
         tolerance=effect.tolerance,

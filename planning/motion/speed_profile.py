@@ -22,7 +22,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.base.effects import Assessment, Decision, Wish, decide
+from planning.base.effects import Assessment, Decision, EffectSetting, decide
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor, Stop, never
 from planning.motion.smooth_path import PathGrid, arrivals_s, fastest_sweep, interval_times_s, path_grid
@@ -259,7 +259,7 @@ class CornerSpeed:
         return Assessment(max(0.0, saved_s), reason, COST_S + COST_PER_NODE_S * len(grid.is_stop))
 
 
-def corner_saving_s(path: FlightPath, limits: MotionLimits, wish: Wish = "auto") -> tuple[float, Decision]:
+def corner_saving_s(path: FlightPath, limits: MotionLimits, setting: EffectSetting = "auto") -> tuple[float, Decision]:
     """What flying through the corners of a path saves against stopping at each, and the effect's decision.
 
     Returns
@@ -267,7 +267,7 @@ def corner_saving_s(path: FlightPath, limits: MotionLimits, wish: Wish = "auto")
     saving_s
         By the program where the effect is on, 0 where it is off. Jerk is left out on both sides.
     """
-    decision = decide(CornerSpeed(), (path, limits), wish)
+    decision = decide(CornerSpeed(), (path, limits), setting)
     if not decision.on:
         return 0.0, decision
     stopping_s = float(stopping_times_s(path, replace(limits, jerk_m_s3=math.inf))[-1]) + float(path.hover_s[-1])

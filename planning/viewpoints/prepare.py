@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from planning.base.effects import Decision, Wish, decide
+from planning.base.effects import Decision, EffectSetting, decide
 from planning.base.errors import InfeasibleError
 from planning.base.findings import Finding, Severity
 from planning.base.messages import joined, say
@@ -122,7 +122,7 @@ def coverage_model(
     )
 
 
-def decide_occlusion(site_model: SiteModel, space: FreeSpace, wish: Wish, seed: int = 0) -> Decision:
+def decide_occlusion(site_model: SiteModel, space: FreeSpace, setting: EffectSetting, seed: int = 0) -> Decision:
     """Whether occlusion is taken into account on this site, and why.
 
     Raises
@@ -133,7 +133,7 @@ def decide_occlusion(site_model: SiteModel, space: FreeSpace, wish: Wish, seed: 
     require_panels(site_model.site)
     frames = panel_frames(panel_corners(site_model.site))
     places = spread_positions(space, frames, N_PLACES, np.random.default_rng(seed))
-    return decide(Occlusion(), OcclusionScene(frames, space.solids.bvh.corners, places), wish)
+    return decide(Occlusion(), OcclusionScene(frames, space.solids.bvh.corners, places), setting)
 
 
 def prepare(
@@ -161,7 +161,7 @@ def prepare(
     monitor.report(say("reading the site"), 0, 1)
     constraints = settled(constraints, site_model, camera)
     space = free_space(site_model, constraints.min_distance_m, constraints.min_height_above_ground_m)
-    decision = decide_occlusion(site_model, space, wish_of(constraints), seed)
+    decision = decide_occlusion(site_model, space, constraints.occlusion, seed)
     decided = replace(constraints, occlusion="on" if decision.on else "off")
     model = coverage_model(site_model, space, camera, decided, precision)
     if len(spread_positions(space, model.frames, N_PLACES, np.random.default_rng(seed))) == 0:
@@ -179,12 +179,6 @@ def prepare(
     monitor.report(say("finding ways around"), 0, 1)
     problem = ViewProblem(model, space, reachability, build_roadmap(space, seed))
     return Prepared(site_model, problem, decided, (decision,), _findings(site_model, problem), seed, is_cut_short)
-
-
-def wish_of(constraints: Constraints) -> Wish:
-    """What the constraints say of occlusion, as a wish."""
-    wishes: dict[str, Wish] = {"auto": "auto", "on": "on", "off": "off"}
-    return wishes[constraints.occlusion]
 
 
 def _findings(site_model: SiteModel, problem: ViewProblem) -> tuple[Finding, ...]:

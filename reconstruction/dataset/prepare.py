@@ -17,7 +17,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.base.effects import Assessment, Decision, Wish, decide
+from planning.base.effects import Assessment, Decision, EffectSetting, decide
 from planning.base.errors import InputError
 from planning.base.files import read_given
 from planning.base.findings import Finding, Severity
@@ -146,8 +146,8 @@ class PrepareParameters:
 
     normal_step: int = 2
     n_points: int = 100_000
-    hidden_panels: Wish = "auto"
-    lens_distortion: Wish = "auto"
+    hidden_panels: EffectSetting = "auto"
+    lens_distortion: EffectSetting = "auto"
     refine: RefineParameters = field(default_factory=RefineParameters)
     seed: int = 0
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from planning.base.effects import Decision, Wish
+from planning.base.effects import Decision, EffectSetting
 from planning.base.errors import InputError
 from planning.base.progress import QUIET, Monitor
 from reconstruction.base.cameras import PosedPhoto
@@ -146,7 +146,7 @@ def effects_worth(
     OperationCancelled
         From `monitor`.
     """
-    decided: dict[str, Wish] = {decision.effect: ("on" if decision.on else "off") for decision in decisions}
+    decided: dict[str, EffectSetting] = {decision.effect: ("on" if decision.on else "off") for decision in decisions}
     asked = [decision.effect for decision in decisions if decision.on and decision.effect in effects]
     everything = folder / "everything"
     worths = []

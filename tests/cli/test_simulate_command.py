@@ -6,7 +6,7 @@ from contextlib import contextmanager
 
 import pytest
 
-from groundstation.cli.commands.simulate import effect_wishes
+from groundstation.cli.commands.simulate import effect_settings
 from missions.flight.flight_file import read_flight
 from missions.flight.logs.read import read_log
 from missions.mavlink.autopilots import Autopilot
@@ -59,13 +59,13 @@ def test_effects_can_be_overruled(fly):
 
 
 def test_wishes_are_understood_together():
-    assert effect_wishes([]) == {}
-    assert set(effect_wishes(["all"]).values()) == {"on"}
-    assert effect_wishes(["none,gnss-noise=auto"])["GNSS noise"] == "auto"
-    assert effect_wishes(["GNSS noise=off"]) == {"GNSS noise": "off"}
+    assert effect_settings([]) == {}
+    assert set(effect_settings(["all"]).values()) == {"on"}
+    assert effect_settings(["none,gnss-noise=auto"])["GNSS noise"] == "auto"
+    assert effect_settings(["GNSS noise=off"]) == {"GNSS noise": "off"}
     for bad in ("wind", "wind=yes", "rain=on", "=on", ""):
         with pytest.raises(InputError, match="names are wind, gnss-noise"):
-            effect_wishes([bad])
+            effect_settings([bad])
 
 
 @pytest.mark.parametrize(

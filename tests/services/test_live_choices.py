@@ -48,7 +48,7 @@ def test_views_are_shared_out_so_that_each_is_in_one_sortie_that_fits():
 
 def airframe(sags):
     model, plan = planned()
-    return make_airframe(plan, model, plan.sorties[0], wishes={"battery sag": "on" if sags else "off"})
+    return make_airframe(plan, model, plan.sorties[0], settings={"battery sag": "on" if sags else "off"})
 
 
 @pytest.mark.parametrize("sags", [True, False])

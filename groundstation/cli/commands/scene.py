@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from groundstation.cli.options import (
     add_profile_argument,
     checked_seed,
-    effect_wishes,
+    effect_settings,
     in_words_of_options,
     new_folder,
     number,
@@ -74,7 +74,7 @@ def add_parser(subparsers: Any) -> None:
     add("--seed", type=int, default=0, metavar="N", help="of everything random (default 0)")
     add("--width", type=int, default=1024, metavar="PX", help="of the photos (default 1024)")
     add("--points", type=int, default=100_000, metavar="N", help="points that reconstruction starts from")
-    add("--effects", action="append", default=[], metavar="WISH", help="auto, none, all, or NAME=on|off|auto")
+    add("--effects", action="append", default=[], metavar="SETTING", help="auto, none, all, or NAME=on|off|auto")
     add("--tolerance", type=number, default=1.0, metavar="X", help="times each effect's own tolerance (default 1)")
     add(
         "--renderer",
@@ -127,7 +127,7 @@ def _wish(options: argparse.Namespace) -> SceneRequest:
     from reconstruction.scenes.effect_names import EFFECTS
     from reconstruction.scenes.photos.renderer import RenderSettings
 
-    wishes = effect_wishes(options.effects, EFFECTS)
+    wishes = effect_settings(options.effects, EFFECTS)
     if options.rays is not None and options.renderer != "mitsuba":
         raise InputError("--rays is for Mitsuba; add --renderer mitsuba, or leave it out")
     rays = DEFAULT_RAYS if options.rays is None else options.rays

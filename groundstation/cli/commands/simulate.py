@@ -9,14 +9,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from groundstation.cli.options import add_parameter, checked_seed, in_words_of_options, json_file, number, typed_values
-from groundstation.cli.options import effect_wishes as wishes_of_effects
+from groundstation.cli.options import effect_settings as settings_of_effects
 from missions.simulator.conditions import Conditions
 from planning.base.errors import InputError
 from planning.base.parameters import declared, with_values
 
 if TYPE_CHECKING:
     from groundstation.services.fly.flying import FlightRequest, Flown
-    from planning.base.effects import Wish
+    from planning.base.effects import EffectSetting
     from planning.base.progress import Monitor
 
 EPILOG = """effects:
@@ -64,7 +64,7 @@ def add_parser(subparsers: Any) -> None:
         if each.parameter.option:
             unset = "what the plan expects" if name == "wind_m_s" else ""
             add_parameter(parser, replace(each, default=None if unset else each.default), unset=unset)
-    add("--effects", action="append", default=[], metavar="WISH", help="auto, none, all, or NAME=on|off|auto")
+    add("--effects", action="append", default=[], metavar="SETTING", help="auto, none, all, or NAME=on|off|auto")
     add("--seed", type=int, default=0, help="of everything random (default 0)")
     add("--speedup", type=number, metavar="X", help="times real time (default: as fast as it goes)")
     add("--sitl", type=Path, metavar="BINARY", help="start this arducopter and fly it")
@@ -145,7 +145,7 @@ def _wish(options: argparse.Namespace) -> FlightRequest:
         link=options.link,
         autopilot=None if options.autopilot is None else Autopilot(options.autopilot),
         conditions=conditions,
-        effects=effect_wishes(options.effects),
+        effects=effect_settings(options.effects),
         seed=checked_seed(options.seed),
         speedup=options.speedup,
         simulations_only="" if is_simulated or options.take_off else NO_SIMULATION,
@@ -177,17 +177,17 @@ def _check_link(options: argparse.Namespace) -> None:
         raise InputError(f"--link {options.link}: {MAY_BE_REAL}")
 
 
-def effect_wishes(texts: list[str]) -> dict[str, Wish]:
-    """Wishes by the names of the simulation's effects.
+def effect_settings(texts: list[str]) -> dict[str, EffectSetting]:
+    """Settings by the names of the simulation's effects.
 
     Raises
     ------
     InputError
-        A text is no wish, or names no effect.
+        A text is no setting, or names no effect.
     """
     from missions.simulator.build import EFFECTS
 
-    return wishes_of_effects(texts, [effect.name for effect in EFFECTS])
+    return settings_of_effects(texts, [effect.name for effect in EFFECTS])
 
 
 def _summary(flown: Flown, options: argparse.Namespace) -> dict[str, Any]:

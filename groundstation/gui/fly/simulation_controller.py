@@ -16,7 +16,7 @@ from groundstation.services.jobs.runner import JobContext
 from groundstation.services.plan.effects import EffectChoice
 from groundstation.services.units import UnitSystem
 from missions.simulator.conditions import Conditions
-from planning.base.effects import Wish
+from planning.base.effects import EffectSetting
 from planning.base.parameters import declared, with_values
 from planning.plan import Plan
 
@@ -36,7 +36,7 @@ class SimulationPage(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._conditions = Conditions()
-        self._wishes: dict[str, Wish] = {}
+        self._wishes: dict[str, EffectSetting] = {}
         self.rows = rows_of(declared(Conditions))
         self.effects = EffectsPanel()
         form = Form()
@@ -52,11 +52,11 @@ class SimulationPage(QWidget):
         self.effects.wishChanged.connect(self._wished)
         self.setValue(self._conditions, {})
 
-    def value(self) -> tuple[Conditions, dict[str, Wish]]:
+    def value(self) -> tuple[Conditions, dict[str, EffectSetting]]:
         """Conditions, and wishes by the name of an effect."""
         return self._conditions, dict(self._wishes)
 
-    def setValue(self, conditions: Conditions, wishes: dict[str, Wish]) -> None:  # noqa: N802
+    def setValue(self, conditions: Conditions, wishes: dict[str, EffectSetting]) -> None:  # noqa: N802
         """Show other conditions."""
         self._conditions, self._wishes = conditions, dict(wishes)
         blockers = [QSignalBlocker(row) for row in self.rows.values()]
@@ -79,7 +79,7 @@ class SimulationPage(QWidget):
         self._conditions = with_values(self._conditions, values)
         self.valueChanged.emit()
 
-    def _wished(self, effect: str, wish: Wish) -> None:
+    def _wished(self, effect: str, wish: EffectSetting) -> None:
         self._wishes[effect] = wish
         self.valueChanged.emit()
 
@@ -100,7 +100,7 @@ class SimulationController(QObject):
         self._workspace = workspace
         self._looking_id = 0
         self.conditions: Conditions = CALM
-        self.wishes: dict[str, Wish] = {}
+        self.wishes: dict[str, EffectSetting] = {}
 
     def connection(self, sortie: LiveSortie, choice: ConnectionChoice, charge: float) -> Simulation:
         """The simulation of a sortie, as it was chosen; `charge` of the battery that it begins with, 1 full."""
@@ -114,7 +114,7 @@ class SimulationController(QObject):
             charge=charge,
         )
 
-    def choose(self, conditions: Conditions, wishes: dict[str, Wish], plan: Plan | None, number: int) -> None:
+    def choose(self, conditions: Conditions, wishes: dict[str, EffectSetting], plan: Plan | None, number: int) -> None:
         """Simulate this sortie in other conditions the next time."""
         self.conditions, self.wishes = conditions, wishes
         self.look(plan, number)

@@ -111,9 +111,9 @@ class _EffectCard(QFrame):
                 found.size, translated(found.unit, units), found.tolerance, found.cost_s
             )
         )
-        self.wish.setVisible(choice.wish is not None)
+        self.wish.setVisible(choice.setting is not None)
         with QSignalBlocker(self.wish):
-            self.wish.setCurrentIndex(WISHES.index(choice.wish or "auto"))
+            self.wish.setCurrentIndex(WISHES.index(choice.setting or "auto"))
 
     def text(self) -> str:
         """Everything the card says."""

@@ -26,7 +26,7 @@ from missions.simulator.effects.facts import effect_facts
 from missions.simulator.effects.link_loss import through_air
 from missions.simulator.server import MAX_SPEEDUP, serve
 from missions.simulator.vehicle import SimulatedVehicle
-from planning.base.effects import Decision, Wish
+from planning.base.effects import Decision, EffectSetting
 from planning.base.progress import Clock
 from planning.geo.frames import Origin, Vec3
 from planning.plan import Plan
@@ -238,7 +238,7 @@ class Simulation:
     autopilot: Autopilot = Autopilot.ARDUPILOT
     speed_up: float = 1.0
     conditions: Conditions = CALM
-    wishes: Mapping[str, Wish] = field(default_factory=dict)
+    wishes: Mapping[str, EffectSetting] = field(default_factory=dict)
     charge: float = 1.0
     seed: int = 0
     stands_enu_m: Vec3 | None = None
@@ -262,7 +262,7 @@ class Simulation:
             self.site_model,
             sortie,
             conditions=self.conditions,
-            wishes=self.wishes,
+            settings=self.wishes,
             home_enu_m=self.stands_enu_m,
             seed=self.seed,
             autopilot=self.autopilot,

@@ -35,7 +35,7 @@ from missions.simulator.conditions import Conditions
 from missions.simulator.effects.link_loss import through_air
 from missions.simulator.server import DirectLink
 from missions.simulator.vehicle import SimulatedVehicle
-from planning.base.effects import Decision, Wish
+from planning.base.effects import Decision, EffectSetting
 from planning.base.errors import GroundStationError, InputError, MissionError, OperationCancelled
 from planning.base.findings import Finding
 from planning.base.json_file import check_output
@@ -141,7 +141,7 @@ class FlightRequest:
     link: str = SIMULATED
     autopilot: Autopilot | None = None
     conditions: Conditions | None = None
-    effects: Mapping[str, Wish] = field(default_factory=dict)
+    effects: Mapping[str, EffectSetting] = field(default_factory=dict)
     seed: int = 0
     speedup: float | None = None
     simulations_only: str = ""
@@ -326,7 +326,7 @@ class _Case:
             self.site_model,
             self.plan.sorties[orders.number - 1],
             conditions=conditions,
-            wishes=wish.effects,
+            settings=wish.effects,
             home_enu_m=orders.home_enu_m,
             seed=seed,
             autopilot=self.autopilot,

@@ -13,7 +13,7 @@ from missions.mission.build import missions_from_plan
 from missions.simulator.build import decide_effects
 from missions.simulator.conditions import Conditions
 from missions.simulator.scene import flight_scene
-from planning.base.effects import Wish
+from planning.base.effects import EffectSetting
 from planning.base.errors import MissionError
 from planning.base.findings import Severity
 from planning.base.messages import say
@@ -130,10 +130,10 @@ def take_off_of(sortie: LiveSortie, autopilot: Autopilot | None) -> TakeOff:
 
 
 def simulation_effects(
-    plan: Plan, site_model: SiteModel, number: int, conditions: Conditions, wishes: Mapping[str, Wish]
+    plan: Plan, site_model: SiteModel, number: int, conditions: Conditions, settings: Mapping[str, EffectSetting]
 ) -> tuple[EffectChoice, ...]:
     """What the simulation of a sortie, counted from 1, takes into account, and why."""
     scene = flight_scene(plan, site_model, conditions, plan.sorties[number - 1])
     return tuple(
-        EffectChoice(decision, wishes.get(decision.effect, "auto")) for decision in decide_effects(scene, wishes)
+        EffectChoice(decision, settings.get(decision.effect, "auto")) for decision in decide_effects(scene, settings)
     )

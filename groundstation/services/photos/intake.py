@@ -25,7 +25,7 @@ from planning.photos.record import PhotoMetadata
 from planning.plan import Plan
 from planning.site.free_space import unchecked_space
 from planning.site.records import Site, SiteModel, require_panels
-from planning.viewpoints.prepare import coverage_model, decide_occlusion, wish_of
+from planning.viewpoints.prepare import coverage_model, decide_occlusion
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.photos.coverage import AchievedCoverage, achieved_coverage, distances_m, distances_to_building_m
 from reconstruction.photos.poses import PhotoSet, pose_photos
@@ -200,7 +200,7 @@ def _coverage_model(model: SiteModel, plan: Plan | None) -> tuple[CoverageModel,
     camera = profile(DEFAULT_PROFILE).camera if plan is None else plan.camera
     constraints = Constraints() if plan is None else plan.constraints
     space = unchecked_space(model, constraints.min_distance_m)
-    decision = decide_occlusion(model, space, wish_of(constraints))
+    decision = decide_occlusion(model, space, constraints.occlusion)
     decided = replace(constraints, occlusion="on" if decision.on else "off")
     return coverage_model(model, space, camera, decided), decision
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from planning.base.effects import Decision, Wish, decide
+from planning.base.effects import Decision, EffectSetting, decide
 from planning.base.errors import InfeasibleError
 from planning.motion.sortie_timing import sortie_flight_path
 from planning.motion.speed_profile import CornerSpeed
@@ -18,16 +18,16 @@ from planning.viewpoints.prepare import decide_occlusion
 
 @dataclass(frozen=True, slots=True)
 class EffectChoice:
-    """An effect as the scene has it, and what the user wished.
+    """An effect as the scene has it, and what the user set.
 
     Parameters
     ----------
-    wish
+    setting
         None for effects that the user cannot overrule here.
     """
 
     decision: Decision
-    wish: Wish | None
+    setting: EffectSetting | None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -50,17 +50,16 @@ class SceneEffects:
 
 
 def scene_effects(site_model: SiteModel, request: PlanRequest) -> SceneEffects:
-    """What the scene calls for, measured on it; what was wished overrules the decision, not the measurement.
+    """What the scene calls for, measured on it; what the user set overrules the decision, not the measurement.
 
     A site without panels calls for nothing.
     """
     if site_model.site.n_panels == 0:
         return SceneEffects(site_model, request, ())
     constraints = request.constraints
-    wishes: dict[str, Wish] = {"auto": "auto", "on": "on", "off": "off"}
-    wish = wishes[constraints.occlusion]
     space = unchecked_space(site_model, constraints.min_distance_m)
-    occlusion = EffectChoice(decide_occlusion(site_model, space, wish, request.seed), wish)
+    setting = constraints.occlusion
+    occlusion = EffectChoice(decide_occlusion(site_model, space, setting, request.seed), setting)
     return SceneEffects(site_model, request, (occlusion,))
 
 

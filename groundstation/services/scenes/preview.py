@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.base.effects import Decision, Wish, decide
+from planning.base.effects import Decision, EffectSetting, decide
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor, Stop, Trace, never
 from planning.geo.mesh import join
@@ -50,7 +50,7 @@ STRIP_PX = 1 << 17
 OF_FILES = frozenset({EXPOSURE, POSITION_ERROR, GIMBAL_ERROR})
 """Effects that change what one photo's file says, or one photo against another, and not what this one shows."""
 
-LEFT_OUT: Mapping[str, Wish] = {SKY_OCCLUSION: "off"}
+LEFT_OUT: Mapping[str, EffectSetting] = {SKY_OCCLUSION: "off"}
 """What previews do without: 3 to 9 grey levels, mostly on walls and ground, for 1 to 10 s of a core wherever a part of
 a scene is first seen."""
 

@@ -12,7 +12,7 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.base.effects import Assessment, Decision, Wish, decide
+from planning.base.effects import Assessment, Decision, EffectSetting, decide
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.panels.rectify.fit import SurfaceFit
 from reconstruction.panels.rectify.polynomial import polynomial_view
@@ -91,7 +91,7 @@ class Unrolling:
 
 def decide_view(views: Sequence[SurfaceView], kind: ViewKind = "auto") -> Decision:
     """Whether photos of a facade are unrolled by arc length: the decision of the photo that it changes most."""
-    wish: Wish = "auto" if kind == "auto" else "on" if kind == "exact" else "off"
+    wish: EffectSetting = "auto" if kind == "auto" else "on" if kind == "exact" else "off"
     return max((decide(Unrolling(), view, wish) for view in views), key=lambda found: found.size)
 
 

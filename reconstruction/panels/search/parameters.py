@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
-from planning.base.effects import Wish
+from planning.base.effects import EffectSetting
 from planning.base.parameters import Choice, check, like, parameter
 from planning.parameters import PlanParameters
 
@@ -95,7 +95,7 @@ class SegmentationParameters:
     use_spacing: bool = parameter(True)
     use_stillness: bool = parameter(True)
     find_extent: bool = parameter(True)
-    inclined: Wish = parameter("auto", choices=(Choice("auto"), Choice("on"), Choice("off")))
+    inclined: EffectSetting = parameter("auto", choices=(Choice("auto"), Choice("on"), Choice("off")))
     seed: int = like(PlanParameters, "seed", 0, help="", option="", row="")
 
     def __post_init__(self) -> None:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.base.effects import Decision, Wish, decide
+from planning.base.effects import Decision, EffectSetting, decide
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.panels.rectify.curvature import Curvature, FittedFacade
 from reconstruction.panels.rectify.fit import FitParameters, SurfaceFit, fit_cylinder, fit_plane
@@ -54,7 +54,7 @@ class Facade:
 def building_facades(
     photos: Sequence[PosedPhoto],
     patches: Sequence[Sequence[FacadePatch]],
-    curvature: Wish = "auto",
+    curvature: EffectSetting = "auto",
     parameters: FitParameters | None = None,
 ) -> tuple[Facade, ...]:
     """Facades out of the patches of all photos, the one with the most points first.
@@ -95,7 +95,7 @@ def _lies_on(patch: FacadePatch, other: FacadePatch) -> bool:
 
 
 def _facade(
-    photos: Sequence[PosedPhoto], cluster: list[tuple[int, FacadePatch]], wish: Wish, parameters: FitParameters
+    photos: Sequence[PosedPhoto], cluster: list[tuple[int, FacadePatch]], wish: EffectSetting, parameters: FitParameters
 ) -> Facade:
     points = np.concatenate([patch.points_enu_m for _, patch in cluster])
     camera = np.mean([photos[number].pose.position_enu_m for number, _ in cluster], axis=0)

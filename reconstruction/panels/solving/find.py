@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from planning.base.effects import Decision, Wish, decide
+from planning.base.effects import Decision, EffectSetting, decide
 from planning.base.errors import InfeasibleError
 from planning.base.findings import Finding, Severity
 from planning.base.messages import say
@@ -190,9 +190,9 @@ class FindParameters:
     """
 
     photos_per_facade: int = 4
-    curvature: Wish = "auto"
+    curvature: EffectSetting = "auto"
     view: ViewKind = "auto"
-    fuse: Wish = "auto"
+    fuse: EffectSetting = "auto"
     least_panels: int = 2
     patches: PatchParameters = field(default_factory=PatchParameters)
     segmentation: SegmentationParameters = field(default_factory=SegmentationParameters)

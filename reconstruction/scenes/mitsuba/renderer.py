@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.base.effects import Wish
+from planning.base.effects import EffectSetting
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.scenes.effect_names import DISTORTION, INTERIOR, MOTION_BLUR, SUN_GLARE
 from reconstruction.scenes.mitsuba.plugins import lens, mitsuba
@@ -54,7 +54,7 @@ class MitsubaRenderer:
         self._embedded = Renderer(scene, replace(settings, samples=SAMPLES))
         self._without: Renderer | None = None
         if any(map(settings.is_on, LACKING)):
-            off: dict[str, Wish] = dict.fromkeys(LACKING, "off")
+            off: dict[str, EffectSetting] = dict.fromkeys(LACKING, "off")
             self._without = Renderer(scene, replace(settings, samples=SAMPLES, wishes={**settings.wishes, **off}))
         self._middle = middle_enu_m(scene)
         self._scene = mitsuba_scene(mi, scene, settings.switches)

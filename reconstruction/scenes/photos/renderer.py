@@ -15,7 +15,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.base.effects import Decision, Wish
+from planning.base.effects import Decision, EffectSetting
 from planning.base.errors import InputError
 from planning.base.jit import chunks, run_chunks
 from planning.base.messages import say
@@ -88,7 +88,7 @@ class RenderSettings:
     """
 
     samples: int | Literal["auto"] = "auto"
-    wishes: Mapping[str, Wish] = field(default_factory=dict)
+    wishes: Mapping[str, EffectSetting] = field(default_factory=dict)
     tolerance: float = 1.0
     environment_rows: int = ROWS
     mitsuba_rays: int | None = None

@@ -114,7 +114,7 @@ def test_planned_office_is_flown_with_as_many_photos_as_views(autopilot: Autopil
     model = SCENES["office"]()
     plan = planned_office()
     for mission, sortie in zip(missions_from_plan(plan), plan.sorties, strict=True):
-        airframe, _ = make_airframe(plan, model, sortie, wishes=None)
+        airframe, _ = make_airframe(plan, model, sortie, settings=None)
         check_photos(fly(plan, mission, autopilot, airframe), plan, mission, 0.5, 2.0)
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import pytest
 
-from planning.base.effects import Assessment, Decision, Wish, decide
+from planning.base.effects import Assessment, Decision, EffectSetting, decide
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ def test_the_scene_decides_by_what_is_more_than_the_tolerance(size: float, on: b
 
 @pytest.mark.parametrize(("wish", "on"), [("on", True), ("off", False)])
 @pytest.mark.parametrize("size", [0.0, 9.0])
-def test_the_user_overrules_the_scene_and_still_reads_what_it_holds(wish: Wish, on: bool, size: float) -> None:
+def test_the_user_overrules_the_scene_and_still_reads_what_it_holds(wish: EffectSetting, on: bool, size: float) -> None:
     decision = decide(Breeze(), size, wish)
     assert (decision.on, decision.decided_by, decision.size) == (on, "user", size)
     assert f"the air moves by {size:g}" in decision.reason

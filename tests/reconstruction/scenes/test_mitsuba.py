@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 pytest.importorskip("mitsuba", reason="the optional extra 'mitsuba' is not installed")
 
-from planning.base.effects import Wish
+from planning.base.effects import EffectSetting
 from planning.base.errors import InputError
 from planning.geo.mesh import box_mesh
 from planning.site.bundled import single_panel
@@ -53,7 +53,7 @@ def grey(
     return grey_levels(renderer.render(taken, seed, moved_enu_m).linear.astype(float))
 
 
-def judge(made: Scene, wishes: dict[str, Wish] | None = None, n_rays: int = N_RAYS) -> MitsubaRenderer:
+def judge(made: Scene, wishes: dict[str, EffectSetting] | None = None, n_rays: int = N_RAYS) -> MitsubaRenderer:
     return MitsubaRenderer(made, RenderSettings(wishes=wishes or {}), n_rays, "scalar_rgb")
 
 
@@ -61,7 +61,7 @@ def assert_agree_unless(
     broken: Callable[[Scene], Scene],
     made: Scene,
     taken: PosedPhoto,
-    wishes: dict[str, Wish] | None = None,
+    wishes: dict[str, EffectSetting] | None = None,
     n_rays: int = N_RAYS,
     moved_enu_m: Array | None = None,
 ) -> None:

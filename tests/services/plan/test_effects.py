@@ -18,7 +18,7 @@ def test_what_stands_in_front_of_panels_is_on_where_something_does_and_off_where
     (free,) = scene_effects(roof(), PlanRequest()).choices
     assert opposite.decision.on
     assert not free.decision.on
-    assert (opposite.wish, opposite.decision.decided_by) == ("auto", "scene")
+    assert (opposite.setting, opposite.decision.decided_by) == ("auto", "scene")
 
 
 @pytest.mark.parametrize("wish", ["on", "off"])
@@ -47,4 +47,4 @@ def test_effects_hold_until_site_distance_wish_or_seed_change() -> None:
 def test_a_plan_adds_what_its_check_looks_at_and_the_user_cannot_overrule() -> None:
     found = plan_effects(planned("kiosk").plan)
     assert found
-    assert {choice.wish for choice in found} == {None}
+    assert {choice.setting for choice in found} == {None}

@@ -54,7 +54,7 @@ def test_a_sortie_takes_as_long_as_planned_and_photos_are_where_they_are_planned
         model, plan = bundled("canyon", profile_id=profile_id)
     sortie = plan.sorties[0]
     off = {"battery sag": "off"}
-    made, _ = make_airframe(plan, model, sortie, wishes=off)  # type: ignore[arg-type]
+    made, _ = make_airframe(plan, model, sortie, settings=off)  # type: ignore[arg-type]
     shots, flown_s = fly(made, plan, sortie, step_s=0.02)
     predicted_s = sortie.duration_s - plan.rules.takeoff_landing_s
     # The plan charges half a turn before the first photo.
@@ -237,7 +237,7 @@ def test_a_step_that_makes_no_sense_is_refused(duration_s: float) -> None:
 @pytest.mark.benchmark
 def test_an_hour_of_flight_takes_seconds() -> None:
     model, plan = bundled("office", 40)
-    made, _ = make_airframe(plan, model, plan.sorties[0], wishes={"battery sag": "off"})
+    made, _ = make_airframe(plan, model, plan.sorties[0], settings={"battery sag": "off"})
     started = time.perf_counter()
     _, flown_s = fly(made, plan, plan.sorties[0], step_s=0.02)
     assert (time.perf_counter() - started) / flown_s * 3600.0 < 10.0

@@ -79,7 +79,7 @@ def test_what_is_believed_differs_from_the_truth_by_the_error_and_heights_count_
     off = {"multipath": "off", "battery sag": "off"}
     errors = []
     for seed in range(60):
-        made, _ = make_airframe(plan, model, conditions=conditions, wishes=off, seed=seed)  # type: ignore[arg-type]
+        made, _ = make_airframe(plan, model, conditions=conditions, settings=off, seed=seed)  # type: ignore[arg-type]
         x, y, z = made.truth.position_enu_m
         assert made.believed.position_enu_m[2] == z
         assert made.believed.position_enu_m[:2] != (x, y)

@@ -17,7 +17,7 @@ from missions.simulator.conditions import Conditions
 from missions.simulator.effects.link_loss import LossyLink, through_air
 from missions.simulator.effects.shutter import blur_px
 from missions.simulator.scene import flight_scene
-from planning.base.effects import Wish
+from planning.base.effects import EffectSetting
 from planning.base.errors import InfeasibleError, InputError
 from planning.plan import Plan
 from planning.site.records import SiteModel
@@ -45,13 +45,15 @@ class Outcome:
     remaining: float
 
 
-def only(*on: str) -> Mapping[str, Wish]:
+def only(*on: str) -> Mapping[str, EffectSetting]:
     return {name: "on" if name in on else "off" for name in NAMES}
 
 
-def outcome(model: SiteModel, plan: Plan, conditions: Conditions, wishes: Mapping[str, Wish], seed: int) -> Outcome:
+def outcome(
+    model: SiteModel, plan: Plan, conditions: Conditions, settings: Mapping[str, EffectSetting], seed: int
+) -> Outcome:
     sortie = plan.sorties[0]
-    made, _ = make_airframe(plan, model, sortie, conditions=conditions, wishes=wishes, seed=seed)
+    made, _ = make_airframe(plan, model, sortie, conditions=conditions, settings=settings, seed=seed)
     shots, flown_s = fly(made, plan, sortie)
     return Outcome(shots, flown_s, made.battery.remaining)
 
@@ -156,7 +158,7 @@ def test_in_an_outage_nothing_gets_through_and_afterwards_all() -> None:
 
 def test_what_is_off_is_not_there() -> None:
     model, plan = bundled("office")
-    made, decisions = make_airframe(plan, model, plan.sorties[0], wishes=only())
+    made, decisions = make_airframe(plan, model, plan.sorties[0], settings=only())
     assert not any(decision.on for decision in decisions)
     parts = made._parts
     assert (parts.air, parts.errors, parts.latency_s, parts.exposure_s) == (None, (), 0.0, 0.0)
@@ -190,15 +192,15 @@ def test_the_same_seed_flies_the_same_flight_and_another_does_not() -> None:
 
 def test_an_effect_does_not_change_the_random_numbers_of_another() -> None:
     model, plan = bundled("office")
-    alone = track(make_airframe(plan, model, plan.sorties[0], conditions=SINGLE, wishes=only("GNSS noise"))[0], plan)
+    alone = track(make_airframe(plan, model, plan.sorties[0], conditions=SINGLE, settings=only("GNSS noise"))[0], plan)
     also = only("GNSS noise", "battery sag", "gimbal lag")
-    together = track(make_airframe(plan, model, plan.sorties[0], conditions=SINGLE, wishes=also)[0], plan)
+    together = track(make_airframe(plan, model, plan.sorties[0], conditions=SINGLE, settings=also)[0], plan)
     assert np.array_equal(alone, together)
 
 
 def test_the_user_overrules_and_sees_it_in_the_table() -> None:
     model, plan = bundled("office")
-    _, decisions = make_airframe(plan, model, wishes={"wind": "on", "battery sag": "off"})
+    _, decisions = make_airframe(plan, model, settings={"wind": "on", "battery sag": "off"})
     lines = effects_table(decisions).splitlines()
     assert len(lines) == 1 + len(EFFECTS)
     assert lines[1].split()[:4] == ["wind", "on,", "asked", "for"]
@@ -208,7 +210,7 @@ def test_the_user_overrules_and_sees_it_in_the_table() -> None:
 def test_a_wish_for_an_unknown_effect_is_refused() -> None:
     model, plan = bundled("office")
     with pytest.raises(InputError, match=r"no effect 'rain'.*wind, GNSS noise"):
-        make_airframe(plan, model, wishes={"rain": "on"})
+        make_airframe(plan, model, settings={"rain": "on"})
 
 
 def test_a_storm_is_refused() -> None:

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from planning.base.effects import Wish
+from planning.base.effects import EffectSetting
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.scenes.effect_names import EXPOSURE
 from reconstruction.scenes.effects.registry import decide_effects
@@ -38,7 +38,7 @@ def two(first_deg: float = 90.0, second_deg: float = -90.0) -> tuple[PosedPhoto,
     return tuple(photo(heading_deg=heading, **SMALL) for heading in (first_deg, second_deg))
 
 
-def job(made: Scene, taking: Taking = METERED, wish: Wish = "on", exposure_s: float = 0.002) -> PhotoJob:
+def job(made: Scene, taking: Taking = METERED, wish: EffectSetting = "on", exposure_s: float = 0.002) -> PhotoJob:
     settings = RenderSettings(wishes={EXPOSURE: wish})
     return PhotoJob(made, two(), settings, {}, taking=taking, moments=(Moment(exposure_s=exposure_s),) * 2)
 
