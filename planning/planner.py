@@ -6,11 +6,14 @@ Three ways to say how much is wanted: a number of views; a share of what can be 
 
 from __future__ import annotations
 
+import itertools
 import time
 from dataclasses import dataclass, field, replace
+from enum import StrEnum
 from functools import partial
 
 import numpy as np
+from numpy.typing import NDArray
 
 from planning.aircraft.catalogue import Profile, profile
 from planning.base.errors import InputError
@@ -19,24 +22,145 @@ from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor, Stop, TimeLimit, Trace, any_of, never
 from planning.coverage.evaluate import DepthCount, coverage, depth
 from planning.coverage.model import exact_coverage
+from planning.coverage.positions import rounded
+from planning.coverage.reach_kernel import REACHABLE, UNREACHABLE
 from planning.motion.timing import motion_limits, round_trip_metric
 from planning.parameters import DEFAULT_SHARE, DEFAULT_VIEWS
-from planning.plan import HistoryPoint, Plan, ViewpointArrays, viewpoint_arrays
+from planning.plan import ANGLE_DECIMALS, HistoryPoint, Plan, Sortie, Viewpoint, ViewpointArrays, viewpoint_arrays
 from planning.request import PlanRequest
 from planning.routing.flights import Flight, flight_times, plan_flights
 from planning.routing.legs import n_stops_within
 from planning.routing.roadmap import build_roadmap
-from planning.site.free_space import free_space
+from planning.site.free_space import LEG_MARGIN_M, free_space
 from planning.site.records import SiteModel
 from planning.viewpoints.budget import best_flights, views_within_budget, with_fewer_views
+from planning.viewpoints.candidates import places_around
 from planning.viewpoints.greedy import greedy, most_telling
-from planning.viewpoints.locked import locked_views
 from planning.viewpoints.methods import method_named
-from planning.viewpoints.plan_records import as_written, plan_records
 from planning.viewpoints.prepare import Prepared, prepare
-from planning.viewpoints.problem import Goal, Optimiser, ViewProblem, nothing_to_see
-from planning.viewpoints.shortfall import OpenSection, open_sections
-from planning.viewpoints.spacing import merge_close_views
+from planning.viewpoints.problem import Goal, Optimiser, ViewProblem, locked_views, nothing_to_see, take
+from planning.viewpoints.spacing import Apart, merge_close_views
+
+# Chosen views and flights as the records of a plan: rounded as in files, named, in the order of flight.
+
+
+def as_written(problem: ViewProblem, views: ViewpointArrays, n_fixed: int = 0) -> ViewpointArrays:
+    """Views as a plan file holds them: rounded, pitch within the gimbal's range, none twice, all flyable.
+
+    The first `n_fixed` views stay as they are.
+    """
+    written = rounded(views, problem.model.camera)
+    is_fixed = np.arange(len(views.heading_rad)) < n_fixed
+    _, first = np.unique(np.column_stack(written), axis=0, return_index=True)
+    kept = is_fixed.copy()
+    kept[first] = True
+    asked = np.flatnonzero(kept & ~is_fixed)
+    kept[asked] = problem.flyable(written.positions_enu_m[asked], LEG_MARGIN_M)
+    both = ViewpointArrays(
+        np.where(is_fixed[:, None], views.positions_enu_m, written.positions_enu_m),
+        np.where(is_fixed, views.heading_rad, written.heading_rad),
+        np.where(is_fixed, views.pitch_rad, written.pitch_rad),
+    )
+    return take(both, kept)
+
+
+def plan_records(
+    views: ViewpointArrays, flights: tuple[Flight, ...], locked: tuple[Viewpoint, ...] = ()
+) -> tuple[tuple[Viewpoint, ...], tuple[Sortie, ...]]:
+    """Viewpoints in the order of flight, named v0000 and on, and sorties.
+
+    The first views are the `locked` ones, which keep their names; no other gets one of these.
+    """
+    viewpoints: list[Viewpoint] = []
+    sorties = []
+    taken = {viewpoint.id for viewpoint in locked}
+    names = (name for number in itertools.count() if (name := f"v{number:04d}") not in taken)
+    for flight in flights:
+        flown = [
+            replace(locked[view], locked=True) if view < len(locked) else _record(next(names), views, int(view))
+            for view in flight.views
+        ]
+        viewpoints += flown
+        path = [(float(x), float(y), float(z)) for x, y, z in flight.path_enu_m]
+        for vertex, viewpoint in zip(flight.photo_vertices, flown, strict=True):
+            path[vertex] = viewpoint.position_enu_m  # locked ones may have more decimals
+        ids = tuple(viewpoint.id for viewpoint in flown)
+        sorties.append(Sortie(ids, tuple(path), round(flight.length_m, 3), round(flight.duration_s, 2)))
+    return tuple(viewpoints), tuple(sorties)
+
+
+def viewpoints_of(views: ViewpointArrays, prefix: str) -> tuple[Viewpoint, ...]:
+    """Viewpoints in the order of `views`, named with the prefix and a number from 0000 on; in no flight."""
+    return tuple(_record(f"{prefix}{number:04d}", views, number) for number in range(len(views.heading_rad)))
+
+
+def _record(viewpoint_id: str, views: ViewpointArrays, view: int) -> Viewpoint:
+    x, y, z = (float(value) for value in views.positions_enu_m[view])
+    heading_deg = round(float(np.degrees(views.heading_rad[view])), ANGLE_DECIMALS)
+    pitch_deg = round(float(np.degrees(views.pitch_rad[view])), ANGLE_DECIMALS)
+    return Viewpoint(viewpoint_id, (x, y, z), heading_deg, pitch_deg)
+
+
+# Why sections that may be seen stay open: no viewpoint of a plan covers them, and none is proven not to see them.
+
+
+class WhyOpen(StrEnum):
+    """What keeps a section from being covered."""
+
+    UNDECIDED = "undecided"
+    """No place is known from which it is seen, and none is proven not to exist."""
+    CUT_OFF = "cut-off"
+    """Places are known, but no way from home to one of them was found."""
+    SPACING = "spacing"
+    """Only places closer to other viewpoints than the aircraft accepts were found."""
+    SEARCH = "search"
+    """Nothing: more viewpoints, or a longer search, would cover it."""
+
+
+@dataclass(frozen=True, slots=True)
+class OpenSection:
+    """A section that stays open; `panel` is its number on the site."""
+
+    panel: int
+    section: int
+    why: WhyOpen
+
+
+def open_sections(
+    problem: ViewProblem, covered: NDArray[np.bool_], positions_enu_m: NDArray[np.float64], spacing_m: float
+) -> tuple[OpenSection, ...]:
+    """All sections that may be seen and are not covered, and why.
+
+    Parameters
+    ----------
+    covered
+        Whether each section is, shape (m, n_sections).
+    positions_enu_m
+        Of the plan's viewpoints, shape (n, 3).
+    spacing_m
+        How far apart the aircraft wants waypoints; 0: no matter.
+    """
+    reachability = problem.reachability
+    elements = np.flatnonzero((reachability.verdicts != UNREACHABLE) & ~covered)
+    is_known = reachability.verdicts.reshape(-1)[elements] == REACHABLE
+    known = elements[is_known]
+    places, number = places_around(
+        problem, known, reachability.witnesses_enu_m.reshape(-1, 3)[known], np.random.default_rng(0)
+    )
+    kept = problem.flyable(places)
+    places, number = places[kept], number[kept]
+    is_apart = ~Apart(places, positions_enu_m, spacing_m).are_too_close(places)
+    flyable, apart = set(number.tolist()), set(number[is_apart].tolist())
+    of_known = iter(
+        WhyOpen.SEARCH if k in apart else WhyOpen.SPACING if k in flyable else WhyOpen.CUT_OFF
+        for k in range(len(known))
+    )
+    panel, section = np.divmod(elements, problem.model.grid.n_sections)
+    return tuple(
+        OpenSection(int(panel[k]), int(section[k]), next(of_known) if is_known[k] else WhyOpen.UNDECIDED)
+        for k in range(len(elements))
+    )
+
 
 REACHABILITY_SHARE, ROUTING_SHARE = 0.3, 0.3
 """Parts of the time budget: what proofs of what can be reached may take at most, and what is kept for routing."""

@@ -11,15 +11,33 @@ from planning.aircraft.catalogue import profile
 from planning.checks import check_plan
 from planning.coverage.model import CoverageModel
 from planning.coverage.sections import PanelFrames, SectionGrid, panel_frames
-from planning.insight import warm_up as insight
+from planning.insight.clearance import route_clearance
+from planning.insight.reasons import section_reasons
+from planning.insight.sections import panel_sampling
+from planning.insight.things import first_things_hit, things_of
 from planning.motion import smooth_path
 from planning.parameters import DEFAULT_PROFILE, Constraints, GreedyParameters, Precision
-from planning.plan import ViewpointArrays
+from planning.plan import Sortie, ViewpointArrays
 from planning.planner import plan_flight
 from planning.request import PlanRequest
 from planning.routing import lower_bound, orienteering, sorties, tour
 from planning.site.bundled import SCENES
 from planning.site.records import panel_corners
+from planning.viewpoints.prepare import prepare
+
+
+def _analyse() -> None:
+    """Run every kernel of `planning.insight` on a site with unreachable sections."""
+    model = SCENES["single-panel"]()
+    prepared = prepare(model, profile(DEFAULT_PROFILE).camera, Constraints())
+    section_reasons(model, prepared)
+    frames, camera = prepared.problem.model.frames, prepared.problem.model.camera
+    panel_sampling(frames, camera, frames.centroids + frames.normals, np.zeros((len(frames), len(frames)), np.int16))
+    space = prepared.problem.space
+    things = things_of(model, space)
+    route_clearance(Sortie((), ((0.0, -20.0, 5.0), (5.0, -20.0, 5.0)), 5.0, 5.0), space, things)
+    first_things_hit(space.solids, things.solid_owner, space.home_enu_m[None], space.column_top_enu_m[None])
+
 
 LONG_ENOUGH_S = 60.0
 """Compiling counts as planning time: with less, searches would be stopped before their kernels ran."""
@@ -39,8 +57,9 @@ def compile_kernels() -> None:
     model = SCENES["roof"]()
     for request in requests:
         check_plan(plan_flight(model, request).plan, model)
+    _analyse()
     _count_coverage(panel_frames(panel_corners(model.site)))
-    for module in (insight, lower_bound, orienteering, smooth_path, sorties, tour):
+    for module in (lower_bound, orienteering, smooth_path, sorties, tour):
         module.compile_kernels()
 
 

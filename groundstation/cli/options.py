@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from planning.base.errors import InputError
-from planning.base.folders import PLAIN_ENDINGS, check_ending, check_folder_name
+from planning.base.files import PLAIN_ENDINGS, check_ending, check_folder_name
 from planning.base.parameters import Declared, declared
 from planning.base.plugins import Plugin, PluginGroup, installed_plugins
 from planning.parameters import DEFAULT_PROFILE, LARGEST_SEED, PlanParameters

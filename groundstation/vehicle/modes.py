@@ -6,9 +6,8 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from missions.mavlink.autopilots import Autopilot
+from missions.mavlink.autopilots import Autopilot, mode_numbers, px4_main_and_sub
 from missions.mavlink.messages import CommandLong
-from missions.mavlink.mode_numbers import mode_numbers, px4_main_and_sub
 from planning.base.json_file import read_toml
 
 DATA_PATH = Path(__file__).parent / "data" / "vehicle.toml"

@@ -9,9 +9,8 @@ from dataclasses import dataclass, field, replace
 
 from groundstation.vehicle.duration import items_duration_s
 from groundstation.vehicle.surroundings import Surroundings
-from missions.mavlink.areas import FencePolygon, fence_items, rally_items, rally_points
 from missions.mavlink.autopilots import Autopilot
-from missions.mavlink.fence import fence_polygons
+from missions.mavlink.fence import FencePolygon, fence_items, fence_polygons, rally_items, rally_points
 from missions.mavlink.items import MissionItem, Polygon, mission_items
 from missions.mavlink.messages import MissionItemInt
 from missions.mavlink.transfer.exchange import MissionType

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import Generic, TypeVar
 
-from missions.flight.logs.photo_clock import NEARBY_S, PhotoClock
+from missions.flight.logs.raw import NEARBY_S, PhotoClock
 from missions.flight.record import TakenPhoto
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.messages import Address

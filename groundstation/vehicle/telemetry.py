@@ -25,12 +25,10 @@ from groundstation.vehicle.state import (
     VehicleText,
     is_restarted,
 )
-from missions.flight.logs.photo_clock import PhotoClock
-from missions.flight.logs.raw import camera_angles_rad, is_yaw_from_north
+from missions.flight.logs.raw import PhotoClock, camera_angles_rad, is_yaw_from_north
 from missions.flight.record import TakenPhoto
 from missions.mavlink import messages
-from missions.mavlink.autopilots import Autopilot, facts
-from missions.mavlink.mode_numbers import mode_name
+from missions.mavlink.autopilots import Autopilot, facts, mode_name
 from planning.base.messages import say
 from planning.geo.enu import enu_from_geodetic, geodetic_from_enu
 from planning.geo.frames import Origin, Vec3, wrap_heading_deg

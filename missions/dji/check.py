@@ -8,10 +8,18 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
-from missions.dji.catalogue import DjiCatalogue, dji_catalogue
-from missions.dji.container import DjiParts
-from missions.dji.wpml import Action, ActionGroup, Folder, MissionConfig, WpmlDocument, WpmlWaypoint
-from missions.mission.legs import courses_deg, distance_m, leg_lengths_m
+from missions.dji.wpml import (
+    Action,
+    ActionGroup,
+    DjiCatalogue,
+    DjiParts,
+    Folder,
+    MissionConfig,
+    WpmlDocument,
+    WpmlWaypoint,
+    dji_catalogue,
+)
+from missions.mission.model import courses_deg, distance_m, leg_lengths_m
 from planning.aircraft.catalogue import profiles
 from planning.base.findings import Finding, Severity
 from planning.base.messages import glue, say

@@ -8,17 +8,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from missions.dji.check import check_dji, is_on_globe
-from missions.dji.container import DjiParts, load_parts
-from missions.dji.wpml import Action, ActionGroup, Folder, WpmlWaypoint
-from missions.mission.legs import (
-    are_too_many,
-    bearing_deg,
-    courses_deg,
-    leg_lengths_m,
-    point_between,
-    shots_on_leg,
-    too_many_shots,
-)
+from missions.dji.wpml import Action, ActionGroup, DjiParts, Folder, WpmlWaypoint, load_parts
 from missions.mission.model import (
     ON_THE_WAY,
     FileFormat,
@@ -29,8 +19,15 @@ from missions.mission.model import (
     ReadPhoto,
     ReadWaypoint,
     Stay,
+    are_too_many,
     as_remark,
+    bearing_deg,
+    courses_deg,
+    leg_lengths_m,
+    point_between,
     reasons,
+    shots_on_leg,
+    too_many_shots,
 )
 from planning.base.errors import MissionError
 from planning.base.findings import Finding, Severity

@@ -1,23 +1,116 @@
-"""The content of template.kml and waylines.wpml as records, as tolerant as a check of it needs.
+"""The KMZ that DJI aircraft read, the numbers WPML has for aircraft and cameras, and its content as records.
 
-Nothing is judged here but whether the text is XML and WPML at all: a missing element is None, an element that does not
-hold what it should is None and listed in `WpmlDocument.garbled`. `missions.dji.check` says what is wrong,
-`missions.dji.read` what the aircraft would do.
+The content of template.kml and waylines.wpml is read as tolerantly as a check of it needs. Nothing is judged here but
+whether the text is XML and WPML at all: a missing element is None, an element that does not hold what it should is
+None and listed in `WpmlDocument.garbled`. `missions.dji.check` says what is wrong, `missions.dji.read` what the
+aircraft would do.
 """
 
 from __future__ import annotations
 
+import io
 import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
+from missions.mission.safe_files import open_archive, read_limited, read_member
 from planning.base.errors import MissionError
 from planning.base.files import HostileXml, parse_xml
-from planning.base.messages import say
+from planning.base.json_file import read_toml
+from planning.base.messages import about, say
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
+
+
+# DJI's numbers for aircraft and cameras, which go together, and our profiles in those terms: `data/dji.toml`.
+
+DATA_PATH = Path(__file__).parents[1] / "data" / "dji.toml"
+
+
+@dataclass(frozen=True, slots=True)
+class Drone:
+    """An aircraft: droneEnumValue and droneSubEnumValue, the payloads it may carry, and whether DJI Fly flies it."""
+
+    numbers: tuple[int, int]
+    payloads: tuple[str, ...]
+    dji_fly: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Payload:
+    """A camera: its payloadEnumValue and the pitch range of its gimbal, degrees (None: not published)."""
+
+    number: int
+    gimbal_pitch_deg: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class DjiProfile:
+    """How one of our profiles is written; `data/dji.toml` explains the fields."""
+
+    drone: str
+    payload: str
+    lens: str
+    focus: bool
+    wide_zoom_mm: float
+
+
+@dataclass(frozen=True, slots=True)
+class Lenses:
+    """Names that payloadLensIndex and imageFormat may hold."""
+
+    names: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class DjiCatalogue:
+    """The content of `data/dji.toml`."""
+
+    drones: dict[str, Drone]
+    payloads: dict[str, Payload]
+    profiles: dict[str, DjiProfile]
+    lenses: Lenses
+
+    def drone_by_numbers(self, numbers: tuple[int, int]) -> Drone | None:
+        """Aircraft with these droneEnumValue and droneSubEnumValue; None where it is not known."""
+        return next((drone for drone in self.drones.values() if drone.numbers == numbers), None)
+
+    def payload_by_number(self, number: int) -> Payload | None:
+        """Camera with this payloadEnumValue; None where it is not known."""
+        return next((payload for payload in self.payloads.values() if payload.number == number), None)
+
+
+@cache
+def dji_catalogue() -> DjiCatalogue:
+    """DJI's numbers and names."""
+    return read_toml(DATA_PATH, DjiCatalogue)
+
+
+def dji_profile(identifier: str) -> DjiProfile:
+    """How a profile is written for DJI.
+
+    Raises
+    ------
+    MissionError
+        The profile is none of DJI's aircraft that are known here; which numbers to write must not be guessed.
+    """
+    known = dji_catalogue().profiles
+    if identifier not in known:
+        found = say("the profile '{}'", identifier) if identifier else say("no profile")
+        raise MissionError(
+            say(
+                "a DJI mission names its aircraft and camera, but the plan has {}; expected one of {}; plan with "
+                "one of them, or export for MAVLink",
+                found,
+                ", ".join(sorted(known)),
+            )
+        )
+    return known[identifier]
+
 
 Number = TypeVar("Number", int, float)
 
@@ -285,3 +378,81 @@ class _Parser:
             func=_text(element, "actionActuatorFunc"),
             params={_local(p): (p.text or "").strip() for p in (params if params is not None else ())},
         )
+
+
+# Where the two parts of a DJI mission lie: in the folder wpmz of a KMZ, or side by side in an unpacked folder.
+
+TEMPLATE, WAYLINES = "template.kml", "waylines.wpml"
+
+
+@dataclass(frozen=True, slots=True)
+class DjiParts:
+    """The parts of a mission; without a template only some programs open it."""
+
+    waylines: WpmlDocument
+    template: WpmlDocument | None
+
+
+def load_parts(path: Path) -> DjiParts:
+    """Parts of a mission from a KMZ, from a folder that holds them (or their folder wpmz), or from one of the two.
+
+    Raises
+    ------
+    InputError
+        The file or folder is missing or unreadable.
+    MissionError
+        It is no DJI mission, has another layout than DJI's programs find, or is hostile.
+    """
+    if path.is_dir() or path.name in (TEMPLATE, WAYLINES):
+        return _from_folder(path if path.is_dir() else path.parent)
+    return _from_archive(path, str(path))
+
+
+def parts_of_kmz(content: bytes) -> DjiParts:
+    """Parts of a KMZ that is not in a file yet."""
+    return _from_archive(io.BytesIO(content), "KMZ")
+
+
+def _from_archive(source: Path | io.BytesIO, label: str) -> DjiParts:
+    archive, members = open_archive(source, label)
+    with archive:
+        waylines = members.get(f"wpmz/{WAYLINES}")
+        if waylines is None:
+            raise MissionError(about(label, _what_is_there(set(members))))
+        template = members.get(f"wpmz/{TEMPLATE}")
+        inside = f"{label}: wpmz/"
+        return DjiParts(
+            parse_wpml(read_member(archive, waylines, label), inside + WAYLINES),
+            None if template is None else parse_wpml(read_member(archive, template, label), inside + TEMPLATE),
+        )
+
+
+def _from_folder(folder: Path) -> DjiParts:
+    inner = folder / "wpmz"
+    folder = inner if inner.is_dir() else folder
+    if not (folder / WAYLINES).is_file():
+        raise MissionError(say("expected the {} of an unpacked DJI mission, there is none", WAYLINES, place=folder))
+    template = folder / TEMPLATE
+    return DjiParts(
+        parse_wpml(read_limited(folder / WAYLINES), str(folder / WAYLINES)),
+        parse_wpml(read_limited(template), str(template)) if template.is_file() else None,
+    )
+
+
+def _what_is_there(names: set[str]) -> str:
+    """Why an archive without wpmz/waylines.wpml is no mission, from what it holds instead."""
+    at_root = sorted(names & {TEMPLATE, WAYLINES})
+    elsewhere = sorted(name for name in names if name.endswith(("/" + TEMPLATE, "/" + WAYLINES)))
+    if at_root:
+        return say(
+            "{} at the top of the archive, where no DJI program looks; expected both in its folder wpmz; "
+            "pack it again with that folder",
+            " and ".join(at_root),
+        )
+    if f"wpmz/{TEMPLATE}" in names:
+        return say(
+            "has a template but no waylines, so what would be flown is not in it; open and save it in DJI Pilot 2"
+        )
+    if elsewhere:
+        return say("has {}; expected wpmz/{} at the top of the archive; pack it again", elsewhere[0], WAYLINES)
+    return say("no DJI mission; expected wpmz/{}, found {}", WAYLINES, ", ".join(sorted(names)[:3]) or "nothing")

@@ -18,9 +18,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 from xml.sax.saxutils import escape
 
-from missions.dji.catalogue import DjiCatalogue, DjiProfile, dji_catalogue, dji_profile
-from missions.mission.legs import leg_lengths_m
-from missions.mission.model import GeoPoint, HeightReference, Mission, Photo, Waypoint, altitude_amsl_m
+from missions.dji.wpml import DjiCatalogue, DjiProfile, dji_catalogue, dji_profile
+from missions.mission.model import GeoPoint, HeightReference, Mission, Photo, Waypoint, altitude_amsl_m, leg_lengths_m
 from planning.geo.frames import wrap_heading_deg
 from planning.plan import ANGLE_DECIMALS
 from planning.site.records import MIN_HEIGHT_ABOVE_GROUND_M

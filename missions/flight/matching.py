@@ -16,11 +16,150 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from missions.flight.lost_reports import is_unheard_between, n_lost, n_lost_after, n_lost_before, n_lost_between
 from missions.flight.outcome import Reason
-from missions.flight.record import FlightRecord, TakenPhoto
-from planning.geo.frames import heading_difference_rad
+from missions.flight.record import FlightRecord, TakenPhoto, Track
+from planning.geo.frames import Vec3, heading_difference_rad, wrap_heading_deg
 from planning.plan import Plan, Viewpoint, ViewpointArrays, viewpoint_arrays
+
+# How the aircraft moved at the shutter of each photo of a flight.
+
+Array = NDArray[np.float64]
+
+WITHIN_S = 1.0
+"""A track says nothing of moments that are further from its samples."""
+
+STANDSTILL_M_S = 0.05
+"""Below this speed, a velocity has no direction to speak of."""
+
+
+def shutter_velocities(record: FlightRecord) -> tuple[Vec3, ...]:
+    """Velocities at the shutters of a record's photos, ENU, m/s; 0 where nothing is known.
+
+    By the track, with the speed over ground that the photo has itself. A photo with a speed, of which the track does
+    not say the direction, flies from the photo before towards the one after.
+    """
+    times = np.array([photo.time_s for photo in record.photos], np.float64)
+    velocities = _by_track(record.track, times)
+    places = np.array([photo.position_enu_m for photo in record.photos], np.float64).reshape(-1, 3)
+    last = max(len(times) - 1, 0)
+    for number, photo in enumerate(record.photos):
+        if photo.speed_m_s is None:
+            continue
+        way = velocities[number, :2]
+        if np.hypot(*way) < STANDSTILL_M_S:
+            way = (places[min(number + 1, last)] - places[max(number - 1, 0)])[:2]
+        length = float(np.hypot(*way))
+        velocities[number, :2] = way / length * photo.speed_m_s if length > 0.0 else 0.0
+    return tuple((east, north, up) for east, north, up in velocities.tolist())
+
+
+def _by_track(track: Track, times_s: Array) -> Array:
+    """Velocities between the samples that have one, shape (n, 3)."""
+    known = np.isfinite(track.velocity_enu_m_s).all(axis=1)
+    if not known.any():
+        return np.zeros((len(times_s), 3))
+    at_s, velocities = track.time_s[known], track.velocity_enu_m_s[known]
+    found = np.column_stack([np.interp(times_s, at_s, velocities[:, axis]) for axis in range(3)])
+    after = np.clip(np.searchsorted(at_s, times_s), 0, len(at_s) - 1)
+    away_s = np.minimum(np.abs(at_s[after] - times_s), np.abs(at_s[np.maximum(after - 1, 0)] - times_s))
+    found[away_s > WITHIN_S] = 0.0
+    return np.asarray(found)
+
+
+# Photos that were taken but not told of: the camera numbers its photos, so a report lost on the radio leaves a gap.
+#
+# Between two photos the gap is in their numbers. Before the first and after the last one it is between their numbers
+# and what the camera said, before and after the flight, of how many it had counted.
+
+FIRST_NUMBER = {"camera-feedback": 1, "image-captured": 0}
+"""Sources that come over the radio, each photo once, and the number of a camera's first photo there (MAVLink: the index
+in CAMERA_IMAGE_CAPTURED counts from 0). Other numbers (of files, of log entries) may have gaps of their own."""
+
+LEAST_STEPS = 3
+"""Equal steps between photos from which on they are the camera's way of counting."""
+
+UNHEARD_S = 2.0
+"""An aircraft at 5 m/s is 10 m further on by then, and may have been at a view meanwhile."""
+
+
+def n_lost_between(record: FlightRecord, first: int, last: int) -> int:
+    """How many photos the camera counted between two that it told of, without the others that it told of.
+
+    Parameters
+    ----------
+    first, last
+        Which of the record's photos, from 0.
+
+    Returns
+    -------
+    int
+        0 where the numbers say nothing: they began again, or the camera failed in between and may have counted that.
+    """
+    before, after = record.photos[first], record.photos[last]
+    if before.source not in FIRST_NUMBER or after.source != before.source:
+        return 0
+    if _failed(record, before.time_s, after.time_s):
+        return 0
+    told = {photo.index for photo in record.photos[first:last] if before.index < photo.index < after.index}
+    return max(0, after.index - before.index - 1 - len(told))
+
+
+def is_unheard_between(record: FlightRecord, first: int, last: int) -> bool:
+    """Whether the track has a pause between two photos, so that it does not say where the aircraft was meanwhile."""
+    start_s, end_s = record.photos[first].time_s, record.photos[last].time_s
+    time_s = record.track.time_s
+    heard_s = [start_s, *time_s[(time_s > start_s) & (time_s < end_s)], end_s]
+    return bool(np.max(np.diff(heard_s)) > UNHEARD_S)
+
+
+def n_lost_before(record: FlightRecord, photo: int) -> int:
+    """How many photos the camera counted from the beginning of the flight to one that it told of, and did not tell of.
+
+    0 where it did not say how many there were before, as `n_lost_between` otherwise.
+    """
+    first, counted = record.photos[0], record.counted_before
+    if counted is None or first.source not in FIRST_NUMBER or _failed(record, -float("inf"), first.time_s):
+        return n_lost_between(record, 0, photo)
+    return max(0, first.index - counted - _first_number(record, first)) + n_lost_between(record, 0, photo)
+
+
+def n_lost_after(record: FlightRecord, photo: int) -> int:
+    """How many photos the camera counted from one that it told of to the end of the flight, and did not tell of.
+
+    0 where it did not say how many there were afterwards, as `n_lost_between` otherwise.
+    """
+    last, counted = record.photos[-1], record.counted_after
+    end = len(record.photos) - 1
+    if counted is None or last.source not in FIRST_NUMBER or _failed(record, last.time_s, float("inf")):
+        return n_lost_between(record, photo, end)
+    return max(0, counted - 1 - (last.index - _first_number(record, last))) + n_lost_between(record, photo, end)
+
+
+def n_lost(record: FlightRecord) -> int:
+    """How many photos the camera counted in the flight, and did not tell of, as far as its numbers say."""
+    if not record.photos:
+        before, after = record.counted_before, record.counted_after
+        return 0 if before is None or after is None else max(0, after - before)
+    pairs = itertools.pairwise(range(len(record.photos)))
+    between = sum(n_lost_between(record, first, last) for first, last in pairs)
+    return n_lost_before(record, 0) + between + n_lost_after(record, len(record.photos) - 1)
+
+
+def counts_by_more(record: FlightRecord) -> bool:
+    """Whether a camera's numbers rise by the same two or more from each photo to the next, of four or more."""
+    steps = {after.index - before.index for before, after in itertools.pairwise(record.photos)}
+    return len(record.photos) > LEAST_STEPS and len(steps) == 1 and min(steps) > 1
+
+
+def _first_number(record: FlightRecord, photo: TakenPhoto) -> int:
+    """Number of a camera's first photo; some that should count from 0 count from 1, which their last photo shows."""
+    is_from_one = record.counted_after is not None and record.photos[-1].index == record.counted_after
+    return max(FIRST_NUMBER[photo.source], int(is_from_one))
+
+
+def _failed(record: FlightRecord, start_s: float, end_s: float) -> bool:
+    return any(event.code == "camera-failed" and start_s <= event.time_s <= end_s for event in record.events)
+
 
 Floats = NDArray[np.float64]
 
@@ -325,3 +464,29 @@ def _reasons(
         else:
             reasons[view] = ends if view > last else Reason.NOT_REACHED
     return reasons
+
+
+# From where, and in which direction, the photos of a flight were really taken.
+
+
+def taken_poses(plan: Plan, records: Sequence[FlightRecord], matching: Matching) -> dict[PhotoRef, Viewpoint]:
+    """Poses of all photos whose direction is known; that of a view has the view's angles where its source does not say.
+
+    The photos that are missing here belong to no view, and nothing says where they look.
+    """
+    by_id = {view.id: view for view in plan.viewpoints}
+    view_of = {match.photo: by_id[match.view_id] for match in matching.views if match.photo is not None}
+    refs = (PhotoRef(record, photo) for record, flown in enumerate(records) for photo in range(len(flown.photos)))
+    poses = ((ref, pose_of_photo(records[ref.record].photos[ref.photo], view_of.get(ref))) for ref in refs)
+    return {ref: pose for ref, pose in poses if pose is not None}
+
+
+def pose_of_photo(photo: TakenPhoto, view: Viewpoint | None) -> Viewpoint | None:
+    """Where a photo was taken from and looks to; None where neither it nor its view says the direction."""
+    heading_deg, pitch_deg = photo.heading_deg, photo.gimbal_pitch_deg
+    if view is not None:
+        heading_deg = view.heading_deg if heading_deg is None else heading_deg
+        pitch_deg = view.gimbal_pitch_deg if pitch_deg is None else pitch_deg
+    if heading_deg is None or pitch_deg is None:
+        return None
+    return Viewpoint("photo", photo.position_enu_m, wrap_heading_deg(heading_deg), min(90.0, max(-180.0, pitch_deg)))

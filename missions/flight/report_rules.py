@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from missions.flight.lost_reports import counts_by_more, n_lost
+from missions.flight.matching import counts_by_more, n_lost
 from missions.flight.outcome import Ending, Reason, SortieOutcome, Summary, ViewOutcome
 from missions.flight.record import FlightRecord
 from planning.base.findings import Finding, Severity

@@ -59,7 +59,7 @@ DEFAULT_OPTIONS = ExportOptions()
 def encode_dji(plan: Plan, missions: Sequence[Mission], options: ExportOptions) -> EncodedFiles:
     """A DJI KMZ for each sortie."""
     from missions.dji.check import check_dji
-    from missions.dji.container import parts_of_kmz
+    from missions.dji.wpml import parts_of_kmz
     from missions.dji.write import DjiOptions, kmz_bytes
 
     created_ms = round(options.clock() * 1000.0)
@@ -226,9 +226,8 @@ def default_autopilot(profile_id: str) -> Autopilot:
 
 def encode_mavlink(missions: Sequence[Mission], file_format: FileFormat, options: ExportOptions) -> EncodedFiles:
     """A `.plan` or a `.waypoints` file for each sortie."""
-    from missions.mavlink.areas import rally_points
     from missions.mavlink.check import check_items
-    from missions.mavlink.fence import fence_polygons
+    from missions.mavlink.fence import fence_polygons, rally_points
     from missions.mavlink.items import MavlinkFile, mission_items
     from missions.mavlink.plan_json import plan_json_bytes
     from missions.mavlink.wpl import wpl_bytes

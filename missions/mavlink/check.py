@@ -13,7 +13,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from missions.mavlink.autopilots import Autopilot, facts
 from missions.mavlink.items import MavlinkFile, MissionItem
-from missions.mission.legs import leg_lengths_m
+from missions.mission.model import leg_lengths_m
 from planning.base.findings import Finding, Severity
 from planning.base.messages import say
 

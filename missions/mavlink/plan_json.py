@@ -9,8 +9,7 @@ from pathlib import Path
 from typing import Any, TypeGuard
 
 from missions.mavlink.autopilots import Autopilot, facts
-from missions.mavlink.items import MavlinkFile, MissionItem, Params, Polygon, RallyPlace
-from missions.mavlink.places import home_of
+from missions.mavlink.items import MavlinkFile, MissionItem, Params, Polygon, RallyPlace, home_of
 from missions.mission.model import GeoPoint, HeightReference, altitude_amsl_m
 from planning.base.errors import InputError, MissionError
 from planning.base.findings import Finding

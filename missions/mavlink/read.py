@@ -11,17 +11,7 @@ from pymavlink.dialects.v20 import common as mavlink
 
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.check import check_items
-from missions.mavlink.items import MavlinkFile, MissionItem
-from missions.mavlink.places import RELATIVE_FRAMES, has_place, is_same_place, position_of
-from missions.mission.legs import (
-    are_too_many,
-    bearing_deg,
-    courses_deg,
-    distance_m,
-    point_between,
-    shots_on_leg,
-    too_many_shots,
-)
+from missions.mavlink.items import RELATIVE_FRAMES, MavlinkFile, MissionItem, has_place, is_same_place, position_of
 from missions.mission.model import (
     ON_THE_WAY,
     Finish,
@@ -30,8 +20,15 @@ from missions.mission.model import (
     ReadPhoto,
     ReadWaypoint,
     Stay,
+    are_too_many,
     as_remark,
+    bearing_deg,
+    courses_deg,
+    distance_m,
+    point_between,
     reasons,
+    shots_on_leg,
+    too_many_shots,
 )
 from planning.base.errors import MissionError
 from planning.base.findings import Finding, Severity

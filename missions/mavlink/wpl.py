@@ -11,8 +11,7 @@ from pathlib import Path
 
 from pymavlink.dialects.v20 import common as mavlink
 
-from missions.mavlink.items import MavlinkFile, MissionItem
-from missions.mavlink.places import home_of
+from missions.mavlink.items import MavlinkFile, MissionItem, home_of
 from missions.mission.model import GeoPoint, altitude_amsl_m
 from missions.mission.safe_files import MAX_LINES, read_limited
 from planning.base.errors import MissionError

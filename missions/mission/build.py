@@ -17,7 +17,7 @@ from planning.aircraft.catalogue import profiles
 from planning.base.errors import InputError, MissionError
 from planning.base.messages import say
 from planning.geo.frames import Origin, Vec3, wrap_heading_deg
-from planning.motion.sortie_timing import with_stops
+from planning.motion.timing import with_stops
 from planning.plan import Plan, Sortie, Viewpoint
 
 Value = TypeVar("Value")

@@ -17,16 +17,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from missions.mission.build import COLUMN_RADIUS_M
-from missions.mission.legs import distance_m
-from missions.mission.model import Finish, HeightReference, ReadMission, ReadPhoto, Stay
+from missions.mission.model import Finish, HeightReference, ReadMission, ReadPhoto, Stay, distance_m
 from planning.aircraft.catalogue import profile
 from planning.base.errors import InputError
 from planning.base.findings import Finding, Severity
 from planning.base.messages import say
 from planning.geo.frames import Origin, Vec3
 from planning.geo.mesh import MAX_COORDINATE_M
-from planning.motion.sortie_timing import SAME_PLACE_M, sortie_flight_path, stopping_duration_s
-from planning.motion.timing import MotionLimits, motion_limits, rest_to_rest_s, speed_limits_m_s
+from planning.motion.timing import (
+    SAME_PLACE_M,
+    MotionLimits,
+    motion_limits,
+    rest_to_rest_s,
+    sortie_flight_path,
+    speed_limits_m_s,
+    stopping_duration_s,
+)
 from planning.parameters import DEFAULT_PROFILE, FlightRules
 from planning.plan import Aircraft, Sortie, Viewpoint
 from planning.site.records import MAX_DISTANCE_M

@@ -10,7 +10,7 @@ import numpy as np
 
 from missions.mavlink.autopilots import Autopilot, facts
 from missions.simulator.airframe.multirotor import Multirotor
-from missions.simulator.airframe.parts import (
+from missions.simulator.airframe.state import (
     Air,
     ExactReceiver,
     Gimbal,

@@ -30,24 +30,19 @@ from missions.mavlink.messages import (
     Timesync,
 )
 from missions.simulator.airframe.state import Airframe, Pose
-from missions.simulator.autopilot.actions import Actions
 from missions.simulator.autopilot.ardupilot_scheduler import ArduPilotScheduler
-from missions.simulator.autopilot.camera import CameraControl
 from missions.simulator.autopilot.commands import Commands
 from missions.simulator.autopilot.failsafe import Failsafe
-from missions.simulator.autopilot.gimbal import GimbalControl
-from missions.simulator.autopilot.guidance import DEG, Guidance
-from missions.simulator.autopilot.instruments import Instruments
-from missions.simulator.autopilot.manoeuvres import CM, Manoeuvres
+from missions.simulator.autopilot.guidance import DEG, Guidance, Place
+from missions.simulator.autopilot.instruments import Instruments, Telemetry
+from missions.simulator.autopilot.manoeuvres import CM, Manoeuvres, Returning
 from missions.simulator.autopilot.mission_store import MissionStores, TransferMessage
 from missions.simulator.autopilot.modes import FlightDeck, FlightModes
 from missions.simulator.autopilot.parameters import ParameterTable
-from missions.simulator.autopilot.place import Place
+from missions.simulator.autopilot.payload import Actions, CameraControl, GimbalControl
 from missions.simulator.autopilot.profiles import vehicle_profile
 from missions.simulator.autopilot.px4_scheduler import Px4Scheduler
-from missions.simulator.autopilot.returning import Returning
 from missions.simulator.autopilot.scheduler import Cockpit, MissionState, Scheduler
-from missions.simulator.autopilot.telemetry import Telemetry
 from planning.geo.frames import Origin, Vec3
 
 CONTROL_STEP_S = 0.02

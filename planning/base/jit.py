@@ -20,7 +20,7 @@ from numba.core.types.misc import unliteral
 F = TypeVar("F", bound=Callable[..., Any])
 Result = TypeVar("Result")
 
-LAYOUT = 2
+LAYOUT = 3
 """Raised when a module moves from which kernels take types: what was compiled names it, and could not be read."""
 
 

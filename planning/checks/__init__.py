@@ -9,8 +9,7 @@ from __future__ import annotations
 from planning.base.findings import Finding
 from planning.base.progress import QUIET, Monitor
 from planning.checks.case import Case
-from planning.checks.flight_rules import FLIGHT_RULES
-from planning.checks.geometry_rules import GEOMETRY_RULES
+from planning.checks.rules import FLIGHT_RULES, GEOMETRY_RULES
 from planning.plan import Plan
 from planning.site.records import SiteModel
 

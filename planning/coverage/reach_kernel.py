@@ -7,7 +7,7 @@ covers the section:
   the gimbal cannot bring the centroid into the picture (all bounded by the cell's circumscribed sphere);
 - it lies wholly too close to something: distances change by at most one metre per metre, so distance(centre) + radius
   below the minimum distance is a proof; likewise inside a solid or a no-fly volume;
-- with occlusion: its eight corners lie in the shadow of one convex group (`planning.geo.convex`).
+- with occlusion: its eight corners lie in the shadow of one convex group (`planning.coverage.reachability`).
 
 Where all cells are dropped the section is proven unreachable. A cell's centre that passes every test with the margins
 of real viewpoints is a witness. Cells that reach the smallest size leave the section undecided.

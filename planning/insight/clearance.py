@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.jit import kernel
-from planning.geo.distance import point_triangle_d2
+from planning.geo.bvh import point_triangle_d2
 from planning.geo.solids import Solids
 from planning.insight.things import Things, nearest_things, nearest_triangles
 from planning.plan import Sortie

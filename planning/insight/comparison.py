@@ -23,8 +23,7 @@ from planning.checks import check_plan
 from planning.coverage.model import exact_sections
 from planning.coverage.reach_kernel import UNREACHABLE
 from planning.insight.clearance import route_clearance
-from planning.insight.sampling import PanelSampling, panel_sampling
-from planning.insight.sections import section_counts
+from planning.insight.sections import PanelSampling, panel_sampling, section_counts
 from planning.insight.things import things_of
 from planning.parameters import Constraints
 from planning.plan import Plan, viewpoint_arrays

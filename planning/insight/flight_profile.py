@@ -11,8 +11,15 @@ from numpy.typing import ArrayLike, NDArray
 
 from planning.base.errors import InfeasibleError
 from planning.geo.frames import Vec3
-from planning.motion.sortie_timing import SAME_PLACE_M, beside_column, sortie_flight_path
-from planning.motion.timing import motion_limits, photo_stop_s, slowed_by_turns_m_s, stopping_times_s
+from planning.motion.timing import (
+    SAME_PLACE_M,
+    beside_column,
+    motion_limits,
+    photo_stop_s,
+    slowed_by_turns_m_s,
+    sortie_flight_path,
+    stopping_times_s,
+)
 from planning.plan import Plan, Sortie
 
 Array = NDArray[np.float64]

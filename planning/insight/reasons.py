@@ -11,19 +11,21 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.base.jit import chunks, n_threads, run_parallel
+from planning.base.jit import chunks, kernel, n_threads, run_parallel
 from planning.base.messages import joined, say
 from planning.base.progress import QUIET, Monitor
 from planning.coverage.model import CoverageModel, exact_sections
 from planning.coverage.positions import aimed_views, hemisphere_direction, sobol
-from planning.coverage.reach_kernel import REACHABLE, UNDECIDED, UNREACHABLE
+from planning.coverage.reach_kernel import ANGLE_MARGIN, REACHABLE, UNDECIDED, UNREACHABLE, Bodies, Limits
 from planning.coverage.reachability import reach_bodies, reach_limits
+from planning.geo.bvh import nearest_d2, segment_is_free
 from planning.geo.frames import Vec3
-from planning.insight import reason_kernel as kernel
+from planning.geo.solids import _is_inside
 from planning.insight.things import Thing, Things, first_things_hit, nearest_things, things_of
 from planning.site.free_space import FreeSpace
 from planning.site.records import SiteModel
@@ -31,6 +33,237 @@ from planning.viewpoints.prepare import Prepared
 from planning.viewpoints.problem import ViewProblem
 
 Array = NDArray[np.float64]
+
+
+# Which rules forbid the places from which one hemisphere section would be seen; compiled.
+#
+# The directions of a section times a row of distances are places from which its panel would be covered, were it allowed
+# to be there. Each place is held against every rule. A rule that is the only one broken somewhere is enough to explain
+# the section: were it relaxed by the amount found there, that place would be a viewpoint. The place at which it is
+# broken least is then sought more closely by a pattern search (R. Hooke and T. Jeeves, 1961, with axis steps only).
+
+N_RULES = 10
+GIMBAL_UP, GIMBAL_DOWN, FLOOR, CEILING, SIDES, RANGE, DISTANCE, NO_FLY, GROUND, HIDDEN = range(N_RULES)
+"""Numbers of the rules. A place inside a solid breaks DISTANCE by its depth and the whole distance."""
+
+IMMOVABLE = 1e6
+"""Added to the amount of rules that are broken together where one of them cannot give: others are better advice."""
+
+NEAREST_M = 0.5
+N_DISTANCES = 24
+"""Distances tried, evenly in their logarithm, from `NEAREST_M` to beyond the airspace: 28 % apart at 150 m."""
+
+INSET = 1e-3
+"""Directions stay this part of a section's width away from its borders, out of reach of rounding."""
+
+REFINING_STEPS = 6
+"""Halvings of the pattern search: to 1.6 % of the sampling's spacing."""
+
+
+class Question(NamedTuple):
+    """One section.
+
+    The panel as centroid, normal, tangent, bitangent (shape (12,)), where lines of sight end (3,), lowest and highest
+    theta and phi (4,), and the greatest distance tried, metres.
+    """
+
+    panel: Array
+    target: Array
+    bounds: Array
+    farthest: float
+
+
+class World(NamedTuple):
+    """What places are held against."""
+
+    limits: Limits
+    ground: float
+    solids: Bodies
+    no_fly: Bodies
+
+
+@kernel
+def broken_rules(
+    p: Array, elevation: float, distance: float, target: Array, world: World, most: int, best: Array, amounts: Array
+) -> int:
+    """Rules that a place p breaks, as bits; -1 where they are more than `most`, or one and no better than known.
+
+    Parameters
+    ----------
+    elevation
+        Of the panel as seen from p, radians.
+    best
+        Shape (N_RULES,): the least amount known by which each rule is broken alone.
+    amounts
+        Shape (N_RULES,); set to how much each rule would have to give: degrees, metres, or 0 where it cannot.
+    """
+    limits = world.limits
+    amounts[:] = 0.0
+    amounts[GIMBAL_UP] = np.degrees(elevation - (np.arcsin(limits.highest_sine) - ANGLE_MARGIN))
+    amounts[GIMBAL_DOWN] = np.degrees(np.arcsin(limits.lowest_sine) + ANGLE_MARGIN - elevation)
+    amounts[FLOOR] = limits.low[2] + limits.margin - p[2]
+    amounts[CEILING] = p[2] - limits.high[2] + limits.margin
+    for axis in range(2):
+        outside = max(limits.low[axis] - p[axis], p[axis] - limits.high[axis]) + limits.margin
+        amounts[SIDES] = max(amounts[SIDES], outside)
+    amounts[RANGE] = distance - limits.max_distance + limits.margin
+    mask, n, broken = 0, 0, 0
+    for rule in range(RANGE + 1):
+        if amounts[rule] > 0.0:
+            broken = rule
+            if rule == FLOOR and p[2] < world.ground:
+                broken = GROUND
+                amounts[FLOOR] = 0.0
+            mask, n = mask | (1 << broken), n + 1
+        else:
+            amounts[rule] = 0.0
+    if n > most or (n == 1 and amounts[broken] >= best[broken]):
+        return -1
+    short = limits.need_distance - distance  # at least: the pane itself is no further away
+    if short > 0.0 and (n >= most or (n == 0 and short >= best[DISTANCE])):
+        return -1
+    mask, n = _keep_away(DISTANCE, p, limits.need_distance, world.solids, mask, n, most, best, amounts)
+    if n <= most and len(world.no_fly.part) > 0:
+        mask, n = _keep_away(NO_FLY, p, limits.need_no_fly, world.no_fly, mask, n, most, best, amounts)
+    if n <= most and limits.occlusion and not segment_is_free(world.solids.bvh, target, p):
+        mask, n = mask | (1 << HIDDEN), n + 1
+    return mask if n <= most else -1
+
+
+@kernel
+def _keep_away(
+    rule: int, p: Array, needed: float, bodies: Bodies, mask: int, n: int, most: int, best: Array, amounts: Array
+) -> tuple[int, int]:
+    """`mask` and `n` with `rule` added where p is nearer than `needed` or inside; n beyond `most` where that ends it.
+
+    The inside test costs more than all others, so it is left out where it can change nothing.
+    """
+    distance = np.sqrt(nearest_d2(bodies.bvh, p, needed * needed))
+    if distance < needed and (n >= most or (n == 0 and needed - distance >= best[rule])):
+        return mask, N_RULES + 1
+    if _is_inside(bodies.bvh, bodies.part, p, bodies.reach, bodies.rays):
+        distance = -np.sqrt(nearest_d2(bodies.bvh, p, np.inf))
+    if distance >= needed:
+        return mask, n
+    amounts[rule] = needed - distance
+    if n == 0 and amounts[rule] >= best[rule]:
+        return mask, N_RULES + 1
+    return mask | (1 << rule), n + 1
+
+
+@kernel
+def _look(place: Array, question: Question, world: World, most: int, best: Array, amounts: Array, p: Array) -> int:
+    """`broken_rules` of the place at (theta, phi, distance), each as a part of its range; fills `p`."""
+    panel, bounds = question.panel, question.bounds
+    theta = bounds[0] + (INSET + (1.0 - 2.0 * INSET) * place[0]) * (bounds[1] - bounds[0])
+    phi = bounds[2] + (INSET + (1.0 - 2.0 * INSET) * place[1]) * (bounds[3] - bounds[2])
+    distance = NEAREST_M * (question.farthest / NEAREST_M) ** place[2]
+    up, right, high = np.cos(theta), np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi)
+    vertical = 0.0
+    for axis in range(3):
+        d = up * panel[3 + axis] + right * panel[6 + axis] + high * panel[9 + axis]
+        p[axis] = panel[axis] + distance * d
+        vertical = d
+    elevation = np.arcsin(min(max(-vertical, -1.0), 1.0))
+    return broken_rules(p, elevation, distance, question.target, world, most, best, amounts)
+
+
+@kernel
+def _refine(
+    rule: int, spacing: Array, question: Question, world: World, place: Array, amounts: Array, p: Array
+) -> None:
+    """Move `place`, where `rule` alone is broken, to where it is broken less; updates its `amounts` and `p`."""
+    trial, trial_amounts, trial_p, best = np.empty(3), np.empty(N_RULES), np.empty(3), np.zeros(N_RULES)
+    best[rule] = amounts[rule]
+    step, halvings = 0.5, 0
+    while halvings < REFINING_STEPS:
+        moved = False
+        for axis in range(3):
+            for sign in (-1.0, 1.0):
+                trial[:] = place
+                trial[axis] = min(max(place[axis] + sign * step * spacing[axis], 0.0), 1.0)
+                if _look(trial, question, world, 1, best, trial_amounts, trial_p) == 1 << rule:
+                    place[:], amounts[:], p[:] = trial, trial_amounts, trial_p
+                    best[rule] = amounts[rule]
+                    moved = True
+        if not moved:
+            step *= 0.5
+            halvings += 1
+
+
+@kernel
+def explain_section(
+    question: Question, world: World, n_angles: int, masks: NDArray[np.int64], amounts: Array, places: Array
+) -> int:
+    """Why no place covers a section: rows of rules that are broken together, and how many there are.
+
+    Each rule that is the only one broken somewhere gives a row, at the place where it is broken least; where there is
+    none, the one row is the place that breaks the fewest rules. 0 rows where some place breaks none.
+
+    Parameters
+    ----------
+    n_angles
+        Directions tried along each angle, 2 or more.
+    masks, amounts, places
+        Output, shapes (N_RULES,), (N_RULES, N_RULES), (N_RULES, 3): rules broken as bits, by how much, and where.
+    """
+    spacing = np.array([1.0 / (n_angles - 1), 1.0 / (n_angles - 1), 1.0 / (N_DISTANCES - 1)])
+    anything = np.full(N_RULES, np.inf)
+    best, best_place = anything.copy(), np.zeros((N_RULES, 3))
+    found, p, place = np.empty(N_RULES), np.empty(3), np.empty(3)
+    fewest, together, least = N_RULES, 0, np.inf
+    for i in range(n_angles):
+        for j in range(n_angles):
+            for k in range(N_DISTANCES):
+                place[0], place[1], place[2] = i * spacing[0], j * spacing[1], k * spacing[2]
+                mask = _look(place, question, world, fewest, best, found, p)
+                if mask == 0:
+                    return 0
+                if mask < 0:
+                    continue
+                n = 0
+                for rule in range(N_RULES):
+                    n += (mask >> rule) & 1
+                total = found.sum() + (IMMOVABLE if n > 1 and mask >> GROUND > 0 else 0.0)
+                if n < fewest or (fewest > 1 and total < least):
+                    fewest, together, least = n, mask, total
+                    masks[0], amounts[0], places[0] = mask, found, p
+                if n == 1:
+                    rule = int(np.round(np.log2(mask)))
+                    if total < best[rule]:
+                        best[rule], best_place[rule] = total, place
+    if fewest > 1:
+        return 1 if together > 0 else 0
+    n_rows = 0
+    for rule in range(N_RULES):
+        if best[rule] < np.inf:
+            _look(best_place[rule], question, world, 1, anything, amounts[n_rows], places[n_rows])
+            if rule < GROUND:
+                _refine(rule, spacing, question, world, best_place[rule], amounts[n_rows], places[n_rows])
+            masks[n_rows] = 1 << rule
+            n_rows += 1
+    return n_rows
+
+
+@kernel
+def explain_sections(
+    panels: Array,
+    targets: Array,
+    farthest: Array,
+    panel_of: NDArray[np.int64],
+    bounds: Array,
+    world: World,
+    n_angles: int,
+    n_rows: NDArray[np.int64],
+    masks: NDArray[np.int64],
+    amounts: Array,
+    places: Array,
+) -> None:
+    """`explain_section` for k sections: panel numbers (k,), bounds (k, 4); outputs have k as first axis."""
+    for i in range(len(panel_of)):
+        j = panel_of[i]
+        question = Question(panels[j], targets[j], bounds[i], farthest[j])
+        n_rows[i] = explain_section(question, world, n_angles, masks[i], amounts[i], places[i])
 
 
 # Sections that some allowed place covers, but to none of which a way from home was found.
@@ -260,10 +493,10 @@ def section_reasons(
     cut_off, cut_off_places = unflyable_sections(problem, verdicts, monitor)
     elements, places = np.concatenate([elements, cut_off]), np.concatenate([places, cut_off_places])
     masks = np.concatenate([masks, np.full(len(cut_off), 1 << RULES.index(Rule.UNFLYABLE))])
-    amounts = np.pad(amounts, ((0, len(cut_off)), (0, len(RULES) - kernel.N_RULES)))
+    amounts = np.pad(amounts, ((0, len(cut_off)), (0, len(RULES) - N_RULES)))
     named = _name_things(model, space, things, elements // shape[1], masks, places)
     limits = reach_limits(model, space)
-    immovable = (masks >> kernel.GROUND > 0) | (amounts[:, kernel.DISTANCE] >= limits.need_distance)
+    immovable = (masks >> GROUND > 0) | (amounts[:, DISTANCE] >= limits.need_distance)
     order = np.lexsort([masks, amounts.sum(axis=1), immovable, elements])
     return SectionReasons(
         (shape[0], shape[1]),
@@ -286,13 +519,13 @@ def _explain(
     panels = np.concatenate([frames.centroids, frames.normals, frames.tangents, frames.bitangents], axis=1)
     targets = model.targets_enu_m
     corners = np.maximum(np.abs(space.low_enu_m - frames.centroids), np.abs(space.high_enu_m - frames.centroids))
-    farthest = BEYOND * np.linalg.norm(corners, axis=1) + kernel.NEAREST_M
+    farthest = BEYOND * np.linalg.norm(corners, axis=1) + NEAREST_M
     all_bounds = np.array([grid.bounds_rad(section) for section in range(grid.n_sections)])
     n_angles = max(3, 1 + round(grid.step_deg / 10.0))
-    world = kernel.World(
+    world = World(
         reach_limits(model, space), ground_z_m, reach_bodies(space.solids, False), reach_bodies(space.no_fly, False)
     )
-    k, n_rules = len(elements), kernel.N_RULES
+    k, n_rules = len(elements), N_RULES
     n_rows, masks = np.zeros(k, np.int64), np.zeros((k, n_rules), np.int64)
     amounts, places = np.zeros((k, n_rules, n_rules)), np.zeros((k, n_rules, 3))
 
@@ -300,7 +533,7 @@ def _explain(
         panel, section = np.divmod(elements[start:stop], grid.n_sections)
         part = slice(start, stop)
         outputs = n_rows[part], masks[part], amounts[part], places[part]
-        kernel.explain_sections(panels, targets, farthest, panel, all_bounds[section], world, n_angles, *outputs)
+        explain_sections(panels, targets, farthest, panel, all_bounds[section], world, n_angles, *outputs)
 
     size = SECTIONS_PER_CHUNK
     for first, last in chunks(k, 4 * n_threads() * size):
@@ -320,9 +553,9 @@ def _name_things(
 ) -> NDArray[np.int64]:
     """Number of the thing that each row's rules are about, shape (q, len(RULES)); -1 for none."""
     named = np.full((len(masks), len(RULES)), -1, np.int64)
-    near, zone, hidden = (masks >> rule & 1 == 1 for rule in (kernel.DISTANCE, kernel.NO_FLY, kernel.HIDDEN))
-    named[near, kernel.DISTANCE] = nearest_things(space.solids, things.solid_owner, places[near])
-    named[zone, kernel.NO_FLY] = nearest_things(space.no_fly, things.no_fly_owner, places[zone])
+    near, zone, hidden = (masks >> rule & 1 == 1 for rule in (DISTANCE, NO_FLY, HIDDEN))
+    named[near, DISTANCE] = nearest_things(space.solids, things.solid_owner, places[near])
+    named[zone, NO_FLY] = nearest_things(space.no_fly, things.no_fly_owner, places[zone])
     targets = model.targets_enu_m[panel[hidden]]
-    named[hidden, kernel.HIDDEN] = first_things_hit(space.solids, things.solid_owner, targets, places[hidden])
+    named[hidden, HIDDEN] = first_things_hit(space.solids, things.solid_owner, targets, places[hidden])
     return named

@@ -10,8 +10,16 @@ from numpy.typing import NDArray
 
 from planning.base.jit import chunks, kernel, run_chunks
 from planning.base.messages import say
-from planning.geo.bvh import MAX_DEPTH, Bvh, nearest_d2, segment_d2, segment_hits
-from planning.geo.distance import point_segment_d2, segment_hits_triangle, segment_triangle_d2
+from planning.geo.bvh import (
+    MAX_DEPTH,
+    Bvh,
+    nearest_d2,
+    point_segment_d2,
+    segment_d2,
+    segment_hits,
+    segment_hits_triangle,
+    segment_triangle_d2,
+)
 from planning.geo.solids import MAX_HITS, Solids
 from planning.site.free_space import FreeSpace
 from planning.site.records import SiteModel

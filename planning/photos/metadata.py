@@ -17,9 +17,8 @@ from typing import Any
 from planning.geo.frames import wrap_heading_deg
 from planning.photos.exif import Tag, Value, read_exif
 from planning.photos.jpeg import JpegHeader, read_header
-from planning.photos.maker_xmp import MakerXmp, number
 from planning.photos.record import RTK_FIXED, Dewarp, PhotoMetadata
-from planning.photos.xmp import Properties, read_xmp
+from planning.photos.xmp import MakerXmp, Properties, number, read_xmp
 
 # Angles of camera and aircraft in one convention, whichever the maker used.
 

@@ -14,26 +14,256 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import coo_array, csr_array
+from scipy.sparse.csgraph import dijkstra
 
 from planning.base.errors import InfeasibleError, InputError
+from planning.base.findings import Finding
 from planning.base.messages import say
-from planning.checks.measures import TimedFlight, flight_key
+from planning.checks import check_case
+from planning.checks.case import Case, TimedFlight, flight_key, legs_of, pose_of
+from planning.coverage.evaluate import coverage_of_sights
 from planning.coverage.positions import aimed_views
 from planning.geo.frames import Vec3, heading_difference_rad, wrap_heading_deg
-from planning.motion.sortie_timing import photo_vertices, sortie_flight_path, stopping_duration_s
 from planning.motion.timing import (
     UNKNOWN_TURN_RAD,
     MotionLimits,
     leg_times_s,
     motion_limits,
     photo_stop_s,
+    photo_vertices,
+    round_trip_metric,
+    sortie_flight_path,
+    stopping_duration_s,
     turn_times_s,
 )
-from planning.plan import ANGLE_DECIMALS, POSITION_DECIMALS, Plan, Sortie, Viewpoint, ViewpointArrays, viewpoint_arrays
-from planning.revision.revision import Revision, with_route
-from planning.revision.ways import HOME, Place, Ways
-from planning.routing.roadmap import Roadmap, leg_length
+from planning.parameters import FlightRules
+from planning.plan import (
+    ANGLE_DECIMALS,
+    POSITION_DECIMALS,
+    Aircraft,
+    Plan,
+    Sortie,
+    Viewpoint,
+    ViewpointArrays,
+    viewpoint_arrays,
+)
+from planning.routing.legs import joined_nodes, pull_tight
+from planning.routing.roadmap import LegMetric, Roadmap, leg_length
 from planning.site.free_space import LEG_MARGIN_M
+from planning.viewpoints.prepare import Prepared, settled
+
+Array = NDArray[np.float64]
+
+
+# Ways between single places: straight where the leg is clear, else around obstacles, else straight all the same.
+#
+# `planning.routing.legs` makes a table of all legs for a planner. An edit needs two or three of them, so each is found
+# for itself here, over the same roadmap and pulled tight in the same way.
+
+HOME = None
+
+Place = Vec3 | None
+"""Position of a stop, or `HOME`."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Ways:
+    """Ways over one roadmap.
+
+    Parameters
+    ----------
+    metric
+        What is kept small: flight time, or length where nothing can fly.
+    edges
+        (first node, second node), and weight, of the roadmap's edges.
+    """
+
+    roadmap: Roadmap
+    metric: LegMetric
+    edges: tuple[NDArray[np.int64], Array]
+
+    @classmethod
+    def over(cls, roadmap: Roadmap, aircraft: Aircraft, rules: FlightRules) -> Ways:
+        """Ways for an aircraft; the shortest instead of the fastest where the wind allows no flight."""
+        try:
+            metric = round_trip_metric(motion_limits(aircraft, rules))
+        except InfeasibleError:
+            metric = leg_length
+        nodes, edges = roadmap.nodes_enu_m, roadmap.edges
+        return cls(roadmap, metric, (edges, metric(nodes[edges[:, 1]] - nodes[edges[:, 0]])))
+
+    def between(self, pairs: Sequence[tuple[Place, Place]]) -> list[tuple[Vec3, ...]]:
+        """The way of each pair of places, both ends included; what lies between is rounded as in plan files.
+
+        Where an end is no allowed position, or no way is found, the way is straight: checks say what it comes too close
+        to. From and to home it leads through the column above.
+        """
+        space = self.roadmap.space
+        top = space.column_top_enu_m
+        ends = np.array([[top if place is HOME else place for place in pair] for pair in pairs], np.float64)
+        ends = ends.reshape(-1, 2, 3)
+        is_clear = space.legs_clear(ends[:, 0], ends[:, 1])
+        is_allowed = space.is_allowed(ends.reshape(-1, 3), LEG_MARGIN_M).reshape(-1, 2)
+        # Home may stand on the border of the airspace, where viewpoints may not; it was checked when it was prepared.
+        is_allowed |= np.array([[place is HOME for place in pair] for pair in pairs], np.bool_).reshape(-1, 2)
+        found = []
+        for (start, end), straight, clear, allowed in zip(pairs, ends, is_clear, is_allowed, strict=True):
+            if clear and start is not HOME and end is not HOME:
+                way: Array | None = straight
+            else:
+                way = self._around(start, end) if allowed.all() else None
+            vertices = _rounded(self._straight(start, end) if way is None else way)
+            first, last = (vertices[0] if start is HOME else start), (vertices[-1] if end is HOME else end)
+            found.append((first, *vertices[1:-1], last))
+        return found
+
+    def _straight(self, start: Place, end: Place) -> Array:
+        """Straight, but for the column above home."""
+        column = [self.roadmap.space.home_enu_m, self.roadmap.space.column_top_enu_m]
+        first = column if start is HOME else [np.array(start)]
+        last = column[::-1] if end is HOME else [np.array(end)]
+        return np.array([*first, *last])
+
+    def _around(self, start: Place, end: Place) -> Array | None:
+        """Shortest way over the roadmap, pulled tight, shape (k, 3); None where there is none."""
+        if end is HOME and start is not HOME:
+            from_home = self._around(end, start)
+            return None if from_home is None else from_home[::-1]
+        nodes = self.roadmap.nodes_enu_m
+        n = len(nodes)
+        points = np.array([self.roadmap.space.home_enu_m if place is HOME else place for place in (start, end)])
+        joined = joined_nodes(self.roadmap, points)
+        if start is HOME:
+            column = np.arange(self.roadmap.n_column)
+            joined = np.concatenate([joined[joined[:, 0] == 1], np.stack([np.zeros_like(column), column], axis=1)])
+        joined = np.unique(joined, axis=0)  # a sparse matrix adds up what it is given twice
+        weight = self.metric(nodes[joined[:, 1]] - points[joined[:, 0]])
+        rows = np.concatenate([self.edges[0][:, 0], n + joined[:, 0]])
+        columns = np.concatenate([self.edges[0][:, 1], joined[:, 1]])
+        weights = np.maximum(np.concatenate([self.edges[1], weight]), 1e-9)
+        graph = csr_array(coo_array((weights, (rows, columns)), shape=(n + 2, n + 2)))
+        _, previous = dijkstra(graph, directed=False, indices=[n], return_predecessors=True)
+        if previous[0, n + 1] < 0:
+            return None
+        way = [n + 1]
+        while way[-1] != n:
+            way.append(int(previous[0, way[-1]]))
+        along = np.concatenate([nodes, points])[way[::-1]]
+        n_kept = 1 if start is HOME else 0  # the vertical part above home
+        return np.concatenate([along[:n_kept], pull_tight(self.roadmap, along[n_kept:], self.metric)])
+
+
+def _rounded(way: Array) -> tuple[Vec3, ...]:
+    return tuple((float(x), float(y), float(z)) for x, y, z in way.round(POSITION_DECIMALS))
+
+
+# A plan in hand: measured, checked, and ready to be edited.
+
+LENGTH_DECIMALS, DURATION_DECIMALS = 3, 2
+"""Of stated lengths (m) and durations (s), as the planner writes them."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Revision:
+    """A plan on its prepared site with everything measured on it; made by `revise` and by the edits.
+
+    Parameters
+    ----------
+    findings
+        Of all pre-flight rules: those of `planning.checks.check_plan`.
+    """
+
+    prepared: Prepared
+    ways: Ways
+    case: Case
+    findings: tuple[Finding, ...]
+
+    @property
+    def plan(self) -> Plan:
+        """The plan as it is now."""
+        return self.case.plan
+
+    @property
+    def counts(self) -> NDArray[np.int64]:
+        """Number of views of each section, shape (m, n_sections)."""
+        return self.case.measures.counts
+
+    def viewpoint(self, viewpoint_id: str) -> Viewpoint:
+        """A viewpoint by its identifier.
+
+        Raises
+        ------
+        ValueError
+            There is none.
+        """
+        found = next((viewpoint for viewpoint in self.plan.viewpoints if viewpoint.id == viewpoint_id), None)
+        if found is None:
+            raise ValueError(f"viewpoint_id: there is no viewpoint '{viewpoint_id}'")
+        return found
+
+    def elements_of_pose(self, viewpoint: Viewpoint) -> NDArray[np.int32]:
+        """Panel * n_sections + section of each panel that one of the plan's viewpoints covers, shape (k,), rising."""
+        return self.case.measures.seen[pose_of(viewpoint)].elements
+
+    def leg_clearances_m(self, sortie: Sortie) -> NDArray[np.float64]:
+        """Distance of each leg of one of the plan's sorties to panels, building and obstacles, shape (k - 1,)."""
+        return np.array([self.case.measures.solid_gaps.legs_m[leg] for leg in legs_of(sortie)], np.float64)
+
+
+def revise(plan: Plan, prepared: Prepared, before: Revision | None = None) -> Revision:
+    """Take a plan in hand.
+
+    Parameters
+    ----------
+    prepared
+        The plan's site, prepared for its camera and constraints.
+    before
+        Another plan on the same preparation, such as the one before an edit was undone: saves measuring what both have
+        in common, and changes nothing else.
+
+    Raises
+    ------
+    ValueError
+        The site was prepared for another camera or other constraints.
+    """
+    if plan.camera != prepared.problem.model.camera:
+        raise ValueError(f"prepared: is for the camera {prepared.problem.model.camera.name}, not {plan.camera.name}")
+    wanted = replace(plan.constraints, occlusion=prepared.constraints.occlusion)
+    wanted = settled(wanted, prepared.site_model, plan.camera)
+    if wanted != prepared.constraints or plan.constraints.occlusion not in ("auto", wanted.occlusion):
+        raise ValueError(f"prepared: is for {prepared.constraints}, not {plan.constraints}")
+    if before is None or before.prepared is not prepared:
+        case = Case.of(plan, prepared.site_model)
+        ways = Ways.over(prepared.problem.roadmap, plan.aircraft, plan.rules)
+    else:
+        case, ways = before.case.with_plan(plan), before.ways
+        if (plan.aircraft, plan.rules) != (before.plan.aircraft, before.plan.rules):
+            ways = Ways.over(prepared.problem.roadmap, plan.aircraft, plan.rules)
+    return Revision(prepared, ways, case, check_case(case))
+
+
+def with_route(revision: Revision, viewpoints: Iterable[Viewpoint], sorties: Iterable[Sortie]) -> Revision:
+    """The plan with other viewpoints and sorties; it states what they cover, and length and duration of new sorties."""
+    known = {id(sortie) for sortie in revision.plan.sorties}
+    case = revision.case.with_plan(replace(revision.plan, viewpoints=tuple(viewpoints), sorties=tuple(sorties)))
+    plan = replace(
+        case.plan,
+        sorties=tuple(sortie if id(sortie) in known else _stated(case, sortie) for sortie in case.plan.sorties),
+        coverage=coverage_of_sights(case.model, case.measures.seen.values(), revision.prepared.problem.reachability),
+    )
+    case = replace(case, plan=plan)
+    return replace(revision, case=case, findings=check_case(case))
+
+
+def _stated(case: Case, sortie: Sortie) -> Sortie:
+    """A sortie with the length and the duration that were measured; as it is where nothing can be flown."""
+    by_id = {viewpoint.id: viewpoint for viewpoint in case.plan.viewpoints}
+    flight = case.measures.flights.get(flight_key(sortie, by_id))
+    length_m = float(np.linalg.norm(np.diff(np.array(sortie.path_enu_m), axis=0), axis=1).sum())
+    duration_s = sortie.duration_s if flight is None else round(flight.stopping_s, DURATION_DECIMALS)
+    return replace(sortie, length_m=round(length_m, LENGTH_DECIMALS), duration_s=duration_s)
+
 
 Viewpoints = Mapping[str, Viewpoint]
 """By identifier."""
@@ -100,7 +330,6 @@ def redrawn(
 
 # Where a new viewpoint goes: into a sortie with room, at the place where it costs least time.
 
-Array = NDArray[np.float64]
 
 MAX_LOOKED_AT = 64
 """Cheapest places that are looked at; the first of them to which clear legs lead is nearly always among the first 3."""

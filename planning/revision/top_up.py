@@ -25,12 +25,11 @@ from planning.coverage.reachability import MAX_CELLS
 from planning.motion.timing import usable_battery_s
 from planning.parameters import LARGEST_SEED
 from planning.plan import HistoryPoint, Plan, Viewpoint, ViewpointArrays, viewpoint_arrays
+from planning.planner import plan_records
+from planning.revision.closing_flights import Batteries, ClosingFlights, Wanted, closing_flights
 from planning.site.records import SiteModel
-from planning.viewpoints.closing_candidates import Wanted
-from planning.viewpoints.closing_flights import Batteries, ClosingFlights, closing_flights
-from planning.viewpoints.locked import NONE_LOCKED
-from planning.viewpoints.plan_records import plan_records
 from planning.viewpoints.prepare import Prepared, prepare, settled
+from planning.viewpoints.problem import NONE_LOCKED
 
 METHOD = "top-up"
 

@@ -1,7 +1,8 @@
 """The shortest route that collects all there is to collect: which stops to make, and in which order (covering tour).
 
-Stops overlap in what they are worth (`planning.routing.gains`), so some can stand in for others nearby. Stops are taken
-out and others put in until nothing is missing, over and over (ruin and recreate); the shortest route found is kept.
+Stops overlap in what they are worth (`planning.routing.insertion`), so some can stand in for others nearby. Stops are
+taken out and others put in until nothing is missing, over and over (ruin and recreate); the shortest route found is
+kept.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from numpy.typing import NDArray
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor, Stop, Trace, never
 from planning.routing import insertion
-from planning.routing.gains import CoverageGain
+from planning.routing.insertion import CoverageGain
 from planning.routing.tour import check_costs
 
 Floats = NDArray[np.float64]

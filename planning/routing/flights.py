@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 from planning.base.errors import InfeasibleError
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor, Stop, Trace, never
-from planning.motion.sortie_timing import stopping_duration_s
 from planning.motion.timing import (
     flight_path,
     motion_limits,
     photo_stop_s,
     round_trip_metric,
+    stopping_duration_s,
     usable_battery_s,
     with_turns_s,
 )

@@ -17,8 +17,7 @@ from numpy.typing import NDArray
 
 from planning.base.jit import inline, kernel
 from planning.base.messages import say
-from planning.base.progress import QUIET, Monitor, Stop, Trace, never
-from planning.routing.slices import slices
+from planning.base.progress import QUIET, Monitor, Stop, Trace, never, slices
 
 Floats = NDArray[np.float64]
 

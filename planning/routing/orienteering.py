@@ -2,7 +2,7 @@
 
 Stops are put in one after the other where they add most worth for the time they take; then some are taken out and put
 back differently, over and over (ruin and recreate), and routes are shortened so that more fits in. The worth may be a
-plain sum of prizes or overlap, as coverage does (`planning.routing.gains`).
+plain sum of prizes or overlap, as coverage does (`planning.routing.insertion`).
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from planning.base.progress import QUIET, Monitor, Stop, Trace, never
 from planning.routing import insertion, tour
-from planning.routing.gains import CoverageGain
+from planning.routing.insertion import CoverageGain
 from planning.routing.sorties import FIT, Sorties
 from planning.routing.tour import check_costs, improve_tour
 

@@ -18,10 +18,10 @@ from numpy.typing import NDArray
 from planning.base.errors import InfeasibleError
 from planning.base.jit import kernel
 from planning.base.messages import say
-from planning.base.progress import QUIET, Monitor, Stop, Trace, never
-from planning.routing import exact_tour, insertion, string_removal, tour
+from planning.base.progress import QUIET, Monitor, Stop, Trace, never, slices
+from planning.routing import insertion, string_removal, tour
+from planning.routing import tour as exact_tour
 from planning.routing.lower_bound import held_karp_bound
-from planning.routing.slices import slices
 from planning.routing.string_removal import Annealing, Limits, Routes
 from planning.routing.tour import check_costs, improve_tour, nearest_neighbour
 

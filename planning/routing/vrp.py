@@ -18,8 +18,7 @@ from numpy.typing import NDArray
 from pyvrp.stop import NoImprovement
 
 from planning.base.errors import InfeasibleError
-from planning.base.progress import QUIET, Monitor, Stop, Trace, never
-from planning.routing.slices import SLICE_S
+from planning.base.progress import QUIET, SLICE_S, Monitor, Stop, Trace, never
 from planning.routing.sorties import SortieProblem, Sorties, sortie_durations_s
 from planning.routing.tour import check_costs, tour_length
 

@@ -27,8 +27,18 @@ from planning.request import PlanRequest
 from planning.site.bundled import SCENES
 from planning.site.free_space import free_space
 from planning.site.records import SiteModel
-from planning.tradeoff.curves import Answers, Curve, Noise, answers, answers_summary, falling, mean_curve, seconds_text
-from planning.tradeoff.picture import Line, Panel
+from planning.tradeoff.runner import (
+    Answers,
+    Curve,
+    Line,
+    Noise,
+    Panel,
+    answers,
+    answers_summary,
+    falling,
+    mean_curve,
+    seconds_text,
+)
 from planning.viewpoints.methods import method_named
 from planning.viewpoints.prepare import coverage_model
 

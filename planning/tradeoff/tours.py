@@ -26,8 +26,7 @@ from planning.routing.tour import tour_length
 from planning.routing.tsplib import read_instance, read_tour, tour_order
 from planning.site.free_space import free_space
 from planning.site.records import SiteModel
-from planning.tradeoff.curves import Answers, Curve, Noise, answers, answers_summary, falling, seconds_text
-from planning.tradeoff.picture import Line, Panel
+from planning.tradeoff.runner import Answers, Curve, Line, Noise, Panel, answers, answers_summary, falling, seconds_text
 
 TOUR_METHODS: tuple[TourMethod, ...] = get_args(TourMethod)
 

@@ -25,8 +25,7 @@ from planning.viewpoints import cover_kernel as kernel
 from planning.viewpoints.candidates import Pool, candidate_pool, join_pools, keep
 from planning.viewpoints.greedy import Choice, element_weights
 from planning.viewpoints.improve import cover_state
-from planning.viewpoints.locked import NONE_LOCKED, covered_by
-from planning.viewpoints.problem import ViewProblem, take
+from planning.viewpoints.problem import NONE_LOCKED, ViewProblem, covered_by, take
 from planning.viewpoints.spacing import ANYWHERE, Apart, apart_of, rounding_spacing_m
 
 Array = NDArray[np.float64]

@@ -15,21 +15,119 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
 
+from planning.base.jit import kernel
 from planning.base.messages import say
-from planning.base.progress import QUIET, Monitor, Stop, Trace
+from planning.base.progress import QUIET, Monitor, Stop, Trace, never
 from planning.coverage.model import CoverageModel, Elements
 from planning.coverage.sections import SectionGrid
 from planning.parameters import GreedyParameters
 from planning.plan import ViewpointArrays
-from planning.viewpoints import cover_kernel as kernel
-from planning.viewpoints.bounds import dual_bound
+from planning.viewpoints import cover_kernel
 from planning.viewpoints.candidates import Pool, candidate_pool, join_pools, keep
 from planning.viewpoints.improve import Exchange, cover_state, improve_views
-from planning.viewpoints.locked import NONE_LOCKED, covered_by
-from planning.viewpoints.problem import Goal, ViewProblem, ViewSet, concatenate, take
+from planning.viewpoints.problem import NONE_LOCKED, Goal, ViewProblem, ViewSet, concatenate, covered_by, take
 from planning.viewpoints.spacing import ANYWHERE, Apart, apart_of, rounding_spacing_m, views_apart
 
 Array = NDArray[np.float64]
+
+
+# Upper bounds on what N of the candidates can cover, and the exact optimum on small scenes.
+#
+# Three, from cheap to exact: greedy's own (f(S) + the N largest marginal gains, any S), the Lagrangian dual of the
+# integer programme, and the integer programme itself (HiGHS). All hold for the given candidates; refined poses are not
+# candidates and may cover more, up to the number of reachable sections.
+
+DUAL_STEPS = 150
+
+
+@kernel
+def _scores(starts: NDArray[np.int64], items: NDArray[np.int32], prices: Array, scores: Array) -> None:
+    """Sum of the prices of each candidate's elements."""
+    for c in range(len(scores)):
+        total = 0.0
+        for i in range(starts[c], starts[c + 1]):
+            total += prices[items[i]]
+        scores[c] = total
+
+
+@kernel
+def _cover_counts(
+    starts: NDArray[np.int64], items: NDArray[np.int32], chosen: NDArray[np.int64], counts: Array
+) -> None:
+    counts[:] = 0.0
+    for c in chosen:
+        for i in range(starts[c], starts[c + 1]):
+            counts[items[i]] += 1.0
+
+
+def dual_bound(
+    elements: Elements, weights: Array, n_views: int, known: float, n_steps: int = DUAL_STEPS, stop: Stop = never
+) -> float:
+    """Lagrangian bound on the weight that `n_views` candidates can cover.
+
+    With prices 0 <= p_e <= w_e for the constraint "an element counts only when a chosen view covers it", every p gives
+    the bound sum (w_e - p_e) + the sum of the N largest candidate scores sum p_e. Subgradient steps (Polyak's length,
+    towards `known`, the value of a solution at hand) lower it; the best one is returned.
+    """
+    coverable = np.bincount(elements.items, minlength=len(weights)) > 0
+    best = float(weights[coverable].sum())
+    n_candidates = len(elements.starts) - 1
+    n_views = min(n_views, n_candidates)
+    prices = np.where(coverable, 0.5 * weights, 0.0)
+    scores, counts = np.empty(n_candidates), np.empty(len(weights))
+    length, since_better = 1.0, 0
+    for _ in range(n_steps):
+        if stop():
+            break
+        _scores(elements.starts, elements.items, prices, scores)
+        chosen = np.argpartition(-scores, n_views - 1)[:n_views] if n_views < n_candidates else np.arange(n_candidates)
+        bound = float((weights - prices)[coverable].sum() + scores[chosen].sum())
+        since_better = since_better + 1 if bound >= best - 1e-9 else 0
+        best = min(best, bound)
+        if since_better >= 8:
+            length, since_better = 0.5 * length, 0
+        _cover_counts(elements.starts, elements.items, chosen, counts)
+        slope = np.where(coverable, counts - 1.0, 0.0)
+        # Steps that only push prices against their limits say nothing.
+        slope[(prices <= 0.0) & (slope > 0.0)] = 0.0
+        slope[(prices >= weights) & (slope < 0.0)] = 0.0
+        square = float(slope @ slope)
+        if square <= 0.0 or bound <= known:
+            break
+        prices = np.clip(prices - length * (bound - known) / square * slope, 0.0, weights)
+    return best
+
+
+def exact_optimum(
+    elements: Elements, weights: Array, n_views: int, time_limit_s: float = 60.0
+) -> tuple[float, NDArray[np.int64], float]:
+    """Best coverage by `n_views` candidates as an integer programme: value, chosen candidates, proven upper bound.
+
+    Where HiGHS runs out of time, the value is the best it found and the bound lies above it.
+    """
+    from scipy.optimize import Bounds, LinearConstraint, milp
+    from scipy.sparse import coo_array, csr_array, hstack, identity
+
+    n_candidates, n_elements = len(elements.starts) - 1, len(weights)
+    candidate = np.repeat(np.arange(n_candidates), np.diff(elements.starts))
+    covers = csr_array(
+        coo_array((np.ones(len(candidate)), (elements.items, candidate)), shape=(n_elements, n_candidates))
+    )
+    # Variables: candidate chosen (integer), element covered (continuous). covered_e <= sum of chosen views that see e.
+    only_if_seen = LinearConstraint(hstack([-covers, identity(n_elements, format="csr")], format="csr"), ub=0.0)
+    count = csr_array(np.concatenate([np.ones(n_candidates), np.zeros(n_elements)])[None])
+    solved = milp(
+        np.concatenate([np.zeros(n_candidates), -weights]),
+        integrality=np.concatenate([np.ones(n_candidates), np.zeros(n_elements)]),
+        bounds=Bounds(0.0, 1.0),
+        constraints=[only_if_seen, LinearConstraint(count, ub=float(n_views))],
+        options={"time_limit": time_limit_s},
+    )
+    if solved.x is None:
+        return 0.0, np.zeros(0, np.int64), float(weights.sum())
+    chosen = np.flatnonzero(solved.x[:n_candidates] > 0.5)
+    return -float(solved.fun), chosen, -float(solved.mip_dual_bound)
+
 
 NOTHING = np.zeros(0, np.int64)
 NO_ELEMENTS = np.zeros(0, np.int32)
@@ -237,10 +335,10 @@ def needed(elements: Elements, weights: Array, covered: NDArray[np.int32] | None
     state = cover_state(elements, weights, covered)
     kept = np.ones(len(elements.starts) - 1, np.bool_)
     for view in range(len(kept)):
-        kernel.add_elements(state, elements.of(view))
+        cover_kernel.add_elements(state, elements.of(view))
     for view in range(len(kept)):
-        if kernel.loss_of(state, elements.of(view)) <= 1e-9:
-            kernel.remove_elements(state, elements.of(view))
+        if cover_kernel.loss_of(state, elements.of(view)) <= 1e-9:
+            cover_kernel.remove_elements(state, elements.of(view))
             kept[view] = False
     return kept
 
@@ -268,17 +366,17 @@ def choose_greedily(
     n_chosen = len(first)
     chosen[:n_chosen] = first
     for candidate in first:
-        kernel.add_elements(state, pool.elements.of(candidate))
+        cover_kernel.add_elements(state, pool.elements.of(candidate))
     while n_chosen < len(chosen):
         monitor.report(say("choosing views"), n_chosen, len(chosen))
         slice_end = min(len(chosen), n_chosen + max(8, n_chosen // 4))
-        n_now = int(kernel.greedy_steps(state, chosen, n_chosen, slice_end, enough))
+        n_now = int(cover_kernel.greedy_steps(state, chosen, n_chosen, slice_end, enough))
         trace.record(int(np.count_nonzero(state.counts)))
         ended = n_now < slice_end
         n_chosen = n_now
         if ended:
             break
-    return chosen[:n_chosen], float(kernel.objective(state))
+    return chosen[:n_chosen], float(cover_kernel.objective(state))
 
 
 def _fewest_sharp_views(choice: Choice, pool: Pool, share: float, parameters: GreedyParameters) -> ViewpointArrays:
@@ -350,11 +448,11 @@ def spend_spare_views(
         state = cover_state(elements, np.ones(finer.n_elements), covered_by(finer, locked), apart)
         state.depth[0] = depth
         for candidate in chosen:
-            kernel.add_elements(state, elements.of(candidate))
-        kernel.refresh_gains(state)
+            cover_kernel.add_elements(state, elements.of(candidate))
+        cover_kernel.refresh_gains(state)
         state.gains[_at_places(pool.views.positions_enu_m, taken)] = -np.inf
         added = np.zeros(n_spare, np.int64)
-        n_added = kernel.greedy_steps(state, added, 0, n_spare, np.inf)
+        n_added = cover_kernel.greedy_steps(state, added, 0, n_spare, np.inf)
         chosen = np.concatenate([chosen, added[:n_added]])
     return chosen
 

@@ -13,8 +13,7 @@ from planning.coverage.model import Elements
 from planning.plan import ViewpointArrays
 from planning.viewpoints import cover_kernel as kernel
 from planning.viewpoints.candidates import Pool, spread_candidates
-from planning.viewpoints.locked import NONE_LOCKED, covered_by
-from planning.viewpoints.problem import ViewProblem, concatenate, take
+from planning.viewpoints.problem import NONE_LOCKED, ViewProblem, concatenate, covered_by, take
 from planning.viewpoints.spacing import ANYWHERE, Apart, apart_of
 
 Array = NDArray[np.float64]

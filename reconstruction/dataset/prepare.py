@@ -19,9 +19,8 @@ from numpy.typing import NDArray
 
 from planning.base.effects import Assessment, Decision, EffectSetting, decide
 from planning.base.errors import InputError
-from planning.base.files import read_given
+from planning.base.files import is_empty, read_given
 from planning.base.findings import Finding, Severity
-from planning.base.folders import is_empty
 from planning.base.jit import n_threads
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor

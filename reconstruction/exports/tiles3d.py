@@ -22,8 +22,7 @@ import torch
 from numpy.typing import NDArray
 
 from planning.base.errors import InputError
-from planning.base.files import sha256_given
-from planning.base.folders import make_folder
+from planning.base.files import make_folder, sha256_given
 from planning.base.json_file import new_file_beside, write_together
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor

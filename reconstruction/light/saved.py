@@ -13,7 +13,7 @@ from safetensors import SafetensorError
 from safetensors.numpy import load, save
 
 from planning.base.errors import InputError
-from planning.base.folders import make_folder
+from planning.base.files import make_folder
 from planning.base.json_file import expect_format, read_json, to_record, write_together
 from planning.base.messages import say
 from planning.base.progress import QualityPoint

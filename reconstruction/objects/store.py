@@ -22,8 +22,7 @@ from safetensors import SafetensorError, safe_open
 from safetensors.numpy import save
 
 from planning.base.errors import InputError
-from planning.base.files import check_given, open_given
-from planning.base.folders import make_folder
+from planning.base.files import check_given, make_folder, open_given
 from planning.base.json_file import expect_format, read_json, to_record, write_atomically
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor

@@ -17,8 +17,7 @@ from numpy.typing import NDArray
 
 from planning.geo.enu import geodetic_from_enu
 from planning.geo.frames import Origin, Vec3
-from planning.photos.exif import Tag
-from planning.photos.exif_writing import Content, Ratio, exif_content
+from planning.photos.exif import Content, Ratio, Tag, exif_content
 from planning.photos.record import RTK_FIXED
 from reconstruction.base.cameras import Intrinsics, Pose, PosedPhoto
 from reconstruction.photos.lens import MM35_DIAGONAL

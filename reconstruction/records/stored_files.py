@@ -11,8 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from planning.base.errors import InputError
-from planning.base.files import MIB, FileLimit, read_given, sha256_given
-from planning.base.folders import make_folder
+from planning.base.files import MIB, FileLimit, make_folder, read_given, sha256_given
 from planning.base.json_file import write_atomically
 from planning.base.messages import say
 from reconstruction.records.book import RecordBook

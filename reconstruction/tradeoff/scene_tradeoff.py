@@ -21,8 +21,7 @@ from planning.base.effects import Decision
 from planning.base.errors import InfeasibleError, InputError
 from planning.base.progress import QUIET, Clock, Monitor
 from planning.site.records import Facade
-from planning.tradeoff.picture import GapAxis, Panel
-from planning.tradeoff.runner import knob_lines
+from planning.tradeoff.runner import GapAxis, Panel, knob_lines
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.metrics.metrics import PhotoScores, SetScores, summarise
 from reconstruction.metrics.run import own_method, score_answer

@@ -7,8 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from planning.base.progress import QUIET, Monitor
-from planning.tradeoff.picture import GapAxis, Panel
-from planning.tradeoff.runner import knob_lines
+from planning.tradeoff.runner import GapAxis, Panel, knob_lines
 from reconstruction.metrics.metrics import PhotoScores, SetScores, summarise
 from reconstruction.metrics.run import Method, own_method, score_answer, together_method, viewed, viewed_method
 from reconstruction.metrics.sets import PhotoSet

@@ -10,9 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from planning.base.progress import QUIET, Clock, Monitor, QualityPoint
-from planning.tradeoff.curves import Curve, falling
-from planning.tradeoff.picture import Line, Panel
-from planning.tradeoff.runner import NumberedRuns
+from planning.tradeoff.runner import Curve, Line, NumberedRuns, Panel, falling
 from reconstruction.light.photo_set import read_photo_set
 from reconstruction.training.callbacks import Callbacks
 from reconstruction.training.config import TrainConfig, config_of

@@ -13,8 +13,8 @@ from planning.parameters import Constraints
 from planning.site.bundled import SCENES, panel_grid
 from planning.site.records import SiteModel
 from planning.viewpoints import cover_kernel as kernel
-from planning.viewpoints.bounds import dual_bound, exact_optimum
 from planning.viewpoints.candidates import spread_candidates
+from planning.viewpoints.greedy import dual_bound, exact_optimum
 from planning.viewpoints.improve import Exchange, cover_state
 from planning.viewpoints.prepare import prepare
 from tests.benchmarks.harness import Benchmark, Context, Row, stopwatch

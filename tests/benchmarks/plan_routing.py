@@ -10,11 +10,11 @@ import numpy as np
 from planning.aircraft.catalogue import profile
 from planning.base.progress import TimeLimit
 from planning.parameters import FlightRules
+from planning.planner import as_written
 from planning.routing import vrp
 from planning.routing.flights import flight_times
 from planning.routing.sorties import SortieProblem, Sorties, plan_sorties, solve_sorties, sortie_durations_s
 from planning.viewpoints.greedy import greedy
-from planning.viewpoints.plan_records import as_written
 from tests.benchmarks.harness import Benchmark, Context, Row, stopwatch
 from tests.benchmarks.problems import PLANAR_VIEWS, choose, prepared
 

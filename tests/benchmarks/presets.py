@@ -13,7 +13,7 @@ from typing import Any
 
 from planning.base.jit import n_threads
 from planning.base.progress import QUIET
-from planning.tradeoff.picture import draw
+from planning.tradeoff.runner import draw
 from reconstruction.tradeoff.scene_tradeoff import ERROR_AXIS
 from reconstruction.tradeoff.train_tradeoff import BASE, Setting, Trial, run_settings, settings_of, trial_panels
 from reconstruction.training.config import TrainConfig

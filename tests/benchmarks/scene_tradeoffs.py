@@ -7,7 +7,7 @@ from pathlib import Path
 
 from planning.aircraft.catalogue import profile
 from planning.base.errors import InputError
-from planning.tradeoff.picture import draw
+from planning.tradeoff.runner import draw
 from reconstruction.scenes.effects.registry import decide_effects
 from reconstruction.scenes.mitsuba.plugins import mitsuba
 from reconstruction.scenes.mitsuba.renderer import MitsubaRenderer

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from planning.base.progress import QUIET
-from planning.tradeoff.picture import draw
+from planning.tradeoff.runner import draw
 from reconstruction.metrics.metrics import PhotoScores, SetScores, summarise
 from reconstruction.metrics.overlaps import pixel_overlaps
 from reconstruction.metrics.pictures import write_picture

@@ -6,8 +6,6 @@ from collections.abc import Iterator
 
 from planning.request import PlanRequest
 from planning.site.bundled import SCENES
-from planning.tradeoff.curves import seconds_text
-from planning.tradeoff.picture import COVERAGE_AXIS, TOUR_AXIS, draw
 from planning.tradeoff.plans import (
     PlanRun,
     Variants,
@@ -19,6 +17,7 @@ from planning.tradeoff.plans import (
     run_plan,
     settings,
 )
+from planning.tradeoff.runner import COVERAGE_AXIS, TOUR_AXIS, draw, seconds_text
 from planning.tradeoff.tours import run_tours, tour_panel, tour_report, tour_title, tsplib_case
 from tests.benchmarks.harness import Benchmark, Context, Row
 from tests.benchmarks.problems import PLANAR_VIEWS

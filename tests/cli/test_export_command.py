@@ -7,7 +7,7 @@ import pytest
 
 from groundstation.services.plan.planning import plan_site
 from missions.dji.check import check_dji
-from missions.dji.container import parts_of_kmz
+from missions.dji.wpml import parts_of_kmz
 from missions.formats.registry import read_missions
 from planning.aircraft.catalogue import profiles
 from planning.base.findings import is_flyable

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from missions.dji.check import check_dji
-from missions.dji.container import parts_of_kmz
+from missions.dji.wpml import parts_of_kmz
 from missions.formats.registry import read_missions
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.check import check_items

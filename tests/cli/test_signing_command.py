@@ -6,7 +6,7 @@ import pytest
 
 from groundstation.cli.main import main
 from groundstation.services.fly import signing
-from missions.mavlink.key_store import KeyStore
+from missions.mavlink.signing import KeyStore
 
 
 @pytest.fixture(autouse=True)

@@ -238,7 +238,7 @@ def shown(state, n=0):
 def test_every_section_is_found_where_it_is_painted(application, step_deg):
     from groundstation.gui.charts.hemisphere_view import HemisphereView
     from planning.coverage.sections import SectionGrid
-    from planning.insight.hemisphere import section_shapes
+    from planning.insight.sections import section_shapes
 
     view = HemisphereView()
     view.resize(400, 360)

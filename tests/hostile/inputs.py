@@ -398,7 +398,7 @@ def _settings() -> None:
     from groundstation.services.fly.options import USUAL
     from groundstation.services.preferences import write_kept
     from groundstation.services.settings import Settings, write_settings
-    from missions.mavlink.key_store import KeyStore
+    from missions.mavlink.signing import KeyStore
 
     write_settings(
         Path("config/settings.toml"), Settings(recent_projects=("/a", "/b"), window_layouts={"800x600": "AA"})

@@ -23,7 +23,7 @@ def holder(path: Path) -> None:
 
 def signer(path: Path) -> None:
     """The key that links are signed with."""
-    from missions.mavlink.key_store import KeyStore
+    from missions.mavlink.signing import KeyStore
 
     KeyStore(path.parent, may_use_system=False).signer()
 

@@ -5,9 +5,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from planning.geo.bvh import build_bvh, nearest_d2, segment_d2
-from planning.geo.distance import point_triangle_d2, segment_segment_d2, segment_triangle_d2
-from planning.geo.line_of_sight import line_of_sight
+from planning.geo.bvh import (
+    build_bvh,
+    line_of_sight,
+    nearest_d2,
+    point_triangle_d2,
+    segment_d2,
+    segment_segment_d2,
+    segment_triangle_d2,
+)
 from planning.geo.mesh import box_mesh, closed_parts, extrude
 from planning.geo.solids import Solids
 from planning.site.bundled import SCENES

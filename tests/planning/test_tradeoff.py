@@ -17,8 +17,6 @@ from planning.request import PlanRequest
 from planning.routing.tour import tour_length
 from planning.site.bundled import SCENES
 from planning.site.free_space import free_space
-from planning.tradeoff.curves import Curve, Noise, answers, falling, mean_curve, seconds_text, winner
-from planning.tradeoff.picture import COVERAGE_AXIS, TOUR_AXIS, Line, Panel, draw
 from planning.tradeoff.plans import (
     FailedRun,
     Variants,
@@ -33,6 +31,20 @@ from planning.tradeoff.plans import (
     settings,
     share_text,
     time_to_part_s,
+)
+from planning.tradeoff.runner import (
+    COVERAGE_AXIS,
+    TOUR_AXIS,
+    Curve,
+    Line,
+    Noise,
+    Panel,
+    answers,
+    draw,
+    falling,
+    mean_curve,
+    seconds_text,
+    winner,
 )
 from planning.tradeoff.tours import (
     TourCase,

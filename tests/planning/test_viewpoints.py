@@ -20,9 +20,8 @@ from planning.site.bundled import SCENES
 from planning.site.free_space import free_space
 from planning.site.records import Airspace, panel_corners
 from planning.viewpoints import cover_kernel as kernel
-from planning.viewpoints.bounds import dual_bound, exact_optimum
 from planning.viewpoints.candidates import candidate_pool
-from planning.viewpoints.greedy import choose_greedily, element_weights, greedy
+from planning.viewpoints.greedy import choose_greedily, dual_bound, element_weights, exact_optimum, greedy
 from planning.viewpoints.improve import Exchange, cover_state, refine_views
 from planning.viewpoints.noto import noto
 from planning.viewpoints.orbit import orbit

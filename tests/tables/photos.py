@@ -16,10 +16,9 @@ from groundstation.services.scenes.views import SITE_FILE, SceneRequest
 from groundstation.services.scenes.views import as_written as site_as_written
 from planning.parameters import Constraints, GreedyParameters
 from planning.plan import Plan, write_plan
-from planning.planner import Planned
+from planning.planner import Planned, as_written, viewpoints_of
 from planning.request import PlanRequest
 from planning.viewpoints.candidates import spread_candidates
-from planning.viewpoints.plan_records import as_written, viewpoints_of
 from planning.viewpoints.problem import take
 from reconstruction.scenes.runs.photo_job import DEFAULT_POINTS
 from reconstruction.scenes.world.bundled import curved_site, planar_site

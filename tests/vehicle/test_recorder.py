@@ -9,8 +9,7 @@ from groundstation.vehicle.orders import sortie_orders
 from groundstation.vehicle.sortie.conduct import conduct
 from groundstation.vehicle.sortie.flight_run import FlightRun
 from groundstation.vehicle.sortie.run_records import RunOptions
-from missions.flight.lost_reports import n_lost
-from missions.flight.matching import match_flight
+from missions.flight.matching import match_flight, n_lost
 from missions.flight.outcome import Reason
 from missions.mavlink.autopilots import Autopilot
 from missions.mission.build import missions_from_plan

@@ -3,7 +3,7 @@
 from collections import deque
 from dataclasses import dataclass, field, replace
 
-from missions.mavlink.autopilots import Autopilot, facts
+from missions.mavlink.autopilots import Autopilot, facts, mode_numbers
 from missions.mavlink.messages import (
     Address,
     Attitude,
@@ -30,7 +30,6 @@ from missions.mavlink.messages import (
     Statustext,
     SysStatus,
 )
-from missions.mavlink.mode_numbers import mode_numbers
 from planning.base.errors import LinkError
 
 ACCEPTED, FAILED = 0, 4

@@ -31,7 +31,7 @@ def run(options: argparse.Namespace) -> int:
     from groundstation.cli.console import print_findings, print_json, run_job, verdict_text
     from groundstation.services.demo import demonstrate
     from groundstation.services.plan.planning import planned_summary
-    from missions.flight.report_text import report_text
+    from missions.flight.report import report_text
     from planning.base.findings import Severity, is_flyable
 
     started = time.perf_counter()

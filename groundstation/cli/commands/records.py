@@ -9,7 +9,7 @@ from typing import Any
 
 from groundstation.cli.lists import count
 from planning.base.errors import InputError
-from planning.base.folders import FILE_ENDING
+from planning.base.files import FILE_ENDING
 
 EPILOG = """examples:
   records tower.gsscene make

@@ -76,7 +76,7 @@ def run(options: argparse.Namespace) -> int:
 
 def _summary(reported: ReportedFlight, out: Path | None) -> dict[str, Any]:
 
-    from missions.flight.report_text import report_to_json
+    from missions.flight.report import report_to_json
     from planning.base.json_file import plain_values
 
     report = reported.flight.report
@@ -91,7 +91,7 @@ def _summary(reported: ReportedFlight, out: Path | None) -> dict[str, Any]:
 
 def _print_text(reported: ReportedFlight, options: argparse.Namespace) -> None:
     from groundstation.cli.console import counted, print_findings, print_next
-    from missions.flight.report_text import report_text
+    from missions.flight.report import report_text
 
     flight = reported.flight
     assert flight.report is not None

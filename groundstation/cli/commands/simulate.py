@@ -191,7 +191,7 @@ def effect_settings(texts: list[str]) -> dict[str, EffectSetting]:
 
 
 def _summary(flown: Flown, options: argparse.Namespace) -> dict[str, Any]:
-    from missions.flight.report_text import report_to_json
+    from missions.flight.report import report_to_json
     from planning.base.json_file import plain_values
 
     report = flown.flight.report
@@ -210,7 +210,7 @@ def _summary(flown: Flown, options: argparse.Namespace) -> dict[str, Any]:
 
 def _print_text(flown: Flown, options: argparse.Namespace) -> None:
     from groundstation.cli.console import print_findings
-    from missions.flight.report_text import report_text
+    from missions.flight.report import report_text
     from missions.simulator.build import effects_table
 
     report = flown.flight.report

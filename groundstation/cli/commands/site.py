@@ -133,8 +133,7 @@ def run(options: argparse.Namespace) -> int:
     from groundstation.services.project.input_files import FileKind, expecting
     from groundstation.services.project.project_file import check_not_index
     from planning.base.json_file import check_output
-    from planning.site.importing.importer import import_site
-    from planning.site.importing.output import write_imported_site
+    from planning.site.importing.importer import import_site, write_imported_site
 
     check_not_index(options.out)
     check_output(options.out, [options.file])

@@ -20,8 +20,8 @@ from planning.base.messages import say
 
 if TYPE_CHECKING:
     from groundstation.services.plan.tradeoff import PlanRuns
-    from planning.tradeoff.curves import Answers
     from planning.tradeoff.plans import FailedRun, PlanReport, Variants
+    from planning.tradeoff.runner import Answers
     from planning.tradeoff.tours import TourReport
     from reconstruction.tradeoff.search_tradeoff import SettingScores
 
@@ -251,8 +251,8 @@ def _failed_name(run: FailedRun) -> str:
 
 
 def _print_plan(report: PlanReport) -> None:
-    from planning.tradeoff.curves import seconds_text
     from planning.tradeoff.plans import plan_title, share_text, time_to_part_s
+    from planning.tradeoff.runner import seconds_text
 
     step = report.base_step_deg
     print(plan_title(report))
@@ -282,7 +282,7 @@ def _print_plan(report: PlanReport) -> None:
 
 def _print_answers(found: Answers, text: Callable[[float], str], goal: Callable[[float], str], last_s: float) -> None:
     """What each budget gives, up to the first at which all runs are over, and when each goal was reached."""
-    from planning.tradeoff.curves import seconds_text
+    from planning.tradeoff.runner import seconds_text
 
     for budget in found.by_budget:
         reached = "nothing yet" if budget.gap is None else f"{text(budget.gap)} with '{budget.run}'"
@@ -318,7 +318,7 @@ def _print_tours(reports: Sequence[TourReport]) -> None:
 
 
 def _print_tour(report: TourReport) -> None:
-    from planning.tradeoff.curves import seconds_text
+    from planning.tradeoff.runner import seconds_text
     from planning.tradeoff.tours import gap_text, plain, tour_title
 
     case = report.case

@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.coverage.sections import NOT_SEEN, PanelFrames, SectionGrid, panel_frames, sections_seen
-from planning.geo.bvh import Bvh, build_bvh, segment_is_free
-from planning.geo.line_of_sight import OCCLUSION_OFFSET_M
+from planning.geo.bvh import OCCLUSION_OFFSET_M, Bvh, build_bvh, segment_is_free
 from planning.geo.mesh import join
 from planning.plan import Plan, ViewpointArrays
 from planning.site.records import SiteModel, panel_corners, panel_triangles

@@ -16,8 +16,7 @@ from PySide6.QtWidgets import QToolTip, QWidget
 
 from groundstation.gui.widgets.theme import colours
 from planning.coverage.sections import SectionGrid
-from planning.insight.hemisphere import section_shapes
-from planning.insight.sections import SectionState
+from planning.insight.sections import SectionState, section_shapes
 
 MARGIN_PX = 26
 """Around the disc, for the angles at its rim."""

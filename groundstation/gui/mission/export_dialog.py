@@ -28,8 +28,8 @@ from missions.formats.encode import ExportOptions
 from missions.formats.registry import FORMATS, mission_format, mission_formats
 from missions.mavlink.autopilots import Autopilot
 from missions.mission.model import FileFormat, HeightReference
+from planning.base.files import PLAIN_ENDINGS
 from planning.base.findings import Severity
-from planning.base.folders import PLAIN_ENDINGS
 from planning.plan import Plan
 from planning.site.records import SiteModel
 

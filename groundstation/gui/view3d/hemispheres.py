@@ -20,7 +20,7 @@ from groundstation.gui.view3d.pinhole import Pinhole
 from groundstation.gui.view3d.shapes import PANEL_OFFSET_M, Shape, outlines
 from groundstation.gui.widgets.theme import Colours
 from planning.coverage.sections import PanelFrames, SectionGrid
-from planning.insight.hemisphere import in_enu, section_shapes
+from planning.insight.sections import in_enu, section_shapes
 
 Array = NDArray[np.float64]
 States = NDArray[np.int64]

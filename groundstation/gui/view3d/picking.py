@@ -13,8 +13,7 @@ from groundstation.gui.view3d.plan_scene import PlanScene
 from groundstation.gui.view3d.shapes import shown_panels
 from groundstation.gui.view3d.site_scene import SiteScene, landing_pad
 from groundstation.services.project.document import Item, ItemKind
-from planning.geo.bvh import Bvh, build_bvh, segment_hits
-from planning.geo.distance import segment_hits_triangle
+from planning.geo.bvh import Bvh, build_bvh, segment_hits, segment_hits_triangle
 from planning.site.records import panel_triangles
 
 Array = NDArray[np.float64]

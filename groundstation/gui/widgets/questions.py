@@ -15,7 +15,7 @@ from pathlib import Path
 from PySide6.QtCore import QCoreApplication, QObject
 from PySide6.QtWidgets import QDialog, QDialogButtonBox, QFileDialog, QInputDialog, QLineEdit, QMessageBox, QWidget
 
-from planning.base.folders import FILE_ENDING
+from planning.base.files import FILE_ENDING
 
 _Button = QMessageBox.StandardButton
 

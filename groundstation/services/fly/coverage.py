@@ -10,12 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from groundstation.services.fly.events import ViewState
-from missions.flight.matching import DEFAULT_GATES, Gates
-from missions.flight.poses import pose_of_photo
+from missions.flight.matching import DEFAULT_GATES, Gates, pose_of_photo
 from missions.flight.record import TakenPhoto
 from missions.flight.report_rules import DEFAULT_LIMITS, Limits
-from planning.checks.case import Case
-from planning.checks.measures import pose_of
+from planning.checks.case import Case, pose_of
 from planning.coverage.evaluate import sights
 from planning.geo.frames import heading_difference_rad
 from planning.plan import Viewpoint

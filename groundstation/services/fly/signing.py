@@ -6,10 +6,9 @@ import time
 from contextlib import closing
 
 from groundstation.services.settings import settings_path
-from missions.mavlink.key_store import KeyStore
 from missions.mavlink.link import ChannelLink, open_link
 from missions.mavlink.messages import Address, Heartbeat, Message
-from missions.mavlink.signing import Signer, forget_key, key_from_passphrase
+from missions.mavlink.signing import KeyStore, Signer, forget_key, key_from_passphrase
 from missions.mavlink.wire import Counts
 from planning.base.errors import InputError, LinkError, LinkTimeout
 from planning.base.messages import about, say

@@ -20,9 +20,8 @@ from groundstation.services.project.project_file import SITE_FOLDER, check_not_i
 from missions.formats.encode import DEFAULT_OPTIONS, ExportOptions
 from missions.formats.registry import encode, mission_format, sortie_path, write_files
 from planning.base.errors import InputError
-from planning.base.files import real_path, sha256_given
+from planning.base.files import check_ending, real_path, sha256_given
 from planning.base.findings import Finding, Severity
-from planning.base.folders import check_ending
 from planning.base.json_file import JSON_FILE, check_output
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor

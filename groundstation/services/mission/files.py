@@ -13,8 +13,7 @@ from groundstation.services.project.input_files import FileKind, expecting
 from groundstation.services.project.project_file import check_not_index
 from missions.formats.encode import DEFAULT_OPTIONS, EncodedFiles, ExportOptions, default_autopilot
 from missions.formats.registry import encode, read_missions, sortie_path, write_files
-from missions.mission.legs import distance_m
-from missions.mission.model import FileFormat, GeoPoint, ReadMission
+from missions.mission.model import FileFormat, GeoPoint, ReadMission, distance_m
 from missions.mission.to_plan import viewpoints_and_sorties
 from planning.aircraft.catalogue import profile
 from planning.base.errors import GroundStationError, InputError

@@ -8,8 +8,7 @@ from dataclasses import dataclass
 from groundstation.services.mission.readiness import UNKNOWN_DAY, FlightDay, readiness_findings
 from planning.base.findings import Finding
 from planning.base.progress import QUIET, Monitor
-from planning.checks.case import Case
-from planning.checks.measures import pose_of
+from planning.checks.case import Case, pose_of
 from planning.plan import Plan
 from planning.site.records import SiteModel
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InfeasibleError
-from planning.checks.geometry_rules import MAX_ALTITUDE_M
+from planning.checks.rules import MAX_ALTITUDE_M
 from planning.insight.flight_profile import sortie_profile
 from planning.plan import Plan
 from planning.site.records import SiteModel

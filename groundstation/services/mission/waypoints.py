@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 
 from planning.base.errors import InfeasibleError
 from planning.geo.frames import Origin, Vec3
-from planning.motion.sortie_timing import photo_vertices, sortie_flight_path
-from planning.motion.timing import motion_limits, stopping_times_s
+from planning.motion.timing import motion_limits, photo_vertices, sortie_flight_path, stopping_times_s
 from planning.plan import Plan, Sortie, Viewpoint
 
 

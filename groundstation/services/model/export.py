@@ -13,8 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from planning.base.errors import InputError
-from planning.base.files import read_given
-from planning.base.folders import check_ending, check_folder_name
+from planning.base.files import check_ending, check_folder_name, read_given
 from planning.base.json_file import check_output
 from planning.base.messages import say
 from planning.base.plugins import Plugin, PluginGroup, expect_type, guarded, load_plugins, told_problem

@@ -80,7 +80,7 @@ def make_records(folder: Path, site_path: Path | None = None, who: str | None = 
         Site or scene cannot be read, or the file cannot be written.
     """
     from groundstation.services.project.input_files import read_given_site
-    from planning.base.folders import make_folder
+    from planning.base.files import make_folder
     from reconstruction.objects.store import StoredScene
     from reconstruction.records.book import make_book
     from reconstruction.records.objects import site_objects

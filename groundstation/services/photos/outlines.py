@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from groundstation.services.photos.found_panels import PanelDraft
-from planning.geo.line_of_sight import OCCLUSION_OFFSET_M, LineOfSight
+from planning.geo.bvh import OCCLUSION_OFFSET_M, LineOfSight
 from planning.site.records import Site, panel_corners
 from reconstruction.base.cameras import PosedPhoto
 

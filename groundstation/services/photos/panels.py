@@ -24,9 +24,8 @@ from planning.geo.mesh import TriangleMesh
 from planning.photos.folder import read_photos
 from planning.photos.places import Locality, PhotoHeights
 from planning.site.file import site_bytes
-from planning.site.importing.importer import check_ground, read_source, site_of_facades
+from planning.site.importing.importer import check_ground, read_source, site_of_facades, write_imported_site
 from planning.site.importing.options import ImportOptions
-from planning.site.importing.output import write_imported_site
 from planning.site.importing.source import SourceModel
 from planning.site.records import Facade, Panel, SiteModel
 from reconstruction.base.cameras import PosedPhoto

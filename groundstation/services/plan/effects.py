@@ -6,9 +6,8 @@ from dataclasses import dataclass
 
 from planning.base.effects import Decision, EffectSetting, decide
 from planning.base.errors import InfeasibleError
-from planning.motion.sortie_timing import sortie_flight_path
 from planning.motion.speed_profile import CornerSpeed
-from planning.motion.timing import motion_limits
+from planning.motion.timing import motion_limits, sortie_flight_path
 from planning.plan import Plan
 from planning.request import PlanRequest
 from planning.site.free_space import unchecked_space

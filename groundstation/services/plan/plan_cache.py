@@ -16,11 +16,10 @@ from numpy.typing import NDArray
 from planning.aircraft.catalogue import profile
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
-from planning.checks.measures import pose_of
+from planning.checks.case import pose_of
 from planning.coverage.sections import NOT_SEEN
 from planning.insight.reasons import SectionReasons, section_reasons
-from planning.insight.sampling import PanelSampling, panel_sampling
-from planning.insight.sections import PlanInsight, assembled
+from planning.insight.sections import PanelSampling, PlanInsight, assembled, panel_sampling
 from planning.parameters import Constraints
 from planning.plan import Camera, Plan, viewpoint_arrays
 from planning.request import PlanRequest

@@ -19,16 +19,14 @@ from planning.base.jit import is_compiled
 from planning.base.json_file import check_output, plain_values
 from planning.base.messages import glue, say
 from planning.base.progress import QUIET, Monitor, Stop, Trace, never
-from planning.checks.flight_rules import sharpness
-from planning.checks.geometry_rules import low_flight_allowed
+from planning.checks.rules import low_flight_allowed, sharpness
 from planning.insight.flight_profile import lowest_flight
 from planning.plan import Plan, Viewpoint, write_plan
-from planning.planner import Planned, plan_flight
+from planning.planner import Planned, WhyOpen, plan_flight
 from planning.request import PlanRequest
-from planning.routing.three_opt import kick
+from planning.routing.tour import kick
 from planning.site.records import MIN_HEIGHT_ABOVE_GROUND_M, SiteModel
 from planning.viewpoints.prepare import Prepared
-from planning.viewpoints.shortfall import WhyOpen
 
 
 def plan_site(

@@ -13,9 +13,8 @@ from groundstation.services.project.input_files import read_given_plan, read_giv
 from groundstation.services.project.project_file import check_not_index
 from missions.flight.flight_file import Flight, flight_of, plan_sha256, read_flight
 from missions.flight.logs.read import is_log, read_log
-from missions.flight.matching import Matching, match_flight
+from missions.flight.matching import Matching, match_flight, taken_poses
 from missions.flight.outcome import Reason
-from missions.flight.poses import taken_poses
 from missions.mission.resume import Resumed, resume_sortie
 from planning.base.errors import InfeasibleError, InputError
 from planning.base.findings import Finding, Severity

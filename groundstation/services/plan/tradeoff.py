@@ -25,7 +25,6 @@ from planning.plan import Plan
 from planning.request import PlanRequest
 from planning.routing.methods import TourMethod
 from planning.site.records import SiteModel
-from planning.tradeoff.picture import COVERAGE_AXIS, TOUR_AXIS
 from planning.tradeoff.plans import (
     FailedRun,
     PlanReport,
@@ -40,7 +39,7 @@ from planning.tradeoff.plans import (
     run_plan,
     settings,
 )
-from planning.tradeoff.runner import Compared, NumberedRuns, Subject, compare
+from planning.tradeoff.runner import COVERAGE_AXIS, TOUR_AXIS, Compared, NumberedRuns, Subject, compare
 from planning.tradeoff.tours import (
     TOUR_METHODS,
     TourCase,

@@ -13,8 +13,7 @@ from typing import Any
 from groundstation.services.reconstruct.request import TrainRequest
 from planning.base.effects import Decision
 from planning.base.errors import InputError
-from planning.base.files import real_path
-from planning.base.folders import make_folder
+from planning.base.files import make_folder, real_path
 from planning.base.json_file import expect_format, read_json, to_record, write_atomically
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor, QualityPoint

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from groundstation.services.reconstruct.request import DEFAULT_PRESET, TrainRequest
 from planning.base.errors import InputError
-from planning.base.folders import check_ending, make_folder
+from planning.base.files import check_ending, make_folder
 from planning.base.json_file import check_output, read_toml, write_atomically
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor, Stop, Trace, never

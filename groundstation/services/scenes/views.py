@@ -12,9 +12,7 @@ from groundstation.services.plan.planning import plan_document_site
 from groundstation.services.plan.top_up import flown_plan
 from groundstation.services.project.input_files import read_given_plan, read_given_site
 from missions.flight.flight_file import Flight, read_flight
-from missions.flight.matching import PhotoRef
-from missions.flight.motion import shutter_velocities
-from missions.flight.poses import pose_of_photo, taken_poses
+from missions.flight.matching import PhotoRef, pose_of_photo, shutter_velocities, taken_poses
 from missions.flight.record import TakenPhoto
 from planning.aircraft.catalogue import profile
 from planning.base.errors import InputError

@@ -12,7 +12,7 @@ from planning.base.findings import Finding, Severity
 from planning.base.messages import say, without_place
 from planning.base.progress import QUIET, Monitor
 from planning.coverage.sections import PanelFrames, panel_frames
-from planning.geo.line_of_sight import OCCLUSION_OFFSET_M
+from planning.geo.bvh import OCCLUSION_OFFSET_M
 from planning.parameters import Constraints
 from planning.routing.rally import rally_findings
 from planning.site.free_space import FreeSpace, free_space, unchecked_space

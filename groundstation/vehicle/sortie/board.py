@@ -19,9 +19,8 @@ from groundstation.vehicle.state import VehicleState, is_restarted
 from missions.mavlink import messages
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.messages import Message, MissionItemInt, Received
-from missions.mavlink.transfer.download import Download, DownloadOutcome
-from missions.mavlink.transfer.exchange import Ending, MissionType, Result, Route
-from missions.mavlink.transfer.rounding import compare
+from missions.mavlink.transfer.exchange import Download, DownloadOutcome, Ending, MissionType, Result, Route
+from missions.mavlink.transfer.wire_items import compare
 from planning.base.messages import say
 
 RESTARTED = say("the vehicle was restarted")

@@ -47,8 +47,7 @@ from groundstation.vehicle.watch import STALE_S
 from missions.flight.report_rules import FRESH_S
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.messages import Address, CommandLong
-from missions.mavlink.transfer.download import Download, DownloadOutcome
-from missions.mavlink.transfer.exchange import Ending, MissionType, Route
+from missions.mavlink.transfer.exchange import Download, DownloadOutcome, Ending, MissionType, Route
 from missions.mavlink.transfer.verified import NotVerified, Verified, VerifiedUpload
 from missions.mavlink.transfer.wire_items import to_wire
 from planning.base.errors import LinkRejected, LinkTimeout, MissionError

@@ -36,8 +36,7 @@ from missions.flight.record import FlightEvent
 from missions.mavlink.drive import GROUND_HEARTBEAT, HEARTBEAT_EVERY_S
 from missions.mavlink.link import GROUND_STATION
 from missions.mavlink.messages import Address, Message, Received
-from missions.mavlink.transfer.download import Download
-from missions.mavlink.transfer.exchange import MissionType
+from missions.mavlink.transfer.exchange import Download, MissionType
 from missions.mavlink.transfer.verified import VerifiedUpload
 from planning.base.errors import GroundStationError
 from planning.base.messages import say

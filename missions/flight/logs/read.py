@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from missions.flight.logs.ardupilot import read_dataflash
-from missions.flight.logs.dataflash import looks_binary, looks_like_text
+from missions.flight.logs.dataflash import looks_binary, looks_like_text, read_dataflash
 from missions.flight.logs.flights import HeightSource, LogFlights, flights_of
 from missions.flight.logs.raw import RawLog
-from missions.flight.logs.tlog import looks_like_tlog, read_tlog
+from missions.flight.logs.telemetry import looks_like_tlog, read_tlog
 from missions.flight.logs.ulog import looks_like_ulog, read_ulog
 from planning.base.errors import InputError
 from planning.base.files import MIB, FileLimit, open_given, read_given

@@ -35,10 +35,11 @@ from missions.mavlink.messages import (
     MissionRequestInt,
     Received,
 )
-from missions.mavlink.transfer.download import Download, DownloadOutcome
 from missions.mavlink.transfer.exchange import (
     DEFAULT_TIMING,
     NOT_YET,
+    Download,
+    DownloadOutcome,
     Ending,
     MissionType,
     Patience,
@@ -46,7 +47,7 @@ from missions.mavlink.transfer.exchange import (
     Route,
     Timing,
 )
-from missions.mavlink.transfer.rounding import Difference, compare
+from missions.mavlink.transfer.wire_items import Difference, compare
 from planning.base.messages import glue, joined, say
 
 # Clearing a list on the vehicle.

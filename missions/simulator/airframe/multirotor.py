@@ -9,8 +9,7 @@ from __future__ import annotations
 
 import math
 
-from missions.simulator.airframe.parts import Parts
-from missions.simulator.airframe.state import Battery, Fix, Pose, Target
+from missions.simulator.airframe.state import Battery, Fix, Parts, Pose, Target
 from missions.simulator.airframe.trajectory import State, plan_trajectory, resting
 from planning.geo.frames import Vec3
 from planning.motion.timing import MotionLimits

@@ -1,4 +1,4 @@
-"""What the simulated autopilot wants of its airframe, and what it gets to know of it.
+"""What the simulated autopilot wants of its airframe, what it gets to know of it, and the parts of the airframe.
 
 The autopilot (`vehicle.py`) sees the airframe only as `believed`; photos are taken where it truly is (`truth`).
 """
@@ -114,3 +114,149 @@ class Airframe(Protocol):
 
         With photo latency the pose is a little later than the command.
         """
+
+
+# What a simulated multirotor is made of besides its trajectory, and the ideal form of each part.
+#
+# Effects put other parts in their place. A part that is not there is not asked: what is off costs nothing.
+
+
+class Air(Protocol):
+    """Wind: pushes the aircraft off the place that it holds, tilts it, and takes ground speed."""
+
+    @property
+    def wind_enu_m_s(self) -> Vec3:
+        """Wind now, towards where it blows."""
+
+    @property
+    def offset_enu_m(self) -> Vec3:
+        """From where the aircraft wants to be to where it is."""
+
+    @property
+    def offset_velocity_enu_m_s(self) -> Vec3:
+        """How fast the offset changes."""
+
+    def ground_speed_m_s(self, course_enu: Vec3, wanted_m_s: float) -> float:
+        """Highest horizontal speed over the ground along a course (any length but level), at most `wanted_m_s`."""
+
+    def drag_enu_m_s2(self, velocity_enu_m_s: Vec3) -> Vec3:
+        """Acceleration by the air at a velocity over the ground; the aircraft tilts against it."""
+
+    def step(self, duration_s: float, *, flies: bool) -> None:
+        """Blow on for a time; an aircraft that stands on the ground is not pushed."""
+
+
+class PositionError(Protocol):
+    """Something that makes the autopilot believe to be where it is not."""
+
+    @property
+    def offset_enu_m(self) -> Vec3:
+        """From where it is to where it believes to be."""
+
+    def step(self, duration_s: float, position_enu_m: Vec3, *, flies: bool) -> None:
+        """Let the error change for a time, at a true position."""
+
+
+class Receiver(Protocol):
+    """The GNSS receiver, as far as it knows of its errors."""
+
+    @property
+    def fix(self) -> Fix:
+        """What the receiver says of itself."""
+
+
+class Gimbal(Protocol):
+    """Turns the camera up and down."""
+
+    @property
+    def pitch_rad(self) -> float:
+        """Where the camera looks now, against the horizon."""
+
+    def step(self, duration_s: float, wanted_rad: float) -> None:
+        """Turn towards a pitch within the limits."""
+
+    def ahead_rad(self, duration_s: float, wanted_rad: float) -> float:
+        """Pitch after some more time."""
+
+
+class Pack(Protocol):
+    """The battery."""
+
+    @property
+    def state(self) -> Battery:
+        """What its monitor says."""
+
+    def step(self, duration_s: float, velocity_enu_m_s: Vec3, wind_enu_m_s: Vec3, *, motors_on: bool) -> None:
+        """Draw power for a time."""
+
+
+def towards(value: float, goal: float, most: float) -> float:
+    """`value` moved towards `goal` by at most `most`."""
+    return goal if abs(goal - value) <= most else value + (most if goal > value else -most)
+
+
+@dataclass(frozen=True, slots=True)
+class ExactReceiver:
+    """A receiver whose error is too small to count; what it says of itself is what one of its kind says."""
+
+    fix: Fix
+
+
+class RateGimbal:
+    """A gimbal that turns at its full rate from the start, as flight durations assume."""
+
+    def __init__(self, rate_rad_s: float, pitch_rad: float = 0.0) -> None:
+        self._rate_rad_s, self.pitch_rad = rate_rad_s, pitch_rad
+
+    def step(self, duration_s: float, wanted_rad: float) -> None:
+        """Turn towards a pitch."""
+        self.pitch_rad = self.ahead_rad(duration_s, wanted_rad)
+
+    def ahead_rad(self, duration_s: float, wanted_rad: float) -> float:
+        """Pitch after some more time."""
+        return towards(self.pitch_rad, wanted_rad, self._rate_rad_s * duration_s)
+
+
+class SteadyPack:
+    """A battery that is drawn evenly, so that it lasts the endurance, at its nominal voltage."""
+
+    def __init__(self, capacity_mah: float, nominal_v: float, endurance_s: float) -> None:
+        self._capacity_mah, self._nominal_v, self._endurance_s = capacity_mah, nominal_v, endurance_s
+        self._used, self._motors_on = 0.0, False
+
+    @property
+    def state(self) -> Battery:
+        """What its monitor says."""
+        current_a = self._capacity_mah * 3.6 / self._endurance_s if self._motors_on else 0.0
+        return Battery(self._nominal_v, current_a, self._used * self._capacity_mah, 1.0 - self._used)
+
+    def step(self, duration_s: float, _velocity: Vec3, _wind: Vec3, *, motors_on: bool) -> None:
+        """Draw power for a time."""
+        self._motors_on = motors_on
+        if motors_on:
+            self._used = min(1.0, self._used + duration_s / self._endurance_s)
+
+
+@dataclass(frozen=True, slots=True)
+class Parts:
+    """Everything that is put onto a trajectory to make an aircraft of it.
+
+    Parameters
+    ----------
+    air, errors
+        None and empty where no effect is on.
+    receiver
+        One of `errors`, or one without an error.
+    latency_s
+        From the command to the opening of the shutter.
+    exposure_s
+        How long the shutter is open.
+    """
+
+    gimbal: Gimbal
+    pack: Pack
+    receiver: Receiver
+    air: Air | None = None
+    errors: tuple[PositionError, ...] = ()
+    latency_s: float = 0.0
+    exposure_s: float = 0.0

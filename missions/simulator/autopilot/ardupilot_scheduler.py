@@ -14,6 +14,7 @@ from collections import deque
 from pymavlink.dialects.v20 import common as mavlink
 
 from missions.simulator.autopilot.guidance import DEG
+from missions.simulator.autopilot.mission_store import StoredItem
 from missions.simulator.autopilot.profiles import VehicleProfile
 from missions.simulator.autopilot.scheduler import (
     FLOWN_TO,
@@ -24,7 +25,6 @@ from missions.simulator.autopilot.scheduler import (
     is_navigation,
 )
 from missions.simulator.autopilot.steps import FlyTo, Step, StepRunner, Wait
-from missions.simulator.autopilot.stored_item import StoredItem
 from planning.geo.frames import Vec3
 
 FIRST = 1

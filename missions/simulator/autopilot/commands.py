@@ -11,16 +11,14 @@ from dataclasses import dataclass
 
 from pymavlink.dialects.v20 import common as mavlink
 
-from missions.mavlink.autopilots import Autopilot, facts
+from missions.mavlink.autopilots import Autopilot, facts, mode_numbers, px4_custom_mode
 from missions.mavlink.messages import Address, CommandAck, CommandInt, CommandLong, Message, SetMode
-from missions.mavlink.mode_numbers import mode_numbers, px4_custom_mode
-from missions.simulator.autopilot.actions import Actions
-from missions.simulator.autopilot.instruments import Instruments
+from missions.simulator.autopilot.instruments import Instruments, Telemetry
+from missions.simulator.autopilot.mission_store import DEGREES_E7, WITH_POSITION, StoredItem
 from missions.simulator.autopilot.modes import FlightModes
+from missions.simulator.autopilot.payload import Actions
 from missions.simulator.autopilot.profiles import Activity, VehicleProfile
 from missions.simulator.autopilot.scheduler import Scheduler
-from missions.simulator.autopilot.stored_item import DEGREES_E7, WITH_POSITION, StoredItem
-from missions.simulator.autopilot.telemetry import Telemetry
 
 ACCEPTED: int = mavlink.MAV_RESULT_ACCEPTED
 REJECTED: int = mavlink.MAV_RESULT_TEMPORARILY_REJECTED

@@ -14,13 +14,11 @@ from pymavlink.dialects.v20 import common as mavlink
 
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.messages import Address
-from missions.simulator.autopilot.guidance import Guidance
-from missions.simulator.autopilot.mission_store import MissionStore
+from missions.simulator.autopilot.guidance import Guidance, Place
+from missions.simulator.autopilot.mission_store import MissionStore, StoredItem
 from missions.simulator.autopilot.modes import FlightModes
 from missions.simulator.autopilot.parameters import ParameterTable
-from missions.simulator.autopilot.place import Place
 from missions.simulator.autopilot.profiles import Activity, VehicleProfile
-from missions.simulator.autopilot.stored_item import StoredItem
 from planning.geo.frames import Vec3
 
 CHECK_S = 0.2

@@ -16,8 +16,7 @@ from dataclasses import dataclass
 
 from pymavlink.dialects.v20 import common as mavlink
 
-from missions.mavlink.autopilots import Autopilot
-from missions.mavlink.mode_numbers import mode_numbers
+from missions.mavlink.autopilots import Autopilot, mode_numbers
 from missions.simulator.autopilot.guidance import Guidance
 from missions.simulator.autopilot.manoeuvres import Manoeuvres
 from missions.simulator.autopilot.parameters import ParameterTable

@@ -10,8 +10,8 @@ from pymavlink.dialects.v20 import common as mavlink
 
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.messages import Message, ParamRequestList, ParamRequestRead, ParamSet, ParamValue
+from missions.simulator.autopilot.mission_store import float32
 from missions.simulator.autopilot.profiles import vehicle_profile
-from missions.simulator.autopilot.stored_item import float32
 
 INT32, REAL32 = mavlink.MAV_PARAM_TYPE_INT32, mavlink.MAV_PARAM_TYPE_REAL32
 

@@ -13,6 +13,7 @@ from pymavlink.dialects.v20 import common as mavlink
 
 from missions.mavlink.px4_motion import px4_leg_s
 from missions.simulator.autopilot.guidance import DEG
+from missions.simulator.autopilot.mission_store import StoredItem
 from missions.simulator.autopilot.profiles import VehicleProfile
 from missions.simulator.autopilot.scheduler import (
     FLOWN_TO,
@@ -23,7 +24,6 @@ from missions.simulator.autopilot.scheduler import (
     is_navigation,
 )
 from missions.simulator.autopilot.steps import Reach, Stay, Step, StepRunner, Wait
-from missions.simulator.autopilot.stored_item import StoredItem
 from planning.geo.frames import Vec3
 from planning.motion.timing import MotionLimits
 

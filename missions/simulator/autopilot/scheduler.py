@@ -14,13 +14,11 @@ from typing import Protocol
 from pymavlink.dialects.v20 import common as mavlink
 
 from missions.mavlink.check import LAST_NAV_COMMAND
-from missions.simulator.autopilot.actions import Actions
-from missions.simulator.autopilot.guidance import Guidance
+from missions.simulator.autopilot.guidance import Guidance, Place
 from missions.simulator.autopilot.manoeuvres import Manoeuvres
-from missions.simulator.autopilot.mission_store import MissionStore
+from missions.simulator.autopilot.mission_store import MissionStore, StoredItem
 from missions.simulator.autopilot.parameters import ParameterTable
-from missions.simulator.autopilot.place import Place
-from missions.simulator.autopilot.stored_item import StoredItem
+from missions.simulator.autopilot.payload import Actions
 from planning.geo.frames import Vec3
 
 TAKEOFFS = (mavlink.MAV_CMD_NAV_TAKEOFF, mavlink.MAV_CMD_NAV_VTOL_TAKEOFF)

@@ -14,8 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from missions.simulator.airframe.parts import Receiver
-from missions.simulator.airframe.state import Fix
+from missions.simulator.airframe.state import Fix, Receiver
 from missions.simulator.conditions import FixKind
 from missions.simulator.effects.facts import MultipathFacts, ReceiverFacts, effect_facts
 from missions.simulator.effects.gnss import AboveStart

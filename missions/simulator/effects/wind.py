@@ -110,7 +110,7 @@ LONG_STEP_S = 1.0
 
 
 class GustyAir:
-    """The part of the aircraft: see `missions.simulator.airframe.parts.Air`.
+    """The part of the aircraft: see `missions.simulator.airframe.state.Air`.
 
     Parameters
     ----------

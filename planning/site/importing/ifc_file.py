@@ -30,8 +30,7 @@ from planning.geo.frames import Origin
 from planning.geo.geoid import ellipsoid_from_amsl_m, undulation_m
 from planning.geo.mesh import empty_mesh, from_corners
 from planning.site.importing.ground import StatedGround, stand, stated_ground
-from planning.site.importing.ifc_content import IfcContent, extract
-from planning.site.importing.ifc_place import MapParameters, SitePlace
+from planning.site.importing.ifc_content import IfcContent, MapParameters, SitePlace, extract
 from planning.site.importing.options import ImportOptions
 from planning.site.importing.placement import Georeference, LocalFrame, place
 from planning.site.importing.source import HOW_TO_GET_PANELS, SourceModel, SourceWindow

@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 from planning.base.errors import InputError
 from planning.base.messages import about, glue, say
-from planning.geo.line_of_sight import OCCLUSION_OFFSET_M, line_of_sight
+from planning.geo.bvh import OCCLUSION_OFFSET_M, line_of_sight
 from planning.geo.mesh import TriangleMesh
 from planning.geo.solids import Solids
 from planning.site.bundled import panel_grid
-from planning.site.importing.openness import MIN_OPEN_SHARE, UNDECIDED, open_shares
 from planning.site.importing.options import PanelGrid
+from planning.site.importing.panes import MIN_OPEN_SHARE, UNDECIDED, open_shares
 from planning.site.importing.polygons import MIN_SIDE_M, unit_normals
 from planning.site.importing.source import SourceModel
 

@@ -20,8 +20,7 @@ from typing import Any
 import numpy as np
 
 from planning.base.errors import InputError
-from planning.base.files import MIB, FileLimit, open_given
-from planning.base.folders import make_folder
+from planning.base.files import MIB, FileLimit, make_folder, open_given
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from reconstruction.exports.ellipsoids import Ellipsoids, ellipsoids_of_all

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from planning.base.errors import InputError
-from planning.base.folders import make_folder
+from planning.base.files import make_folder
 from planning.base.json_file import write_together
 from planning.base.messages import say
 from reconstruction.records.book import RecordBook

@@ -13,8 +13,7 @@ import numpy as np
 
 from planning.base.effects import Decision
 from planning.base.errors import InputError
-from planning.base.files import sha256_given
-from planning.base.folders import is_empty
+from planning.base.files import is_empty, sha256_given
 from planning.base.json_file import expect_format, read_json, write_atomically
 from reconstruction.scenes.record import Scene
 from reconstruction.scenes.runs.photo_job import PhotoJob

@@ -13,7 +13,7 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
-from planning.base.folders import make_folder
+from planning.base.files import make_folder
 from planning.base.json_file import write_atomically
 from planning.base.progress import QUIET, Monitor
 from reconstruction.base.cameras import PosedPhoto

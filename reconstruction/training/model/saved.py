@@ -20,7 +20,7 @@ from safetensors.torch import load, save
 from torch import Tensor
 
 from planning.base.errors import InputError
-from planning.base.folders import make_folder
+from planning.base.files import make_folder
 from planning.base.json_file import expect_format, part_files, read_json, to_record, write_atomically
 from planning.base.messages import say
 from planning.base.progress import QualityPoint

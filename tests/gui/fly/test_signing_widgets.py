@@ -8,10 +8,9 @@ from groundstation.services.fly import signing
 from groundstation.services.fly.connection import VehicleAt
 from groundstation.services.fly.link_choice import ConnectionChoice, LinkKind, choice_path, read_choice
 from groundstation.services.project.document import Document, PlanEntry
-from missions.mavlink.key_store import KeyStore
 from missions.mavlink.link import open_link
 from missions.mavlink.messages import Address, Heartbeat, SetupSigning
-from missions.mavlink.signing import Signer, key_from_passphrase
+from missions.mavlink.signing import KeyStore, Signer, key_from_passphrase
 from tests.gui.driving import clicked, close_controller, escape, press, shut, turn_until, turn_until_idle, type_into
 from tests.services.live_cases import planned
 

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from missions.dji.catalogue import dji_catalogue, dji_profile
+from missions.dji.wpml import dji_catalogue, dji_profile
 from planning.aircraft.catalogue import profiles
 from planning.base.errors import MissionError
 

@@ -10,8 +10,7 @@ from pathlib import Path
 import pytest
 
 from missions.dji.check import check_dji
-from missions.dji.container import DjiParts, load_parts, parts_of_kmz
-from missions.dji.wpml import parse_wpml
+from missions.dji.wpml import DjiParts, load_parts, parse_wpml, parts_of_kmz
 from missions.dji.write import DjiOptions, kmz_bytes
 from missions.mission.build import missions_from_plan
 from planning.base.findings import Severity

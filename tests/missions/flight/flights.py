@@ -8,8 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from missions.flight.record import FlightRecord, TakenPhoto, Track
-from planning.motion.sortie_timing import sortie_flight_path, stopping_duration_s
-from planning.motion.timing import motion_limits, stopping_times_s
+from planning.motion.timing import motion_limits, sortie_flight_path, stopping_duration_s, stopping_times_s
 from planning.plan import Plan, viewpoint_arrays
 
 SAMPLE_S = 0.2

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from missions.flight.lost_reports import n_lost, n_lost_after, n_lost_before
+from missions.flight.matching import n_lost, n_lost_after, n_lost_before
 from missions.flight.record import FlightEvent, FlightRecord, TakenPhoto, Track
 
 SOURCES = {"camera-feedback": 1, "image-captured": 0}

@@ -11,8 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import linear_sum_assignment
 
-from missions.flight.lost_reports import n_lost
-from missions.flight.matching import DEFAULT_GATES, Matching, _aligned, _gains, match_flight
+from missions.flight.matching import DEFAULT_GATES, Matching, _aligned, _gains, match_flight, n_lost
 from missions.flight.outcome import Reason
 from missions.flight.record import FlightEvent, FlightRecord, TakenPhoto, Track
 from planning.plan import Plan

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from missions.flight.motion import shutter_velocities
+from missions.flight.matching import shutter_velocities
 from missions.flight.record import FlightRecord, TakenPhoto, Track
 
 

@@ -15,9 +15,8 @@ from hypothesis import strategies as st
 
 from missions.flight.outcome import Ending, FlightReport, Reason
 from missions.flight.record import FlightEvent, FlightRecord, TakenPhoto, Track
-from missions.flight.report import Limits, closest, report_case
+from missions.flight.report import Limits, closest, report_case, report_text, report_to_json
 from missions.flight.report_rules import ENDED_BADLY, ENDINGS, REASONS
-from missions.flight.report_text import report_text, report_to_json
 from planning.base.findings import Finding, Severity
 from planning.checks.case import Case
 from planning.geo.frames import aim

@@ -12,8 +12,7 @@ from hypothesis import strategies as st
 
 from missions.flight.logs.flights import flights_of
 from missions.flight.logs.raw import RawLog
-from missions.flight.logs.telemetry import TelemetryReader
-from missions.flight.logs.tlog import read_tlog
+from missions.flight.logs.telemetry import TelemetryReader, read_tlog
 from missions.flight.record import FlightRecord
 from missions.mavlink.messages import (
     Address,

@@ -23,7 +23,7 @@ from planning.base.errors import InputError, MissionError
 from planning.base.findings import Severity
 from planning.geo.geoid import undulation_m
 from planning.geo.mesh import box_mesh, empty_mesh
-from planning.motion.sortie_timing import photo_vertices
+from planning.motion.timing import photo_vertices
 from planning.plan import Plan, Sortie, Viewpoint
 from planning.routing.rally import CLEARANCE_M
 from planning.site.records import Airspace, Facade, NoFlyZone, Obstacle, Panel, Site, SiteModel

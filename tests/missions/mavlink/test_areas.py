@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from missions.mavlink.areas import Fence, FenceCircle, FencePolygon, fence_items, fences_of, rally_items
 from missions.mavlink.autopilots import Autopilot
+from missions.mavlink.fence import Fence, FenceCircle, FencePolygon, fence_items, fences_of, rally_items
 from missions.mavlink.items import MissionItem
 from missions.mavlink.transfer.exchange import MissionType
 from missions.mavlink.transfer.wire_items import from_wire, to_wire

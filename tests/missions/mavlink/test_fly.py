@@ -10,8 +10,16 @@ import pytest
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.items import MavlinkFile, MissionItem, plain
 from missions.mavlink.read import autopilot_by_items, read_mavlink
-from missions.mission.legs import distance_m
-from missions.mission.model import FileFormat, Finish, GeoPoint, HeightReference, ReadMission, ReadPhoto, point_at_amsl
+from missions.mission.model import (
+    FileFormat,
+    Finish,
+    GeoPoint,
+    HeightReference,
+    ReadMission,
+    ReadPhoto,
+    distance_m,
+    point_at_amsl,
+)
 from planning.base.errors import MissionError
 
 HOME = point_at_amsl(52.0, 5.0, 10.0)

@@ -7,8 +7,7 @@ from types import ModuleType
 
 import pytest
 
-from missions.mavlink.key_store import KeyStore
-from missions.mavlink.signing import RESERVE, key_from_passphrase, timestamp_of
+from missions.mavlink.signing import RESERVE, KeyStore, key_from_passphrase, timestamp_of
 from planning.base.errors import InputError
 
 KEY = key_from_passphrase("blue sky")

@@ -14,17 +14,15 @@ from typing import Any
 
 import pytest
 
-from missions.mavlink.areas import FenceCircle, FencePolygon, fence_items, rally_items
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.drive import GROUND_HEARTBEAT, drive
+from missions.mavlink.fence import FenceCircle, FencePolygon, fence_items, rally_items
 from missions.mavlink.link import ChannelLink, open_link
 from missions.mavlink.messages import Heartbeat, MissionItemInt
 from missions.mavlink.plan_json import plan_json_bytes
-from missions.mavlink.transfer.download import Download
-from missions.mavlink.transfer.exchange import Ending, MissionType, Route
-from missions.mavlink.transfer.rounding import compare
+from missions.mavlink.transfer.exchange import Download, Ending, MissionType, Route
 from missions.mavlink.transfer.verified import Upload
-from missions.mavlink.transfer.wire_items import to_wire
+from missions.mavlink.transfer.wire_items import compare, to_wire
 from missions.mission.build import missions_from_plan
 from missions.mission.model import GeoPoint, HeightReference
 from missions.simulator.server import serve

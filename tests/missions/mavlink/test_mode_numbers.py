@@ -3,8 +3,7 @@
 import pytest
 from pymavlink import mavutil
 
-from missions.mavlink.autopilots import Autopilot
-from missions.mavlink.mode_numbers import mode_numbers, px4_custom_mode, px4_main_and_sub
+from missions.mavlink.autopilots import Autopilot, mode_numbers, px4_custom_mode, px4_main_and_sub
 from missions.simulator.autopilot.profiles import vehicle_profile
 
 

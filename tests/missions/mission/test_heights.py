@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from missions.dji.container import load_parts
+from missions.dji.wpml import load_parts
 from missions.mission.model import GeoPoint, altitude_amsl_m, point_at_amsl
 
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from missions.mission.legs import bearing_deg, courses_deg, distance_m, leg_lengths_m, point_between, shots_on_leg
+from missions.mission.model import bearing_deg, courses_deg, distance_m, leg_lengths_m, point_between, shots_on_leg
 from planning.base.errors import MissionError
 from planning.geo.enu import geodetic_from_enu
 from planning.geo.frames import Origin

@@ -12,7 +12,7 @@ import numpy as np
 from missions.simulator.airframe.multirotor import Multirotor
 from missions.simulator.airframe.state import Pose, Target
 from planning.aircraft.catalogue import profile
-from planning.motion.sortie_timing import sortie_flight_path, stopping_duration_s
+from planning.motion.timing import sortie_flight_path, stopping_duration_s
 from planning.parameters import Constraints, FlightRules, GreedyParameters
 from planning.plan import Coverage, Plan, Sortie, Viewpoint
 from planning.planner import plan_flight

@@ -22,7 +22,7 @@ from missions.mavlink.messages import (
     Statustext,
 )
 from missions.simulator.airframe.state import Battery, Fix, Pose, Target
-from missions.simulator.autopilot.stored_item import WITH_POSITION
+from missions.simulator.autopilot.mission_store import WITH_POSITION
 from missions.simulator.server import DirectLink
 from missions.simulator.vehicle import SimulatedVehicle
 from planning.geo.enu import geodetic_from_enu

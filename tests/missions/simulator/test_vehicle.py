@@ -42,7 +42,7 @@ from missions.mavlink.wire import Encoder
 from missions.mission.build import missions_from_plan
 from missions.mission.model import HeightReference, Mission
 from missions.simulator.autopilot.instruments import camera_quaternion
-from missions.simulator.autopilot.stored_item import Refused, stored
+from missions.simulator.autopilot.mission_store import Refused, stored
 from missions.simulator.build import make_airframe
 from missions.simulator.vehicle import CONTROL_STEP_S, SimulatedVehicle
 from planning.geo.frames import camera_axes

@@ -13,7 +13,7 @@ from planning.coverage.model import CoverageModel
 from planning.coverage.reach_kernel import REACHABLE, UNREACHABLE
 from planning.coverage.reachability import Reachability
 from planning.coverage.sections import SectionGrid, panel_frames
-from planning.geo.line_of_sight import line_of_sight
+from planning.geo.bvh import line_of_sight
 from planning.plan import Viewpoint
 from planning.site.records import panel_corners
 from tests.planning.plan_cases import kiosk, seen_by_contract, solid_triangles

@@ -12,10 +12,9 @@ from planning.aircraft.catalogue import profile
 from planning.coverage.model import CoverageModel, codes_all_around, exact_sections
 from planning.coverage.positions import aimed_views, spread_positions
 from planning.coverage.reach_kernel import REACHABLE, UNDECIDED, UNREACHABLE
-from planning.coverage.reachability import elevation_range_rad, find_reachable
+from planning.coverage.reachability import convex_groups, elevation_range_rad, find_reachable
 from planning.coverage.sections import NOT_SEEN, SectionGrid, panel_frames
-from planning.geo.convex import convex_groups
-from planning.geo.line_of_sight import line_of_sight
+from planning.geo.bvh import line_of_sight
 from planning.geo.mesh import box_mesh, extrude
 from planning.plan import Camera
 from planning.site.bundled import SCENES

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from planning.coverage.sections import SectionGrid, panel_frames, sections_of
-from planning.insight.hemisphere import in_enu, section_shapes
+from planning.insight.sections import in_enu, section_shapes
 from planning.site.bundled import SCENES
 from planning.site.records import panel_corners
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from planning.coverage.sections import NOT_SEEN, panel_frames
-from planning.insight.sampling import panel_sampling
+from planning.insight.sections import panel_sampling
 from planning.site.bundled import SCENES
 from planning.site.records import panel_corners
 from tests.planning.insight.cases import CAMERA

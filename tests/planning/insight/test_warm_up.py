@@ -13,7 +13,7 @@ from planning.insight import clearance, reason_kernel, things
 from planning.insight.clearance import route_clearance
 from planning.insight.reasons import section_reasons
 from planning.insight.things import things_of
-from planning.insight.warm_up import compile_kernels
+from planning.warm_up import compile_kernels
 from planning.site.free_space import unchecked_space
 from tests.planning.insight.cases import plan, prepared, scene
 

@@ -7,7 +7,7 @@ import pytest
 
 from planning.aircraft.catalogue import profile
 from planning.geo.frames import Vec3
-from planning.motion.sortie_timing import photo_vertices, sortie_flight_path, stopping_duration_s
+from planning.motion.timing import photo_vertices, sortie_flight_path, stopping_duration_s
 from planning.parameters import FlightRules
 from planning.plan import Sortie, Viewpoint
 

@@ -4,8 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from planning.photos.exif import Tag, read_exif
-from planning.photos.exif_writing import exif_content
+from planning.photos.exif import Tag, exif_content, read_exif
 
 TEXTS = st.text(st.characters(min_codepoint=33, max_codepoint=126), min_size=1, max_size=40)
 RATIOS = st.lists(st.tuples(st.integers(0, 2**32 - 1), st.integers(1, 2**32 - 1)), min_size=1, max_size=3).map(tuple)

@@ -14,7 +14,7 @@ from planning.base.errors import InputError
 from planning.base.findings import Severity
 from planning.coverage.evaluate import coverage
 from planning.coverage.sections import in_picture
-from planning.motion.sortie_timing import sortie_flight_path, stopping_duration_s
+from planning.motion.timing import sortie_flight_path, stopping_duration_s
 from planning.parameters import FlightRules
 from planning.plan import Plan, Sortie, Viewpoint, plan_to_json, viewpoint_arrays
 from planning.revision import Revision, add, aim_at, delete, lock, move, next_id, revise, unlock

@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from planning.checks import measures
-from planning.checks.measures import legs_of
+from planning.checks import case as measures
+from planning.checks.case import legs_of
 from planning.coverage.evaluate import sights
 from planning.coverage.positions import aimed_views, spread_positions
 from planning.motion.speed_profile import fastest_profile

@@ -25,12 +25,11 @@ from planning.parameters import Constraints, FlightRules
 from planning.plan import Plan, Viewpoint, ViewpointArrays, viewpoint_arrays
 from planning.planner import plan_flight
 from planning.request import PlanRequest
+from planning.revision import closing_flights as closing_candidates
+from planning.revision.closing_flights import Wanted, show_all
 from planning.revision.top_up import METHOD, Target, TopUp, TopUpRequest, WhyMissing, top_up
 from planning.routing.flights import draw_flights, flight_times
 from planning.site.records import NoFlyZone, SiteModel
-from planning.viewpoints import closing_candidates
-from planning.viewpoints.closing_candidates import Wanted
-from planning.viewpoints.closing_flights import show_all
 from planning.viewpoints.prepare import Prepared, prepare
 from planning.viewpoints.problem import ViewProblem, take
 from planning.viewpoints.spacing import merge_close_views

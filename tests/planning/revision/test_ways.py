@@ -11,7 +11,7 @@ import pytest
 
 from planning.aircraft.catalogue import profile
 from planning.parameters import FlightRules
-from planning.revision.ways import HOME, Ways
+from planning.revision.edits import HOME, Ways
 from planning.routing.legs import build_leg_table
 from planning.routing.roadmap import build_roadmap, leg_length
 from planning.site.bundled import SCENES

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from planning.routing.gains import CoverageGain, Prizes
+from planning.routing.insertion import CoverageGain, Prizes
 from tests.planning.routing_cases import cover_gain
 
 

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from planning.base.errors import OperationCancelled
 from planning.base.progress import Trace
-from planning.routing.gains import CoverageGain, Prizes
+from planning.routing.insertion import CoverageGain, Prizes
 from planning.routing.orienteering import Selection, solve_orienteering
 from tests.planning.routing_cases import Cancelling, Counting, cover_gain, distances, fewest_by_force, random_distances
 

@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 
 from planning.base.errors import InfeasibleError, OperationCancelled
 from planning.base.progress import Trace
-from planning.routing import exact_tour, lower_bound, tour
+from planning.routing import lower_bound, tour
+from planning.routing import tour as exact_tour
 from planning.routing.tour import improve_tour, nearest_neighbour, tour_bound, tour_length
 from planning.routing.tsplib import read_instance
 from tests.planning.routing_cases import (

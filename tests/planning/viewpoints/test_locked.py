@@ -18,7 +18,7 @@ from planning.checks import check_plan
 from planning.coverage.evaluate import coverage_counts
 from planning.parameters import GreedyParameters
 from planning.plan import Plan, Viewpoint, ViewpointArrays, viewpoint_arrays
-from planning.planner import plan_flight
+from planning.planner import as_written, plan_flight
 from planning.request import PlanRequest
 from planning.routing.flights import Flight
 from planning.routing.orienteering import solve_orienteering
@@ -26,9 +26,7 @@ from planning.viewpoints.budget import best_flights, with_fewer_views
 from planning.viewpoints.candidates import Pool, candidate_pool
 from planning.viewpoints.greedy import choose_greedily, element_weights, needed
 from planning.viewpoints.improve import improve_views, refine_views
-from planning.viewpoints.locked import covered_by, locked_views
-from planning.viewpoints.plan_records import as_written
-from planning.viewpoints.problem import concatenate, take
+from planning.viewpoints.problem import concatenate, covered_by, locked_views, take
 from planning.viewpoints.spacing import apart_of
 from tests.planning.plan_cases import kiosk
 from tests.planning.revision.cases import NEAR, QUICK, planned, prepared

@@ -23,7 +23,7 @@ from planning.coverage.reachability import find_reachable
 from planning.coverage.sections import SectionGrid, panel_frames
 from planning.parameters import Constraints, GreedyParameters
 from planning.plan import ViewpointArrays
-from planning.planner import plan_flight
+from planning.planner import as_written, plan_flight
 from planning.request import PlanRequest
 from planning.routing.roadmap import build_roadmap
 from planning.site.free_space import free_space
@@ -32,7 +32,6 @@ from planning.viewpoints import cover_kernel as kernel
 from planning.viewpoints.candidates import places_around
 from planning.viewpoints.greedy import greedy
 from planning.viewpoints.improve import Exchange, cover_state
-from planning.viewpoints.plan_records import as_written
 from planning.viewpoints.prepare import prepare
 from planning.viewpoints.problem import Goal, ViewProblem, take
 from planning.viewpoints.spacing import MAX_LOST, MAX_LOST_SHARE, Apart, merge_close_views

@@ -12,7 +12,7 @@ from planning.aircraft.catalogue import profile
 from planning.coverage.evaluate import coverage_counts
 from planning.coverage.model import CoverageModel, exact_sections
 from planning.coverage.sections import NOT_SEEN, SectionGrid, panel_frames
-from planning.geo.line_of_sight import line_of_sight
+from planning.geo.bvh import line_of_sight
 from planning.geo.mesh import box_mesh, empty_mesh
 from planning.plan import Viewpoint, viewpoint_arrays
 from planning.site.records import panel_corners

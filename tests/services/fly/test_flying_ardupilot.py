@@ -19,9 +19,9 @@ from missions.flight.logs.read import read_log
 from missions.flight.matching import match_flight
 from missions.flight.outcome import Reason
 from missions.flight.report import report_flight
-from missions.mavlink.areas import rally_items
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.drive import drive
+from missions.mavlink.fence import rally_items
 from missions.mavlink.link import GROUND_STATION, VEHICLE, open_link
 from missions.mavlink.transfer.exchange import MissionType, Route
 from missions.mavlink.transfer.verified import Verified, VerifiedUpload

@@ -6,10 +6,9 @@ from contextlib import closing
 import pytest
 
 from groundstation.services.fly import signing
-from missions.mavlink.key_store import KeyStore
 from missions.mavlink.link import open_link
 from missions.mavlink.messages import Address, Heartbeat, SetupSigning
-from missions.mavlink.signing import Signer, key_from_passphrase
+from missions.mavlink.signing import KeyStore, Signer, key_from_passphrase
 from missions.mavlink.wire import Counts
 from planning.base.errors import InputError, LinkError
 

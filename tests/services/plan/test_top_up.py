@@ -11,8 +11,7 @@ import pytest
 
 from groundstation.services.plan.top_up import FlownPlan, flown_plan, resume_flight, top_up_flight, top_up_summary
 from missions.flight.flight_file import Flight, flight_of
-from missions.flight.matching import PhotoRef, match_flight
-from missions.flight.poses import taken_poses
+from missions.flight.matching import PhotoRef, match_flight, taken_poses
 from missions.flight.record import FlightRecord, TakenPhoto, Track
 from planning.aircraft.catalogue import profile
 from planning.base.errors import InfeasibleError, InputError, MissionError

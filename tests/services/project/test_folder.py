@@ -23,9 +23,8 @@ from planning.plan import read_plan, write_plan
 from planning.request import PlanRequest
 from planning.site.bundled import SCENES, write_scene
 from planning.site.file import read_site
-from planning.site.importing.importer import import_site
+from planning.site.importing.importer import import_site, write_imported_site
 from planning.site.importing.options import ImportOptions
-from planning.site.importing.output import write_imported_site
 from planning.site.records import Obstacle
 from tests.services.project_cases import SITES, document, documents, edited, is_same, plan, small_disk
 

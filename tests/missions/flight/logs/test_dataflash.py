@@ -7,8 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from missions.flight.logs.ardupilot import WANTED
-from missions.flight.logs.dataflash import binary_tables, column, text_tables, texts
+from missions.flight.logs.dataflash import WANTED, binary_tables, column, text_tables, texts
 from tests.missions.flight import log_writers as write
 from tests.missions.flight.flights import flown_as_planned
 from tests.missions.plans import example_plan

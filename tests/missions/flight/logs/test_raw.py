@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from missions.flight.logs.raw import camera_angles_rad
-from missions.flight.logs.tlog import read_tlog
+from missions.flight.logs.telemetry import read_tlog
 
 
 def quaternion(heading: float, pitch: float) -> tuple[float, float, float, float]:

@@ -15,8 +15,7 @@ from missions.mavlink.messages import (
     MissionRequestList,
     Received,
 )
-from missions.mavlink.transfer.download import Download, DownloadOutcome, DownloadState
-from missions.mavlink.transfer.exchange import Ending, MissionType, Result
+from missions.mavlink.transfer.exchange import Download, DownloadOutcome, DownloadState, Ending, MissionType, Result
 from tests.missions.mavlink.transfer.twins import (
     ARDUPILOT,
     OWN,

@@ -23,10 +23,9 @@ from missions.mavlink.messages import (
     MissionRequestInt,
     Received,
 )
-from missions.mavlink.transfer.download import Download
-from missions.mavlink.transfer.exchange import Ending
-from missions.mavlink.transfer.rounding import compare
+from missions.mavlink.transfer.exchange import Download, Ending
 from missions.mavlink.transfer.verified import Clear, NotVerified, Upload, Verified, VerifiedUpload
+from missions.mavlink.transfer.wire_items import compare
 from missions.mavlink.wire import Decoder, Encoder
 from tests.missions.mavlink.test_wire import messages_of
 from tests.missions.mavlink.transfer.twins import ARDUPILOT, OWN, PX4, ROUTE, VEHICLE, Air, TwinVehicle, waypoints

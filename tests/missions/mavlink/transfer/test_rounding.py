@@ -12,8 +12,7 @@ from hypothesis import strategies as st
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.messages import MissionItemInt
 from missions.mavlink.transfer.exchange import MissionType
-from missions.mavlink.transfer.rounding import FIELDS, Difference, compare, rounding_rules
-from missions.mavlink.transfer.wire_items import HOME, has_place
+from missions.mavlink.transfer.wire_items import FIELDS, HOME, Difference, compare, has_place, rounding_rules
 from tests.missions.mavlink.transfer.twins import ARDUPILOT, PX4, waypoints
 
 NAN = math.nan

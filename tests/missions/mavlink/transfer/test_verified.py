@@ -17,8 +17,8 @@ from missions.mavlink.messages import (
     Received,
 )
 from missions.mavlink.transfer.exchange import Ending, MissionType, Result
-from missions.mavlink.transfer.rounding import compare
 from missions.mavlink.transfer.verified import NotVerified, Verified, VerifiedState, VerifiedUpload
+from missions.mavlink.transfer.wire_items import compare
 from tests.missions.mavlink.transfer.twins import ARDUPILOT, PX4, Air, TwinVehicle, lose, route, waypoints
 
 both = pytest.mark.parametrize("autopilot", [ARDUPILOT, PX4])

@@ -11,8 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from missions.simulator.airframe.multirotor import GRAVITY_M_S2, Multirotor
-from missions.simulator.airframe.parts import ExactReceiver, Parts, RateGimbal, SteadyPack
-from missions.simulator.airframe.state import Airframe, Fix, Target
+from missions.simulator.airframe.state import Airframe, ExactReceiver, Fix, Parts, RateGimbal, SteadyPack, Target
 from missions.simulator.build import make_airframe
 from planning.geo.frames import Vec3
 from planning.motion.timing import MotionLimits, rest_to_rest_s

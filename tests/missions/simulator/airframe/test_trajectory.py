@@ -10,8 +10,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from missions.simulator.airframe.trajectory import JERK_RAMP_S, State, Trajectory, plan_trajectory
-from missions.simulator.airframe.trajectory_kernel import PASS_OVERSHOOT_M
+from missions.simulator.airframe.trajectory import JERK_RAMP_S, PASS_OVERSHOOT_M, State, Trajectory, plan_trajectory
 from planning.geo.frames import Vec3
 from planning.motion.timing import MotionLimits, leg_times_s
 

@@ -23,11 +23,11 @@ from missions.mavlink.messages import (
     MissionRequestList,
     Received,
 )
-from missions.simulator.autopilot.mission_store import MissionStores
-from missions.simulator.autopilot.stored_item import (
+from missions.simulator.autopilot.mission_store import (
     FENCE,
     MISSION,
     RALLY,
+    MissionStores,
     Refused,
     StoredItem,
     float32,

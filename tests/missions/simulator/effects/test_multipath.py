@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from missions.simulator.airframe.parts import ExactReceiver
+from missions.simulator.airframe.state import ExactReceiver
 from missions.simulator.effects.facts import effect_facts
 from missions.simulator.effects.gnss import fix_of
 from missions.simulator.effects.multipath import GlassSky, ReflectedReceiver, position_error_m, sphere

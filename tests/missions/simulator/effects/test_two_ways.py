@@ -11,7 +11,7 @@ import pytest
 from missions.mavlink.link import memory_pair
 from missions.mavlink.messages import MissionCurrent
 from missions.simulator.airframe.multirotor import Multirotor
-from missions.simulator.airframe.parts import ExactReceiver, RateGimbal, SteadyPack
+from missions.simulator.airframe.state import ExactReceiver, RateGimbal, SteadyPack
 from missions.simulator.build import EFFECTS, decide_effects, effects_table, make_airframe
 from missions.simulator.conditions import Conditions
 from missions.simulator.effects.link_loss import LossyLink, through_air

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 
-from planning.geo.line_of_sight import line_of_sight
+from planning.geo.bvh import line_of_sight
 from planning.geo.mesh import box_mesh
 from planning.geo.solids import Solids
-from planning.site.importing.openness import MIN_OPEN_SHARE, hemisphere_directions, open_shares, turn_outwards
+from planning.site.importing.panes import MIN_OPEN_SHARE, hemisphere_directions, open_shares, turn_outwards
 from planning.site.importing.polygons import (
     area_vector,
     fit_quad,

@@ -17,9 +17,8 @@ from planning.geo.mesh import box_mesh, empty_mesh, join, read_mesh
 from planning.geo.solids import Solids
 from planning.site.file import read_site
 from planning.site.free_space import free_space
-from planning.site.importing.importer import ImportedSite, assemble, import_site
+from planning.site.importing.importer import ImportedSite, assemble, import_site, write_imported_site
 from planning.site.importing.options import ImportOptions, PanelGrid
-from planning.site.importing.output import write_imported_site
 from planning.site.importing.placement import LocalFrame, Placement
 from planning.site.importing.source import SourceModel, SourceWindow
 from planning.site.records import panel_corners

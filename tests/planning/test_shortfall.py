@@ -16,11 +16,10 @@ from planning.coverage.reach_kernel import REACHABLE, UNDECIDED
 from planning.geo.mesh import box_mesh
 from planning.parameters import Constraints, GreedyParameters
 from planning.plan import viewpoint_arrays
-from planning.planner import plan_flight
+from planning.planner import WhyOpen, open_sections, plan_flight
 from planning.request import PlanRequest
 from planning.site.records import Obstacle, SiteModel
 from planning.viewpoints.prepare import prepare
-from planning.viewpoints.shortfall import WhyOpen, open_sections
 from tests.planning.plan_cases import turned_site
 
 NEAR = Constraints(min_distance_m=8.0)

@@ -6,13 +6,13 @@ import pytest
 from planning.aircraft.catalogue import profile
 from planning.base.effects import decide
 from planning.coverage.model import CoverageModel, exact_coverage
-from planning.coverage.occlusion import Occlusion, OcclusionScene, rises_above_a_panel
 from planning.coverage.positions import aimed_views, spread_positions
 from planning.coverage.sections import SectionGrid, panel_frames
-from planning.geo.line_of_sight import line_of_sight
+from planning.geo.bvh import line_of_sight
 from planning.site.bundled import SCENES
 from planning.site.free_space import free_space
 from planning.site.records import panel_corners
+from planning.viewpoints.prepare import Occlusion, OcclusionScene, rises_above_a_panel
 
 CAMERA = profile("m3e").camera
 
@@ -61,7 +61,7 @@ def test_skipped_occlusion_does_not_even_load_the_ray_caster(monkeypatch):
         raise AssertionError("the ray caster was built for a scene that does not call for it")
 
     scene = occlusion_scene("library")
-    monkeypatch.setattr("planning.geo.line_of_sight.line_of_sight", refuse)
+    monkeypatch.setattr("planning.geo.bvh.line_of_sight", refuse)
     assert not decide(Occlusion(), scene).on
 
 
