@@ -10,7 +10,7 @@ from __future__ import annotations
 from groundstation import __version__
 from groundstation.services.fly.flying import FlightRequest, Flown, fly_files
 from groundstation.services.mission.export import export_plan, import_missions
-from groundstation.services.mission.preflight import preflight
+from groundstation.services.mission.readiness import preflight
 from groundstation.services.model.export import ModelExport, ModelExporter, ModelToExport, WrittenModel, export_model
 from groundstation.services.plan.planning import plan_site
 from groundstation.services.reconstruct.request import TrainRequest

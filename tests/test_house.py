@@ -109,7 +109,7 @@ READERS = {
     "reconstruction/scenes/runs/cluster_workers.py", "reconstruction/scenes/runs/run_record.py",
     "reconstruction/objects/organise.py", "groundstation/services/reconstruct/choices.py",
     "groundstation/gui/application/collect_messages.py", "groundstation/services/messages.py",
-    "groundstation/services/fly/sitl.py", "groundstation/cli/tradeoff_train.py",
+    "groundstation/services/fly/flying.py", "groundstation/cli/commands/tradeoff.py",
 }  # fmt: skip
 
 

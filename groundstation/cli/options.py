@@ -1,4 +1,4 @@
-"""What several commands take in the same way: numbers, aircraft profile, seed; and wrong values in the user's words."""
+"""What several commands take in the same way: numbers, lists, profile, seed, poses; wrong values as they were typed."""
 
 from __future__ import annotations
 
@@ -12,13 +12,63 @@ from typing import TYPE_CHECKING, Any
 
 from planning.base.errors import InputError
 from planning.base.files import PLAIN_ENDINGS, check_ending, check_folder_name
-from planning.base.parameters import Declared, declared
+from planning.base.parameters import Declared, declared, with_values
 from planning.base.plugins import Plugin, PluginGroup, installed_plugins
 from planning.parameters import DEFAULT_PROFILE, LARGEST_SEED, PlanParameters
 
 if TYPE_CHECKING:
     from groundstation.services.mission.readiness import FlightDay
+    from groundstation.services.photos.poses import RefinedOutcome, RefineRequest
     from planning.base.effects import EffectSetting
+    from reconstruction.panels.search.parameters import SegmentationParameters
+
+
+# Numbers, and values with commas, for argparse's `type`: wrong ones are refused in the words that were typed.
+
+
+def words(text: str) -> tuple[str, ...]:
+    """Words such as `a,b`, each once; at least one."""
+    found = tuple(dict.fromkeys(word.strip() for word in text.split(",") if word.strip()))
+    if not found:
+        raise argparse.ArgumentTypeError(f"expected a list such as a,b, got '{text}'")
+    return found
+
+
+def above_zero(text: str) -> float:
+    """A finite number above 0."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not (math.isfinite(value) and value > 0.0):
+        raise argparse.ArgumentTypeError(f"expected a number above 0, got '{text}'")
+    return value
+
+
+def numbers(text: str) -> tuple[float, ...]:
+    """Finite numbers above 0, such as `30,7.5`."""
+    return tuple(above_zero(word) for word in words(text))
+
+
+def count(text: str) -> int:
+    """A whole number of 1 or more."""
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"expected a whole number of 1 or more, got '{text}'")
+    return int(text)
+
+
+def counts(text: str) -> tuple[int, ...]:
+    """Whole numbers of 1 or more, such as `1,2,4`."""
+    return tuple(count(word) for word in words(text))
+
+
+def wholes(text: str) -> tuple[int, ...]:
+    """Whole numbers, such as `32,128,0`."""
+    found = words(text)
+    if not all(word.isdecimal() for word in found):
+        raise argparse.ArgumentTypeError(f"expected whole numbers such as 32,128,0, got '{text}'")
+    return tuple(map(int, found))
+
 
 OPTIONS = {
     "photos_per_facade": "--photos-per-facade",
@@ -279,3 +329,69 @@ def flight_day(options: argparse.Namespace) -> FlightDay:
         return FlightDay(at, options.temperature)
     except ValueError as error:
         raise InputError(f"--temperature: {str(error).partition(': ')[2]}") from error
+
+
+# Where poses of photos come from, as several commands take it.
+
+
+def add_pose_arguments(parser: Any) -> None:
+    """Add `--colmap`, `--refine` and what belongs to them, and `--heights`."""
+    source = parser.add_mutually_exclusive_group()
+    source.add_argument("--colmap", type=Path, metavar="FOLDER", help="COLMAP model of the photos, for better poses")
+    source.add_argument(
+        "--refine",
+        action="store_true",
+        help="refine the poses with COLMAP (needs pycolmap); computed once, kept in PHOTOS.refined beside the photos",
+    )
+    add = parser.add_argument
+    add("--refined", type=Path, metavar="FOLDER", help="keep refined poses in this folder instead (with --refine)")
+    add(
+        "--refine-size",
+        type=int,
+        metavar="PX",
+        help="longer side that photos are reduced to for refining: smaller is quicker, larger better (default 1600)",
+    )
+    add("--heights", choices=("auto", "takeoff", "absolute"), default="auto", help="which heights of photos count")
+
+
+def refine_wish(options: argparse.Namespace) -> RefineRequest | None:
+    """What was asked for; None without `--refine`.
+
+    Raises
+    ------
+    InputError
+        An option that belongs to `--refine` stands without it, or its value is out of range.
+    """
+    from groundstation.services.photos.poses import RefineRequest
+
+    if options.refine:
+        with in_words_of_options():
+            return RefineRequest(options.refined, options.refine_size)
+    for option, value in (("--refined", options.refined), ("--refine-size", options.refine_size)):
+        if value is not None:
+            raise InputError(f"{option}: belongs to --refine, which was not given")
+    return None
+
+
+def print_refined(outcome: RefinedOutcome | None) -> None:
+    """Say where refined poses are kept."""
+    if outcome is not None:
+        print(f"{outcome.folder}: refined poses{', computed before' if outcome.was_kept else ''}")
+
+
+# Settings of the search for panels, as several commands take them.
+
+
+def parameters_of(options: argparse.Namespace) -> SegmentationParameters:
+    """Settings from a file, changed by what else was typed.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, or a value is out of range.
+    """
+    from reconstruction.panels.search.parameters import SegmentationParameters, read_parameters
+
+    base = SegmentationParameters() if options.parameters is None else read_parameters(options.parameters)
+    with in_words_of_options(SegmentationParameters):
+        return with_values(base, typed_values(options, SegmentationParameters))

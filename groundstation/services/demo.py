@@ -7,7 +7,7 @@ from pathlib import Path
 
 from groundstation.services.fly.flying import FlightRequest, Flown, fly_files
 from groundstation.services.mission.export import export_plan
-from groundstation.services.mission.preflight import preflight
+from groundstation.services.mission.readiness import preflight
 from groundstation.services.plan.planning import plan_site
 from missions.formats.registry import FORMATS
 from planning.base.errors import InputError

@@ -1,23 +1,78 @@
-"""The user's settings: one TOML file, with unknown keys and wrong values refused by name."""
+"""Settings, one TOML file with wrong keys and values refused by name; and small choices in files beside it."""
 
 from __future__ import annotations
 
 import difflib
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields, replace
 from enum import StrEnum
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
-from groundstation.services.preferences import Tell, or_first
 from groundstation.services.units import UnitSystem
 from planning.base.errors import InputError
 from planning.base.files import real_path
 from planning.base.json_file import plain_values, read_toml, to_record, write_atomically
-from planning.base.messages import say
+from planning.base.messages import glue, say
 from planning.parameters import DEFAULT_PROFILE
+
+# Small choices of the pilot that are kept for the next start, each in a TOML file beside the settings.
+
+Record = TypeVar("Record")
+
+
+Tell = Callable[[str], None]
+
+
+def read_kept(path: Path, first: Record, tell: Tell = lambda _: None) -> Record:
+    """What was kept; `first` where nothing was, or the file is damaged, which is told then and put aside."""
+    return or_first(path, lambda: read_toml(path, type(first)), first, tell)
+
+
+def or_first(path: Path, read: Callable[[], Record], first: Record, tell: Tell) -> Record:
+    """What a file holds, or `first` where there is none; a damaged one is put aside, so that nothing of it is lost.
+
+    Parameters
+    ----------
+    tell
+        Called with what was wrong and what became of the file.
+    """
+    try:
+        return read()
+    except InputError as error:
+        if os.path.lexists(path):
+            tell(glue(error, "; ", _put_aside(path)))
+        return first
+
+
+def _put_aside(path: Path) -> str:
+    """Give a damaged file another name, in place of the last one; returns what was done."""
+    aside = path.with_name(f"{path.stem}.damaged{path.suffix}")
+    try:
+        path.replace(aside)
+    except OSError:
+        return say("its settings are as at first, and the file stays as it is")
+    return say("its settings are as at first again, and the damaged file is kept as '{}'", aside)
+
+
+def write_kept(path: Path, record: object) -> None:
+    """Keep a record; its folder is made where it is missing.
+
+    Raises
+    ------
+    InputError
+        The file cannot be written.
+    """
+    import tomli_w
+
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(say("this folder cannot be made ({})", error.strerror or error, place=path.parent)) from error
+    write_atomically(path, tomli_w.dumps(plain_values(record)).encode())
+
 
 CONFIG_VARIABLE = "REFLIGHT_CONFIG_DIR"
 """Environment variable that names the folder for settings and data, for tests and for a program on a stick."""

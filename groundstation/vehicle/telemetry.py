@@ -10,7 +10,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from groundstation.vehicle.modes import sensor_problems
+from groundstation.vehicle.commands import sensor_problems
 from groundstation.vehicle.state import (
     MAX_TEXTS,
     Angles,

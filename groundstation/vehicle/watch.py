@@ -10,7 +10,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
-from groundstation.vehicle.modes import MISSION_MODE
+from groundstation.vehicle.commands import MISSION_MODE
 from groundstation.vehicle.state import LINK_LOST_S, Landed, Motion, VehicleState
 from groundstation.vehicle.surroundings import Surroundings
 from planning.base.findings import Severity

@@ -12,7 +12,7 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from groundstation.services.reconstruct.shown_models import LARGE, QUICK_PX
+from groundstation.services.reconstruct.render_queue import LARGE, QUICK_PX
 from reconstruction.light.config import ReflectionConfig
 from reconstruction.light.photo_set import PanelPlanes
 from reconstruction.light.reflective_panels import ModelName

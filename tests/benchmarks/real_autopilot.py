@@ -6,8 +6,7 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
-from groundstation.services.fly.flying import FlightRequest, Flown, fly_plan
-from groundstation.services.fly.sitl import SITL_LINK, sitl
+from groundstation.services.fly.flying import SITL_LINK, FlightRequest, Flown, fly_plan, sitl
 from missions.mavlink.autopilots import Autopilot
 from missions.mission.build import missions_from_plan
 from planning.plan import Plan

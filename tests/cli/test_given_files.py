@@ -73,8 +73,7 @@ def files(tmp_path_factory):
     """Folder with one file of each kind; tests must not change it."""
     from groundstation.services.mission.export import export_plan
     from groundstation.services.project.document import Document
-    from groundstation.services.project.folder import create_project, open_project, save_project
-    from groundstation.services.project.plans import add_plans
+    from groundstation.services.project.folder import add_plans, create_project, open_project, save_project
     from missions.mission.model import FileFormat
     from planning.site.file import read_site
 

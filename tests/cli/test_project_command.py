@@ -5,9 +5,9 @@ import shutil
 
 import pytest
 
-from groundstation.services.project.autosave import Autosave
 from groundstation.services.project.folder import open_project
 from groundstation.services.project.lock import lock_project
+from groundstation.services.project.recovery import Autosave
 from planning.request import PlanRequest
 from planning.site.bundled import write_scene
 from tests.services.project.test_autosave import AtOnce, edited

@@ -2,7 +2,7 @@
 
 import pytest
 
-from groundstation.services.fly.report import report_files
+from groundstation.services.fly.flying import report_files
 from groundstation.vehicle.duration import items_duration_s
 from groundstation.vehicle.orders import sortie_orders
 from missions.flight.flight_file import read_flight

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from groundstation.services.fly.link_choice import ConnectionChoice, LinkKind
+from groundstation.services.fly.options import ConnectionChoice, LinkKind
 from groundstation.services.reconstruct.choices import TrainChoice
 from groundstation.services.units import UnitSystem
 from missions.dji.write import LinkLoss

@@ -6,8 +6,14 @@ from pathlib import Path
 import pytest
 
 from groundstation.services.project.document import Item, ItemKind
-from groundstation.services.site.edits import add_box, add_rally_point, add_zone, height_above_sea_m, move_home
-from groundstation.services.site.item_edits import rename_item
+from groundstation.services.site.edits import (
+    add_box,
+    add_rally_point,
+    add_zone,
+    height_above_sea_m,
+    move_home,
+    rename_item,
+)
 from groundstation.services.units import UnitSystem
 from planning.base.findings import Finding, Severity
 from planning.geo.frames import Origin

@@ -29,7 +29,7 @@ from PySide6.QtWidgets import (
 from groundstation.gui.shared_view import SharedViewPage
 from groundstation.gui.widgets.inputs import ChoiceBox
 from groundstation.services.fly.events import Request, ViewState
-from groundstation.services.fly.link_choice import ConnectionChoice
+from groundstation.services.fly.options import ConnectionChoice
 from groundstation.services.project.document import Document, Item, ItemKind, PlanEntry
 from groundstation.services.settings import Language
 from planning.base.findings import Severity

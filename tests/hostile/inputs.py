@@ -238,8 +238,8 @@ def _plans() -> None:
     import trimesh
 
     from groundstation.services.plan.planning import plan_site
-    from groundstation.services.project.autosave import Autosave
     from groundstation.services.project.folder import open_project
+    from groundstation.services.project.recovery import Autosave
     from planning.request import PlanRequest
     from planning.site.bundled import write_scene
     from tests.planning.revision.cases import QUICK
@@ -396,8 +396,7 @@ def _checkpoint() -> None:
 
 def _settings() -> None:
     from groundstation.services.fly.options import USUAL
-    from groundstation.services.preferences import write_kept
-    from groundstation.services.settings import Settings, write_settings
+    from groundstation.services.settings import Settings, write_kept, write_settings
     from missions.mavlink.signing import KeyStore
 
     write_settings(

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from groundstation.services.fly.sitl import SITL_LINK, sitl
+from groundstation.services.fly.flying import SITL_LINK, sitl
 from missions.mavlink.autopilots import Autopilot
 from missions.mission.model import GeoPoint
 

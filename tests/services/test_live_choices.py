@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from groundstation.services.fly.connection import FlownBefore, with_charge
-from groundstation.services.mission.item_limit import shared_out, too_long
+from groundstation.services.mission.readiness import shared_out, too_long
 from missions.mavlink.autopilots import Autopilot, facts
 from missions.mavlink.items import photos_that_fit
 from missions.simulator.airframe.state import Target

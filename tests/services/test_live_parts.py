@@ -7,12 +7,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from groundstation.services.fly.coverage import LiveCoverage, matching_view
 from groundstation.services.fly.events import LinkState, Request, ViewState
-from groundstation.services.fly.link_choice import ConnectionChoice, LinkKind, read_choice
-from groundstation.services.fly.options import FlightSettings, read_flight_settings
+from groundstation.services.fly.flight import LiveCoverage, matching_view
+from groundstation.services.fly.options import (
+    ConnectionChoice,
+    FlightSettings,
+    LinkKind,
+    read_choice,
+    read_flight_settings,
+)
 from groundstation.services.fly.readouts import allowed_requests, battery_left_s, link_state
-from groundstation.services.preferences import write_kept
+from groundstation.services.settings import write_kept
 from groundstation.vehicle.sortie.run_records import Phase
 from groundstation.vehicle.state import Timed, VehicleState
 from missions.flight.matching import DEFAULT_GATES

@@ -11,8 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from groundstation.services.fly.link_choice import ConnectionChoice, read_choice
-from groundstation.services.fly.options import USUAL, read_flight_settings
+from groundstation.services.fly.options import USUAL, ConnectionChoice, read_choice, read_flight_settings
 from groundstation.services.settings import (
     MAX_RECENT_PROJECTS,
     Language,

@@ -6,8 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from groundstation.vehicle.commands import ATTEMPT_S, N_ATTEMPTS, PROGRESS_S, Answer, CommandCall
-from groundstation.vehicle.modes import set_mode_command
+from groundstation.vehicle.commands import ATTEMPT_S, N_ATTEMPTS, PROGRESS_S, Answer, CommandCall, set_mode_command
 from groundstation.vehicle.parameters import N_ATTEMPTS as N_PARAMETER_ATTEMPTS
 from groundstation.vehicle.parameters import ParameterCall, ParameterStatus, decoded, encoded
 from missions.mavlink.autopilots import Autopilot

@@ -8,7 +8,7 @@ import pytest
 from pymavlink import mavutil
 from pymavlink.dialects.v20 import ardupilotmega
 
-from groundstation.vehicle.telemetry_log import RETRY_S, TelemetryLog, new_log_path
+from groundstation.vehicle.recorder import RETRY_S, TelemetryLog, new_log_path
 from planning.base.errors import InputError
 
 NOON_S = 1_800_000_000.25
@@ -43,7 +43,7 @@ def test_pymavlink_reads_what_is_written(tmp_path):
 def test_every_frame_is_on_its_way_to_the_disk_before_the_program_can_crash(tmp_path):
     program = (
         "import os, sys; from pathlib import Path\n"
-        "from groundstation.vehicle.telemetry_log import TelemetryLog\n"
+        "from groundstation.vehicle.recorder import TelemetryLog\n"
         "log = TelemetryLog(Path(sys.argv[1]))\n"
         "for frame in sys.argv[2:]: log.write(bytes.fromhex(frame), 1.8e9)\n"
         "os.kill(os.getpid(), 9)\n"

@@ -42,8 +42,7 @@ def run(options: argparse.Namespace) -> int:
     from groundstation.services.messages import told, translation
     from groundstation.services.mission.brief import flight_brief
     from groundstation.services.mission.brief_html import brief_html, brief_pictures, sources_in_page
-    from groundstation.services.mission.preflight import preflight
-    from groundstation.services.mission.readiness import Readiness
+    from groundstation.services.mission.readiness import Readiness, preflight
     from groundstation.services.project.input_files import read_given_plan, read_given_site
     from groundstation.services.units import UnitSystem
     from planning.base.errors import InputError

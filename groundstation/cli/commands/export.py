@@ -6,8 +6,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from groundstation.cli.lists import words
-from groundstation.cli.options import PluginNames, number
+from groundstation.cli.options import PluginNames, number, words
 from planning.base.plugins import PluginGroup
 
 MAX_RETURN_HEIGHT_M = 1500.0

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from groundstation.cli.commands.segment import add_parameter_arguments
 from groundstation.cli.commands.site import add_flight, add_place_and_content, import_options
-from groundstation.cli.options import json_file
-from groundstation.cli.pose_options import add_pose_arguments, print_refined, refine_wish
+from groundstation.cli.options import add_pose_arguments, json_file, print_refined, refine_wish
 
 if TYPE_CHECKING:
     from groundstation.services.photos.panels import PanelSearch
@@ -69,8 +68,7 @@ def add_parser(subparsers: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Find, write, print; returns the exit status."""
     from groundstation.cli.console import print_findings, print_json, print_next, run_job
-    from groundstation.cli.options import in_words_of_options
-    from groundstation.cli.segmentation_options import parameters_of
+    from groundstation.cli.options import in_words_of_options, parameters_of
     from groundstation.services.photos.panels import find_panel_files, panel_search_summary
     from reconstruction.panels.solving.find import FindParameters
 

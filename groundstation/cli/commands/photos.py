@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from groundstation.cli.pose_options import add_pose_arguments, print_refined, refine_wish
+from groundstation.cli.options import add_pose_arguments, print_refined, refine_wish
 
 EPILOG = """examples:
   photos /media/card/DCIM tower.site.json --plan tower.plan.json

@@ -6,8 +6,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from groundstation.cli.options import new_folder
-from groundstation.cli.pose_options import add_pose_arguments, refine_wish
+from groundstation.cli.options import add_pose_arguments, new_folder, refine_wish
 
 EPILOG = """Writes images/, sparse/0 and points.ply as COLMAP and splatting programs read them, transforms.json for
 nerfstudio, and panels/, masks/ and normals/ (docs/reference/file-formats.md, reflight-dataset/1).

@@ -48,8 +48,7 @@ def run_new(options: argparse.Namespace) -> int:
     """Make a project; returns the exit status."""
     from groundstation.cli.console import print_next
     from groundstation.services.project.document import Document
-    from groundstation.services.project.facades import facades_beside
-    from groundstation.services.project.folder import create_project, open_project
+    from groundstation.services.project.folder import create_project, facades_beside, open_project
     from groundstation.services.project.input_files import read_given_site
 
     document = Document(read_given_site(options.site), found_facades=facades_beside(options.site))
@@ -88,9 +87,8 @@ def run_show(options: argparse.Namespace) -> int:
 def run_add(options: argparse.Namespace) -> int:
     """Add plans to a project; returns the exit status."""
     from groundstation.cli.console import counted, print_findings, print_next
-    from groundstation.services.project.folder import open_project, save_project
+    from groundstation.services.project.folder import add_plans, open_project, save_project
     from groundstation.services.project.lock import lock_project
-    from groundstation.services.project.plans import add_plans
 
     with lock_project(_folder_of_project(options.folder)) as lock:
         project = open_project(lock.folder)

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from groundstation.cli.lists import count
+from groundstation.cli.options import count
 from planning.base.errors import InputError
 from planning.base.files import FILE_ENDING
 

@@ -6,8 +6,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from groundstation.cli.lists import count, words
-from groundstation.cli.options import new_folder
+from groundstation.cli.options import count, new_folder, words
 from planning.base.errors import InputError
 from reconstruction.training.layers import LAYERS
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from groundstation.cli.options import json_file
 
 if TYPE_CHECKING:
-    from groundstation.services.fly.report import ReportedFlight
+    from groundstation.services.fly.flying import ReportedFlight
 
 EPILOG = """Photos are taken as the camera wrote them, with their metadata; folders in the folder are searched, too.
 They say where each was taken, not how the aircraft flew between them: distances on the way need a log.
@@ -58,7 +58,7 @@ def add_parser(subparsers: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Read, compare and print; returns the exit status."""
     from groundstation.cli.console import flight_status, print_json, run_job
-    from groundstation.services.fly.report import report_files
+    from groundstation.services.fly.flying import report_files
 
     reported = run_job(
         "report",

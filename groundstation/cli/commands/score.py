@@ -8,13 +8,70 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from groundstation.cli import score_model
 from groundstation.cli.commands.segment import add_parameter_arguments
 from groundstation.cli.options import new_folder
 
 if TYPE_CHECKING:
     from groundstation.services.photos.segmentation import ScoreRequest
     from reconstruction.metrics.metrics import SetScores, Spread
+
+
+MODEL_EPILOG = """PSNR and SSIM are of sRGB values, means over views; SSIM has a Gaussian window of 11 x 11
+pixels. LPIPS needs weights that you supply: a backbone (AlexNet or VGG16 as torchvision names them) and the linear
+heads on it, .safetensors or .pth.
+
+examples:
+  score tower.model tower.dataset
+  score tower.model tower.dataset --views all --json
+  score tower.model tower.dataset --lpips alexnet.pth --lpips lpips-heads.pth
+"""
+
+
+def _add_model_arguments(parser: Any) -> None:
+    """Describe what is scored."""
+    add = parser.add_argument
+    add("model", type=Path, metavar="MODEL", help="folder of a model")
+    add("dataset", type=Path, metavar="DATASET", help="folder of a data set of the same site")
+    add("--views", choices=("held-out", "all"), default="held-out", help="default: those that were not learned from")
+    add("--lpips", type=Path, action="append", default=[], metavar="WEIGHTS", help="file of weights; give it again")
+    add("--fit-exposure", action="store_true", help="fit the exposure of each view to its photo before it is scored")
+    add("--json", action="store_true", help="print one JSON object instead of text")
+
+
+def run_model(options: argparse.Namespace) -> int:
+    """Score and print; returns the exit status."""
+    from groundstation.cli.console import counted, print_json, run_job
+    from groundstation.services.model.rendering import score_files, score_summary
+
+    scored = run_job(
+        "score",
+        lambda context: score_files(
+            options.model,
+            options.dataset,
+            options.views,
+            options.lpips,
+            with_fitted_gain=options.fit_exposure,
+            monitor=context,
+        ),
+    )
+    summary = score_summary(scored)
+    if options.json:
+        print_json({"model": str(options.model), "dataset": str(options.dataset), **summary})
+        return 0
+    print(f"{options.model}: {counted(len(scored.views), 'view')}")
+    print(f"  {'':<10}{'PSNR':>10}{'worst':>10}{'SSIM':>9}{'LPIPS':>9}")
+    for part in ("facade", "whole"):
+        row = summary[part]
+        cells = (_cell(row["psnr_db"], 2, " dB"), _cell(row["worst_psnr_db"], 2, " dB"))
+        rest = (_cell(row["ssim"], 4), _cell(row["lpips"], 4))
+        print(f"  {part:<10}{cells[0]:>10}{cells[1]:>10}{rest[0]:>9}{rest[1]:>9}")
+    print(f"  {scored.lpips}" if scored.lpips else "  LPIPS unavailable: give weights with --lpips")
+    return 0
+
+
+def _cell(value: float | None, digits: int, unit: str = "") -> str:
+    return "-" if value is None else f"{value:.{digits}f}{unit}"
+
 
 SETS = ("made-planar", "made-curved", "made-irregular", "cmp", "ecp", "offices", "folder")
 
@@ -51,11 +108,11 @@ def add_parser(subparsers: Any) -> None:
         "model",
         help="a trained model's pictures of views that it has not seen",
         description="Render a model where photos were taken and compare: on the facade, and the whole picture.",
-        epilog=score_model.EPILOG,
+        epilog=MODEL_EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    model.set_defaults(run=score_model.run_model)
-    score_model.add_arguments(model)
+    model.set_defaults(run=run_model)
+    _add_model_arguments(model)
     panels = kinds.add_parser(
         "segmentation",
         help="the search for glass panels in photos",
@@ -109,7 +166,7 @@ def request_of(options: argparse.Namespace) -> ScoreRequest:
     InputError
         A value is out of range, or a settings file cannot be read.
     """
-    from groundstation.cli.segmentation_options import parameters_of
+    from groundstation.cli.options import parameters_of
     from groundstation.services.photos.segmentation import ScoreRequest
     from planning.base.errors import InputError
 

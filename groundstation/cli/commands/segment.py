@@ -53,7 +53,7 @@ def add_parameter_arguments(parser: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Find, write, print; returns the exit status."""
     from groundstation.cli.console import counted, print_json, run_job
-    from groundstation.cli.segmentation_options import parameters_of
+    from groundstation.cli.options import parameters_of
     from groundstation.services.photos.segmentation import segment_file, segmented_summary
 
     parameters = parameters_of(options)

@@ -101,7 +101,7 @@ def _fly(options: argparse.Namespace, monitor: Monitor) -> Flown:
     if options.sitl is None:
         between = _battery_change if sys.stdin is not None and sys.stdin.isatty() else None
         return fly_files(options.plan, options.site, options.out, _wish(options), monitor=monitor, between=between)
-    from groundstation.services.fly.sitl import SITL_LINK, sitl
+    from groundstation.services.fly.flying import SITL_LINK, sitl
     from groundstation.services.project.input_files import read_given_plan, read_given_site
     from missions.mission.build import missions_from_plan
 

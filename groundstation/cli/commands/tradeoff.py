@@ -3,29 +3,312 @@
 from __future__ import annotations
 
 import argparse
+import json
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from groundstation.cli import tradeoff_scene, tradeoff_train
 from groundstation.cli.commands.plan import add_request_arguments, request_of
 from groundstation.cli.commands.score import add_set_arguments
 from groundstation.cli.commands.score import request_of as score_request_of
 from groundstation.cli.commands.segment import add_parameter_arguments
-from groundstation.cli.lists import above_zero, count, counts, numbers, wholes, words
-from groundstation.cli.options import checked_seed, new_folder
+from groundstation.cli.options import (
+    PluginNames,
+    above_zero,
+    add_profile_argument,
+    checked_seed,
+    count,
+    counts,
+    effect_settings,
+    in_words_of_options,
+    new_folder,
+    number,
+    numbers,
+    wholes,
+    words,
+)
 from planning.base.errors import InputError
 from planning.base.messages import say
+from planning.base.plugins import PluginGroup
+from reconstruction.training.method_registry import DEFAULT_METHOD, METHODS
+from reconstruction.training.names import PRESETS
 
 if TYPE_CHECKING:
     from groundstation.services.plan.tradeoff import PlanRuns
+    from groundstation.services.scenes.photos import SceneTrials
+    from groundstation.services.scenes.views import SceneRequest
     from planning.tradeoff.plans import FailedRun, PlanReport, Variants
     from planning.tradeoff.runner import Answers
     from planning.tradeoff.tours import TourReport
+    from reconstruction.tradeoff.scene_downstream import EffectWorth
+    from reconstruction.tradeoff.scene_tradeoff import SceneVariants
     from reconstruction.tradeoff.search_tradeoff import SettingScores
 
-DEFAULT_SECONDS = 30.0
+
+SCENE_EPILOG = """Every way to render is compared with the truth: the same photos by Mitsuba with every
+effect and --truth-rays rays a pixel (--truth-rays 0: by the embedded renderer with 64). Rays, sizes and effects are
+turned one at a time, all else as the scene decides. Panels are looked for in all of them, to see what that changes.
+
+examples:
+  tradeoff scene planar -o tradeoff
+  tradeoff scene office.site.json -o tradeoff --width 1024 --widths 256,512 --rays 4,16,64 --truth-rays 1024
+  tradeoff scene court -o tradeoff --truth-rays 0 --turn second-bounce,near-field-reflection
+"""
+
+
+LEAST_VIEWS = 8
+"""That reflections are learned from, and scored on a part of."""
+
+
+def _add_scene_arguments(parser: Any) -> None:
+    """Describe what can be turned."""
+    add = parser.add_argument
+    add("scene", metavar="SITE|NAME", help="site file, or name of a bundled scene ('scene list')")
+    add("--plan", type=Path, metavar="PLAN", help="take views of this plan (default: views square to each facade)")
+    add("--views", type=int, metavar="N", help="number of photos (default 4)")
+    add_profile_argument(parser)
+    add("--look", type=Path, metavar="FILE", help="TOML file with glass, frames, surroundings and light of a site")
+    add("--seed", type=int, default=0, metavar="N", help="of everything random (default 0)")
+    add("--width", type=int, default=512, metavar="PX", help="of the photos (default 512)")
+    add("--truth-rays", type=int, default=256, metavar="N", help="a pixel, of the truth (default 256)")
+    add("--effects", action="append", default=[], metavar="SETTING", help="start: auto, none, all, NAME=on|off|auto")
+    add("--tolerance", type=number, default=1.0, metavar="X", help="times each effect's own tolerance (default 1)")
+    add(
+        "--reflections",
+        type=int,
+        default=0,
+        metavar="N",
+        help="also learn reflections from N small photos, with all effects and without each (default 0: do not)",
+    )
+    varied = parser.add_argument_group("what varies (lists with commas)").add_argument
+    varied(
+        "--samples",
+        type=counts,
+        default="1,2,3,4",
+        metavar="LIST",
+        help="rays along a pixel's side (default: %(default)s)",
+    )
+    varied(
+        "--widths",
+        type=counts,
+        default="128,256",
+        metavar="LIST",
+        help="rendered so wide and enlarged (default: %(default)s)",
+    )
+    varied(
+        "--rays", type=counts, default=(), metavar="LIST", help="a pixel of Mitsuba, such as 4,16,64 (default: none)"
+    )
+    varied(
+        "--turn",
+        type=words,
+        default="all",
+        metavar="LIST",
+        help="effects that are turned on or off (default: all; or none)",
+    )
+
+
+def run_scene(options: argparse.Namespace) -> int:
+    """Compare and print; returns the exit status."""
+    from groundstation.cli.console import show_tradeoff
+    from groundstation.services.scenes.photos import scene_tradeoff
+
+    request, variants = _scene_request(options), _scene_variants(options)
+    if options.truth_rays < 0:
+        raise InputError(f"--truth-rays: expected 0 or more, got {options.truth_rays}")
+    if options.reflections != 0 and not options.reflections >= LEAST_VIEWS:
+        raise InputError(f"--reflections: expected {LEAST_VIEWS} or more photos, or 0, got {options.reflections}")
+    return show_tradeoff(
+        "scene",
+        options.json,
+        lambda context: scene_tradeoff(
+            request, variants, options.truth_rays or None, options.out, context, n_reflection_views=options.reflections
+        ),
+        _scene_summary,
+        _print_scene,
+    )
+
+
+def _scene_summary(found: SceneTrials) -> dict[str, Any]:
+    from planning.base.json_file import plain_values
+    from reconstruction.tradeoff.scene_downstream import worth_rows
+    from reconstruction.tradeoff.scene_tradeoff import scene_rows, truth_error
+
+    truth = found.truth
+    return {
+        "truth": {"name": truth.name, "seconds": truth.seconds, "error": truth_error(truth)},
+        "effects": plain_values(found.decisions),
+        "settings": scene_rows(truth, found.trials),
+        "reflections": worth_rows(found.worths) if found.worths else [],
+    }
+
+
+def _scene_request(options: argparse.Namespace) -> SceneRequest:
+    from groundstation.services.scenes.views import SceneRequest
+    from reconstruction.scenes.effect_names import EFFECTS
+    from reconstruction.scenes.photos.renderer import RenderSettings
+
+    settings = effect_settings(options.effects, EFFECTS)
+    with in_words_of_options():
+        return SceneRequest(
+            scene=options.scene,
+            plan=options.plan,
+            n_views=options.views,
+            profile_id=options.profile,
+            look=options.look,
+            seed=checked_seed(options.seed),
+            width_px=options.width,
+            settings=RenderSettings(wishes=settings, tolerance=options.tolerance),
+        )
+
+
+def _scene_variants(options: argparse.Namespace) -> SceneVariants:
+    from reconstruction.tradeoff.scene_tradeoff import OF_A_PHOTO, SceneVariants
+
+    turned = options.turn
+    by_option = {name.lower().replace(" ", "-"): name for name in OF_A_PHOTO}
+    if turned == ("all",):
+        effects = OF_A_PHOTO
+    elif turned == ("none",):
+        effects = ()
+    else:
+        effects = tuple(by_option.get(word, word) for word in turned)
+    return SceneVariants(options.samples, options.widths, options.rays, effects)
+
+
+def _print_scene(made: SceneTrials) -> None:
+    from missions.simulator.build import effects_table
+    from reconstruction.tradeoff.scene_tradeoff import scene_rows, truth_error
+
+    own = truth_error(made.truth)
+    accuracy = f", itself good to {255.0 * own:.2f} grey levels" if own else ""
+    print(f"truth: {made.truth.name}, {made.truth.seconds:.1f} s a photo{accuracy}")
+    print(f"effects:\n{effects_table(made.decisions)}")
+    print(f"  {'setting':<36}{'ready in':>10}{'s a photo':>10}{'PSNR':>10}{'':>8}{'mIoU':>9}{'':>9}{'missed':>8}")
+    for row in scene_rows(made.truth, made.trials):
+        ready, error = " " * 10, " " * 18
+        if "psnr_db" in row:
+            ready, error = f"{row['prepare_s']:>8.2f} s", f"{row['psnr_db']:>7.1f} dB{row['psnr_change_db']:>+8.2f}"
+        single, change = row["individual_miou"], row["individual_miou_change"]
+        found = f"{'-':>9}" if single is None else f"{single:>9.4f}{change:>+9.4f}{row['missed']:>8}"
+        print(f"  {row['setting']:<36}{ready}{row['seconds']:>10.3f}{error}{found}")
+    if made.worths:
+        _print_worths(made.worths)
+
+
+def _print_worths(worths: Sequence[EffectWorth]) -> None:
+    from reconstruction.tradeoff.scene_downstream import worth_rows
+
+    print("  reflections learned from photos, scored on glass of unseen views that have all that the scene calls for:")
+    print(f"  {'photos':<36}{'rendered in':>12}{'PSNR':>10}{'lost':>9}{'worst':>10}{'on their own kind':>20}")
+    for row in worth_rows(worths):
+        print(
+            f"  {row['photos']:<36}{row['photos_s']:>10.1f} s{row['psnr_db']:>7.2f} dB{row['lost_db']:>+6.2f} dB"
+            f"{row['worst_db']:>7.2f} dB{row['own_db']:>17.2f} dB"
+        )
+
+
+TRAIN_SECONDS = 60.0
+
+DEFAULT_KNOBS = (
+    "method=2dgs",
+    "light=environment-map,mlp,radiance-grid",
+    "n_splats=4000,24000",
+    "window_px=3072,12288",
+    "reduce=2",
+    "reflections.precision=float32,bfloat16",
+)
+
+KNOB_LINES = "\n".join(f"  --vary {knob}" for knob in DEFAULT_KNOBS)
+
+TRAIN_EPILOG = f"""Every training has the same time, and is scored on the views that were held out. Any setting of a
+training (reconstruction/training/config.py) can be turned, inner ones with dots. Without --vary these are:
+{KNOB_LINES}
+
+examples:
+  tradeoff train tower.dataset -o tradeoff --seconds 120
+  tradeoff train tower.dataset -o tradeoff --vary method=2dgs --vary light=mlp,radiance-grid
+  tradeoff train tower.dataset -o tradeoff --vary reflections.mlp.width=64,256 --vary raster.tile_px=8,32
+"""
+
+
+def _add_train_arguments(parser: Any) -> None:
+    """Describe what can be turned."""
+    add = parser.add_argument
+    add("dataset", type=Path, metavar="DATASET", help="folder of a data set")
+    add("--preset", choices=tuple(PRESETS), default="10min", help="settings to start from (default 10min)")
+    add(
+        "--method",
+        choices=PluginNames(METHODS, PluginGroup.TRAINING_METHODS),
+        metavar="METHOD",
+        help=f"method to start from (default {DEFAULT_METHOD})",
+    )
+    add("--seconds", type=above_zero, metavar="S", help=f"of each training (default {TRAIN_SECONDS:g})")
+    add("--iterations", type=count, metavar="N", help="of each training, whatever time they take, instead of --seconds")
+    add("--seed", type=int, default=0, metavar="N", help="of everything random (default 0)")
+    add("--settings", type=Path, metavar="FILE", help="TOML file with settings that differ from the preset's")
+    add("--vary", action="append", default=[], metavar="SETTING=A,B", help="give it again for more")
+
+
+def run_train(options: argparse.Namespace) -> int:
+    """Compare and print; returns the exit status."""
+    from groundstation.cli.console import show_tradeoff
+    from groundstation.cli.options import checked_seed
+    from groundstation.services.reconstruct.training import TrainRequest, train_tradeoff
+    from reconstruction.tradeoff.train_tradeoff import trial_rows
+
+    seconds = options.seconds or (TRAIN_SECONDS if options.iterations is None else None)
+    request = TrainRequest(
+        options.preset,
+        options.method,
+        None,
+        options.iterations,
+        seconds,
+        checked_seed(options.seed),
+        options.settings,
+    )
+    knobs = dict(map(knob_of, options.vary or DEFAULT_KNOBS))
+    return show_tradeoff(
+        "train",
+        options.json,
+        lambda context: train_tradeoff(options.dataset, request, knobs, options.out, context),
+        lambda trials: {"settings": trial_rows(trials)},
+        lambda trials: _print_trainings(trial_rows(trials)),
+    )
+
+
+def _print_trainings(rows: Sequence[Mapping[str, Any]]) -> None:
+    print(f"  {'setting':<38}{'time':>9}{'facade':>11}{'':>9}{'whole':>11}{'steps':>8}{'splats':>8}")
+    for row in rows:
+        print(
+            f"  {row['setting']:<38}{row['seconds']:>7.1f} s{row['facade_psnr_db']:>8.2f} dB"
+            f"{row['change_db']:>+9.2f}{row['whole_psnr_db']:>8.2f} dB{row['steps']:>8}{row['splats']:>8}"
+        )
+
+
+def knob_of(text: str) -> tuple[str, list[Any]]:
+    """Name of a setting and its values: numbers and true or false where they read so, else words.
+
+    Raises
+    ------
+    InputError
+        It is not of the form NAME=A,B.
+    """
+    name, equals, values = text.partition("=")
+    words = [word.strip() for word in values.split(",") if word.strip()]
+    if not (name.strip() and equals and words):
+        raise InputError(f"--vary {text}: expected a setting and its values, such as n_splats=4000,8000")
+    return name.strip(), [_value(word) for word in words]
+
+
+def _value(word: str) -> Any:
+    try:
+        return json.loads(word)
+    except json.JSONDecodeError:
+        return word
+
+
+ROUTE_SECONDS = 30.0
 
 PLAN_EPILOG = """what varies, one at a time, all else as the other options say:
   --methods, --precisions, --steps, --candidates
@@ -116,9 +399,7 @@ def _add_route(kinds: Any) -> None:
     add = parser.add_argument
     add("file", type=Path, nargs="+", metavar="FILE", help="TSPLIB file (.tsp, .atsp), plan or site")
     _add_output(parser)
-    add(
-        "--seconds", type=above_zero, default=DEFAULT_SECONDS, metavar="S", help="for each method (default %(default)g)"
-    )
+    add("--seconds", type=above_zero, default=ROUTE_SECONDS, metavar="S", help="for each method (default %(default)g)")
     methods = "nearest-neighbour,local-search,pyvrp,pyvrp-cold"
     add("--methods", type=words, default=methods, metavar="LIST", help="default: %(default)s")
     add("--seed", type=int, default=0, metavar="N", help="of everything random (default 0)")
@@ -166,12 +447,12 @@ def _add_scene(kinds: Any) -> None:
         help="accuracy against time of rendered photos",
         description="Render photos of a scene with more and fewer rays, sizes and effects, and by a physically based\n"
         "renderer; write tradeoff-scene.csv and tradeoff-scene.png.",
-        epilog=tradeoff_scene.EPILOG,
+        epilog=SCENE_EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.set_defaults(run=tradeoff_scene.run_scene)
+    parser.set_defaults(run=run_scene)
     _add_output(parser)
-    tradeoff_scene.add_arguments(parser)
+    _add_scene_arguments(parser)
 
 
 def _add_train(kinds: Any) -> None:
@@ -180,12 +461,12 @@ def _add_train(kinds: Any) -> None:
         help="quality against time of trained models",
         description="Train models of the same photos with settings turned one at a time; write tradeoff-train.csv\n"
         "and tradeoff-train.png.",
-        epilog=tradeoff_train.EPILOG,
+        epilog=TRAIN_EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.set_defaults(run=tradeoff_train.run_train)
+    parser.set_defaults(run=run_train)
     _add_output(parser)
-    tradeoff_train.add_arguments(parser)
+    _add_train_arguments(parser)
 
 
 def _add_output(parser: argparse.ArgumentParser) -> None:

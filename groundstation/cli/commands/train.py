@@ -8,8 +8,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from groundstation.cli.lists import above_zero, count
-from groundstation.cli.options import PluginNames, new_folder
+from groundstation.cli.options import PluginNames, above_zero, count, new_folder
 from planning.base.errors import InputError, OperationCancelled
 from planning.base.plugins import PluginGroup
 from reconstruction.training.method_registry import DEFAULT_METHOD, METHODS

@@ -10,8 +10,7 @@ from dataclasses import replace
 from PySide6.QtCore import QCoreApplication
 
 from groundstation.gui.application.words import IN_WINDOW, OPTION_FIELDS
-from groundstation.services.messages import told
-from groundstation.services.site.import_wording import in_window_words
+from groundstation.services.messages import in_window_words, told
 from groundstation.services.units import UnitSystem
 from planning.base.findings import Finding
 

@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QVBoxLayout, QWidget
 from groundstation.gui.map.map_paint import sortie_colour
 from groundstation.gui.widgets.inputs import ChoiceBox
 from groundstation.gui.widgets.theme import colours
-from groundstation.services.mission.profiles import HeightLimits, ProfileCurves, nearest_photo
+from groundstation.services.mission.waypoints import HeightLimits, ProfileCurves, nearest_photo
 from groundstation.services.project.document import Item, ItemKind
 from groundstation.services.units import UnitSystem, length_unit, minutes_text, speed_unit
 

@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QLabel, QLineEdit, QPushButton, QSizePolicy, QVBox
 from groundstation.gui.fly.signing_box import SigningBox
 from groundstation.gui.widgets.inputs import ChoiceBox, Form, NumberBox
 from groundstation.gui.widgets.tab_order import set_enabled
-from groundstation.services.fly.link_choice import USUAL_ADDRESS, ConnectionChoice, LinkKind
+from groundstation.services.fly.options import USUAL_ADDRESS, ConnectionChoice, LinkKind
 from missions.mavlink.autopilots import Autopilot
 
 MAX_SPEED_UP = 50.0

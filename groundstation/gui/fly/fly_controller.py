@@ -18,7 +18,7 @@ from groundstation.gui.fly.active_flight import ActiveFlight
 from groundstation.gui.fly.after_flight import AfterFlight
 from groundstation.gui.fly.signing_controller import SigningController
 from groundstation.gui.fly.simulation_controller import SimulationController
-from groundstation.services.fly.connection import Connection, VehicleAt
+from groundstation.services.fly.connection import Connection, VehicleAt, flights_folder
 from groundstation.services.fly.events import (
     Answered,
     FlightChanged,
@@ -35,16 +35,22 @@ from groundstation.services.fly.events import (
     WarningRaised,
 )
 from groundstation.services.fly.flight import LiveFlight
-from groundstation.services.fly.link_choice import ConnectionChoice, LinkKind, choice_path, read_choice
-from groundstation.services.fly.options import FlightSettings, flight_settings_path, read_flight_settings
+from groundstation.services.fly.options import (
+    ConnectionChoice,
+    FlightSettings,
+    LinkKind,
+    choice_path,
+    flight_settings_path,
+    read_choice,
+    read_flight_settings,
+)
 from groundstation.services.fly.readouts import BEFORE_TAKE_OFF
-from groundstation.services.fly.record import flights_folder
 from groundstation.services.fly.signing import link_signer
 from groundstation.services.fly.sortie import LiveSortie, prepare_sortie
 from groundstation.services.jobs.runner import JobContext
-from groundstation.services.mission.item_limit import TooLong, shared_out, too_long
-from groundstation.services.preferences import write_kept
+from groundstation.services.mission.readiness import TooLong, shared_out, too_long
 from groundstation.services.project.document import PlanEntry
+from groundstation.services.settings import write_kept
 from groundstation.services.site.edits import move_home
 from groundstation.vehicle.preflight import stands_enu_m
 from groundstation.vehicle.setup import ParameterChange

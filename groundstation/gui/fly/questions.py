@@ -9,8 +9,7 @@ from PySide6.QtWidgets import QWidget
 
 from groundstation.gui.widgets.questions import agrees, ask_text
 from groundstation.services.fly.sortie import TakeOff
-from groundstation.services.mission.finding_texts import duration_text
-from groundstation.services.mission.item_limit import TooLong
+from groundstation.services.mission.readiness import TooLong, duration_text
 from groundstation.services.units import UnitSystem, distance_unit, length_unit, minutes_text
 from groundstation.vehicle.setup import ParameterChange
 from planning.insight.flight_profile import LOW_M, LowFlight

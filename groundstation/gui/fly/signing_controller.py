@@ -12,7 +12,7 @@ from groundstation.gui.fly.connection_box import ConnectionBox
 from groundstation.gui.fly.signing_box import KeyAction
 from groundstation.gui.widgets.inputs import Form
 from groundstation.gui.widgets.questions import agrees
-from groundstation.services.fly.link_choice import ConnectionChoice
+from groundstation.services.fly.options import ConnectionChoice
 from groundstation.services.fly.signing import (
     MIN_PASSPHRASE,
     forget_passphrase,

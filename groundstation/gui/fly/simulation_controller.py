@@ -10,7 +10,7 @@ from groundstation.gui.widgets.effects_panel import EffectsPanel
 from groundstation.gui.widgets.inputs import Form
 from groundstation.gui.widgets.parameter_form import add_rows, rows_of
 from groundstation.services.fly.connection import CALM, Simulation
-from groundstation.services.fly.link_choice import ConnectionChoice
+from groundstation.services.fly.options import ConnectionChoice
 from groundstation.services.fly.sortie import LiveSortie, simulation_effects
 from groundstation.services.jobs.runner import JobContext
 from groundstation.services.plan.effects import EffectChoice

@@ -9,7 +9,7 @@ from PySide6.QtGui import QColor, QMouseEvent, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from groundstation.gui.widgets.theme import colours
-from groundstation.services.photos.cards import PhotoCard
+from groundstation.services.photos.intake import PhotoCard
 from planning.site.records import Site
 
 Array = NDArray[np.float64]

@@ -34,7 +34,7 @@ from groundstation.services.jobs.runner import JobContext
 from groundstation.services.map.shapes import plan_shapes, site_shapes
 from groundstation.services.mission.brief import flight_brief
 from groundstation.services.mission.brief_html import MAP, brief_html, brief_pictures
-from groundstation.services.mission.preflight import Preflight
+from groundstation.services.mission.readiness import Preflight
 from groundstation.services.units import UnitSystem
 from planning.base.errors import InputError
 from planning.base.findings import Severity

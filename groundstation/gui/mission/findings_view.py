@@ -21,8 +21,14 @@ from groundstation.gui.widgets.findings_list import FindingsList
 from groundstation.gui.widgets.inputs import NumberBox, calm
 from groundstation.gui.widgets.severity_icon import SIZE_PX, severity_icon
 from groundstation.gui.widgets.theme import colours
-from groundstation.services.mission.finding_texts import SEVERITIES, counts_by_severity
-from groundstation.services.mission.readiness import UNKNOWN_DAY, FlightDay, Readiness, readiness_of
+from groundstation.services.mission.readiness import (
+    SEVERITIES,
+    UNKNOWN_DAY,
+    FlightDay,
+    Readiness,
+    counts_by_severity,
+    readiness_of,
+)
 from groundstation.services.units import UnitSystem
 from planning.base.findings import Finding, Severity
 

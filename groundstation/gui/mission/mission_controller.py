@@ -11,8 +11,7 @@ from groundstation.gui.application.context import ApplicationContext
 from groundstation.services.jobs.runner import JobContext
 from groundstation.services.mission.compare import MissionComparison, compare_with_plan
 from groundstation.services.mission.files import bare_site, missions_as_plan, plan_of_missions, read_mission_files
-from groundstation.services.mission.preflight import Preflight, preflight
-from groundstation.services.mission.readiness import UNKNOWN_DAY
+from groundstation.services.mission.readiness import UNKNOWN_DAY, Preflight, preflight
 from groundstation.services.plan.places import item_of_place
 from groundstation.services.project.document import PlanEntry
 from groundstation.services.site.sources import with_new_site

@@ -13,8 +13,7 @@ from groundstation.gui.map.map_paint import sortie_colour
 from groundstation.gui.mission.comparison_view import ComparisonView
 from groundstation.gui.widgets.waypoint_table import WaypointTable
 from groundstation.services.mission.compare import MissionComparison
-from groundstation.services.mission.profiles import height_limits, plan_profiles
-from groundstation.services.mission.waypoints import waypoint_rows
+from groundstation.services.mission.waypoints import height_limits, plan_profiles, waypoint_rows
 from groundstation.services.project.document import Item, ItemKind
 from groundstation.services.units import UnitSystem, distance_unit, minutes_text
 from planning.plan import Plan

@@ -17,9 +17,7 @@ from groundstation.gui.mission.mission_lists import MissionLists, SortieTable
 from groundstation.gui.shared_view import Stage
 from groundstation.gui.widgets.questions import choose_files
 from groundstation.services.mission.files import in_order_of_sorties
-from groundstation.services.mission.finding_texts import duration_text
-from groundstation.services.mission.preflight import Preflight
-from groundstation.services.mission.readiness import FlightDay
+from groundstation.services.mission.readiness import FlightDay, Preflight, duration_text
 from groundstation.services.plan.places import item_of_place
 from groundstation.services.project.document import Document, Item
 from groundstation.services.units import UnitSystem

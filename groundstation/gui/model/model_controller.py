@@ -13,6 +13,13 @@ from groundstation.services.jobs.channel import Lost
 from groundstation.services.jobs.runner import JobContext
 from groundstation.services.jobs.worker import Worker
 from groundstation.services.model.export import ModelExport, WrittenModel, export_apart
+from groundstation.services.model.facility_records import (
+    Attachment,
+    attachments_of,
+    book_of_scene,
+    user_name,
+    with_file,
+)
 from groundstation.services.model.panel_colours import NO_COLOURS, Colouring, colouring
 from groundstation.services.model.scene_card import (
     Level,
@@ -23,9 +30,16 @@ from groundstation.services.model.scene_card import (
     read_card,
     scenes_beside,
 )
-from groundstation.services.model.scene_records import Attachment, attachments_of, book_of_scene, user_name, with_file
-from groundstation.services.reconstruct.messages import Look, Organise, Probe, Probed, SceneMade, Seen, Tints
-from groundstation.services.reconstruct.process import ModelProcess
+from groundstation.services.reconstruct.messages import (
+    Look,
+    ModelProcess,
+    Organise,
+    Probe,
+    Probed,
+    SceneMade,
+    Seen,
+    Tints,
+)
 from planning.base.errors import GroundStationError
 from planning.base.findings import Severity
 

@@ -19,8 +19,8 @@ from groundstation.gui.model.model_controller import ModelController
 from groundstation.gui.model.picture_places import places_in
 from groundstation.gui.model.record_side import KIND_TITLES, line_of
 from groundstation.gui.reconstruct.looks import NUMBERS, image_of
+from groundstation.services.model.facility_records import Attachment
 from groundstation.services.model.scene_card import PanelRow, SceneCard, view_of
-from groundstation.services.model.scene_records import Attachment
 from groundstation.services.reconstruct.guided_camera import sized
 from groundstation.services.reconstruct.messages import Look, Seen, Subject
 from groundstation.services.units import UnitSystem, area_unit, length_unit

@@ -13,7 +13,7 @@ from groundstation.gui.view3d.orbit import Orbit
 from groundstation.gui.view3d.paint import ColourScale, flat
 from groundstation.gui.view3d.scene_view import SceneView
 from groundstation.gui.widgets.theme import colours
-from groundstation.services.photos.coverage import PhotoCoverage
+from groundstation.services.photos.intake import PhotoCoverage
 from groundstation.services.project.document import Item, ItemKind
 from groundstation.services.units import UnitSystem
 from planning.site.records import SiteModel

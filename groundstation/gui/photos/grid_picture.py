@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QWidget
 
 from groundstation.gui.photos.picture_view import PictureView
 from groundstation.gui.widgets.theme import colours
-from groundstation.services.photos.grids import LinePlace, cell_bounds, lines_of
+from groundstation.services.photos.grid_edits import LinePlace, cell_bounds, lines_of
 from reconstruction.panels.search.record import FacadeGrid, FoundPanel, GridLine
 from reconstruction.panels.solving.record import Axis
 

@@ -10,7 +10,7 @@ from PySide6.QtGui import QFocusEvent, QHelpEvent, QKeyEvent, QMouseEvent
 from PySide6.QtWidgets import QToolTip, QWidget
 
 from groundstation.gui.photos.grid_picture import GridPicture
-from groundstation.services.photos.grids import (
+from groundstation.services.photos.grid_edits import (
     LinePlace,
     cell_at,
     cell_beside,

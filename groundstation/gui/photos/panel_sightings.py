@@ -6,7 +6,7 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QLabel, QListWidget, QListWidgetItem, QVBoxLayout, QWidget
 
 from groundstation.gui.charts.hemisphere_view import HemisphereView, ShownSection
-from groundstation.services.photos.coverage import PhotoCoverage
+from groundstation.services.photos.intake import PhotoCoverage
 from planning.insight.sections import SectionState
 
 MAX_NAMED = 6

@@ -19,8 +19,8 @@ from groundstation.gui.photos.coverage_scene import CoverageScene
 from groundstation.gui.photos.grid_view import GridView
 from groundstation.gui.photos.photo_store import LargePicture, PhotoStore
 from groundstation.gui.widgets.inputs import ChoiceBox
-from groundstation.services.photos.cards import PhotoCard
 from groundstation.services.photos.found_panels import GridPlace, PanelDraft
+from groundstation.services.photos.intake import PhotoCard
 
 
 class PhotoPane(QWidget):

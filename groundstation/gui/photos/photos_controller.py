@@ -11,15 +11,27 @@ from PySide6.QtCore import QObject, Signal
 
 from groundstation.gui.application.context import ApplicationContext
 from groundstation.services.jobs.runner import JobContext
-from groundstation.services.photos.cards import PhotoCard, photo_cards
-from groundstation.services.photos.coverage import PhotoCoverage, photo_coverage
-from groundstation.services.photos.found_panels import PanelDraft, search_panels, solved_draft, with_found_panels
-from groundstation.services.photos.intake import PhotoIntake, counted_again, take_in_photos
+from groundstation.services.photos.found_panels import (
+    PanelDraft,
+    Reposed,
+    repose,
+    search_panels,
+    solved_draft,
+    with_found_panels,
+)
+from groundstation.services.photos.intake import (
+    PhotoCard,
+    PhotoCoverage,
+    PhotoIntake,
+    counted_again,
+    photo_cards,
+    photo_coverage,
+    take_in_photos,
+)
 from groundstation.services.photos.poses import BetterPoses
-from groundstation.services.photos.repose import Reposed, repose
 from groundstation.services.photos.tradeoff import Trial, facade_trials
 from groundstation.services.project.document import Document
-from groundstation.services.project.history import History
+from groundstation.services.project.session import History
 from planning.base.errors import GroundStationError
 from planning.base.findings import Severity
 from planning.plan import Plan

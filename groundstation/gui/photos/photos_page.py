@@ -40,10 +40,16 @@ from groundstation.gui.widgets.findings_list import FindingsList
 from groundstation.gui.widgets.questions import Questions
 from groundstation.gui.widgets.scrolling import scrolled
 from groundstation.services.jobs.runner import JobContext
-from groundstation.services.photos.cards import card_of_place
 from groundstation.services.photos.found_panels import PanelDraft
-from groundstation.services.photos.grid_edits import add_line, move_line, remove_line, set_panel
-from groundstation.services.photos.outlines import known_panels, panel_outlines
+from groundstation.services.photos.grid_edits import (
+    add_line,
+    known_panels,
+    move_line,
+    panel_outlines,
+    remove_line,
+    set_panel,
+)
+from groundstation.services.photos.intake import card_of_place
 from groundstation.services.photos.poses import BetterPoses, RefinedOutcome, RefineRequest, refined_poses
 from groundstation.services.photos.tradeoff import corner_sigma_m
 from groundstation.services.project.document import Document, Item, ItemKind

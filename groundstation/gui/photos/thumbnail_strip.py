@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QWidget
 from groundstation.gui.photos.photo_store import PhotoStore
 from groundstation.gui.widgets.photo_strip import PhotoStrip
 from groundstation.gui.widgets.theme import colours
-from groundstation.services.photos.cards import PhotoCard, PhotoMark
+from groundstation.services.photos.intake import PhotoCard, PhotoMark
 
 CELL = QSize(124, 100)
 FOOT_PX = 20

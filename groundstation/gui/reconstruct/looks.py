@@ -15,9 +15,8 @@ import numpy as np
 from PySide6.QtCore import QObject, QTimer, Signal
 from PySide6.QtGui import QImage
 
-from groundstation.services.reconstruct.guided_camera import sized
+from groundstation.services.reconstruct.guided_camera import PicturePace, sized
 from groundstation.services.reconstruct.messages import Look, Section, Seen, Subject, Tints
-from groundstation.services.reconstruct.render_pace import PicturePace
 from reconstruction.base.cameras import PosedPhoto
 
 QUICK_S = 0.12

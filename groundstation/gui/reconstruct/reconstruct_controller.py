@@ -21,6 +21,7 @@ from groundstation.services.reconstruct.messages import (
     Ended,
     Look,
     Measured,
+    ModelProcess,
     Pause,
     PhotoError,
     Seen,
@@ -31,7 +32,6 @@ from groundstation.services.reconstruct.messages import (
     Train,
     WatchErrors,
 )
-from groundstation.services.reconstruct.process import ModelProcess
 from planning.base.effects import Decision
 from planning.base.errors import GroundStationError
 from planning.base.findings import Severity

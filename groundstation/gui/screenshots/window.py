@@ -254,7 +254,7 @@ class _Photographer(QObject):
         """A simulated flight that is broken off, from connecting to the top-up that closes what it missed."""
         from groundstation.gui.fly.fly_page import FlyPage
         from groundstation.services.fly.events import Request
-        from groundstation.services.fly.link_choice import ConnectionChoice
+        from groundstation.services.fly.options import ConnectionChoice
 
         window = self._controller.window
         window.show_tab("fly")

@@ -10,7 +10,7 @@ from groundstation.gui.site.grid_form import GridForm, GridRequest
 from groundstation.gui.site.site_editor import SiteEditor
 from groundstation.gui.site.site_tools import SiteTool, SiteTools
 from groundstation.services.project.document import Document, Item, ItemKind
-from groundstation.services.site.panel_edits import AddedGrid, add_panel_grid
+from groundstation.services.site.edits import AddedGrid, add_panel_grid
 from planning.base.errors import InputError
 from planning.site.bundled import Rectangle
 from planning.site.importing.panel_grid import PanelGridError

@@ -12,9 +12,7 @@ from groundstation.gui.site.pages import Page
 from groundstation.gui.site.site_tree import size_text
 from groundstation.gui.widgets.value_boxes import ExtentBox, NameBox, PointBox, PolygonBox, coordinate_box, muted
 from groundstation.services.project.document import Item
-from groundstation.services.site.edits import move_rally_point, set_box, set_zone
-from groundstation.services.site.item_edits import remove_item, rename_item
-from groundstation.services.site.panel_edits import flip_facade
+from groundstation.services.site.edits import flip_facade, move_rally_point, remove_item, rename_item, set_box, set_zone
 from groundstation.services.units import UnitSystem, area_unit, length_unit, sampling_unit
 from planning.coverage.sections import panel_frames
 from planning.geo.frames import Vec3

@@ -10,9 +10,8 @@ from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.site.pages import Edit
 from groundstation.services.jobs.runner import ENDED, Job
 from groundstation.services.project.document import Document, Item
+from groundstation.services.site.edits import flip_facade, remove_item
 from groundstation.services.site.findings import site_findings
-from groundstation.services.site.item_edits import remove_item
-from groundstation.services.site.panel_edits import flip_facade
 from planning.base.errors import InputError
 from planning.base.findings import Finding, Severity
 from planning.site.records import SiteModel

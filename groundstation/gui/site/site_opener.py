@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QMenu, QWidget
 
 from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.widgets.questions import choose_file
-from groundstation.services.project.facades import facades_beside
+from groundstation.services.project.folder import facades_beside
 from groundstation.services.site.sources import bundled_site, open_site, with_new_site
 from planning.base.findings import Severity
 from planning.site.bundled import SCENES

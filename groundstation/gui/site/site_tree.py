@@ -21,7 +21,7 @@ from PySide6.QtGui import QAction, QKeyEvent
 from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QMenu, QTreeView, QWidget
 
 from groundstation.services.project.document import Item, ItemKind
-from groundstation.services.site.item_edits import REMOVABLE
+from groundstation.services.site.edits import REMOVABLE
 from groundstation.services.units import UnitSystem, length_unit
 from planning.site.records import Site, SiteModel
 

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QAbstractItemView, QListView, QWidget
 from groundstation.gui.application.translate import translated
 from groundstation.gui.widgets.severity_icon import SIZE_PX, severity_icon
 from groundstation.gui.widgets.theme import colours
-from groundstation.services.mission.finding_texts import SEVERITIES, by_severity, measured_text
+from groundstation.services.mission.readiness import SEVERITIES, by_severity, measured_text
 from groundstation.services.units import UnitSystem
 from planning.base.findings import Finding, Severity
 

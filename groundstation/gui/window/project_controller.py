@@ -30,9 +30,8 @@ from groundstation.services.project.document import Document
 from groundstation.services.project.folder import create_project, save_project
 from groundstation.services.project.lock import ProjectLock
 from groundstation.services.project.project_file import is_project
-from groundstation.services.project.project_session import ProjectSession, TakenProject
 from groundstation.services.project.recovery import Recovery, discard_recovery, find_recovery, find_unsaved, recover
-from groundstation.services.project.session import Session
+from groundstation.services.project.session import ProjectSession, Session, TakenProject
 from groundstation.services.settings import Settings, settings_at_start, settings_path, write_settings
 from planning.base.errors import GroundStationError, InputError
 from planning.base.findings import Severity

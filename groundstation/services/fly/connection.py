@@ -1,20 +1,32 @@
-"""What a live flight talks to: a vehicle at the end of a link, or a simulated one in this process."""
+"""What a live flight talks to, a vehicle at a link or a simulated one here, and what it leaves: log, record, truth."""
 
 from __future__ import annotations
 
 import math
 import threading
+import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import Protocol
 
-from groundstation.services.fly.ground_truth import TruthRecorder
+import numpy as np
+
+from groundstation.services.fly.events import FlightEnded
+from groundstation.services.settings import data_folder
+from groundstation.vehicle.duration import items_duration_s, timed_by_items
 from groundstation.vehicle.orders import SortieOrders
-from groundstation.vehicle.recorder import Recorder
+from groundstation.vehicle.recorder import Recorder, TelemetryLog, new_log_path
+from groundstation.vehicle.sortie.flight_run import FlightRun
+from missions.flight.flight_file import flight_of, write_flight
+from missions.flight.logs.flights import flights_of
+from missions.flight.logs.raw import RawPhoto
+from missions.flight.outcome import FlightReport
 from missions.flight.record import FlightRecord
+from missions.flight.report import report_case
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.link import FrameObserver, Link, memory_pair, open_link
-from missions.mavlink.messages import Message
+from missions.mavlink.messages import Message, Received
 from missions.mavlink.signing import Signer
 from missions.mavlink.wire import Counts
 from missions.simulator.airframe.state import Airframe, Battery, Fix, Pose, Target
@@ -27,10 +39,74 @@ from missions.simulator.effects.link_loss import through_air
 from missions.simulator.server import MAX_SPEEDUP, serve
 from missions.simulator.vehicle import SimulatedVehicle
 from planning.base.effects import Decision, EffectSetting
+from planning.base.errors import GroundStationError, InputError
 from planning.base.progress import Clock
-from planning.geo.frames import Origin, Vec3
+from planning.checks.case import Case
+from planning.geo.enu import geodetic_from_enu
+from planning.geo.frames import Origin, Vec3, wrap_heading_deg
 from planning.plan import Plan
 from planning.site.records import SiteModel
+
+# What really happened in a simulated flight: sampled from its airframe, as a record like that of any other flight.
+
+
+class TruthRecorder:
+    """Collects the true poses of a simulated vehicle, and its photos as they were really taken."""
+
+    def __init__(self, vehicle: SimulatedVehicle) -> None:
+        self._vehicle = vehicle
+        self._poses: list[tuple[float, Pose]] = []
+
+    def sample(self) -> None:
+        """Note where it is now."""
+        now_s = self._vehicle.now_s
+        if not self._poses or now_s > self._poses[-1][0]:
+            self._poses.append((now_s, self._vehicle.gimbal.turned(self._vehicle.airframe.truth)))
+
+    def record(self, recorder: Recorder, orders: SortieOrders) -> FlightRecord | None:
+        """The flight, with the battery and the events that telemetry told; None where nothing flew.
+
+        The recorder's positions, angles and photos are replaced by the true ones.
+        """
+        log, origin = recorder.log, orders.site.origin
+        if not self._poses:
+            return None
+        times = [time_s for time_s, _ in self._poses]
+        places = _rows(origin, orders.home_enu_m, [pose.position_enu_m for _, pose in self._poses])
+        log.positions = [(time_s, *row) for time_s, row in zip(times, places, strict=True)]
+        log.velocities = [
+            (t, p.velocity_enu_m_s[1], p.velocity_enu_m_s[0], -p.velocity_enu_m_s[2]) for t, p in self._poses
+        ]
+        log.headings = [(time_s, pose.heading_rad) for time_s, pose in self._poses]
+        log.gimbal_pitches = [(time_s, pose.gimbal_pitch_rad) for time_s, pose in self._poses]
+        log.gimbal_headings = [(time_s, pose.gimbal_heading_rad) for time_s, pose in self._poses]
+        log.gimbal_yaws = []
+        shots = self._vehicle.shots
+        taken = _rows(origin, orders.home_enu_m, [shot.pose.position_enu_m for shot in shots])
+        log.photos = [
+            RawPhoto(
+                shot.number,
+                shot.time_s,
+                *row,
+                heading_deg=wrap_heading_deg(math.degrees(shot.pose.gimbal_heading_rad)),
+                gimbal_pitch_deg=math.degrees(shot.pose.gimbal_pitch_rad),
+                source="simulation",
+            )
+            for shot, row in zip(shots, taken, strict=True)
+        ]
+        try:
+            flights = flights_of(log, orders.site, "simulation")
+        except InputError:
+            return None
+        return replace(flights.records[-1], sortie=orders.number)
+
+
+def _rows(origin: Origin, home_enu_m: Vec3, points: list[Vec3]) -> list[tuple[float, float, float, float]]:
+    """Latitude, longitude, altitude (0: nobody asks for it) and height above home of local points."""
+    lat, lon, height = geodetic_from_enu(origin, np.array([home_enu_m, *points], np.float64))
+    above = height - height[0]
+    return [(float(a), float(b), 0.0, float(c)) for a, b, c in zip(lat[1:], lon[1:], above[1:], strict=True)]
+
 
 # A simulated aircraft whose battery was flown before.
 
@@ -292,3 +368,182 @@ class Simulation:
             return dict(self.parameters)
         usual_s = vehicle_profile(self.autopilot).parameters["DISARM_DELAY"]
         return {"DISARM_DELAY": min(usual_s * self.speed_up, LONGEST_DISARM_DELAY_S), **self.parameters}
+
+
+# What a live flight leaves behind: its telemetry log, and the flight file with record and report.
+
+FLIGHTS = "flights"
+"""Folder of a project, or of the user's data where there is no project."""
+
+
+def flights_folder(project: Path | None) -> Path:
+    """Where flights are kept."""
+    return (data_folder() if project is None else project) / FLIGHTS
+
+
+def open_log(folder: Path, unix_time_s: float) -> tuple[TelemetryLog | None, str]:
+    """A new telemetry log: in the folder, else in the user's data folder; and what went wrong, else empty."""
+    problem = ""
+    for place in dict.fromkeys((folder, flights_folder(None))):
+        try:
+            return TelemetryLog(new_log_path(place, unix_time_s)), problem
+        except InputError as error:
+            problem = problem or str(error)
+    return None, problem
+
+
+class FlightRecordings:
+    """Keeps the sorties of a plan as they end, each time with the report on all of them.
+
+    Parameters
+    ----------
+    records
+        Of the same plan from before.
+    """
+
+    def __init__(self, case: Case, folder: Path, records: tuple[FlightRecord, ...]) -> None:
+        self._case, self._folder, self._records = case, folder, records
+        self._expected_s: dict[int, float] = {}
+
+    def ended(
+        self,
+        run: FlightRun,
+        record: FlightRecord,
+        error: GroundStationError | None,
+        opened: OpenedLink | None,
+        name: str,
+    ) -> FlightEnded:
+        """A sortie is over: write what was flown, under this name.
+
+        A simulated one is recorded as it truly was.
+        """
+        orders = run.orders
+        if opened is not None and opened.simulated is not None and run.recorder is not None:
+            true = opened.simulated.true_record(run.recorder, orders)
+            record = replace(record if true is None else true, vehicle=record.vehicle, effects=opened.effects)
+        self._records = (*self._records, record)
+        autopilot = run.state.autopilot or Autopilot.ARDUPILOT
+        self._expected_s[orders.number] = items_duration_s(orders, autopilot)
+        path = self._folder / f"{name}.json"
+        report, kept, problem = keep_flight(self._case, self._records, self._expected_s, path)
+        return FlightEnded(orders.number, error, record, report, kept, problem)
+
+
+def keep_flight(
+    case: Case, records: tuple[FlightRecord, ...], expected_s: Mapping[int, float], path: Path
+) -> tuple[FlightReport, Path | None, str]:
+    """Report on what was flown, and write both; returns where, and why not where it could not be.
+
+    Parameters
+    ----------
+    expected_s
+        How long the items of sorties take by their number; plans reckon with an aircraft that turns at its waypoints.
+    """
+    report = report_case(case.with_plan(timed_by_items(case.plan, expected_s)), records)
+    problem = ""
+    for place in dict.fromkeys((path, flights_folder(None) / path.name)):
+        try:
+            place.parent.mkdir(parents=True, exist_ok=True)
+            write_flight(place, flight_of(case.plan, case.site_model, records, report))
+        except (InputError, OSError) as error:
+            problem = problem or str(error)
+        else:
+            return report, place, problem
+    return report, None, problem
+
+
+# The link of a live flight: every frame goes into its telemetry log, and it is opened again when it breaks.
+
+WAIT_S = 0.05
+"""How soon somebody who waits for messages looks at something else."""
+
+RETRY_S = 1.0
+"""Pause before a link that broke is opened again."""
+
+
+class LoggedLink:
+    """Used by one thread.
+
+    Parameters
+    ----------
+    folder
+        Where the log goes; where it cannot be written, the user's data folder takes its place.
+    problem
+        Called with what is wrong with the log, when that changes to something.
+    """
+
+    def __init__(
+        self, connection: Connection, folder: Path, problem: Callable[[str], None], clock: Clock, unix_clock: Clock
+    ) -> None:
+        self._connection, self._folder, self._problem = connection, folder, problem
+        self._clock, self._unix_clock = clock, unix_clock
+        self._log: TelemetryLog | None = None
+        self._log_problem = ""
+        self._retry_s = 0.0
+        self.opened: OpenedLink | None = None
+
+    @property
+    def name(self) -> str:
+        """Of the log without its suffix; a name made of the time where there is no log."""
+        return f"flight-{self._unix_clock():.0f}" if self._log is None else self._log.path.stem
+
+    def open_log(self) -> None:
+        """Begin the log."""
+        self._log, problem = open_log(self._folder, self._unix_clock())
+        self._say(problem)
+
+    def open(self, orders: SortieOrders) -> None:
+        """Open the link.
+
+        Raises
+        ------
+        InputError, LinkError
+            It cannot be opened.
+        """
+        self.opened = self._connection.open(orders, self._clock, self._frame_passed)
+
+    def open_again(self, orders: SortieOrders) -> None:
+        """Open a link that broke, once it is time to; returns after a moment in any case.
+
+        Raises
+        ------
+        LinkError
+            It still cannot be opened.
+        """
+        time.sleep(WAIT_S)
+        if self._clock() >= self._retry_s:
+            self.open(orders)
+
+    def broke(self) -> bool:
+        """Close what broke, to be opened again later; False where it was closed already."""
+        self._retry_s = self._clock() + RETRY_S
+        opened, self.opened = self.opened, None
+        if opened is not None:
+            opened.link.close()
+        return opened is not None
+
+    def receive(self, wait_s: float) -> Received | None:
+        """The next message; None where none came in time, or there is no link."""
+        return None if self.opened is None else self.opened.link.receive(wait_s)
+
+    def send(self, message: Message) -> None:
+        """Send, where there is a link."""
+        if self.opened is not None:
+            self.opened.link.send(message)
+
+    def close(self) -> None:
+        """Close link and log."""
+        if self.opened is not None:
+            self.opened.link.close()
+        if self._log is not None:
+            self._log.close()
+
+    def _frame_passed(self, frame: bytes, _is_sent: bool, _time_s: float) -> None:
+        if self._log is not None:
+            self._log.write(frame, self._unix_clock())
+            self._say(self._log.problem)
+
+    def _say(self, problem: str) -> None:
+        if problem and problem != self._log_problem:
+            self._problem(problem)
+        self._log_problem = problem

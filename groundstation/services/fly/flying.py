@@ -6,23 +6,29 @@ tell and a real flight cannot.
 
 from __future__ import annotations
 
+import subprocess
+import tempfile
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from groundstation.services.fly.ground_truth import TruthRecorder
+from groundstation.services.fly.connection import TruthRecorder
 from groundstation.services.mission.files import within_item_limit
 from groundstation.services.project.input_files import read_given_plan, read_given_site
 from groundstation.services.project.project_file import check_not_index
 from groundstation.vehicle.duration import items_duration_s, timed_by_items
 from groundstation.vehicle.orders import SortieOrders, sortie_orders
 from groundstation.vehicle.preflight import OVERRULABLE
+from groundstation.vehicle.recorder import TelemetryLog, new_log_path
 from groundstation.vehicle.sortie.conduct import conduct
 from groundstation.vehicle.sortie.flight_run import FlightRun
 from groundstation.vehicle.sortie.run_records import RunOptions, RunOutcome, RunView
-from groundstation.vehicle.telemetry_log import TelemetryLog, new_log_path
 from missions.flight.flight_file import Flight, flight_of, write_flight
+from missions.flight.logs.flights import LogFlights
+from missions.flight.logs.read import read_log
+from missions.flight.photo_folder import read_photo_flights
 from missions.flight.record import FlightEvent, FlightRecord
 from missions.flight.report import report_flight
 from missions.formats.encode import ExportOptions, default_autopilot
@@ -30,20 +36,234 @@ from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.link import ChannelLink, open_link
 from missions.mavlink.signing import Signer
 from missions.mission.build import missions_from_plan
+from missions.mission.model import GeoPoint, altitude_amsl_m
 from missions.simulator.build import make_airframe
 from missions.simulator.conditions import Conditions
 from missions.simulator.effects.link_loss import through_air
 from missions.simulator.server import DirectLink
 from missions.simulator.vehicle import SimulatedVehicle
 from planning.base.effects import Decision, EffectSetting
-from planning.base.errors import GroundStationError, InputError, MissionError, OperationCancelled
+from planning.base.errors import (
+    GroundStationError,
+    InfeasibleError,
+    InputError,
+    LinkError,
+    MissionError,
+    OperationCancelled,
+)
+from planning.base.files import real_path
 from planning.base.findings import Finding
 from planning.base.json_file import check_output
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
+from planning.photos.places import PhotoHeights
 from planning.plan import Plan
 from planning.site.file import is_planned_on
-from planning.site.records import SiteModel, require_panels
+from planning.site.records import Site, SiteModel, require_panels
+
+# ArduCopter's own simulation, started from its binary: at the plan's home, with a camera, in a folder of its own.
+
+SITL_LINK = "tcp:127.0.0.1:5760"
+"""Where its first instance listens."""
+
+START_S, END_S = 30.0, 5.0
+
+DEFAULTS = {
+    "FRAME_CLASS": 1,
+    "FRAME_TYPE": 1,
+    "CAM1_TYPE": 1,
+    "MNT1_TYPE": 1,
+    "BATT_MONITOR": 4,
+    "INS_ACCOFFS_X": 0.001,
+    "INS_ACC2OFFS_X": 0.001,
+}
+"""Parameters at first power-up: a quadrotor with camera, gimbal and battery, whose accelerometers count as calibrated.
+ArduPilot's own Tools/autotest/default_params/copter.parm, where it is given, comes first."""
+
+MODEL = "x"
+"""Motors as FRAME_TYPE 1 has them."""
+
+CURRENT_A = 28.3
+"""What its quadrotor draws in flight; measured, 4.7.0-dev."""
+
+Restart = Callable[[int], None]
+"""Starts the simulation again, with a full battery; the number is that of the sortie that comes next."""
+
+
+@contextmanager
+def sitl(
+    binary: Path, home: GeoPoint, speedup: float, endurance_s: float, defaults: Path | None, monitor: Monitor = QUIET
+) -> Iterator[Restart]:
+    """Run ArduCopter's simulation at `SITL_LINK`, and end it afterwards; gives what starts it again.
+
+    Parameters
+    ----------
+    endurance_s
+        How long its battery shall last.
+    defaults
+        A file of parameters; None: those above are enough.
+
+    Raises
+    ------
+    InputError
+        The binary or the file of defaults is missing or cannot be run.
+    LinkError
+        It ended at once, or opened no link in time; the message holds its last words.
+    """
+    if defaults is not None and not defaults.is_file():
+        raise InputError(f"{defaults}: there is no such file; expected ArduPilot's copter.parm")
+    with tempfile.TemporaryDirectory(prefix="reflight-sitl-") as folder:
+        own = Path(folder, "reflight.parm")
+        values = {**DEFAULTS, "BATT_CAPACITY": round(CURRENT_A * endurance_s / 3.6)}
+        own.write_text("".join(f"{name} {value}\n" for name, value in values.items()))
+        place = f"{home.lat_deg:.9f},{home.lon_deg:.9f},{altitude_amsl_m(home):.2f},0"
+        files = ",".join(str(real_path(path)) for path in (defaults, own) if path is not None)
+        command = [str(real_path(binary)), "--model", MODEL, "--speedup", f"{speedup:g}", "--home", place]
+        command += ["--defaults", files, "-I0"]
+        process = _started([*command, "-w"], Path(folder), monitor)
+
+        def restart(_number: int) -> None:
+            nonlocal process
+            _end(process)
+            process = _started(command, Path(folder), monitor)
+
+        try:
+            yield restart
+        finally:
+            _end(process)
+
+
+def _started(command: list[str], folder: Path, monitor: Monitor) -> subprocess.Popen[bytes]:
+    """The running simulation, once it listens."""
+    binary, said = Path(command[0]), folder / "output.txt"
+    with said.open("w+b") as output:
+        try:
+            process = subprocess.Popen(
+                command, cwd=folder, stdout=output, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL
+            )
+        except OSError as error:
+            raise InputError(f"{binary}: cannot be run ({error.strerror or error}); name an arducopter") from error
+    try:
+        _wait_for_link(process, binary, said, monitor)
+    except BaseException:
+        _end(process)
+        raise
+    return process
+
+
+def _wait_for_link(process: subprocess.Popen[bytes], binary: Path, output: Path, monitor: Monitor) -> None:
+    """Wait until it listens; a link that is opened and closed again does no harm."""
+    deadline_s = time.monotonic() + START_S
+    while True:
+        monitor.report("starting the simulation", 0, 0)
+        if process.poll() is not None:
+            said = output.read_text(errors="replace").strip().splitlines()[-1:] or ["it said nothing"]
+            raise LinkError(f"{binary}: ended at once with status {process.returncode} ({said[0]})")
+        try:
+            open_link(SITL_LINK).close()
+        except LinkError as error:
+            if time.monotonic() > deadline_s:
+                raise LinkError(f"{binary}: opened no link at {SITL_LINK} within {START_S:g} s") from error
+            time.sleep(0.1)
+        else:
+            return
+
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    process.terminate()
+    try:
+        process.wait(END_S)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()
+
+
+# Use case of looking back: a flight compared with its plan, from logs of the autopilot or from its photos alone.
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ReportedFlight:
+    """A flight with its report, and what there is to say of the files it is from."""
+
+    flight: Flight
+    findings: tuple[Finding, ...]
+    seconds: float
+
+
+def report_files(
+    plan_path: Path,
+    site_path: Path,
+    logs: Sequence[Path] = (),
+    photos: Path | None = None,
+    out: Path | None = None,
+    heights: PhotoHeights = "auto",
+    monitor: Monitor = QUIET,
+) -> ReportedFlight:
+    """Compare a flight with the plan in a file over the site in another; write it where `out` is given.
+
+    Parameters
+    ----------
+    logs
+        Of one flight, in the order of flight: .tlog, .BIN, .log or .ulg.
+    photos
+        Folder of its photos; instead of logs.
+    heights
+        What heights are counted from; with logs, `auto` is above take-off.
+
+    Raises
+    ------
+    InputError
+        A file cannot be read or written, or does not belong to the site; nothing is written then.
+    ValueError
+        Both logs and photos are given, or neither.
+    """
+    if bool(logs) == (photos is not None):
+        raise ValueError("expected either logs or photos")
+    started_s = time.perf_counter()
+    if out is not None:
+        check_not_index(out)
+        check_output(out, [plan_path, site_path, *logs])
+    plan, site_model = read_given_plan(plan_path), read_given_site(site_path)
+    if plan.origin is not None and plan.origin != site_model.site.origin:
+        raise InputError(
+            f"{site_path}: the origin of '{site_model.site.name}' is not the one of the plan, which is for "
+            f"'{plan.site}'; name the site file that the plan was made for"
+        )
+    if photos is not None:
+        found = read_photo_flights(photos, site_model.site, heights, monitor)
+    else:
+        found = _of_logs(logs, site_model.site, heights, monitor)
+    timed = plan if found.autopilot is None else _timed(plan, site_model, found.autopilot)
+    report = report_flight(timed, site_model, found.records, monitor=monitor)
+    flight = flight_of(plan, site_model, found.records, report)
+    if out is not None:
+        write_flight(out, flight)
+    return ReportedFlight(flight, found.findings, time.perf_counter() - started_s)
+
+
+def _of_logs(logs: Sequence[Path], site: Site, heights: PhotoHeights, monitor: Monitor) -> LogFlights:
+    """Flights of all logs, one after the other."""
+    found = [read_log(log, site, "sea-level" if heights == "absolute" else "takeoff", monitor) for log in logs]
+    autopilots = {flights.autopilot for flights in found}
+    return LogFlights(
+        tuple(record for flights in found for record in flights.records),
+        tuple(finding for flights in found for finding in flights.findings),
+        autopilots.pop() if len(autopilots) == 1 else None,
+    )
+
+
+def _timed(plan: Plan, site_model: SiteModel, autopilot: Autopilot) -> Plan:
+    """The plan with the durations of its items; as it is where no items can be made of it.
+
+    Its own durations are those of an aircraft that turns at the waypoint, which MAVLink's do not.
+    """
+    try:
+        missions = missions_from_plan(plan, site_model.site.origin, site_model.site.home_enu_m)
+        orders = [sortie_orders(plan, site_model, mission) for mission in missions]
+        return timed_by_items(plan, {each.number: items_duration_s(each, autopilot) for each in orders})
+    except (InputError, MissionError, InfeasibleError):
+        return plan  # It was flown all the same, in other items; the report on it must not be lost.
+
 
 # Flying the vehicle at the end of a link: its telemetry log is always written, a broken link is opened again.
 

@@ -1,12 +1,80 @@
-"""What the pilot decides about a live flight."""
+"""What the pilot decides about a live flight, and how he reaches the vehicle; kept for the next time."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from enum import StrEnum
 from pathlib import Path
 
-from groundstation.services.preferences import Tell, read_kept
-from groundstation.services.settings import settings_path
+from groundstation.services.settings import Tell, read_kept, settings_path
+from missions.mavlink.autopilots import Autopilot
+from missions.mavlink.link import DEFAULT_BAUD
+
+# How the pilot reaches the vehicle: what was chosen in the window, as a url, and kept for the next time.
+
+
+class LinkKind(StrEnum):
+    """What stands at the other end, and how it is reached."""
+
+    SIMULATION = "simulation"
+    UDP = "udp"
+    TCP = "tcp"
+    SERIAL = "serial"
+
+
+USUAL_ADDRESS = {
+    LinkKind.SIMULATION: "",
+    LinkKind.UDP: "0.0.0.0:14550",
+    LinkKind.TCP: "127.0.0.1:5760",
+    LinkKind.SERIAL: f"/dev/ttyUSB0:{DEFAULT_BAUD}",
+}
+"""Where ground stations listen, where simulators serve, and where a telemetry radio usually is."""
+
+
+@dataclass(frozen=True, slots=True)
+class ConnectionChoice:
+    """What was chosen.
+
+    Parameters
+    ----------
+    address
+        `HOST:PORT`, or `DEVICE:BAUD`; empty for a simulation.
+    autopilot, speed_up
+        Of the simulation.
+    signed
+        Every url whose link is signed, whichever is chosen now.
+    """
+
+    kind: LinkKind = LinkKind.SIMULATION
+    address: str = ""
+    autopilot: Autopilot = Autopilot.ARDUPILOT
+    speed_up: float = 1.0
+    signed: tuple[str, ...] = ()
+
+    @property
+    def url(self) -> str:
+        """As `missions.mavlink.link` takes it; empty for the embedded simulation."""
+        return "" if self.kind is LinkKind.SIMULATION else f"{self.kind.value}:{self.address}"
+
+    @property
+    def is_signed(self) -> bool:
+        """Whether the link to the chosen address is signed; a simulation's never is."""
+        return self.url in self.signed
+
+    def with_signed(self, url: str, *, is_signed: bool) -> ConnectionChoice:
+        """The same choice, with the link to an address signed from now on, or no longer."""
+        others = tuple(one for one in self.signed if one != url)
+        return replace(self, signed=(*others, url) if is_signed and url else others)
+
+
+def choice_path() -> Path:
+    """Where the last choice is kept: beside the settings."""
+    return settings_path().with_name("connection.toml")
+
+
+def read_choice(path: Path, tell: Tell = lambda _: None) -> ConnectionChoice:
+    """The last choice, as `read_kept`; the first one where none was kept."""
+    return read_kept(path, ConnectionChoice(), tell)
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from groundstation.services.fly.events import LinkState, Readouts, Request
-from groundstation.vehicle.modes import MISSION_MODE
+from groundstation.vehicle.commands import MISSION_MODE
 from groundstation.vehicle.sortie.run_records import Phase
 from groundstation.vehicle.state import VehicleState
 from groundstation.vehicle.surroundings import Surroundings

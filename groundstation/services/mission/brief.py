@@ -6,8 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from groundstation.services.mission.finding_texts import by_severity
-from groundstation.services.mission.readiness import UNKNOWN_DAY, FlightDay, Readiness, readiness_of
+from groundstation.services.mission.readiness import UNKNOWN_DAY, FlightDay, Readiness, by_severity, readiness_of
 from groundstation.services.mission.waypoints import WaypointRow, waypoint_rows
 from missions.dji.write import LinkLoss
 from missions.formats.encode import ExportOptions, TakeoffCheck, dji_return_height, takeoff_check

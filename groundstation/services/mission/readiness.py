@@ -8,7 +8,8 @@ has its measured value, and names what mends it. Window and command line show th
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from enum import StrEnum
@@ -16,16 +17,105 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from groundstation.services.mission.item_limit import too_long
 from groundstation.services.site.sun import sun_place_deg
+from groundstation.services.units import UnitSystem, length_unit, minutes_text, sampling_unit, speed_unit
 from missions.mavlink.autopilots import Autopilot
+from missions.mavlink.items import photos_that_fit
 from planning.base.findings import Finding, Severity, is_flyable
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.checks import check_case
-from planning.checks.case import Case
+from planning.checks.case import Case, pose_of
 from planning.geo.frames import Vec3, camera_axes
-from planning.site.records import panel_corners
+from planning.plan import Plan
+from planning.planner import share_out_anew
+from planning.site.records import SiteModel, panel_corners
+
+# Sorties with more photos than an autopilot keeps items for: found before a link is opened, and shared out anew.
+
+
+@dataclass(frozen=True, slots=True)
+class TooLong:
+    """A sortie has too many photos for an autopilot.
+
+    Parameters
+    ----------
+    autopilot
+        The one with the least room, of those that may be met.
+    longest, limit
+        Photos of the longest sortie, and those that the autopilot has room for.
+    """
+
+    autopilot: Autopilot
+    longest: int
+    limit: int
+
+
+def too_long(plan: Plan, autopilots: Sequence[Autopilot] = tuple(Autopilot)) -> TooLong | None:
+    """Whether a sortie has more photos than all of these autopilots keep items for; None where all fit."""
+    autopilot = min(autopilots, key=photos_that_fit)
+    limit = photos_that_fit(autopilot)
+    longest = max((len(sortie.viewpoint_ids) for sortie in plan.sorties), default=0)
+    return TooLong(autopilot, longest, limit) if longest > limit else None
+
+
+def shared_out(plan: Plan, site_model: SiteModel, found: TooLong, monitor: Monitor = QUIET) -> Plan:
+    """The same views in sorties that fit.
+
+    Raises
+    ------
+    InfeasibleError
+        Home cannot be used, or a view cannot be reached from it.
+    """
+    return share_out_anew(plan, site_model, found.limit, monitor)
+
+
+# Findings in the order and units in which a pilot reads them.
+
+SEVERITIES = (Severity.ERROR, Severity.WARNING, Severity.NOTE, Severity.OK)
+"""The gravest first."""
+
+HOUR_S = 3600
+
+LONG_S = 120.0
+"""Durations from here on are read as minutes and seconds."""
+
+
+def by_severity(findings: Iterable[Finding]) -> tuple[Finding, ...]:
+    """Findings, the gravest first, else in the order in which they came."""
+    return tuple(sorted(findings, key=lambda finding: SEVERITIES.index(finding.severity)))
+
+
+def counts_by_severity(findings: Iterable[Finding]) -> Mapping[Severity, int]:
+    """Number of findings of each severity, 0 included."""
+    counts = Counter(finding.severity for finding in findings)
+    return {severity: counts[severity] for severity in SEVERITIES}
+
+
+def duration_text(duration_s: float) -> str:
+    """A duration with its unit: `12:05 min`, `1:02:05 h` from an hour on."""
+    return f"{minutes_text(duration_s)} {'min' if round(duration_s) < HOUR_S else 'h'}"
+
+
+def measured_text(value: float, unit: str, system: UnitSystem) -> str:
+    """A value of a finding with its unit, as the user reads it.
+
+    Lengths, speeds and sizes of pixels go to the user's units; what has no imperial form stays.
+    """
+    match unit:
+        case "m":
+            return length_unit(system).text(value)
+        case "m/s":
+            return speed_unit(system).text(value)
+        case "mm":
+            return sampling_unit(system).text(value / 1e3)
+        case "s":
+            return f"{value:.1f} s" if abs(value) < LONG_S else duration_text(value)
+        case "deg":
+            return f"{value:.1f}°"
+        case _:
+            return say(f"{{:g}} {unit}", round(value, 3)) if unit else f"{round(value, 3):g}"
+
 
 Array = NDArray[np.float64]
 
@@ -329,3 +419,41 @@ def _cold(case: Case, temperature_c: float | None) -> Iterator[Finding]:
             "at {:g} degrees a battery gives some {:.0%} of its charge, and that is enough", temperature_c, share
         )
         yield Finding(Severity.OK, "cold", text, place, takes_s, usable_s, "s")
+
+
+# A plan before the flight: every finding, and what each photo shows.
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Preflight:
+    """What a check found.
+
+    Parameters
+    ----------
+    plan, site_model
+        What was checked: findings are as fresh as these are the ones in the window.
+    panels_covered
+        Number of panels by viewpoint.
+    day
+        What was known of the day of the flight.
+    """
+
+    plan: Plan
+    site_model: SiteModel
+    findings: tuple[Finding, ...]
+    panels_covered: Mapping[str, int]
+    day: FlightDay = UNKNOWN_DAY
+
+    def is_of(self, plan: Plan | None, site_model: SiteModel | None) -> bool:
+        """Whether this is about these very values."""
+        return self.plan is plan and self.site_model is site_model
+
+
+def preflight(plan: Plan, site_model: SiteModel, day: FlightDay = UNKNOWN_DAY, monitor: Monitor = QUIET) -> Preflight:
+    """Check a plan on its site, for a day of which something is known or not."""
+    monitor.report("measuring", 0, 1)
+    case = Case.of(plan, site_model)
+    seen = case.measures.seen
+    # A view sees a panel in one section only: as many elements, as many panels.
+    covered = {view.id: len(seen[pose_of(view)].elements) for view in plan.viewpoints}
+    return Preflight(plan, site_model, readiness_findings(case, day, monitor), covered, day)

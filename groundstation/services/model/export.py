@@ -225,8 +225,7 @@ def _records(folder: Path) -> tuple[dict[str, dict[str, Any]], tuple[Mapping[str
 
 
 def _ifc(folder: Path, out: Path) -> WrittenModel:
-    from groundstation.services.model.facility_records import export_ifc
-    from groundstation.services.model.scene_records import book_of_scene, user_name
+    from groundstation.services.model.facility_records import book_of_scene, export_ifc, user_name
 
     with book_of_scene(folder, user_name()) as book:
         done = export_ifc(book, out)

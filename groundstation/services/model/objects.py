@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from groundstation.services.model.scene_records import keep_objects
+from groundstation.services.model.facility_records import keep_objects
 from planning.base.progress import QUIET, Monitor
 from planning.site.file import read_site
 

@@ -1,4 +1,4 @@
-"""Found panels while a user works on them: searched for in photos, solved again when corrected, put into the site."""
+"""Found panels while a user works on them: searched, solved again with corrections or other poses, put into a site."""
 
 from __future__ import annotations
 
@@ -8,12 +8,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from groundstation.services.photos.intake import PhotoIntake, with_poses
 from groundstation.services.photos.panels import site_facade
+from groundstation.services.photos.poses import BetterPoses
 from groundstation.services.site.edits import with_site
 from planning.base.errors import InputError
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.photos.record import PhotoMetadata
+from planning.plan import Plan
 from planning.site.records import SiteModel
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.panels.search.record import FacadeGrid
@@ -128,3 +131,38 @@ def with_found_panels(model: SiteModel, draft: PanelDraft) -> SiteModel:
     if not facades:
         raise InputError(say("no panel is left: put one back before these panels are used"))
     return with_site(model, replace(model.site, facades=facades))
+
+
+# The Photos tab's work with other poses: photos read, coverage counted and panels found stay, and are placed anew.
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Reposed:
+    """Photos and panels with other poses; without panels where none had been found."""
+
+    intake: PhotoIntake
+    draft: PanelDraft | None
+
+
+def repose(
+    intake: PhotoIntake,
+    draft: PanelDraft | None,
+    better: BetterPoses,
+    model: SiteModel,
+    flown: Plan | None,
+    monitor: Monitor = QUIET,
+) -> Reposed:
+    """Count coverage and solve panels again with other poses of the same photos; corrections of grids stay.
+
+    Raises
+    ------
+    InfeasibleError
+        With these poses a facade's photos do not show it.
+    """
+    counted = with_poses(intake, better, model, flown, monitor)
+    if draft is None:
+        return Reposed(counted, None)
+    posed = {photo.name: photo for photo in better.photos}
+    facades = frozenset(facade.id for facade in draft.found.facades)
+    moved = replace(draft, photos=tuple(posed[photo.name] for photo in draft.photos), unsolved=facades)
+    return Reposed(counted, solved_draft(moved, monitor))

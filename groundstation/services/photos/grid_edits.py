@@ -1,4 +1,4 @@
-"""Corrections of found panels: lines are moved, added and removed, panels taken out and put back.
+"""Corrections of found panels: lines and panels near a hand, moved, added and removed; panels drawn into other photos.
 
 A correction is made in the rectified view of one photo, and meant for the facade. It is carried over to the other
 photos of the facade by what the last solution knows of their poses; the grids of all of them are then solved again.
@@ -6,6 +6,7 @@ photos of the facade by what the last solution knows of their poses; the grids o
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -13,16 +14,183 @@ import numpy as np
 from numpy.typing import NDArray
 
 from groundstation.services.photos.found_panels import GridPlace, PanelDraft
-from groundstation.services.photos.grids import LEAST_APART_PX, cell_at, cell_middle, lines_of, room_for_line
 from planning.base.errors import InputError
 from planning.base.messages import say
+from planning.geo.bvh import OCCLUSION_OFFSET_M, LineOfSight
+from planning.site.records import Site, panel_corners
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.panels.search.cells import facade_grid
-from reconstruction.panels.search.record import FacadeGrid, GridLine
+from reconstruction.panels.search.record import FacadeGrid, FoundPanel, GridLine
 from reconstruction.panels.solving.adjustment import moved_pose
 from reconstruction.panels.solving.record import Axis
 
 Array = NDArray[np.float64]
+
+
+# Panels drawn into photos that were not searched: where they must be, by the photo's own pose.
+
+BENT_PIECES = 6
+"""Of an edge that a lens bends: a panel half as wide as the picture is then right to half a pixel (k1 = -0.11)."""
+
+
+def panel_outlines(
+    photo: PosedPhoto, panels_enu_m: Sequence[Array], sight: LineOfSight | None = None
+) -> tuple[Array, ...]:
+    """Outlines of the panels that a photo shows, shape (k, 2) each, in its pixels.
+
+    Panels are left out that turn their back, lie outside the picture or reach behind the camera, and those whose middle
+    something hides.
+
+    Parameters
+    ----------
+    panels_enu_m
+        Corners of each panel, shape (k, 3), counter-clockwise as seen from outside.
+    sight
+        Tells what is hidden; None where the scene hides nothing.
+    """
+    outlines: list[Array] = []
+    for n_corners in sorted({len(corners) for corners in panels_enu_m}):
+        alike = np.array([corners for corners in panels_enu_m if len(corners) == n_corners])
+        outlines += _outlines(photo, alike, sight)
+    return tuple(outlines)
+
+
+def _outlines(photo: PosedPhoto, corners_enu_m: Array, sight: LineOfSight | None) -> list[Array]:
+    """Of panels with as many corners, shape (m, k, 3)."""
+    following = np.roll(corners_enu_m, -1, axis=1)
+    middles = corners_enu_m.mean(axis=1)
+    normals = np.cross(corners_enu_m - middles[:, None], following - middles[:, None]).sum(axis=1)
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    shown = np.flatnonzero(((photo.pose.position_enu_m - middles) * normals).sum(axis=1) > 0.0)
+    pixels = _projected(photo, corners_enu_m[shown])
+    size = np.array([photo.intrinsics.width_px, photo.intrinsics.height_px])
+    with np.errstate(invalid="ignore"):
+        is_in = (pixels.max(axis=1) > 0.0).all(axis=1) & (pixels.min(axis=1) < size).all(axis=1)
+    shown, pixels = shown[is_in], pixels[is_in]
+    if sight is not None and len(shown):
+        places = np.broadcast_to(photo.pose.position_enu_m, (len(shown), 3))
+        is_free = sight(places, middles[shown] + OCCLUSION_OFFSET_M * normals[shown])
+        shown, pixels = shown[is_free], pixels[is_free]
+    if not photo.intrinsics.is_straight:
+        shares = np.linspace(0.0, 1.0, BENT_PIECES, endpoint=False)[:, None]
+        starts, ends = corners_enu_m[shown][:, :, None], following[shown][:, :, None]
+        pixels = _projected(photo, (starts + shares * (ends - starts)).reshape(len(shown), -1, 3))
+    return list(pixels)
+
+
+def _projected(photo: PosedPhoto, points_enu_m: Array) -> Array:
+    """Pixels, shape (m, k, 2), of points, shape (m, k, 3)."""
+    return photo.pixels(points_enu_m.reshape(-1, 3)).reshape(*points_enu_m.shape[:2], 2)
+
+
+def known_panels(draft: PanelDraft | None, site: Site, photo: PosedPhoto) -> tuple[Array, ...]:
+    """Corners, shape (k, 3), of panels that are known but were not looked for in a photo: the draft's, else the site's.
+
+    Facades with a grid in the photo are left out: that shows them as they were found.
+    """
+    if draft is None:
+        return tuple(panel_corners(site))
+    searched = {place.facade for place in draft.places() if draft.photos[place.photo].path == photo.path}
+    facades = (facade for facade in draft.found.facades if facade.id not in searched)
+    panels = (panel for facade in facades for panel in facade.panels)
+    return tuple(panel.corners_enu_m if panel.outline_enu_m is None else panel.outline_enu_m for panel in panels)
+
+
+# Grids found in photos, as a hand meets them: which line is near, which cell is here, how far a line can go.
+
+LinePlace = tuple[Axis, int]
+"""A line of a grid: its direction and its number."""
+
+LEAST_APART_PX = 3.0
+"""Between two lines in the rectified view: no panel is narrower in a photo that shows it as one."""
+
+
+def lines_of(grid: FacadeGrid, axis: Axis) -> tuple[GridLine, ...]:
+    """Lines of one direction, in the order of the rectified view's pixels."""
+    return grid.columns if axis == "column" else grid.rows
+
+
+def line_near(grid: FacadeGrid, point_px: tuple[float, float], reach_px: float) -> LinePlace | None:
+    """The line within reach of a point of the rectified view that is nearest to it."""
+    x, y = point_px
+    offers: list[tuple[float, Axis, int]] = [
+        *((abs(line.position_px - x), "column", index) for index, line in enumerate(grid.columns)),
+        *((abs(line.position_px - y), "row", index) for index, line in enumerate(grid.rows)),
+    ]
+    distance, axis, index = min(offers, default=(np.inf, "row", 0))
+    return (axis, index) if distance <= reach_px else None
+
+
+def cell_at(grid: FacadeGrid, point_px: tuple[float, float]) -> tuple[int, int] | None:
+    """Row (from the bottom) and column of the cell that holds a point of the rectified view."""
+    x, y = point_px
+    column = bisect_right([line.position_px for line in grid.columns], x) - 1
+    from_top = bisect_right([line.position_px for line in grid.rows], y) - 1
+    if not (0 <= column < len(grid.columns) - 1 and 0 <= from_top < len(grid.rows) - 1):
+        return None
+    return len(grid.rows) - 2 - from_top, column
+
+
+def cell_bounds(grid: FacadeGrid, row: int, column: int) -> tuple[float, float, float, float]:
+    """Left, right, upper and lower line of a cell, by their positions in the rectified view."""
+    top = len(grid.rows) - 2 - row
+    return (
+        grid.columns[column].position_px,
+        grid.columns[column + 1].position_px,
+        grid.rows[top].position_px,
+        grid.rows[top + 1].position_px,
+    )
+
+
+def cell_middle(grid: FacadeGrid, row: int, column: int) -> tuple[float, float]:
+    """Middle of a cell in the rectified view."""
+    left, right, above, below = cell_bounds(grid, row, column)
+    return 0.5 * (left + right), 0.5 * (above + below)
+
+
+def panels_in(grid: FacadeGrid, cell: tuple[int, int]) -> tuple[FoundPanel, ...]:
+    """Panels of a cell: one as a rule, several where it is divided, none where it is no panel."""
+    return tuple(panel for panel in grid.panels if (panel.row, panel.column) == cell)
+
+
+def room_for_line(grid: FacadeGrid, axis: Axis, index: int) -> tuple[float, float]:
+    """Between which positions a line may be moved: it stays between its neighbours, and in the picture."""
+    lines = lines_of(grid, axis)
+    end = grid.rectification.width_px if axis == "column" else grid.rectification.height_px
+    low = lines[index - 1].position_px + LEAST_APART_PX if index > 0 else 0.0
+    high = lines[index + 1].position_px - LEAST_APART_PX if index + 1 < len(lines) else float(end)
+    return low, high
+
+
+def following_line(grid: FacadeGrid, line: LinePlace | None, step: int) -> LinePlace | None:
+    """The next line (`step` 1) or the one before (-1): upright lines from left to right, then level ones downwards.
+
+    The first one, or the last, where none is given; None behind either end.
+    """
+    order: list[LinePlace] = [("column", index) for index in range(len(grid.columns))]
+    order += [("row", index) for index in range(len(grid.rows))]
+    at = (-1 if step > 0 else len(order)) if line is None else order.index(line)
+    return order[at + step] if 0 <= at + step < len(order) else None
+
+
+def place_beside(grid: FacadeGrid, line: LinePlace) -> float:
+    """Where a line beside this one is added: halfway to the next, or back to the one before where it is the last."""
+    axis, index = line
+    positions = [one.position_px for one in lines_of(grid, axis)]
+    other = index + 1 if index + 1 < len(positions) else max(index - 1, 0)
+    return 0.5 * (positions[index] + positions[other])
+
+
+def cell_beside(
+    grid: FacadeGrid, cell: tuple[int, int] | None, upwards: int, rightwards: int
+) -> tuple[int, int] | None:
+    """The cell so many rows and columns away, within the grid; its lower left one where none is given."""
+    n_rows, n_columns = len(grid.rows) - 1, len(grid.columns) - 1
+    if n_rows < 1 or n_columns < 1:
+        return None
+    row, column = (0, 0) if cell is None else (cell[0] + upwards, cell[1] + rightwards)
+    return min(max(row, 0), n_rows - 1), min(max(column, 0), n_columns - 1)
+
 
 DRAWN_SIGMA_PX = 1.0
 """Of a line that is put in its place by hand, in the rectified view."""

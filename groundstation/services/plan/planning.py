@@ -8,8 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from groundstation.services.mission.preflight import preflight
-from groundstation.services.mission.readiness import UNKNOWN_DAY, FlightDay
+from groundstation.services.mission.readiness import UNKNOWN_DAY, FlightDay, preflight
 from groundstation.services.project.input_files import read_given_plan, read_given_site
 from groundstation.services.project.project_file import check_not_index
 from planning.aircraft.catalogue import profile

@@ -1,4 +1,4 @@
-"""What the process of models does (`process.py`): trains, and shows models and photos.
+"""What the process of models does (`messages.py`): trains, and shows models and photos.
 
 One thread does the work; another reads what is asked. Between two steps of a training, and while it pauses, what is
 looked at is rendered by the first, so that nothing looks at a model while it changes. Looking comes before learning: a

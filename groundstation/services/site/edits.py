@@ -10,17 +10,22 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from enum import StrEnum
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
-from groundstation.services.project.document import first_free
+from groundstation.services.project.document import Item, ItemKind, first_free
 from planning.base.errors import InputError
 from planning.base.messages import say
 from planning.geo.frames import Origin, Vec3
 from planning.geo.geoid import amsl_from_ellipsoid_m, ellipsoid_from_amsl_m
 from planning.geo.mesh import TriangleMesh
+from planning.site.bundled import Rectangle
 from planning.site.file import site_sha256
-from planning.site.records import NoFlyZone, Obstacle, RallyPoint, Site, SiteModel, box_geometry
+from planning.site.importing.facades import facade_name
+from planning.site.importing.options import ImportOptions
+from planning.site.importing.panel_grid import panels_on_building
+from planning.site.records import Facade, NoFlyZone, Obstacle, Panel, RallyPoint, Site, SiteModel, box_geometry
 
 COORDINATE_DECIMALS = 3
 """Of what is drawn by hand: 1 mm."""
@@ -284,3 +289,194 @@ def height_above_sea_m(origin: Origin) -> float:
     """Height of an origin above mean sea level (EGM96), metres."""
     altitude = amsl_from_ellipsoid_m(origin.lat_deg, origin.lon_deg, origin.ellipsoid_height_m)
     return round(float(altitude), HEIGHT_DECIMALS)
+
+
+# Edits of a site's glass: a grid of panels on the building, a facade turned round.
+
+
+class AddedGrid(NamedTuple):
+    """A site with one facade more, the facade's name, and what is worth knowing about its panels."""
+
+    model: SiteModel
+    facade_id: str
+    notes: tuple[str, ...]
+
+
+def add_panel_grid(
+    model: SiteModel,
+    rectangle_enu_m: Rectangle,
+    n_rows: int,
+    n_columns: int,
+    gap_m: float = 0.0,
+    tolerance_m: float = ImportOptions().grid_tolerance_m,
+) -> AddedGrid:
+    """With one facade more, of equal panels in a rectangle on the building.
+
+    Parameters
+    ----------
+    rectangle_enu_m
+        Lower left, lower right and upper left corner as seen from outside.
+    gap_m
+        Width of the mullions between neighbouring panels.
+    tolerance_m
+        Largest distance of the panels from the building.
+
+    Raises
+    ------
+    PanelGridError
+        As `planning.site.importing.panel_grid.panels_on_building`.
+    InputError
+        A panel would be no panel, such as one too far away.
+    """
+    found = panels_on_building(np.array(rectangle_enu_m), (n_rows, n_columns), gap_m, model.building, tolerance_m)
+    name = _free_facade_name(model.site)
+    with input_checked():
+        panels = tuple(
+            Panel(f"{name}-{number:04d}", (_corner(a), _corner(b), _corner(c), _corner(d)))
+            for number, (a, b, c, d) in enumerate(found.corners.tolist())
+        )
+        site = replace(model.site, facades=(*model.site.facades, Facade(name, panels)))
+    return AddedGrid(with_site(model, site), name, found.notes)
+
+
+def _corner(point: Sequence[float]) -> Vec3:
+    """A corner rounded to 0.1 mm, as in imported sites."""
+    x, y, z = (round(value, 4) for value in point)
+    return x, y, z
+
+
+def _free_facade_name(site: Site) -> str:
+    """The first letter that neither a facade nor the panels of a renamed one use."""
+    taken = {facade.id for facade in site.facades} | {panel.id.rpartition("-")[0] for panel in site.panels}
+    return first_free(lambda number: facade_name(number - 1), taken)
+
+
+def with_facades(model: SiteModel, facades: Iterable[Facade]) -> SiteModel:
+    """With other facades.
+
+    Raises
+    ------
+    InputError
+        No panel is left, and there is no building on which others could be found.
+    """
+    kept = tuple(facades)
+    if model.site.building_mesh is None and not any(facade.panels for facade in kept):
+        raise InputError(
+            say("panels: a site without a building needs at least one panel; add the new ones first, then remove these")
+        )
+    with input_checked():
+        site = replace(model.site, facades=kept)
+    return with_site(model, site)
+
+
+def flip_facade(model: SiteModel, facade_id: str) -> SiteModel:
+    """With a facade that looks the other way; each panel still begins at its lower left corner seen from outside."""
+
+    def flipped(panel: Panel) -> Panel:
+        a, b, c, d = panel.corners_enu_m
+        return replace(panel, corners_enu_m=(b, a, d, c))
+
+    index = index_of((facade.id for facade in model.site.facades), facade_id, "facade")
+    facades = list(model.site.facades)
+    facades[index] = replace(facades[index], panels=tuple(flipped(panel) for panel in facades[index].panels))
+    return with_facades(model, facades)
+
+
+# Removing and renaming what a user points at on a site.
+
+Named = TypeVar("Named", Obstacle, NoFlyZone, Panel, RallyPoint)
+
+REMOVABLE = frozenset({ItemKind.OBSTACLE, ItemKind.NO_FLY, ItemKind.FACADE, ItemKind.PANEL, ItemKind.RALLY})
+"""Kinds of things that have a name of their own and that a site can do without."""
+
+
+def remove_item(model: SiteModel, item: Item) -> SiteModel:
+    """Without a facade, panel, obstacle, no-fly zone or rally point.
+
+    Raises
+    ------
+    InputError
+        The site would be left without panels and building.
+    ValueError
+        The site has no such thing, or it is of a kind that cannot be removed.
+    """
+    site = model.site
+    match item.kind:
+        case ItemKind.OBSTACLE:
+            index = index_of(obstacle_ids(model), item.id, "obstacle")
+            obstacles = site.obstacles[:index] + site.obstacles[index + 1 :]
+            return with_site(
+                model, replace(site, obstacles=obstacles), model.obstacles[:index] + model.obstacles[index + 1 :]
+            )
+        case ItemKind.NO_FLY:
+            index = index_of((zone.id for zone in site.airspace.no_fly), item.id, say("no-fly zone"))
+            return with_zones(model, site.airspace.no_fly[:index] + site.airspace.no_fly[index + 1 :])
+        case ItemKind.FACADE:
+            index = index_of((facade.id for facade in site.facades), item.id, "facade")
+            return with_facades(model, site.facades[:index] + site.facades[index + 1 :])
+        case ItemKind.PANEL:
+            index = _facade_of(site, item.id)
+            rest = tuple(panel for panel in site.facades[index].panels if panel.id != item.id)
+            facade = (replace(site.facades[index], panels=rest),) if rest else ()
+            return with_facades(model, site.facades[:index] + facade + site.facades[index + 1 :])
+        case ItemKind.RALLY:
+            index = index_of(rally_ids(model), item.id, say("rally point"))
+            return with_rally_points(model, site.rally_points[:index] + site.rally_points[index + 1 :])
+        case _:
+            raise ValueError(f"a site always has its {item.kind}")
+
+
+def rename_item(model: SiteModel, item: Item, name: str) -> SiteModel:
+    """With another name for what has one; panels called after their facade follow it.
+
+    Raises
+    ------
+    InputError
+        The name is empty or taken.
+    ValueError
+        The site has no such thing, or it is of a kind that has no name.
+    """
+    name, site = name.strip(), model.site
+    if name == item.id:
+        return model
+    match item.kind:
+        case ItemKind.OBSTACLE:
+            check_new_name(name, obstacle_ids(model), "obstacle")
+            return with_site(model, replace(site, obstacles=_renamed(site.obstacles, item.id, name, "obstacle")))
+        case ItemKind.NO_FLY:
+            check_new_name(name, (zone.id for zone in site.airspace.no_fly), say("no-fly zone"))
+            return with_zones(model, _renamed(site.airspace.no_fly, item.id, name, say("no-fly zone")))
+        case ItemKind.FACADE:
+            check_new_name(name, (facade.id for facade in site.facades), "facade")
+            index = index_of((facade.id for facade in site.facades), item.id, "facade")
+            facade = Facade(name, tuple(_following(panel, item.id, name) for panel in site.facades[index].panels))
+            return with_facades(model, (*site.facades[:index], facade, *site.facades[index + 1 :]))
+        case ItemKind.PANEL:
+            check_new_name(name, (panel.id for panel in site.panels), "panel")
+            index = _facade_of(site, item.id)
+            panels = _renamed(site.facades[index].panels, item.id, name, "panel")
+            facade = replace(site.facades[index], panels=panels)
+            return with_facades(model, (*site.facades[:index], facade, *site.facades[index + 1 :]))
+        case ItemKind.RALLY:
+            check_new_name(name, rally_ids(model), say("rally point"))
+            return with_rally_points(model, _renamed(site.rally_points, item.id, name, say("rally point")))
+        case _:
+            raise ValueError(f"the {item.kind} of a site has no name")
+
+
+def _renamed(things: tuple[Named, ...], old: str, new: str, kind: str) -> tuple[Named, ...]:
+    index = index_of((thing.id for thing in things), old, kind)
+    return things[:index] + (replace(things[index], id=new),) + things[index + 1 :]  # noqa: RUF005  (mypy)
+
+
+def _following(panel: Panel, old: str, new: str) -> Panel:
+    """The panel with its facade's new name, where it bears the old one."""
+    rest = panel.id.removeprefix(f"{old}-")
+    return panel if rest == panel.id else replace(panel, id=f"{new}-{rest}")
+
+
+def _facade_of(site: Site, panel_id: str) -> int:
+    for index, facade in enumerate(site.facades):
+        if any(panel.id == panel_id for panel in facade.panels):
+            return index
+    raise ValueError(f"there is no panel '{panel_id}' on this site")

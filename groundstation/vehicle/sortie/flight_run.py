@@ -22,9 +22,15 @@ from collections.abc import Callable, Generator
 from dataclasses import replace
 from typing import Any
 
-from groundstation.vehicle.commands import MAV_RESULT_TEMPORARILY_REJECTED, Answer, CommandCall, CommandOutcome
+from groundstation.vehicle.commands import (
+    MAV_RESULT_TEMPORARILY_REJECTED,
+    MISSION_MODE,
+    Answer,
+    CommandCall,
+    CommandOutcome,
+    set_mode_command,
+)
 from groundstation.vehicle.failsafes import NAMES, failsafe_checks
-from groundstation.vehicle.modes import MISSION_MODE, set_mode_command
 from groundstation.vehicle.orders import fence_messages, rally_messages
 from groundstation.vehicle.parameters import ParameterCall, ParameterOutcome, ParameterReads, ParameterStatus
 from groundstation.vehicle.preflight import HOME_HEIGHT_M, PreflightCheck, Verdict, is_ready, overruled, stands_above_m

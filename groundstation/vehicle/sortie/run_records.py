@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
-from groundstation.vehicle.commands import CommandOutcome
-from groundstation.vehicle.modes import LAND_MODE, MISSION_MODE, PAUSE_MODE, RETURN_MODE
+from groundstation.vehicle.commands import LAND_MODE, MISSION_MODE, PAUSE_MODE, RETURN_MODE, CommandOutcome
 from groundstation.vehicle.preflight import OnBoard, PreflightCheck
 from groundstation.vehicle.state import VehicleState
 from groundstation.vehicle.watch import Watch

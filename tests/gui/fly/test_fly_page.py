@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QLabel, QLineEdit, QMessageBox
 
 from groundstation.gui.fly.flight_buttons import APART_PX, ICON_PX, PLACES
 from groundstation.services.fly.events import LinkState, Request, ViewState
-from groundstation.services.fly.link_choice import ConnectionChoice, LinkKind, choice_path, read_choice
+from groundstation.services.fly.options import ConnectionChoice, LinkKind, choice_path, read_choice
 from groundstation.services.project.document import Document, ItemKind, PlanEntry
 from groundstation.services.settings import Language
 from groundstation.services.units import UnitSystem
@@ -501,7 +501,7 @@ def test_a_finding_of_the_report_leads_to_its_view(application, controller, page
 
 def few_items(monkeypatch, limit):
     """An autopilot with room for fewer photos than a small plan has."""
-    monkeypatch.setattr("groundstation.services.mission.item_limit.photos_that_fit", lambda _autopilot: limit)
+    monkeypatch.setattr("groundstation.services.mission.readiness.photos_that_fit", lambda _autopilot: limit)
 
 
 def test_too_many_photos_for_the_autopilot_are_shared_out_on_a_yes(application, controller, page, monkeypatch):

@@ -6,7 +6,7 @@ import pytest
 
 from groundstation.services.fly import signing
 from groundstation.services.fly.connection import VehicleAt
-from groundstation.services.fly.link_choice import ConnectionChoice, LinkKind, choice_path, read_choice
+from groundstation.services.fly.options import ConnectionChoice, LinkKind, choice_path, read_choice
 from groundstation.services.project.document import Document, PlanEntry
 from missions.mavlink.link import open_link
 from missions.mavlink.messages import Address, Heartbeat, SetupSigning

@@ -445,7 +445,7 @@ def test_chart_draws_each_sortie_and_picks_the_nearest_photo(application):
     from PySide6.QtCore import QPointF
 
     from groundstation.gui.charts.profile_chart import ProfileChart
-    from groundstation.services.mission.profiles import height_limits, plan_profiles
+    from groundstation.services.mission.waypoints import height_limits, plan_profiles
 
     plan = example_plan()
     chart = ProfileChart()

@@ -6,7 +6,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
 from groundstation.services.project.document import Document
-from groundstation.services.project.history import History
+from groundstation.services.project.session import History
 from tests.gui.driving import choose, clicked, turn_until, turn_until_idle
 from tests.services.photo_cases import draft_of, site_model, with_paths
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from groundstation.services.photos.cards import PhotoCard, PhotoMark
+from groundstation.services.photos.intake import PhotoCard, PhotoMark
 from planning.photos.metadata import read_photo
 from tests.gui.driving import turn_until
 from tests.services.photo_cases import true_photos, write_photos

@@ -8,7 +8,7 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
-from groundstation.services.photos.cards import PhotoMark
+from groundstation.services.photos.intake import PhotoMark
 from groundstation.services.project.document import Document
 from groundstation.services.site.edits import HeightReference, set_origin
 from planning.base.findings import Severity
@@ -17,7 +17,7 @@ from tests.services.photo_cases import site_model
 
 
 def middle(grid, row, column):
-    from groundstation.services.photos.grids import cell_middle
+    from groundstation.services.photos.grid_edits import cell_middle
 
     return cell_middle(grid, row, column)
 

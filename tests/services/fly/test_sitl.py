@@ -7,8 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from groundstation.services.fly.flying import FlightRequest, fly_plan
-from groundstation.services.fly.sitl import sitl
+from groundstation.services.fly.flying import FlightRequest, fly_plan, sitl
 from missions.flight.logs.read import read_log
 from missions.flight.report import report_flight
 from missions.mavlink.autopilots import Autopilot

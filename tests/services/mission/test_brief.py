@@ -10,10 +10,15 @@ import pytest
 
 from groundstation.services.map.shapes import plan_shapes, site_shapes
 from groundstation.services.mission.brief import flight_brief
-from groundstation.services.mission.brief_html import MAP, brief_html, brief_pictures, profile_name, sources_in_page
-from groundstation.services.mission.brief_pictures import map_svg
-from groundstation.services.mission.preflight import preflight
-from groundstation.services.mission.readiness import FlightDay
+from groundstation.services.mission.brief_html import (
+    MAP,
+    brief_html,
+    brief_pictures,
+    map_svg,
+    profile_name,
+    sources_in_page,
+)
+from groundstation.services.mission.readiness import FlightDay, preflight
 from groundstation.services.units import UnitSystem
 from missions.dji.write import LinkLoss
 from missions.formats.encode import ExportOptions

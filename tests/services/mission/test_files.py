@@ -12,7 +12,7 @@ from groundstation.services.mission.files import (
     prepare_export,
     write_export,
 )
-from groundstation.services.mission.preflight import preflight
+from groundstation.services.mission.readiness import preflight
 from missions.dji.write import LinkLoss
 from missions.formats.encode import ExportOptions
 from missions.formats.registry import FORMATS

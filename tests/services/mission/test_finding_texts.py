@@ -2,7 +2,7 @@
 
 import pytest
 
-from groundstation.services.mission.finding_texts import by_severity, counts_by_severity, duration_text, measured_text
+from groundstation.services.mission.readiness import by_severity, counts_by_severity, duration_text, measured_text
 from groundstation.services.units import UnitSystem
 from planning.base.findings import Finding, Severity
 

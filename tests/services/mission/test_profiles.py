@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from groundstation.services.mission.profiles import height_limits, nearest_photo, plan_profiles
-from groundstation.services.mission.waypoints import waypoint_rows
+from groundstation.services.mission.waypoints import height_limits, nearest_photo, plan_profiles, waypoint_rows
 from tests.missions.plans import HOME, example_plan
 from tests.planning.plan_cases import kiosk
 

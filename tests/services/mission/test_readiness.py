@@ -10,12 +10,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from groundstation.services.mission.preflight import preflight
 from groundstation.services.mission.readiness import (
     FlightDay,
     Readiness,
     charge_at,
     dazzled_views,
+    preflight,
     readiness_findings,
     readiness_of,
     sun_direction_enu,

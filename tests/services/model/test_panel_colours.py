@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from groundstation.services.model.facility_records import book_of_scene
 from groundstation.services.model.panel_colours import (
     NO_COLOURS,
     OTHER,
@@ -18,7 +19,6 @@ from groundstation.services.model.panel_colours import (
     colouring,
     scale_colour,
 )
-from groundstation.services.model.scene_records import book_of_scene
 from reconstruction.objects.store import write_scene
 from reconstruction.records.entries import Attribute, Defect, Inspection
 from tests.reconstruction.objects.made_scene import made_scene

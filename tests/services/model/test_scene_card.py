@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from groundstation.services.model.facility_records import book_of_scene, keep_objects, object_rows
 from groundstation.services.model.scene_card import PanelRow, is_model, is_scene, read_card, scenes_beside, view_of
-from groundstation.services.model.scene_records import book_of_scene, keep_objects, object_rows
 from planning.base.errors import InputError
 from reconstruction.objects.gs_scene import GsElement
 from reconstruction.objects.store import StoredScene, write_scene

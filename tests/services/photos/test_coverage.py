@@ -6,8 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from groundstation.services.photos.coverage import PhotoCoverage, photo_coverage
-from groundstation.services.photos.intake import counted_again, panel_ids, take_in_photos
+from groundstation.services.photos.intake import PhotoCoverage, counted_again, panel_ids, photo_coverage, take_in_photos
 from planning.aircraft.catalogue import profile
 from planning.coverage.sections import NOT_SEEN
 from planning.insight.sections import SectionState

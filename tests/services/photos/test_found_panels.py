@@ -5,11 +5,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from groundstation.services.photos.cards import PhotoMark, card_of_place, photo_cards
 from groundstation.services.photos.found_panels import GridPlace, search_panels, solved_draft, with_found_panels
-from groundstation.services.photos.grid_edits import add_line, move_line, remove_line, set_panel
-from groundstation.services.photos.grids import cell_at, cell_middle, line_near
-from groundstation.services.photos.intake import take_in_photos
+from groundstation.services.photos.grid_edits import (
+    add_line,
+    cell_at,
+    cell_middle,
+    line_near,
+    move_line,
+    remove_line,
+    set_panel,
+)
+from groundstation.services.photos.intake import PhotoMark, card_of_place, photo_cards, take_in_photos
 from planning.base.errors import InfeasibleError, InputError
 from planning.geo.mesh import empty_mesh
 from tests.reconstruction.panels.solving.test_solve import COLUMNS, ROWS

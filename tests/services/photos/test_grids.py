@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from groundstation.services.photos.grids import (
+from groundstation.services.photos.grid_edits import (
     cell_at,
     cell_beside,
     cell_bounds,

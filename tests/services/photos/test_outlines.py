@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from groundstation.services.photos import outlines as photo_outlines
-from groundstation.services.photos.outlines import known_panels, panel_outlines
+from groundstation.services.photos import grid_edits as photo_outlines
+from groundstation.services.photos.grid_edits import known_panels, panel_outlines
 from reconstruction.base.cameras import Intrinsics, Pose, PosedPhoto
 from tests.reconstruction.panels.rectify.scenes import BENT, SMALL
 from tests.services.photo_cases import draft_of, site_model, with_paths

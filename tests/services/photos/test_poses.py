@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from groundstation.services.photos.found_panels import repose
 from groundstation.services.photos.intake import take_in_photos, with_poses
 from groundstation.services.photos.poses import LENS_UNKNOWN, BetterPoses, RefineRequest, better_poses, still_true
-from groundstation.services.photos.repose import repose
 from planning.base.errors import InputError
 from planning.base.findings import Finding, Severity
 from planning.photos.folder import read_photos

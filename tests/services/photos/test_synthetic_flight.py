@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from groundstation.services.photos.coverage import photo_coverage
-from groundstation.services.photos.intake import take_in_photos
-from groundstation.services.photos.outlines import panel_outlines
+from groundstation.services.photos.grid_edits import panel_outlines
+from groundstation.services.photos.intake import photo_coverage, take_in_photos
 from groundstation.services.photos.synthetic_flight import DIRECTIONS_DEG, write_made_flight
 from planning.base.findings import Severity
 from planning.site.file import read_site

@@ -14,24 +14,22 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from groundstation.services.project.autosave import (
-    AUTOSAVE_FOLDER,
-    HEADER_FILE,
-    UNSAVED_FOLDER,
-    Autosave,
-    clear_copy,
-    give_up_place,
-    unsaved_place,
-)
 from groundstation.services.project.document import Document, PlanEntry
 from groundstation.services.project.folder import create_project, open_project, save_project
 from groundstation.services.project.lock import LOCK_FILE, Holder, lock_project
 from groundstation.services.project.recovery import (
+    AUTOSAVE_FOLDER,
     DAMAGED_FOLDER,
+    HEADER_FILE,
+    UNSAVED_FOLDER,
+    Autosave,
+    clear_copy,
     discard_recovery,
     find_recovery,
     find_unsaved,
+    give_up_place,
     recover,
+    unsaved_place,
 )
 from planning.base.errors import InputError
 from planning.request import PlanRequest
@@ -263,7 +261,7 @@ def test_of_many_documents_that_wait_only_the_last_is_written(project, monkeypat
         written.append(made)
         return save_project(place, made, **options)
 
-    monkeypatch.setattr("groundstation.services.project.autosave.save_project", note)
+    monkeypatch.setattr("groundstation.services.project.recovery.save_project", note)
     executor = Later()
     keeper = autosave(folder, executor=executor)
     works = [edited(saved, seed) for seed in range(1, 5)]
@@ -300,7 +298,7 @@ def test_discarding_waits_for_a_copy_that_is_being_written(project, monkeypatch)
         assert go_on.wait(120.0)
         return save_project(*arguments, **options)
 
-    monkeypatch.setattr("groundstation.services.project.autosave.save_project", slow)
+    monkeypatch.setattr("groundstation.services.project.recovery.save_project", slow)
     with ThreadPoolExecutor(2) as executor:
         keeper = autosave(folder, executor=executor)
         keeper.keep(edited(saved, 9))
@@ -333,7 +331,7 @@ def test_a_full_disk_is_told_once_and_loses_nothing(project):
 
 def test_a_mistake_of_ours_is_told_as_well(project, monkeypatch):
     folder, saved = project
-    monkeypatch.setattr("groundstation.services.project.autosave.save_project", lambda *_, **__: 1 // 0)
+    monkeypatch.setattr("groundstation.services.project.recovery.save_project", lambda *_, **__: 1 // 0)
     told = []
     keeper = autosave(folder, told)
     keeper.keep(saved)
@@ -394,7 +392,7 @@ OTHER = """
 import sys
 from dataclasses import replace
 from pathlib import Path
-from groundstation.services.project.autosave import Autosave
+from groundstation.services.project.recovery import Autosave
 from groundstation.services.project.folder import open_project
 from groundstation.services.project.lock import lock_project
 from planning.request import PlanRequest

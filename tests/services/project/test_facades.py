@@ -7,8 +7,7 @@ import pytest
 
 from groundstation.services.photos.found_panels import with_found_panels
 from groundstation.services.project.document import Document
-from groundstation.services.project.facades import facades_beside
-from groundstation.services.project.folder import create_project, open_project, save_project
+from groundstation.services.project.folder import create_project, facades_beside, open_project, save_project
 from groundstation.services.site.sources import with_new_site
 from planning.base.errors import InputError
 from planning.site.bundled import SCENES

@@ -13,8 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from groundstation.services.project.document import Document, PlanEntry
-from groundstation.services.project.folder import create_project, open_project, save_project
-from groundstation.services.project.plans import add_plans
+from groundstation.services.project.folder import add_plans, create_project, open_project, save_project
 from groundstation.services.project.project_file import FOLDERS, is_project, project_name
 from planning.base.errors import InputError
 from planning.checks import check_plan

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from groundstation.services.project.history import MAX_STEPS, History
+from groundstation.services.project.session import MAX_STEPS, History
 
 ACTIONS = st.lists(st.one_of(st.just("undo"), st.just("redo"), st.just("amend"), st.integers(0, 99)), max_size=60)
 

@@ -5,8 +5,7 @@ import pytest
 from groundstation.services.project.document import Document
 from groundstation.services.project.folder import create_project
 from groundstation.services.project.lock import lock_holder
-from groundstation.services.project.project_session import ProjectSession
-from groundstation.services.project.session import Session
+from groundstation.services.project.session import ProjectSession, Session
 from planning.base.errors import InputError
 from tests.services.project_cases import document
 

@@ -26,6 +26,7 @@ from groundstation.services.reconstruct.messages import (
     Ended,
     Look,
     Measured,
+    ModelProcess,
     Pause,
     PhotoError,
     Seen,
@@ -35,7 +36,6 @@ from groundstation.services.reconstruct.messages import (
     Train,
     WatchErrors,
 )
-from groundstation.services.reconstruct.process import ModelProcess
 from groundstation.services.reconstruct.request import TrainRequest
 from planning.base.errors import InputError
 from tests.reconstruction.training.made_data_set import write_data_set

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from groundstation.services.reconstruct.render_pace import ADDED, PicturePace
+from groundstation.services.reconstruct.guided_camera import ADDED, PicturePace
 
 sizes = st.floats(1e3, 1e7)
 times = st.floats(0.0, 100.0)

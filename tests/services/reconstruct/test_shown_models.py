@@ -10,8 +10,7 @@ import torch
 
 from groundstation.services.model.objects import organise_files
 from groundstation.services.reconstruct.messages import Look, Probe, Section, Subject
-from groundstation.services.reconstruct.render_queue import RenderQueue
-from groundstation.services.reconstruct.shown_models import TINT_SHARE, ShownModels
+from groundstation.services.reconstruct.render_queue import TINT_SHARE, RenderQueue, ShownModels
 from reconstruction.light.config import ReflectionConfig
 from reconstruction.light.photo_set import read_photo_set
 from reconstruction.training.config import TrainConfig
@@ -113,7 +112,7 @@ def test_quick_pictures_of_small_models_are_as_they_are(folders, darkroom):
 
 def test_quick_pictures_of_large_models_look_like_them_and_have_sections(folders, darkroom, monkeypatch):
     """A model that counts as large, from so far away that pixels are as coarse as its cubes."""
-    monkeypatch.setattr("groundstation.services.reconstruct.shown_models.LARGE", 100)
+    monkeypatch.setattr("groundstation.services.reconstruct.render_queue.LARGE", 100)
     monkeypatch.setattr("reconstruction.splats.detail_tree.FEWEST", 20)
     near = camera(folders)
     lens = near.intrinsics
@@ -139,7 +138,7 @@ def test_a_large_model_is_made_ready_while_nobody_waits(folders, darkroom, monke
     assert not darkroom.prepare()
     darkroom.seen(look(folders / "scene", camera(folders)))
     assert not darkroom.prepare()
-    monkeypatch.setattr("groundstation.services.reconstruct.shown_models.LARGE", 100)
+    monkeypatch.setattr("groundstation.services.reconstruct.render_queue.LARGE", 100)
     assert [darkroom.prepare(), darkroom.prepare()] == [True, False]
 
 
@@ -147,7 +146,7 @@ def test_where_there_is_no_memory_for_it_quick_pictures_are_as_they_are(folders,
     def no_memory(_splats):
         raise MemoryError
 
-    monkeypatch.setattr("groundstation.services.reconstruct.shown_models.LARGE", 100)
+    monkeypatch.setattr("groundstation.services.reconstruct.render_queue.LARGE", 100)
     monkeypatch.setattr("reconstruction.splats.merged_splats.splats_of_detail", no_memory)
     plain, quick = (darkroom.seen(look(folders / "scene", camera(folders), is_quick=q)).picture for q in (False, True))
     assert np.array_equal(plain, quick)

@@ -10,14 +10,19 @@ from hypothesis import strategies as st
 
 from groundstation.services.project.document import Item, ItemKind
 from groundstation.services.site.edits import (
+    REMOVABLE,
     HeightReference,
     add_box,
     add_mesh_obstacle,
+    add_panel_grid,
     add_rally_point,
     add_zone,
+    flip_facade,
     height_above_sea_m,
     move_home,
     move_rally_point,
+    remove_item,
+    rename_item,
     rename_site,
     set_airspace,
     set_box,
@@ -25,8 +30,6 @@ from groundstation.services.site.edits import (
     set_zone,
 )
 from groundstation.services.site.findings import site_findings
-from groundstation.services.site.item_edits import REMOVABLE, remove_item, rename_item
-from groundstation.services.site.panel_edits import add_panel_grid, flip_facade
 from planning.base.errors import InputError
 from planning.base.findings import Severity
 from planning.geo.mesh import box_mesh, write_mesh

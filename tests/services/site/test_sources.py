@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 import trimesh
 
+from groundstation.services.messages import in_window_words
 from groundstation.services.project.document import Document
-from groundstation.services.site.import_wording import in_window_words
 from groundstation.services.site.sources import (
     bundled_site,
     grid_in_file,

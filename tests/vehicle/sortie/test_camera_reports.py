@@ -2,7 +2,7 @@
 
 import itertools
 
-from groundstation.vehicle.sortie.camera_reports import ASK_EVERY_S, MAX_AT_ONCE, N_ASKS, CameraReports
+from groundstation.vehicle.sortie.sortie_run import ASK_EVERY_S, MAX_AT_ONCE, N_ASKS, CameraReports
 from missions.mavlink.messages import Address, CameraCaptureStatus, CameraImageCaptured, Received
 
 CAMERA = Address(1, 100)
