@@ -9,31 +9,29 @@ import torch
 
 from planning.base.effects import EffectSetting
 from reconstruction.base.cameras import Intrinsics, Pose, PosedPhoto
-from reconstruction.dataset.panel_images import draw_panels
-from reconstruction.light.cube.map import CubeMap
-from reconstruction.light.directions.environment_map import EnvironmentMap
-from reconstruction.light.directions.harmonics import HarmonicTexture
-from reconstruction.light.glass_learned import GlassLearned
+from reconstruction.dataset.layers import draw_panels
+from reconstruction.light.config import GlassLearned
+from reconstruction.light.cube_map import CubeMap
+from reconstruction.light.environment_map import EnvironmentMap
 from reconstruction.light.glass_light import GlassLight
 from reconstruction.light.glass_rays import rays_of_pixels
-from reconstruction.light.grid.grid_box import GridBox
-from reconstruction.light.grid.radiance_grid import RadianceGrid
+from reconstruction.light.harmonics import HarmonicTexture
 from reconstruction.light.photo_set import PanelPlanes
+from reconstruction.light.radiance_grid import GridBox, RadianceGrid
 from reconstruction.light.ray_table import RayTable
 from reconstruction.light.reflective_panels import ReflectivePanels
-from reconstruction.metrics.overlaps import pixel_overlaps
-from reconstruction.metrics.raster import index_image
+from reconstruction.metrics.overlaps import index_image, pixel_overlaps
 from reconstruction.panels.search.segment import segment_rectified
-from reconstruction.photos.sharpness import sharpness
+from reconstruction.photos.quality import sharpness
 from reconstruction.scenes.effect_names import NEAR_FIELD
 from reconstruction.scenes.photos.renderer import Renderer, RenderSettings
 from reconstruction.scenes.world.bundled import bundled_scene
-from reconstruction.splats.detail_tree import FEWEST, detail_tree
+from reconstruction.splats.merged_splats import FEWEST, detail_tree
 from reconstruction.splats.rasterising.rasteriser import rasterise
 from reconstruction.splats.rasterising.views import View
 from reconstruction.splats.sky import Sky
 from reconstruction.splats.splats import Splats
-from reconstruction.training.losses.dssim_kernel import dissimilarity
+from reconstruction.training.losses import dissimilarity
 from reconstruction.training.methods.ref_gs import SphMip
 
 

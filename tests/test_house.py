@@ -96,16 +96,16 @@ READERS = {
     "planning/base/files.py", "planning/base/json_file.py", "planning/geo/mesh.py",
     # Behind that: what was read or looked at there is given to the library of its kind.
     "planning/site/importing/ifc_content.py", "reconstruction/records/ifc/extract.py", "missions/mission/safe_files.py",
-    "reconstruction/exports/sog/images.py", "reconstruction/photos/decode.py",
-    "reconstruction/metrics/lpips_weights.py", "reconstruction/training/checkpoints.py",
-    "reconstruction/objects/store.py", "reconstruction/splats/ply_file.py",
+    "reconstruction/exports/sog.py", "reconstruction/photos/decode.py",
+    "reconstruction/metrics/lpips.py", "reconstruction/training/training_state.py",
+    "reconstruction/objects/store.py", "reconstruction/splats/ply.py",
     # SQLite looks at its files itself, and texts of one cell are short.
-    "reconstruction/records/database.py", "reconstruction/records/schema.py", "groundstation/services/map/tiles.py",
-    "reconstruction/records/book.py", "reconstruction/records/rows.py", "reconstruction/records/csv/cells.py",
+    "reconstruction/records/database.py", "groundstation/services/map/tiles.py",
+    "reconstruction/records/book.py", "reconstruction/records/csv.py",
     # Files of our own: in the package, or made by a process of ours a moment ago; the system's; texts of our own.
     "planning/geo/geoid.py", "planning/geo/make_egm96_grid.py", "planning/base/step_physical_file.py",
-    "planning/site/importing/ifc_file.py", "reconstruction/records/ifc/process.py",
-    "reconstruction/exports/web/page.py",
+    "planning/site/importing/ifc_file.py", "reconstruction/records/ifc/importing.py",
+    "reconstruction/exports/web.py",
     "reconstruction/scenes/runs/cluster_workers.py", "reconstruction/scenes/runs/run_record.py",
     "reconstruction/objects/organise.py", "groundstation/services/reconstruct/choices.py",
     "groundstation/gui/application/collect_messages.py", "groundstation/services/messages.py",

@@ -20,8 +20,8 @@ from planning.base.jit import n_threads
 from planning.base.messages import say
 from planning.base.progress import Monitor
 from reconstruction.base.cameras import Intrinsics, PosedPhoto
-from reconstruction.colmap.camera_models import camera_of
 from reconstruction.colmap.georeference import position_covariance
+from reconstruction.colmap.record import camera_of
 
 Array = NDArray[np.float64]
 

@@ -28,12 +28,9 @@ from planning.geo.mesh import join, write_mesh
 from planning.site.records import SiteModel, panel_corners, require_panels
 from reconstruction.base.cameras import Intrinsics, PosedPhoto
 from reconstruction.base.ray_casting import RayCaster
-from reconstruction.dataset.grow import grown_corners
-from reconstruction.dataset.layers import Scene, draw_layers, normals_to_16_bit, straightened
-from reconstruction.dataset.panel_images import IN_FRONT_M, facing
-from reconstruction.dataset.points import ColouredPoints, start_points
-from reconstruction.dataset.records import write_records
-from reconstruction.dataset.refined_mesh import RefineParameters, refine_mesh
+from reconstruction.dataset.layers import IN_FRONT_M, Scene, draw_layers, facing, normals_to_16_bit, straightened
+from reconstruction.dataset.records import ColouredPoints, start_points, write_records
+from reconstruction.dataset.refined_mesh import RefineParameters, grown_corners, refine_mesh
 from reconstruction.photos.decode import PICTURE_FILE, decoded
 
 Array = NDArray[np.float64]

@@ -7,6 +7,7 @@ cut exactly at its faces, is replaced by the panel.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,8 +16,11 @@ from numpy.typing import NDArray
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.geo.mesh import TriangleMesh
+from planning.site.records import Facade
 
 Array = NDArray[np.float64]
+
+
 Indices = NDArray[np.int64]
 
 LEAST_AREA_M2 = 1e-10
@@ -173,3 +177,38 @@ def _part(polygon: Array, distance: Array) -> Array:
 def _fan(polygon: Array) -> list[Array]:
     triangles = [polygon[[0, i, i + 1]] for i in range(1, len(polygon) - 1)]
     return [t for t in triangles if 0.5 * float(np.linalg.norm(np.cross(t[1] - t[0], t[2] - t[0]))) > LEAST_AREA_M2]
+
+
+# How wide the frames between panels are, and panels grown to cover them: the facade as one region.
+
+WIDEST_FRAME_M = 0.6
+"""Panels further apart than this have a wall between them, not a frame."""
+
+BARE_M = 0.05
+"""Grown by where a facade's panels have no neighbours to measure a frame by."""
+
+
+def grown_corners(facades: Sequence[Facade]) -> Array:
+    """Corners of all panels, in the facades' order, moved outwards by half a frame, shape (n, 4, 3)."""
+    grown = []
+    for facade in facades:
+        corners = np.array([panel.corners_enu_m for panel in facade.panels], float).reshape(-1, 4, 3)
+        by = 0.5 * frame_width_m(corners)
+        for panel in corners:
+            moved = drawn_in(panel, -by)
+            grown.append(panel if moved is None else moved)
+    return np.array(grown, float).reshape(-1, 4, 3)
+
+
+def frame_width_m(corners_enu_m: Array) -> float:
+    """Usual width of the frames between panels, shape (n, 4, 3): from each edge's middle to the nearest other one."""
+    from scipy.spatial import cKDTree
+
+    middles = 0.5 * (corners_enu_m + np.roll(corners_enu_m, -1, axis=1)).reshape(-1, 3)
+    if len(corners_enu_m) < 2:
+        return BARE_M
+    distances, others = cKDTree(middles).query(middles, k=min(4, len(middles)))
+    foreign = others // 4 != np.arange(len(middles))[:, None] // 4
+    near = np.where(foreign, distances, np.inf).min(axis=1)
+    near = near[near <= WIDEST_FRAME_M]
+    return float(np.percentile(near, 75.0)) if len(near) else BARE_M

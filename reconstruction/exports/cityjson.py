@@ -25,7 +25,7 @@ from planning.base.progress import QUIET, Monitor
 from planning.geo.enu import geodetic_from_enu
 from planning.geo.frames import Origin
 from planning.geo.geoid import amsl_from_ellipsoid_m
-from reconstruction.exports.gltf_tables import NO_ATTRIBUTES, Attributes, Value, attributes_of, plain
+from reconstruction.exports.glb import NO_ATTRIBUTES, Attributes, Value, attributes_of, plain
 from reconstruction.objects.gs_scene import GsComponent, GsScene
 
 STEP_M = 1e-4

@@ -18,19 +18,25 @@ from planning.base.progress import QUIET, Monitor
 from planning.geo.frames import Vec3
 from reconstruction.exports.component_parts import check_scene
 from reconstruction.exports.compression import PRESETS, Compression
-from reconstruction.exports.glb import GlbBuffer, write_glb
-from reconstruction.exports.gltf_meshes import (
+from reconstruction.exports.glb import (
     FEATURES,
     N_OF_DEGREE,
+    NO_ATTRIBUTES,
     SPLATTING,
     SPZ,
+    Attributes,
+    GlbBuffer,
+    PanelTable,
+    attributes_of,
     panel_material,
+    panel_table,
+    plain,
     put_compressed,
     put_gaussians,
     put_panels,
+    write_glb,
 )
-from reconstruction.exports.gltf_tables import NO_ATTRIBUTES, Attributes, PanelTable, attributes_of, panel_table, plain
-from reconstruction.exports.spz.writing import spz_of
+from reconstruction.exports.spz import spz_of
 from reconstruction.objects.gs_scene import GsComponent, GsScene
 
 FORMAT = "reflight-gltf/1"

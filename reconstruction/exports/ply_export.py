@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
-from reconstruction.exports.component_parts import check_scene
+from reconstruction.exports.component_parts import Ellipsoids, check_scene
 from reconstruction.exports.compression import LEAST_SEEN, Compressed
-from reconstruction.exports.ellipsoids import Ellipsoids
 from reconstruction.exports.gaussian_blocks import (
+    Axes,
     are_discs,
     blocks_of,
     expect_some,
@@ -25,10 +25,18 @@ from reconstruction.exports.gaussian_blocks import (
     log_scales,
     n_gaussians,
 )
-from reconstruction.exports.turned_axes import Axes
 from reconstruction.objects.gs_scene import GsScene
-from reconstruction.splats.ply import MEAN_COLOUR, NORMAL, PANEL, PLACE, ROTATION, SIZES, Kind, render_mode
-from reconstruction.splats.ply_file import write_blocks
+from reconstruction.splats.ply import (
+    MEAN_COLOUR,
+    NORMAL,
+    PANEL,
+    PLACE,
+    ROTATION,
+    SIZES,
+    Kind,
+    render_mode,
+    write_blocks,
+)
 from reconstruction.splats.rasterising.raster_types import FLAT
 
 MOST_SHARE = 1.0 - 1e-7

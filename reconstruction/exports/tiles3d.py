@@ -29,7 +29,16 @@ from planning.base.progress import QUIET, Monitor
 from planning.geo.frames import Origin
 from reconstruction.exports.component_parts import check_scene, ellipsoid_blocks, extents_m
 from reconstruction.exports.compression import PRESETS, Compression
-from reconstruction.exports.glb import write_glb
+from reconstruction.exports.glb import (
+    NO_ATTRIBUTES,
+    SPLATTING,
+    SPZ,
+    Attributes,
+    PanelTable,
+    panel_table,
+    plain,
+    write_glb,
+)
 from reconstruction.exports.gltf import (
     INVISIBLE,
     Document,
@@ -39,8 +48,6 @@ from reconstruction.exports.gltf import (
     frame_of,
     scene_extras,
 )
-from reconstruction.exports.gltf_meshes import SPLATTING, SPZ
-from reconstruction.exports.gltf_tables import NO_ATTRIBUTES, Attributes, PanelTable, panel_table, plain
 from reconstruction.objects.gs_scene import GsComponent, GsGaussian, GsScene
 from reconstruction.splats.merged_splats import splats_of_detail
 from reconstruction.splats.splats import NO_PANEL, Splats

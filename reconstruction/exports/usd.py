@@ -23,9 +23,9 @@ from planning.base.json_file import check_output, part_folder
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from reconstruction.exports.component_parts import check_scene, ellipsoid_blocks, extents_m
-from reconstruction.exports.gltf import INVISIBLE
-from reconstruction.exports.gltf_meshes import N_OF_DEGREE
-from reconstruction.exports.gltf_tables import (
+from reconstruction.exports.compression import whole_file
+from reconstruction.exports.glb import (
+    N_OF_DEGREE,
     NO_ATTRIBUTES,
     Attributes,
     PanelTable,
@@ -35,7 +35,7 @@ from reconstruction.exports.gltf_tables import (
     panel_table,
     plain,
 )
-from reconstruction.exports.whole_files import whole_file
+from reconstruction.exports.gltf import INVISIBLE
 from reconstruction.objects.gs_scene import GsComponent, GsElement, GsScene
 
 FORMAT = "reflight-usd/1"

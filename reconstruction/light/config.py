@@ -6,8 +6,34 @@ import math
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
-from reconstruction.light.directions.reflection_mlp import MlpShape
-from reconstruction.light.glass_learned import GlassLearned
+from reconstruction.light.reflection_mlp import MlpShape
+
+# What is learned of panes and photos beside the light that is mirrored.
+
+
+@dataclass(frozen=True, slots=True)
+class GlassLearned:
+    """What is learned beside the light.
+
+    Parameters
+    ----------
+    rays
+        Through each pixel, a square number.
+    tilts, bows
+        Of each pane.
+    poses
+        Of each photo learned from.
+    """
+
+    rays: int = 1
+    tilts: bool = False
+    bows: bool = False
+    poses: bool = False
+
+    def __post_init__(self) -> None:
+        if self.rays < 1 or math.isqrt(self.rays) ** 2 != self.rays:
+            raise ValueError(f"rays: expected a square number, got {self.rays}")
+
 
 Precision = Literal["auto", "float32", "bfloat16"]
 

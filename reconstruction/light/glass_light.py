@@ -15,15 +15,14 @@ import numpy as np
 import torch
 from torch import Tensor, nn
 
-from reconstruction.light import glass_ray_kernels as kernels
-from reconstruction.light.config import ReflectionConfig
-from reconstruction.light.directions.environment_map import EnvironmentMap
-from reconstruction.light.directions.reflection_mlp import ReflectionMlp
-from reconstruction.light.glass_learned import GlassLearned
+from reconstruction.light import ray_table as kernels
+from reconstruction.light.config import GlassLearned, ReflectionConfig
+from reconstruction.light.environment_map import EnvironmentMap
 from reconstruction.light.glass_rays import GlassRays
-from reconstruction.light.grid.radiance_grid import RadianceGrid
 from reconstruction.light.photo_set import PanelPlanes
+from reconstruction.light.radiance_grid import RadianceGrid
 from reconstruction.light.ray_table import Met, RayTable
+from reconstruction.light.reflection_mlp import ReflectionMlp
 from reconstruction.light.shading import reflected_directions
 
 LightModel = ReflectionMlp | EnvironmentMap | RadianceGrid

@@ -27,8 +27,8 @@ from planning.base.progress import QUIET, Clock, Monitor
 from reconstruction.base.out_of_memory import NotFinite, is_out_of_memory
 from reconstruction.light.config import Precision, ReflectionConfig
 from reconstruction.light.glass_rays import GlassRays
-from reconstruction.light.grid.radiance_grid import RadianceGrid
 from reconstruction.light.losses import ray_errors, ray_loss
+from reconstruction.light.radiance_grid import RadianceGrid
 from reconstruction.light.reflective_panels import ReflectivePanels
 
 MOST_HALVINGS = 8

@@ -17,8 +17,7 @@ from planning.base.json_file import expect_format, read_json, to_record
 from planning.base.messages import say
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.colmap.folder import read_model
-from reconstruction.colmap.georeference import posed_photos
-from reconstruction.colmap.similarity import Similarity
+from reconstruction.colmap.georeference import Similarity, posed_photos
 from reconstruction.dataset.layers import unit_normals
 from reconstruction.dataset.prepare import layer_path
 from reconstruction.dataset.records import DATASET_FORMAT

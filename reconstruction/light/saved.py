@@ -19,10 +19,9 @@ from planning.base.messages import say
 from planning.base.progress import QualityPoint
 from reconstruction.base.tensor_files import tensor_bytes
 from reconstruction.light.config import Precision, ReflectionConfig
-from reconstruction.light.directions.reflection_mlp import MlpHealth
-from reconstruction.light.grid.grid_box import GridBox
-from reconstruction.light.grid.radiance_grid import RadianceGrid
 from reconstruction.light.photo_set import PanelPlanes
+from reconstruction.light.radiance_grid import GridBox, RadianceGrid
+from reconstruction.light.reflection_mlp import MlpHealth
 from reconstruction.light.reflective_panels import ModelName, ReflectivePanels
 from reconstruction.light.training import TrainedReflections, untrained_panels
 

@@ -16,7 +16,7 @@ from planning.base.errors import InputError
 from planning.base.messages import say
 from planning.geo.frames import Origin, Vec3
 from reconstruction.objects.gs_scene import GsAuxiliary, GsComponent, GsElement, GsGaussian, GsScene
-from reconstruction.records.global_ids import global_id_of, is_global_id
+from reconstruction.records.entries import global_id_of, is_global_id
 from reconstruction.splats.panel_of_splats import panels_by_place
 from reconstruction.splats.splats import NO_PANEL
 from reconstruction.training.model.joint_model import OF_SPLATS

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.dataset.panel_images import draw_panels
+from reconstruction.dataset.layers import draw_panels
 
 Array = NDArray[np.float64]
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from planning.base.errors import InputError
 from planning.base.json_file import encoded, expect_format, read_json, to_record, write_atomically
-from reconstruction.panels.rectify.rectification import Rectification
+from reconstruction.panels.rectify.surface import Rectification
 from reconstruction.panels.search.record import FacadeGrid, GridLine, InclinedLine, Segmentation
 
 Array = NDArray[np.float64]

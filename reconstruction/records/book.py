@@ -15,11 +15,21 @@ from planning.base.errors import InputError
 from planning.base.messages import say
 from planning.geo.frames import Origin
 from reconstruction.records.changes import Changes
-from reconstruction.records.database import BUSY_S, Database, create_database
+from reconstruction.records.database import (
+    BUSY_S,
+    OBJECT_COLUMNS,
+    OBJECTS,
+    Database,
+    create_database,
+    entry_of,
+    from_json,
+    joined,
+    object_of,
+    selected,
+)
 from reconstruction.records.entries import KIND_NAMED, KIND_OF, Entry
 from reconstruction.records.limits import check_text
 from reconstruction.records.objects import ObjectRow, check_objects
-from reconstruction.records.rows import OBJECT_COLUMNS, OBJECTS, entry_of, from_json, joined, object_of, selected
 
 FILE = "records.sqlite"
 

@@ -13,7 +13,7 @@ from planning.base.errors import InputError
 from planning.base.messages import say
 from planning.geo.frames import Vec3
 from planning.site.records import Panel, Site, check_point
-from reconstruction.records.global_ids import check_global_id, global_id_of, is_global_id
+from reconstruction.records.entries import check_global_id, global_id_of, is_global_id
 from reconstruction.records.limits import check_choice, check_text
 
 Layer = Literal["scene", "component", "element"]

@@ -9,7 +9,8 @@ from typing import Any
 from planning.base.errors import InputError
 from planning.base.messages import say
 from reconstruction.records.book import RecordBook
-from reconstruction.records.changes import decoded
+from reconstruction.records.changes import FIELD_BITS, KIND_BITS, OBJECT_CODE, decoded, query_of
+from reconstruction.records.database import OBJECT_COLUMNS, OBJECTS, entry_of, joined, object_of, selected
 from reconstruction.records.entries import (
     COMPUTED,
     KIND_NAMED,
@@ -23,8 +24,6 @@ from reconstruction.records.entries import (
 )
 from reconstruction.records.limits import MAX_TEXT, check_date, check_number, check_text
 from reconstruction.records.objects import Layer, ObjectRow
-from reconstruction.records.rows import OBJECT_COLUMNS, OBJECTS, entry_of, joined, object_of, selected
-from reconstruction.records.search_words import FIELD_BITS, KIND_BITS, OBJECT_CODE, query_of
 
 MAX_HITS = 1000
 

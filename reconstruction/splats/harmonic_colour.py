@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from planning.base.jit import chunks, inline, kernel, run_chunks
-from reconstruction.light.directions.harmonics import harmonics, n_harmonics
+from reconstruction.light.harmonics import harmonics, n_harmonics
 from reconstruction.light.shading import DARKEST
 
 Floats = NDArray[np.float32]
@@ -50,7 +50,7 @@ def display_colours(means: Tensor, sh: Tensor, position: Tensor, degree: int) ->
     means
         Shape (n, 3), metres; gradients reach them through the viewing direction.
     sh
-        Coefficients, shape (n, 16, 3), in the order of `reconstruction.light.directions.harmonics`.
+        Coefficients, shape (n, 16, 3), in the order of `reconstruction.light.harmonics`.
     position
         Of the camera, shape (3,), metres, in the frame of the means; it gets no gradient.
     degree
@@ -174,7 +174,7 @@ ONE, TWO, THREE, FIVE = np.float32(1), np.float32(2), np.float32(3), np.float32(
 
 @inline
 def _fill_basis(x: Any, y: Any, z: Any, n_used: Any, basis: Any) -> None:
-    """The harmonics of `reconstruction.light.directions.harmonics`, as far as they are used."""
+    """The harmonics of `reconstruction.light.harmonics`, as far as they are used."""
     basis[0] = C0
     if n_used > 1:
         basis[1], basis[2], basis[3] = C1 * y, C1 * z, C1 * x

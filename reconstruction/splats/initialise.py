@@ -20,10 +20,11 @@ from planning.site.records import panel_triangles
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.base.ray_casting import RayCaster
 from reconstruction.dataset.layers import unit_normals
-from reconstruction.dataset.points import UNSEEN, ColouredPoints
+from reconstruction.dataset.records import UNSEEN, ColouredPoints
 from reconstruction.splats.splats import Splats
-from reconstruction.splats.start_data import SAME_SURFACE_M, KnownScene
 from reconstruction.splats.surfels import (
+    SAME_SURFACE_M,
+    KnownScene,
     Surfels,
     beside_panels,
     joined,

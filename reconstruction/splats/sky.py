@@ -12,8 +12,7 @@ from torch.autograd.function import once_differentiable
 from torch.nn import functional
 
 from planning.base.jit import chunks, inline, kernel, run_chunks
-from reconstruction.light.directions.environment_map import turns_and_rows
-from reconstruction.light.directions.environment_map_kernels import place_of
+from reconstruction.light.environment_map import place_of, turns_and_rows
 
 Floats = NDArray[np.float32]
 

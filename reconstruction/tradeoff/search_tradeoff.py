@@ -11,8 +11,8 @@ from planning.tradeoff.runner import GapAxis, Panel, knob_lines
 from reconstruction.metrics.metrics import PhotoScores, SetScores, summarise
 from reconstruction.metrics.run import Method, own_method, score_answer, together_method, viewed, viewed_method
 from reconstruction.metrics.sets import PhotoSet
-from reconstruction.panels.rectify.curvature import VIEW_KINDS, ViewKind
-from reconstruction.panels.rectify.polynomial import PolynomialView
+from reconstruction.panels.rectify.fit import VIEW_KINDS, ViewKind
+from reconstruction.panels.rectify.surface import PolynomialView
 from reconstruction.panels.search.parameters import DETECTORS, Detector, SegmentationParameters
 
 SAMPLES_NAME = "samples of a row"

@@ -8,11 +8,11 @@ import torch
 from torch import Tensor
 
 from reconstruction.training.config import LossWeights
-from reconstruction.training.losses.normals import normal_smoothness
-from reconstruction.training.losses.terms import (
+from reconstruction.training.losses import (
     colour_loss,
     normal_consistency,
     normal_prior,
+    normal_smoothness,
     surface_normals,
     worst_pixels,
 )

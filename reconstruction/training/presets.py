@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from planning.base.errors import InputError
 from reconstruction.light.config import LEAST_STEPS, GridSettings, ReflectionConfig
-from reconstruction.light.directions.reflection_mlp import MlpShape
+from reconstruction.light.reflection_mlp import MlpShape
 from reconstruction.training.config import TrainConfig
 from reconstruction.training.names import PRESETS
 

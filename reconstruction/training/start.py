@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import hashlib
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import torch
@@ -14,14 +16,15 @@ from torch import Tensor
 
 from planning.base.effects import Decision
 from planning.base.errors import InputError
+from planning.base.json_file import to_record
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.light.choose_light import choose_light
-from reconstruction.light.glass_rays import glass_rays
+from reconstruction.light.glass_rays import GlassRays, glass_rays
 from reconstruction.light.light_training import Keeping
 from reconstruction.light.photo_set import PanelPlanes, PhotoSet, held_out_names
-from reconstruction.light.reflective_panels import ReflectivePanels
+from reconstruction.light.reflective_panels import ModelName, ReflectivePanels
 from reconstruction.light.shading import display_from_linear, reflected_directions
 from reconstruction.light.training import TrainedReflections, train_reflections
 from reconstruction.splats.harmonic_colour import fitted_harmonics
@@ -31,17 +34,113 @@ from reconstruction.splats.ply import read_splats
 from reconstruction.splats.rasterising.views import View
 from reconstruction.splats.sky import Sky
 from reconstruction.splats.splats import NO_PANEL, Splats, splats_from_tensors, splats_to_tensors
-from reconstruction.splats.start_data import known_scene, model_origin, points_alone
+from reconstruction.splats.surfels import known_scene, model_origin, points_alone
 from reconstruction.training.config import TrainConfig
-from reconstruction.training.light_stage import BegunLight, LightStage, checksum, write_light
 from reconstruction.training.methods.shader import Shader
 from reconstruction.training.methods.shaders import Surroundings, as_method_has_them, shader_of, with_primitive
 from reconstruction.training.model.joint_model import SceneModel
-from reconstruction.training.model.record import site_record
-from reconstruction.training.photos.exposures import Exposures
+from reconstruction.training.model.record import SiteRecord, site_record
+from reconstruction.training.photos.exposures import Exposures, Move, learned_moves, moved
 from reconstruction.training.photos.photo_stream import PhotoStream, StreamSettings
-from reconstruction.training.photos.pose_corrections import Move, learned_moves, moved
 from reconstruction.training.timer import Timer
+from reconstruction.training.training_state import write_checkpoint
+
+# The first stage of a training, learning light alone: what it needs to go on after it was interrupted.
+
+STAGE = "light stage"
+"""Of a checkpoint's content; the joint training's has none."""
+
+
+@dataclass(frozen=True, slots=True)
+class LightStage:
+    """What is settled when light begins to be learned.
+
+    Parameters
+    ----------
+    name
+        Of the model of light.
+    decisions
+        That led to it.
+    time_limit_s
+        For learning it.
+    rays_sha256
+        Checksum of the rays learned from.
+    """
+
+    config: TrainConfig
+    site: SiteRecord
+    name: ModelName
+    decisions: tuple[Decision, ...]
+    time_limit_s: float | None
+    rays_sha256: str
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BegunLight:
+    """A first stage that was interrupted.
+
+    Parameters
+    ----------
+    splats
+        That were placed before.
+    state
+        Of `LightTraining`.
+    spent_s
+        That the whole training had taken until then.
+    """
+
+    stage: LightStage
+    splats: dict[str, Tensor]
+    state: dict[str, Any]
+    spent_s: float
+
+
+def write_light(path: Path, begun: BegunLight) -> None:
+    """Write a checkpoint, whole or not at all.
+
+    Raises
+    ------
+    InputError
+        It cannot be written.
+    """
+    write_checkpoint(
+        path,
+        {
+            STAGE: asdict(begun.stage),
+            "splats": begun.splats,
+            "training": begun.state,
+            "spent_s": begun.spent_s,
+        },
+    )
+
+
+def begun_light(content: dict[str, Any], path: Path) -> BegunLight | None:
+    """The first stage in the content of a checkpoint; None where it is of the joint training.
+
+    Raises
+    ------
+    InputError
+        It is damaged.
+    """
+    if STAGE not in content:
+        return None
+    stage = to_record(content[STAGE], LightStage, path)
+    splats, state, spent_s = (content.get(name) for name in ("splats", "training", "spent_s"))
+    if not isinstance(splats, dict) or not isinstance(state, dict) or not isinstance(spent_s, float):
+        raise InputError(say("holds no state of a training; begin the training anew", place=path))
+    return BegunLight(stage, splats, state, spent_s)
+
+
+def checksum(rays: GlassRays) -> str:
+    """SHA-256 of rays: of their pixels, colours, cameras and panels."""
+    found = hashlib.sha256()
+    for record in (rays, rays.table):
+        for each in fields(record):
+            value = getattr(record, each.name)
+            if isinstance(value, Tensor):
+                found.update(value.cpu().contiguous().numpy().data)
+    return found.hexdigest()
+
 
 Array = NDArray[np.float64]
 

@@ -20,18 +20,16 @@ from planning.base.messages import say
 from planning.base.progress import QualityPoint
 from reconstruction.light.photo_set import PhotoSet, read_photo_set
 from reconstruction.training.callbacks import Callbacks, HeldOut
-from reconstruction.training.checkpoints import read_checkpoint
 from reconstruction.training.config import TrainConfig
-from reconstruction.training.light_stage import begun_light
 from reconstruction.training.model.record import ModelRecord, empty_model, light_record, site_record
 from reconstruction.training.model.saved import TrainedModel
+from reconstruction.training.photos.exposures import moved
 from reconstruction.training.photos.photo_stream import PhotoStream, StreamSettings
-from reconstruction.training.photos.pose_corrections import moved
 from reconstruction.training.ranks import ALONE, Ranks
-from reconstruction.training.start import Start, start_model
-from reconstruction.training.strategies import strategy_of
+from reconstruction.training.start import Start, begun_light, start_model
 from reconstruction.training.timer import Timer
-from reconstruction.training.trainer import SHOWN_VIEWS, Trainer
+from reconstruction.training.trainer import SHOWN_VIEWS, Trainer, strategy_of
+from reconstruction.training.training_state import read_checkpoint
 
 TRIM_THRESHOLD, TOP_PAD, MMAP_THRESHOLD = -1, -2, -3
 """Parameters of `mallopt` (malloc.h)."""

@@ -20,19 +20,56 @@ from torch import Tensor
 
 from planning.base.errors import OperationCancelled
 from reconstruction.base.out_of_memory import NotFinite, is_out_of_memory, require_finite
-from reconstruction.splats.densification.strategy import Densification, FixedNumber
+from reconstruction.splats.densification.adaptive import AdaptiveControl, AdaptiveParameters
+from reconstruction.splats.densification.mcmc import MarkovChain, McmcParameters
+from reconstruction.splats.densification.strategy import Densification, FixedNumber, Limits
+from reconstruction.splats.rasterising.raster_types import Raster
 from reconstruction.training.callbacks import Callbacks, HeldOut, Preview, Progress, Visit, VisitState, quality_db
-from reconstruction.training.checkpoints import write_checkpoint
 from reconstruction.training.config import TrainConfig
 from reconstruction.training.model.joint_model import Picture, SceneModel
 from reconstruction.training.objective import objective, on_device
 from reconstruction.training.photos.exposures import Exposures
 from reconstruction.training.photos.photo_stream import PhotoStream, Sample
 from reconstruction.training.ranks import ALONE, Ranks
-from reconstruction.training.rates import set_rates, take_step
-from reconstruction.training.strategies import show
 from reconstruction.training.timer import Timer
-from reconstruction.training.training_state import TrainingState
+from reconstruction.training.training_state import TrainingState, set_rates, take_step, write_checkpoint
+
+# The strategy that a configuration asks for, and what it is shown.
+
+ALWAYS = 1 << 62
+"""Steps."""
+
+
+def strategy_of(config: TrainConfig, n_splats: int) -> Densification:
+    """Adds splats, to `max_splats` at most, whenever it is asked: the trainer asks between two shares of the training.
+
+    Opacities are never reset: splats start on surfaces that are known, and trainings are short.
+    """
+    limits = Limits(n_most=max(config.max_splats, n_splats))
+    if config.densification == "none":
+        return FixedNumber(limits)
+    if config.densification == "mcmc":
+        return MarkovChain(McmcParameters(start=0, stop=ALWAYS, n_splats=config.max_splats), limits)
+    return AdaptiveControl(AdaptiveParameters(start=0, stop=ALWAYS, reset_every=0), limits)
+
+
+def show(
+    strategy: Densification, raster: Raster, offsets: Tensor, samples: Sequence[Sample], ranks: Ranks, weight: float
+) -> None:
+    """Tell a strategy about a picture, and those of other processes, in the same order everywhere.
+
+    Parameters
+    ----------
+    offsets
+        Of the splats' screen positions, with their gradients.
+    weight
+        Of the high-frequency loss: it multiplies gradients, which says nothing about how many splats are needed.
+    """
+    pulls = torch.zeros_like(offsets) if offsets.grad is None else offsets.grad
+    seen = torch.cat([pulls / (1.0 + weight), raster.weights[:, None], raster.radii_px[:, None].to(pulls)], dim=1)
+    for found, sample in zip(ranks.gathered(seen), samples, strict=True):
+        strategy.seen(replace(raster, weights=found[:, 2], radii_px=found[:, 3]), found[:, :2], sample.view)
+
 
 # The end of a training that was stopped: its rates fall to their last in a short time.
 #

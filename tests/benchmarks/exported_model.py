@@ -14,10 +14,10 @@ from pathlib import Path
 
 from reconstruction.exports.gltf import GltfOptions, write_gltf
 from reconstruction.exports.ply_export import write_ply
-from reconstruction.exports.spz.writing import write_spz
+from reconstruction.exports.spz import write_spz
 from reconstruction.exports.tiles3d import TilesOptions, write_tiles
 from reconstruction.exports.usd import write_usd
-from reconstruction.exports.web.page import write_web
+from reconstruction.exports.web import write_web
 from reconstruction.objects.gs_scene import GsScene
 from reconstruction.objects.store import StoredScene
 

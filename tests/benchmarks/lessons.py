@@ -17,12 +17,11 @@ from groundstation.services.scenes.photos import photograph_files
 from groundstation.services.scenes.views import SceneRequest
 from planning.base.jit import n_threads
 from reconstruction.light.config import GridSettings, ReflectionConfig
-from reconstruction.light.directions.reflection_mlp import MlpShape
 from reconstruction.light.glass_rays import glass_rays
 from reconstruction.light.photo_set import held_out_names, read_photo_set
+from reconstruction.light.reflection_mlp import MlpShape
 from reconstruction.light.reflective_panels import ModelName
-from reconstruction.light.scoring import score_views
-from reconstruction.light.training import train_reflections
+from reconstruction.light.training import score_views, train_reflections
 from reconstruction.scenes.photos.renderer import RenderSettings
 from tests.benchmarks.harness import Row
 

@@ -18,12 +18,12 @@ from numpy.typing import NDArray
 
 from groundstation.services.scenes.photos import photograph_files
 from groundstation.services.scenes.views import SceneRequest
-from reconstruction.exports.baked import ALMOST_NO_LOGIT, baked
+from reconstruction.exports.component_parts import Ellipsoids, ellipsoids_of_all
 from reconstruction.exports.compression import PRESETS, Compressed, Compression
-from reconstruction.exports.ellipsoids import Ellipsoids, ellipsoids_of_all
+from reconstruction.exports.mesh import ALMOST_NO_LOGIT, baked
 from reconstruction.exports.ply_export import write_ply
-from reconstruction.exports.sog.writing import write_sog
-from reconstruction.exports.spz.writing import write_spz
+from reconstruction.exports.sog import write_sog
+from reconstruction.exports.spz import write_spz
 from reconstruction.light.photo_set import PhotoSet, read_photo_set
 from reconstruction.light.shading import display_from_linear
 from reconstruction.objects.gs_scene import GsGaussian, GsScene

@@ -20,9 +20,9 @@ from reconstruction.base.cameras import Intrinsics
 from reconstruction.colmap.folder import write_model
 from reconstruction.colmap.georeference import model_of
 from reconstruction.dataset.prepare import layer_path
-from reconstruction.light.directions.reflection_mlp import MlpShape, ReflectionMlp
+from reconstruction.light.reflection_mlp import MlpShape, ReflectionMlp
 from reconstruction.splats.harmonic_colour import display_colours_twin, light_of_display
-from reconstruction.training.losses.dssim import dssim, dssim_torch
+from reconstruction.training.losses import dssim, dssim_torch
 from reconstruction.training.photos.decoded_photo import Decoding, decoded_bytes
 from reconstruction.training.train import freed_memory_kept
 from tests.benchmarks.harness import Benchmark, Context, Row

@@ -15,7 +15,7 @@ from reconstruction.base.cameras import Intrinsics, Pose, PosedPhoto
 from reconstruction.objects.gs_scene import GsComponent, GsElement, GsScene
 from reconstruction.objects.picking import Quads, picked
 from reconstruction.objects.store import StoredScene, write_scene
-from reconstruction.records.global_ids import global_id_of
+from reconstruction.records.entries import global_id_of
 from reconstruction.splats.ply import read_splats, write_splats
 from reconstruction.splats.splats import Splats
 from tests.benchmarks.harness import Benchmark, Context, Row

@@ -16,8 +16,7 @@ from reconstruction.light.config import ReflectionConfig
 from reconstruction.light.glass_rays import glass_rays
 from reconstruction.light.photo_set import read_photo_set
 from reconstruction.light.reflective_panels import ModelName
-from reconstruction.light.scoring import score_views
-from reconstruction.light.training import train_reflections
+from reconstruction.light.training import score_views, train_reflections
 from tests.benchmarks.harness import Benchmark, Context, Row
 from tests.benchmarks.lessons import QUICK, QUICK_N_VIEWS, QUICK_WIDTH_PX
 from tests.tables.photos import Photos, Planner, photos_in

@@ -14,10 +14,18 @@ import msgspec
 from planning.base.json_file import write_atomically
 from planning.base.progress import Clock
 from reconstruction.records.book import FILE, RecordBook, make_book
-from reconstruction.records.csv.reading import read_tables
-from reconstruction.records.csv.tables import table_name, write_tables
-from reconstruction.records.entries import KINDS, Attribute, Defect, Document, Entry, Inspection, Maintenance
-from reconstruction.records.global_ids import global_id_of
+from reconstruction.records.csv import read_tables, table_name, write_tables
+from reconstruction.records.database import searched_texts
+from reconstruction.records.entries import (
+    KINDS,
+    Attribute,
+    Defect,
+    Document,
+    Entry,
+    Inspection,
+    Maintenance,
+    global_id_of,
+)
 from reconstruction.records.objects import ObjectRow
 from reconstruction.records.queries import (
     ObjectFilter,
@@ -28,7 +36,6 @@ from reconstruction.records.queries import (
     search,
     worst_open_defects,
 )
-from reconstruction.records.rows import searched_texts
 from tests.benchmarks.harness import Benchmark, Context, Row
 
 N_PANES, N_QUICK = 5000, 200

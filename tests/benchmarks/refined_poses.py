@@ -9,11 +9,9 @@ from pathlib import Path
 import numpy as np
 
 from reconstruction.base.cameras import Intrinsics, Pose, PosedPhoto
-from reconstruction.colmap.camera_models import camera_of
-from reconstruction.colmap.georeference import angle_between_deg
-from reconstruction.colmap.record import NO_POINTS, ColmapImage, ColmapModel, quaternion_of
+from reconstruction.colmap.georeference import angle_between_deg, fit
+from reconstruction.colmap.record import NO_POINTS, ColmapImage, ColmapModel, camera_of, quaternion_of
 from reconstruction.colmap.refine import RefineParameters, pose_covariances, refine_poses
-from reconstruction.colmap.similarity import fit
 from tests.benchmarks.harness import Benchmark, Context, Row, Skipped, stopwatch
 from tests.reconstruction.colmap.models import covariance
 from tests.reconstruction.colmap.test_refine import SIGMA_DEG, SIGMA_M, start

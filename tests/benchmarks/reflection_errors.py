@@ -15,8 +15,7 @@ from numpy.typing import NDArray
 
 from groundstation.services.scenes.photos import photograph_files
 from groundstation.services.scenes.views import SceneRequest
-from reconstruction.light.config import ReflectionConfig
-from reconstruction.light.glass_learned import GlassLearned
+from reconstruction.light.config import GlassLearned, ReflectionConfig
 from reconstruction.light.glass_rays import GlassRays, glass_rays
 from reconstruction.light.photo_set import PanelPlanes, PhotoSet, held_out_names, read_photo_set
 from reconstruction.light.ray_table import RayTable

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from reconstruction.light.config import ReflectionConfig
-from reconstruction.light.directions.reflection_mlp import MlpShape
+from reconstruction.light.reflection_mlp import MlpShape
 from tests.benchmarks.harness import Benchmark, Context, Row
 from tests.benchmarks.lessons import (
     QUICK,

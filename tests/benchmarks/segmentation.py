@@ -15,8 +15,7 @@ from planning.tradeoff.runner import draw
 from reconstruction.metrics.metrics import PhotoScores, SetScores, summarise
 from reconstruction.metrics.overlaps import pixel_overlaps
 from reconstruction.metrics.pictures import write_picture
-from reconstruction.metrics.report import picture
-from reconstruction.metrics.run import Method, ScoredAnswer, own_method, score_answer, score_set
+from reconstruction.metrics.run import Method, ScoredAnswer, own_method, picture, score_answer, score_set
 from reconstruction.metrics.sets import PhotoSet, ScoredPhoto, annotated_set, made_set
 from reconstruction.panels.search.parameters import DETECTORS, SegmentationParameters
 from reconstruction.scenes.facades.cases import random_case, wide_camera

@@ -8,7 +8,7 @@ from __future__ import annotations
 import torch
 from torch import Tensor
 
-from reconstruction.splats.rasterising.numba_tiles import sort_into_tiles
+from reconstruction.splats.rasterising.numba_backend import sort_into_tiles
 from reconstruction.splats.rasterising.projection import Projected, project
 from reconstruction.splats.rasterising.raster_types import RasterSettings
 from reconstruction.splats.rasterising.views import View

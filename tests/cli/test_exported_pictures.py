@@ -5,8 +5,8 @@ import pytest
 import torch
 
 from groundstation.cli.main import main
-from reconstruction.exports.baked import baked
-from reconstruction.exports.ellipsoids import ellipsoids_of_all
+from reconstruction.exports.component_parts import ellipsoids_of_all
+from reconstruction.exports.mesh import baked
 from reconstruction.objects.organise import organised
 from reconstruction.splats.harmonic_colour import display_colours
 from reconstruction.splats.ply import ODD
@@ -17,7 +17,7 @@ from reconstruction.training.model.saved import read_model
 from tests import foreign
 from tests.reconstruction.exports.test_foreign_cesium import FOCAL_PX as CESIUM_FOCAL_PX
 from tests.reconstruction.exports.test_foreign_cesium import look
-from tests.reconstruction.exports.web.test_page_picture import view_of
+from tests.reconstruction.exports.test_web_picture import view_of
 from tests.reconstruction.exports.web_browser import chromium
 
 pytestmark = pytest.mark.slow

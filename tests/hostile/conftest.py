@@ -19,7 +19,7 @@ LOADED = (
     "missions.flight.logs.read", "groundstation.services.project.folder", "groundstation.services.plan.planning",
     "groundstation.services.reconstruct.training", "groundstation.services.model.export", "cv2", "trimesh",
     "scipy.sparse",
-    "reconstruction.training.model.saved", "reconstruction.records.book", "reconstruction.metrics.lpips_weights",
+    "reconstruction.training.model.saved", "reconstruction.records.book", "reconstruction.metrics.lpips",
     "groundstation.services.project.recovery",
 )  # fmt: skip
 """Modules that take long to load, or whose memory is not the file's."""

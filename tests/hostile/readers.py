@@ -40,13 +40,13 @@ def map_tiles(path: Path) -> None:
 
 def lpips(path: Path) -> None:
     """Weights for scores."""
-    from reconstruction.metrics.lpips_weights import read_lpips_weights
+    from reconstruction.metrics.lpips import read_lpips_weights
 
     read_lpips_weights([path])
 
 
 def coco(path: Path) -> None:
     """Annotated photos."""
-    from reconstruction.metrics.annotated import coco_photos
+    from reconstruction.metrics.sets import coco_photos
 
     list(coco_photos(path.parent))

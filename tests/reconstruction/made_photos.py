@@ -11,10 +11,8 @@ from planning.geo.frames import Origin
 from planning.geo.mesh import TriangleMesh, box_mesh, join, write_mesh
 from reconstruction.panels.rectify.surface import FacadeSurface
 from reconstruction.scenes.facades.cases import simple_case, wide_camera
-from reconstruction.scenes.facades.photo_files import write_photos
-from reconstruction.scenes.facades.record import Disturbances, Layout, MadeFacade
-from reconstruction.scenes.facades.render import make_facade
-from reconstruction.scenes.facades.wall import Wall
+from reconstruction.scenes.facades.record import Disturbances, Layout, MadeFacade, Wall
+from reconstruction.scenes.facades.render import make_facade, write_photos
 from tests.reconstruction.panels.rectify.scenes import surface_mesh
 
 ORIGIN = Origin(22.3372, 114.2636, 62.0)

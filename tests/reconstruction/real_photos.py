@@ -16,8 +16,7 @@ from planning.geo.frames import Origin
 from planning.geo.mesh import TriangleMesh, extrude
 from reconstruction.base.cameras import Intrinsics, PosedPhoto
 from reconstruction.colmap.folder import read_model
-from reconstruction.colmap.georeference import posed_photos
-from reconstruction.colmap.similarity import Similarity
+from reconstruction.colmap.georeference import Similarity, posed_photos
 from tests.planning.photos.photo_writer import exif_part, gps_tags, jpeg, packet, save
 from tests.reconstruction.colmap.models import turned
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from reconstruction.light.config import ReflectionConfig
-from reconstruction.light.directions.reflection_mlp import MlpShape
+from reconstruction.light.reflection_mlp import MlpShape
 from reconstruction.training.config import TrainConfig
 from reconstruction.training.method_registry import METHODS
 from reconstruction.training.presets import preset

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.light.photo_set import PhotoSet, read_photo_set
 from reconstruction.metrics.image_metrics import score_picture
-from reconstruction.metrics.lpips_weights import read_lpips_weights
+from reconstruction.metrics.lpips import read_lpips_weights
 from reconstruction.splats.rasterising.views import View
 from reconstruction.training.config import TrainConfig, config_of
 from reconstruction.training.model.render import png_of, render_view

@@ -194,7 +194,7 @@ def run_segmentation(options: argparse.Namespace) -> int:
     """Score and print; returns the exit status."""
     from groundstation.cli.console import print_json, run_job
     from groundstation.services.photos.segmentation import save_photos, score_segmentation
-    from reconstruction.metrics.report import summary
+    from reconstruction.metrics.run import summary
 
     request = replace(request_of(options), masks=options.masks)
     if options.save_photos is not None:

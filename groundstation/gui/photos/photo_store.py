@@ -14,8 +14,8 @@ from PySide6.QtGui import QImage
 
 from planning.base.errors import InputError
 from planning.photos.record import PhotoMetadata
-from reconstruction.panels.rectify.rectification import Rectification
-from reconstruction.panels.rectify.warp import warp
+from reconstruction.panels.rectify.surface import Rectification
+from reconstruction.panels.rectify.view import warp
 from reconstruction.photos.decode import colour_picture
 
 THUMBNAIL_PX = 144

@@ -184,7 +184,7 @@ def _shown(
     whole: GsScene, trained: TrainedModel, wanted: ModelExport, exporter: ModelExporter, monitor: Monitor
 ) -> tuple[GsScene, list[str]]:
     """The components that are wanted, with what panels show in their colours."""
-    from reconstruction.exports.baked import baked, needs_baking
+    from reconstruction.exports.mesh import baked, needs_baking
     from reconstruction.training.methods.shader import Shader
 
     scene, notes = whole, list[str]()
@@ -236,8 +236,7 @@ def _web(export: ModelToExport) -> list[str]:
     from contextlib import nullcontext
 
     from groundstation.services.model.facility_records import open_records, records_path
-    from reconstruction.exports.web.page import WebOptions, write_web
-    from reconstruction.exports.web.sky import sky_light
+    from reconstruction.exports.web import WebOptions, sky_light, write_web
     from reconstruction.records.stored_files import DOCUMENT_FILE, stored_path
 
     has_records = records_path(export.folder).is_file()
@@ -312,7 +311,7 @@ def _ply(export: ModelToExport) -> list[str]:
 
 
 def _spz(export: ModelToExport) -> list[str]:
-    from reconstruction.exports.spz.writing import write_spz
+    from reconstruction.exports.spz import write_spz
 
     version: Literal[3, 4] = 4 if export.wanted.format == ModelFormat.SPZ_4 else 3
     compression = _compression(export)
@@ -320,7 +319,7 @@ def _spz(export: ModelToExport) -> list[str]:
 
 
 def _sog(export: ModelToExport) -> list[str]:
-    from reconstruction.exports.sog.writing import write_sog
+    from reconstruction.exports.sog import write_sog
 
     return _left_out(write_sog(export.scene, export.out, _compression(export), monitor=export.monitor))
 

@@ -110,7 +110,7 @@ def attachments_of(
     InputError
         The records cannot be read.
     """
-    from reconstruction.exports.web.pictures import PICTURES, small_jpeg
+    from reconstruction.exports.page_records import PICTURES, small_jpeg
     from reconstruction.records.book import FILE, RecordBook
     from reconstruction.records.entries import Defect, Document, is_address
     from reconstruction.records.stored_files import DOCUMENT_FILE, stored_path
@@ -271,7 +271,7 @@ def filter_value(book: RecordBook, attribute: str, text: str) -> Value:
     InputError
         It is no such value.
     """
-    from reconstruction.records.csv.cells import read_number, read_value
+    from reconstruction.records.csv import read_number, read_value
     from reconstruction.records.entries import COMPUTED
     from reconstruction.records.queries import attribute_type
 
@@ -323,7 +323,7 @@ def put_fields(book: RecordBook, name: str, kind_name: str, texts: Mapping[str, 
     InputError
         There is no such object, kind or field, or a field refuses its value.
     """
-    from reconstruction.records.csv.cells import read_field
+    from reconstruction.records.csv import read_field
     from reconstruction.records.entries import KIND_NAMED, Attribute
 
     kind = KIND_NAMED.get(kind_name)
@@ -389,8 +389,7 @@ def put_attributes(book: RecordBook, name: str, texts: Mapping[str, str]) -> int
     InputError
         There is no such object, or an attribute refuses its value.
     """
-    from reconstruction.records.csv.cells import read_value
-    from reconstruction.records.csv.tables import column_of_head
+    from reconstruction.records.csv import column_of_head, read_value
     from reconstruction.records.entries import Attribute
 
     row = book.object(name)
@@ -423,8 +422,7 @@ def import_records(
     InputError
         There is no such file, or something in it is wrong: then nothing of it is taken.
     """
-    from reconstruction.records.csv.reading import kind_of_table, read_tables
-    from reconstruction.records.csv.tables import table_name
+    from reconstruction.records.csv import kind_of_table, read_tables, table_name
     from reconstruction.records.entries import KIND_NAMED, KINDS
 
     if path.suffix.lower() == ".ifc":
@@ -447,7 +445,7 @@ def import_records(
 
 def export_tables(book: RecordBook, folder: Path, semicolon: bool = False) -> Exported:
     """Write the records as CSV tables into a folder, see `write_tables`."""
-    from reconstruction.records.csv.tables import write_tables
+    from reconstruction.records.csv import write_tables
 
     return Exported(write_tables(book, folder, semicolon))
 
@@ -477,8 +475,8 @@ def export_ifc(
         return Exported((out,), write_new_ifc(book, out, mesh))
     if site is not None:
         raise InputError("--site goes with a new IFC file; leave out --into or --site")
-    from reconstruction.records.ifc.process import extend_copy
-    from reconstruction.records.ifc.sets import property_sets
+    from reconstruction.records.ifc.extract import property_sets
+    from reconstruction.records.ifc.importing import extend_copy
 
     names = {row.global_id: row.name for row in book.objects(with_absent=True)}
     found = extend_copy(original, out, property_sets(book), frozenset(names), monitor)

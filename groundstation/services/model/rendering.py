@@ -59,7 +59,7 @@ def score_files(
         Model, photos or weights cannot be read, or the photos are of another site.
     """
     from reconstruction.light.photo_set import read_photo_set
-    from reconstruction.metrics.lpips_weights import read_lpips_weights
+    from reconstruction.metrics.lpips import read_lpips_weights
     from reconstruction.training.model.saved import read_model
     from reconstruction.training.model.score import score_views
 
@@ -127,7 +127,7 @@ def render_files(model: Path, wish: RenderRequest, out: Path, monitor: Monitor =
         Model or views cannot be read, or a file cannot be written.
     """
     from reconstruction.training.model import render
-    from reconstruction.training.model.camera_path import cameras_between
+    from reconstruction.training.model.render import cameras_between
     from reconstruction.training.model.saved import read_model
 
     trained = read_model(model)

@@ -18,9 +18,17 @@ from planning.base.json_file import expect_format, read_json
 from planning.geo.frames import Origin
 from reconstruction.base.cameras import Intrinsics, Pose, PosedPhoto
 from reconstruction.objects.gs_scene import GsElement
-from reconstruction.objects.opening import largest, middle_of, outward, places_of, standoff_m
 from reconstruction.objects.picking import Quads
-from reconstruction.objects.store import DESCRIPTION, FORMAT, StoredScene
+from reconstruction.objects.store import (
+    DESCRIPTION,
+    FORMAT,
+    StoredScene,
+    largest,
+    middle_of,
+    outward,
+    places_of,
+    standoff_m,
+)
 from reconstruction.training.names import MODEL
 
 Array = NDArray[np.float64]

@@ -23,10 +23,10 @@ from reconstruction.colmap.refined_folder import (
     check_refined_folder,
     fingerprint,
     is_refined_folder,
+    judge_poses,
     read_refined,
     write_refined,
 )
-from reconstruction.colmap.verdict import judge_poses
 from reconstruction.photos.poses import PhotoSet
 
 LENS_UNKNOWN = "lens-distortion-unknown"

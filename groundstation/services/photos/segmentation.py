@@ -12,14 +12,13 @@ from planning.base.errors import InputError
 from planning.base.json_file import check_output
 from planning.base.progress import QUIET, Monitor
 from planning.tradeoff.runner import Compared, Subject, compare, output_folder
-from reconstruction.metrics.annotated import READERS
 from reconstruction.metrics.metrics import SetScores
 from reconstruction.metrics.pictures import read_picture, write_picture
-from reconstruction.metrics.report import write_pictures, write_table
-from reconstruction.metrics.run import masks_method, own_method, score_set
+from reconstruction.metrics.run import masks_method, own_method, score_set, write_pictures, write_table
 from reconstruction.metrics.sets import (
     EXTENT_MARGIN_M,
     MADE_SETS,
+    READERS,
     PhotoSet,
     annotated_set,
     folder_set,

@@ -12,10 +12,8 @@ from planning.geo.mesh import box_mesh, write_mesh
 from planning.site.file import write_site
 from planning.site.records import Airspace, Facade, Panel, Site
 from reconstruction.scenes.facades.cases import photo_of, wide_camera
-from reconstruction.scenes.facades.photo_files import write_photos
-from reconstruction.scenes.facades.record import Case, Disturbances, Layout, MadeFacade, TruePanel
-from reconstruction.scenes.facades.render import make_facade
-from reconstruction.scenes.facades.wall import Wall
+from reconstruction.scenes.facades.record import Case, Disturbances, Layout, MadeFacade, TruePanel, Wall
+from reconstruction.scenes.facades.render import make_facade, write_photos
 
 ORIGIN = Origin(22.3372, 114.2636, 62.0)
 WALL = Wall((0.0, 0.0, 0.5))

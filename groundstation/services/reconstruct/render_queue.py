@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from reconstruction.splats.splats import Splats
     from reconstruction.training.callbacks import Visit
     from reconstruction.training.model.joint_model import SceneModel
-    from reconstruction.training.model.photo_errors import PhotoErrors
+    from reconstruction.training.model.render import PhotoErrors
     from reconstruction.training.model.saved import TrainedModel
 
 
@@ -83,7 +83,7 @@ class ShownModel:
 
     def photos(self, source: PhotoSet) -> tuple[PosedPhoto, ...]:
         """All of a data set, those that were learned from where learning light found them to be."""
-        from reconstruction.training.photos.pose_corrections import moved
+        from reconstruction.training.photos.exposures import moved
 
         if not self.moves:
             return source.photos
@@ -501,7 +501,7 @@ class RenderQueue:
         return True
 
     def _turn_to(self, wanted: WatchErrors, shown: ShownModel) -> None:
-        from reconstruction.training.model.photo_errors import PhotoErrors
+        from reconstruction.training.model.render import PhotoErrors
 
         if self._errors is not None and self._errors[0] == wanted and self._errors[1] is shown.version:
             return

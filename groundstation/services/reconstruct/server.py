@@ -112,7 +112,7 @@ class _Server:
 
     def run(self) -> None:
         """Work until the window has gone."""
-        from reconstruction.training.devices import cuda_devices, use_threads
+        from reconstruction.training.ranks import cuda_devices, use_threads
 
         self._tell(Devices(cuda_devices()))
         while not self._wishes.gone.is_set():

@@ -38,8 +38,7 @@ from reconstruction.base.cameras import Intrinsics, PosedPhoto
 from reconstruction.scenes.effects.registry import decide_effects
 from reconstruction.scenes.mitsuba.plugins import mitsuba
 from reconstruction.scenes.photos.camera_model import USUAL_TAKING, Taking, read_taking
-from reconstruction.scenes.photos.flight_views import lens_of, moments, planned_shots, posed_photos
-from reconstruction.scenes.photos.square_views import square_photos
+from reconstruction.scenes.photos.flight_views import lens_of, moments, planned_shots, posed_photos, square_photos
 from reconstruction.scenes.record import Scene
 from reconstruction.scenes.runs.photo_folder import ScenePhotos, photograph
 from reconstruction.scenes.runs.photo_job import PhotoJob

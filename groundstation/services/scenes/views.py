@@ -26,9 +26,16 @@ from planning.request import PlanRequest
 from planning.site.file import is_planned_on, site_bytes, site_sha256
 from planning.site.records import SiteModel
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.scenes.photos.flight_views import WIDTHS_PX, Shot, flown_shots, lens_of, planned_shots, posed_photos
+from reconstruction.scenes.photos.flight_views import (
+    WIDTHS_PX,
+    Shot,
+    flown_shots,
+    lens_of,
+    planned_shots,
+    posed_photos,
+    square_shots,
+)
 from reconstruction.scenes.photos.renderer import RenderSettings
-from reconstruction.scenes.photos.square_views import square_shots
 from reconstruction.scenes.record import Scene
 from reconstruction.scenes.runs.photo_job import DEFAULT_POINTS
 from reconstruction.scenes.runs.run_record import RUN_FILE

@@ -3,14 +3,190 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import find_peaks
 
-from reconstruction.panels.search.stillness import Stillness
+from reconstruction.panels.search.record import GridLine
 
 Array = NDArray[np.float64]
+
+
+# How far a grid reaches: the stretch its lines are seen along, and border cells that its other lines do not enter.
+
+LEAST_SHARE = 0.4
+"""Of the usual support of crossing lines, that the cells of a border must show. Walls and skies beside a facade show
+under 0.2, the weakest border columns of glass 0.6."""
+
+USUAL_QUANTILE = 0.75
+"""Of the cells' support that is taken as usual: where half of the cells are not the facade, the median is theirs."""
+
+NEAR_PX = 1.5
+"""From a line's edge to a pixel that supports it."""
+
+
+def best_stretch(values: Array) -> tuple[int, int]:
+    """Start and stop of the consecutive values with the largest sum; everything where none is positive."""
+    sums = np.concatenate([[0.0], np.cumsum(values)])
+    stop = int(np.argmax(sums - np.minimum.accumulate(sums)))
+    start = int(np.argmin(sums[: stop + 1]))
+    return (start, stop) if stop > start else (0, values.size)
+
+
+def crossing_support(is_edge: NDArray[np.bool_], lines: tuple[GridLine, ...], crossing: tuple[GridLine, ...]) -> Array:
+    """Share of each piece of a line that has an edge.
+
+    Parameters
+    ----------
+    is_edge
+        Shape (h, w): edges along the direction of `lines`, the columns of this picture.
+    lines
+        Along the columns of the picture.
+    crossing
+        The other direction's: pieces of lines lie between them.
+
+    Returns
+    -------
+    Array
+        Shape (len(lines), len(crossing) - 1), the better edge of each line counting.
+    """
+    height = is_edge.shape[0]
+    support = np.zeros((len(lines), max(0, len(crossing) - 1)))
+    for i, line in enumerate(lines):
+        for seen in seen_along(is_edge, line):
+            sums = np.concatenate([[0.0], np.cumsum(seen)])
+            for j, (a, b) in enumerate(pairwise(crossing)):
+                start = int(np.clip(a.position_px + a.width_px / 2 + 2.0, 0, height))
+                stop = int(np.clip(b.position_px - b.width_px / 2 - 2.0, 0, height))
+                if stop > start:
+                    support[i, j] = max(support[i, j], (sums[stop] - sums[start]) / (stop - start))
+    return support
+
+
+def seen_along(is_edge: NDArray[np.bool_], line: GridLine) -> NDArray[np.bool_]:
+    """Whether either edge of a line along the columns is seen in each row, shape (2, h)."""
+    height, width = is_edge.shape
+    seen = np.zeros((2, height), bool)
+    for side, sign in enumerate((-0.5, 0.5)):
+        x = line.position_px + sign * line.width_px
+        low, high = max(0, round(x - NEAR_PX - 0.5)), min(width, round(x + NEAR_PX + 0.5))
+        if low < high:
+            seen[side] = is_edge[:, low:high].any(axis=1)
+    return seen
+
+
+def crossed_by(
+    is_edge: NDArray[np.bool_], lines: tuple[GridLine, ...], between_px: tuple[float, float]
+) -> Array | None:
+    """How much of the inner lines along the columns is seen in each row, as a multiple of the usual, shape (h,).
+
+    None where there are no inner lines, or nothing of them is seen.
+    """
+    if len(lines) < 3:
+        return None
+    seen = np.mean([seen_along(is_edge, line).any(axis=0) for line in lines[1:-1]], axis=0)
+    usual = float(np.median(seen[int(between_px[0]) : int(between_px[1]) + 1]))
+    return np.asarray(seen / usual) if usual > 0.0 else None
+
+
+def kept_cells(support: Array) -> slice:
+    """Cells between crossing lines that lie on the facade: the stretch of cells with most support.
+
+    Parameters
+    ----------
+    support
+        Of inner lines, shape (n_lines, n_cells), from `crossing_support`; without any line nothing is cut.
+    """
+    n_lines, n_cells = support.shape
+    if n_lines == 0 or n_cells < 2:
+        return slice(0, n_cells)
+    seen = support.mean(axis=0)
+    return slice(*best_stretch(seen - LEAST_SHARE * float(np.quantile(seen, USUAL_QUANTILE))))
+
+
+# Frames by their stillness: what glass mirrors changes along a line, a frame keeps its brightness.
+#
+# A dark profile before dark glass that mirrors a bright grid shows hardly an edge in most panes, but nothing of the
+# grid
+# either. Within a band of rows as long as a pane the brightness of a column of glass spreads by s_g, that of a
+# profile by
+# s_f. Were the profile glass, its brightness would be drawn from a normal distribution of spread s_g; the logarithm
+# of
+# the likelihood ratio is, for each independent value,
+#
+#     log(s_g / s_f) + (s_f^2 / s_g^2 - 1) / 2,
+#
+# and near none where the glass beside is itself as still as noise.
+
+Picture = NDArray[np.float32]
+
+N_BANDS = 12
+"""Bands of a picture: as long as a pane, in which glass mirrors several things; in shorter ones it is still, too."""
+
+STRIP_PX = (2.5, 9.0)
+"""Glass beside a profile, from its edges: beyond the blur, and not yet the next profile."""
+
+NOISE_GREY = 2.0
+"""Spread below which nothing can be told: of pixels' noise and 8 bit."""
+
+VALUES = 2.0
+"""Independent values of brightness in a pane's length."""
+
+MOST_OF_A_VALUE, OF_A_WITNESS = 1.5, (-0.4, 1.0)
+"""Nats: most for a value, least and most for a pane. Between the edges of made profiles the sum over the panes is below
+-0.2 once in fifty times, above 4.5 in three of four; between other edges below -1 every second time, above 1 once in
+ten."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Stillness:
+    """Spread of brightness along the columns of a picture.
+
+    Parameters
+    ----------
+    sums
+        Shape (n_bands, w + 1): cumulative over the columns, of the spread within each band of rows, grey levels.
+    """
+
+    sums: Array
+
+    @classmethod
+    def of(cls, spread: Array) -> Stillness:
+        """From the spread of each column in each band, shape (n_bands, w)."""
+        return cls(np.pad(np.cumsum(spread, axis=1), ((0, 0), (1, 0))))
+
+    def per_witness(self, first_px: Array, last_px: Array) -> Array:
+        """Gain of a profile between each two edges, each shape (n,); shape (n,), nats for each pane along it."""
+        thin = np.maximum(0.6 - 0.5 * (last_px - first_px), 0.0)
+        frame = self._mean(first_px - thin + 0.4, last_px + thin - 0.4)
+        glass = np.minimum(
+            self._mean(first_px - STRIP_PX[1], first_px - STRIP_PX[0]),
+            self._mean(last_px + STRIP_PX[0], last_px + STRIP_PX[1]),
+        )
+        ratio = np.hypot(frame, NOISE_GREY) / np.hypot(glass, NOISE_GREY)
+        told = np.abs(np.log(ratio)) + 0.5 * (np.minimum(ratio, 1.0 / ratio) ** 2 - 1.0)
+        signed = np.minimum(told, MOST_OF_A_VALUE) * np.sign(1.0 - ratio)
+        return np.asarray(np.clip(VALUES * signed.mean(axis=0), *OF_A_WITNESS))
+
+    def _mean(self, start_px: Array, stop_px: Array) -> Array:
+        """Mean spread between places, shape (n_bands, n); of the nearest column where they are beyond the picture."""
+        width = self.sums.shape[1] - 1
+        start = np.clip(np.floor(start_px), 0, width - 1).astype(int)
+        stop = np.clip(np.ceil(stop_px), start + 1, width).astype(int)
+        return np.asarray((self.sums[:, stop] - self.sums[:, start]) / (stop - start))
+
+
+def spread_in_bands(picture: Picture, n_bands: int = N_BANDS) -> Array:
+    """Standard deviation of each column within bands of rows, shape (n_bands, w); fewer bands where rows are few."""
+    height = picture.shape[0]
+    borders = np.linspace(0, height, min(n_bands, height) + 1).astype(int)
+    counts = np.diff(borders)[:, None]
+    centred = picture - picture.mean(dtype=np.float64).astype(np.float32)
+    means = np.add.reduceat(centred, borders[:-1], axis=0, dtype=np.float64) / counts
+    squares = np.add.reduceat(centred * centred, borders[:-1], axis=0, dtype=np.float64) / counts
+    return np.sqrt(np.maximum(squares - means**2, 0.0))
 
 
 # Peaks of a histogram over the rows or columns of a picture.

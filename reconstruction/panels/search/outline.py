@@ -15,18 +15,21 @@ from numpy.typing import NDArray
 from planning.base.effects import Assessment, Decision, decide
 from planning.base.jit import kernel
 from planning.base.messages import say
-from reconstruction.panels.search.cells import LEAST_NEAR_GRID, LEAST_WITNESSES, Panes, Pieces, cuts_of
-from reconstruction.panels.search.evidence import FINE, MOST_SEEN
-from reconstruction.panels.search.extent import best_stretch, seen_along
-from reconstruction.panels.search.grid import Axes, Axis, find_lines
-from reconstruction.panels.search.inclined import (
+from reconstruction.panels.search.cells import (
+    LEAST_NEAR_GRID,
     LEAST_TILT_RAD,
+    LEAST_WITNESSES,
     Candidate,
     EdgePoints,
+    Panes,
+    Pieces,
     candidates,
+    cuts_of,
     inclined_points,
     tilt_rad,
 )
+from reconstruction.panels.search.evidence import FINE, MOST_SEEN, best_stretch, seen_along
+from reconstruction.panels.search.grid import Axes, Axis, find_lines
 from reconstruction.panels.search.parameters import SegmentationParameters
 from reconstruction.panels.search.record import GridLine, InclinedLine
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.effects import Decision
-from reconstruction.panels.rectify.rectification import Rectification
+from reconstruction.panels.rectify.surface import Rectification
 
 Array = NDArray[np.float64]
 

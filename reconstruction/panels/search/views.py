@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InputError
-from reconstruction.panels.rectify.rectification import Rectification
+from reconstruction.panels.rectify.surface import Rectification
 
 # Pictures as the search for lines wants them.
 

@@ -19,8 +19,7 @@ from planning.base.messages import say
 from reconstruction.base.cameras import Pose, PosedPhoto
 from reconstruction.panels.rectify.fit import SurfaceFit, changed
 from reconstruction.panels.rectify.surface import FacadeSurface
-from reconstruction.panels.solving.association import LineGroup
-from reconstruction.panels.solving.observations import coordinates
+from reconstruction.panels.solving.association import LineGroup, coordinates
 from reconstruction.panels.solving.record import SeenLine
 
 Array = NDArray[np.float64]

@@ -2,20 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import PurePath
 
 import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.effects import Decision, EffectSetting, decide
+from planning.base.errors import InputError
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.panels.rectify.curvature import Curvature, FittedFacade
-from reconstruction.panels.rectify.fit import FitParameters, SurfaceFit, fit_cylinder, fit_plane
-from reconstruction.panels.rectify.patches import FacadePatch
-from reconstruction.panels.rectify.surface import FacadeSurface
+from reconstruction.panels.panels_file import OPEN_SIDES, FileFacade, FileInclined, FileLine, FilePanel, PanelsFile
+from reconstruction.panels.rectify.fit import (
+    Curvature,
+    FacadePatch,
+    FitParameters,
+    FittedFacade,
+    SurfaceFit,
+    fit_cylinder,
+    fit_plane,
+)
+from reconstruction.panels.rectify.surface import FacadeSurface, Rectification
+from reconstruction.panels.search.cells import facade_grid
+from reconstruction.panels.search.record import FacadeGrid, FoundPanel, GridLine, InclinedLine
 
 Array = NDArray[np.float64]
+
 
 SAME_SURFACE_M = 0.5
 """Median distance of one patch's points from another's surface up to which they may be one facade."""
@@ -128,3 +140,141 @@ def _use(photo: PosedPhoto, surface: FacadeSurface, low: Array, high: Array) -> 
     cosine = (towards * surface.normals_at(st)).sum(axis=1) / np.maximum(distance, 1e-9)
     seen = photo.sees(points) & (cosine > SQUARE_ON)
     return float((cosine[seen] / distance[seen] ** 2).sum()) * photo.intrinsics.fx_px**2
+
+
+# Grids that are given, as from a corrected panels file, in place of a search.
+
+GIVEN_SIGMA_PX = 1.0
+"""Standard deviation of a line that is given: what a hand can place in a photo."""
+
+BESIDE_M = 2.0
+"""Panels of a facade may lie so far beyond what the coarse model knows of it."""
+
+
+def files_by_photo(photos: Sequence[PosedPhoto], files: Mapping[str, PanelsFile]) -> dict[int, PanelsFile]:
+    """Panels files by the number of their photo.
+
+    Parameters
+    ----------
+    files
+        By the name of the photo's file.
+
+    Raises
+    ------
+    InputError
+        A file is about none of the photos, or about a picture of another size.
+    """
+    numbers = {PurePath(photo.name).name: number for number, photo in enumerate(photos)}
+    found = {}
+    for image, record in files.items():
+        number = numbers.get(PurePath(image).name)
+        if number is None:
+            raise InputError(
+                f"panels of photo '{image}' are given, which is none of the {len(photos)} photos that have a pose; "
+                "name the photo's file in its field 'image', or take the panels file out of the folder"
+            )
+        lens = photos[number].intrinsics
+        if (record.width_px, record.height_px) != (lens.width_px, lens.height_px):
+            raise InputError(
+                f"panels of photo '{image}' are given for {record.width_px} x {record.height_px} pixels, but it has "
+                f"{lens.width_px} x {lens.height_px}; find and correct them in the photo itself"
+            )
+        found[number] = record
+    return found
+
+
+def given_grid(
+    record: PanelsFile, photo: PosedPhoto, facade: Facade, view: Rectification, facade_id: str
+) -> FacadeGrid | None:
+    """What a file says about one facade, in a rectified view of it; None where it says nothing.
+
+    The file's own facades are matched by where most of their panels lie. Lines count; panels tell their widths, and
+    cells without a panel are none.
+
+    Raises
+    ------
+    InputError
+        A line of it has no point on the facade, or an inclined one leaves it.
+    """
+    on_it = [given for given in record.facades if given.panels and _is_on(given, photo, facade)]
+    if not on_it:
+        return None
+    given = max(on_it, key=lambda one: len(one.panels))
+    rows = _lines(given.horizontal_lines, view, 1, _gaps(given, view, 1))
+    columns = _lines(given.vertical_lines, view, 0, _gaps(given, view, 0))
+    inclined = tuple(_inclined(line, index, view) for index, line in enumerate(given.inclined_lines))
+    made = facade_grid(facade_id, view, rows, columns, inclined)
+    kept = [_meant(made, panel) for panel in given.panels]
+    panels = tuple(panel for panel in made.panels if panel in kept)
+    cells = {(row, column) for row in range(len(rows) - 1) for column in range(len(columns) - 1)}
+    present = {(panel.row, panel.column) for panel in panels}
+    return FacadeGrid(facade_id, view, rows, columns, panels, tuple(sorted(cells - present)), inclined)
+
+
+def _meant(made: FacadeGrid, given: FilePanel) -> FoundPanel | None:
+    """The panel of the given one's cell that lies nearest to it: cells may be cut."""
+    beside = [panel for panel in made.panels if (panel.row, panel.column) == (given.row, given.column)]
+    middle = np.mean(given.corners_px, axis=0)
+    return min(beside, key=lambda panel: float(np.linalg.norm(panel.corners_px.mean(axis=0) - middle)), default=None)
+
+
+def _inclined(line: FileInclined, index: int, view: Rectification) -> InclinedLine:
+    left, right = (view.to_rectified(np.array(points)) for points in (line.left_px, line.right_px))
+    middle = 0.5 * (left + right)
+    if not np.isfinite(middle).all():
+        raise InputError(f"inclined_lines[{index}] of a panels file leaves the facade; shorten it, or take it out")
+    first, last = middle[0], middle[-1]
+    along = (last - first) / np.hypot(*(last - first))
+    width = float(np.median((right - left) @ np.array([-along[1], along[0]])))
+    open_side = OPEN_SIDES[line.panels]
+    ends = (float(first[0]), float(first[1])), (float(last[0]), float(last[1]))
+    return InclinedLine(*ends, abs(width), GIVEN_SIGMA_PX, line.confidence, open_side)
+
+
+def _is_on(given: FileFacade, photo: PosedPhoto, facade: Facade) -> bool:
+    middles = np.array([np.mean(panel.corners_px, axis=0) for panel in given.panels])
+    surface: FacadeSurface = facade.fit.surface
+    st = surface.hits(*photo.rays(middles))
+    with np.errstate(invalid="ignore"):
+        inside = ((st >= facade.low_st_m - BESIDE_M) & (st <= facade.high_st_m + BESIDE_M)).all(axis=1)
+    return bool(inside.mean() > 0.5)
+
+
+def _lines(
+    given: Sequence[FileLine], view: Rectification, across: int, widths: Mapping[int, float]
+) -> tuple[GridLine, ...]:
+    usual = float(np.median(list(widths.values()))) if widths else 0.0
+    lines = []
+    for index, line in enumerate(given):
+        places = view.to_rectified(np.array(line.points_px).reshape(-1, 2))[:, across]
+        places = places[np.isfinite(places)]
+        if not len(places):
+            kind = "vertical_lines" if across == 0 else "horizontal_lines"
+            raise InputError(
+                f"{kind}[{index}] of a panels file has no point on the facade; give it points_px, or take the line out"
+            )
+        width = widths.get(index, usual)
+        lines.append(GridLine(float(np.median(places)), width, GIVEN_SIGMA_PX, line.confidence, line.inferred))
+    return tuple(sorted(lines, key=lambda line: line.position_px))
+
+
+def _gaps(given: FileFacade, view: Rectification, across: int) -> dict[int, float]:
+    """Widths of the profiles between panels, by the line's index: what is left between the panels beside it."""
+    ends: dict[tuple[int, int], tuple[float, float]] = {}
+    for panel in given.panels:
+        places = view.to_rectified(np.array(panel.corners_px))[:, across]
+        if len(panel.corners_px) == 4 and np.isfinite(places).all():
+            low, high = np.sort(places).reshape(2, 2).mean(axis=1)
+            ends[_place(panel, given.rows, across)] = float(low), float(high)
+    gaps: dict[int, list[float]] = {}
+    for (along, order), (_, high) in ends.items():
+        beyond = ends.get((along, order + 1))
+        if beyond is not None:
+            gaps.setdefault(order + 1, []).append(max(0.0, beyond[0] - high))
+    return {index: float(np.median(found)) for index, found in gaps.items()}
+
+
+def _place(panel: FilePanel, n_rows: int, across: int) -> tuple[int, int]:
+    """Place of a panel along the lines and across them, from left to right or from top to bottom."""
+    from_top = n_rows - 1 - panel.row
+    return (from_top, panel.column) if across == 0 else (panel.column, from_top)

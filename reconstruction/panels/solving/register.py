@@ -17,9 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.panels.rectify.rectification import Rectification
-from reconstruction.panels.rectify.view import SurfaceView
-from reconstruction.panels.rectify.warp import warp
+from reconstruction.panels.rectify.surface import Rectification
+from reconstruction.panels.rectify.view import SurfaceView, warp
 from reconstruction.panels.search.edges import vertical_edges
 from reconstruction.panels.search.views import CorrectedView, grey
 from reconstruction.panels.solving.adjustment import UNKNOWN_POSE, moved_pose

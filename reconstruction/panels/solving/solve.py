@@ -19,8 +19,7 @@ from reconstruction.panels.search.cells import PARTS, from_lower_left
 from reconstruction.panels.search.cutting import Cut, cut_pieces, four_corners
 from reconstruction.panels.search.record import FacadeGrid, InclinedLine
 from reconstruction.panels.solving.adjustment import LEAST_SIGMA_M, UNKNOWN_POSE, Adjusted, adjust
-from reconstruction.panels.solving.association import FALSE_LINE, MISSED, LineGroup, associate
-from reconstruction.panels.solving.observations import seen_lines
+from reconstruction.panels.solving.association import FALSE_LINE, MISSED, LineGroup, associate, seen_lines
 from reconstruction.panels.solving.record import SolvedFacade, SolvedPanel, SurfaceInclined, SurfaceLine
 
 Array = NDArray[np.float64]

@@ -12,9 +12,17 @@ from planning.base.effects import Assessment
 from planning.base.messages import say
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.scenes.effect_names import EXPOSURE, GIMBAL_ERROR, MOTION_BLUR, POSITION_ERROR
-from reconstruction.scenes.effects.probe import N_PHOTOS, QUANTILE, Probe, spread
-from reconstruction.scenes.effects.terms import RAYS_PER_PIXEL, SECONDS_PER_RAY, TOLERANCE_GREY, TOLERANCE_PX
-from reconstruction.scenes.light.optics import mirrored
+from reconstruction.scenes.effects.probe import (
+    N_PHOTOS,
+    QUANTILE,
+    RAYS_PER_PIXEL,
+    SECONDS_PER_RAY,
+    TOLERANCE_GREY,
+    TOLERANCE_PX,
+    Probe,
+    spread,
+)
+from reconstruction.scenes.light.pane_surfaces import mirrored
 from reconstruction.scenes.photos.camera_model import in_stops
 from reconstruction.scenes.photos.lens_effects import DARKEST, MIDDLE_GREY, grey_levels
 from reconstruction.scenes.photos.motion_blur import MOST_TIMES, NEAREST_M, PX_PER_TIME

@@ -13,19 +13,19 @@ from numpy.typing import NDArray
 from planning.base.effects import Assessment
 from planning.base.messages import say
 from reconstruction.scenes.effect_names import CURVATURE, DOUBLING, FRESNEL, NEAR_FIELD, SECOND_BOUNCE, TILT
-from reconstruction.scenes.effects.probe import Probe
-from reconstruction.scenes.effects.terms import (
+from reconstruction.scenes.effects.probe import (
     NO_GLASS,
     SECONDS_PER_ANGLE,
     SECONDS_PER_RAY,
     SECONDS_PER_SHADOW,
     TOLERANCE_GREY,
     TOLERANCE_PX,
+    Probe,
     cost_s,
     percent,
 )
-from reconstruction.scenes.light.environment import ROWS
 from reconstruction.scenes.light.pane_surfaces import half_sides_m
+from reconstruction.scenes.light.shading import ROWS
 from reconstruction.scenes.light.tracing import Switches
 
 Array = NDArray[np.float64]

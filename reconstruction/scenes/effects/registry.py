@@ -14,9 +14,8 @@ from reconstruction.scenes.effects.camera import Distortion, Noise, Vignetting
 from reconstruction.scenes.effects.flight import ExposureChanges, GimbalError, MotionBlur, PositionError
 from reconstruction.scenes.effects.light import Interior, Occlusion, Shadow, SkyOcclusion
 from reconstruction.scenes.effects.mirror import Curvature, Doubling, Fresnel, NearField, SecondBounce, Tilt
-from reconstruction.scenes.effects.probe import Probe
+from reconstruction.scenes.effects.probe import TOLERANCE_GREY, TOLERANCE_PX, Probe
 from reconstruction.scenes.effects.sun import SunGlare
-from reconstruction.scenes.effects.terms import TOLERANCE_GREY, TOLERANCE_PX
 from reconstruction.scenes.photos.camera_model import USUAL_TAKING, Moment, Taking
 from reconstruction.scenes.photos.lens_effects import USUAL_SENSOR, Sensor
 from reconstruction.scenes.photos.renderer import RenderSettings

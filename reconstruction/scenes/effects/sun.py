@@ -14,13 +14,10 @@ from planning.base.jit import kernel
 from planning.base.messages import say
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.scenes.effect_names import SUN_GLARE
-from reconstruction.scenes.effects.probe import Probe
-from reconstruction.scenes.effects.terms import TOLERANCE_GREY
+from reconstruction.scenes.effects.probe import TOLERANCE_GREY, Probe
 from reconstruction.scenes.light.pane_surfaces import half_sides_m
-from reconstruction.scenes.light.sun import RADIUS_RAD, Sun
-from reconstruction.scenes.light.tracing import Switches, Tracer
-from reconstruction.scenes.photos.lens_effects import MIDDLE_GREY, grey_levels
-from reconstruction.scenes.photos.lens_glare import bloomed
+from reconstruction.scenes.light.tracing import RADIUS_RAD, Sun, Switches, Tracer
+from reconstruction.scenes.photos.lens_effects import MIDDLE_GREY, bloomed, grey_levels
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]

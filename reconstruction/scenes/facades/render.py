@@ -7,18 +7,59 @@ panes on a cylinder are bent with it, while they mirror as flat ones.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
+from datetime import datetime, timedelta
+from pathlib import Path
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from planning.base.errors import InputError
 from planning.base.jit import chunks, run_chunks
+from planning.base.json_file import write_atomically
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
-from reconstruction.base.cameras import Pose
-from reconstruction.scenes.facades.layout import Grid, draw_up
+from planning.geo.frames import Origin
+from reconstruction.base.cameras import Pose, PosedPhoto
+from reconstruction.photos.write import photo_jpeg, photo_name
+from reconstruction.scenes.facades.cases import Grid, draw_up
 from reconstruction.scenes.facades.record import Case, Disturbances, MadeFacade, TruePanel
 from reconstruction.scenes.facades.scene import FACADE_KINDS, Scene, build_scene, kinds, panel_numbers
+
+# Made photos as files, with where and how they were taken written into them as DJI's cameras do.
+
+FIRST_AT, BETWEEN = datetime(2024, 5, 1, 10, 0, 0), timedelta(seconds=5)
+
+
+def write_photos(
+    folder: Path, photos: Sequence[tuple[PosedPhoto, NDArray[np.uint8]]], origin: Origin
+) -> tuple[Path, ...]:
+    """Write JPEG files with RTK positions, gimbal angles and a calibrated lens; returns their paths.
+
+    Parameters
+    ----------
+    photos
+        Cameras in the frame of `origin`, and their pictures, shape (h, w, 3), blue, green, red.
+
+    Raises
+    ------
+    InputError
+        The folder cannot be written.
+    """
+    paths = []
+    for number, (photo, picture) in enumerate(photos):
+        taken_at = FIRST_AT + number * BETWEEN
+        path = folder / photo_name(number + 1, taken_at)
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            write_atomically(path, photo_jpeg(picture, photo, origin, taken_at))
+        except OSError as error:
+            raise InputError(say("cannot be written ({})", error.strerror or error, place=path)) from error
+        paths.append(path)
+    return tuple(paths)
+
 
 SAMPLES_PER_CALL = 16_384
 """Keeps the arrays of intermediate results in the processor's cache."""

@@ -10,9 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reconstruction.base.cameras import Array
-from reconstruction.scenes.facades.layout import Grid
-from reconstruction.scenes.facades.record import Case, Opposite
-from reconstruction.scenes.facades.wall import Array32, first_hits
+from reconstruction.scenes.facades.cases import Grid
+from reconstruction.scenes.facades.record import Array32, Case, Opposite, first_hits
 
 # What stands behind and across the street of a made facade, painted on a picture that hangs upright there.
 

@@ -6,6 +6,9 @@ Mitsuba's classes exist per variant; ours are made for a variant when it is firs
 from __future__ import annotations
 
 import functools
+import os
+import subprocess
+import sys
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -15,8 +18,42 @@ from numpy.typing import NDArray
 from planning.base.errors import InputError
 from planning.base.jit import n_threads
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.scenes.mitsuba.trial import render_pixel, survives
 from reconstruction.scenes.record import Glass
+
+# A pixel by a variant of Mitsuba, in a process of its own: `python -m reconstruction.scenes.mitsuba.plugins VARIANT`.
+#
+# Where LLVM's library lacks an instruction that the processor has, it ends the process that asked for it, which no
+# `except` can help.
+
+LONGEST_S = 120.0
+"""Loading Mitsuba and compiling takes seconds, on a busy machine more."""
+
+
+def survives(variant: str) -> bool:
+    """Whether a pixel is rendered and the process lives on."""
+    known = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    command = [sys.executable, "-P", "-m", __name__, variant]
+    try:
+        done = subprocess.run(command, env=known, capture_output=True, timeout=LONGEST_S, check=False)
+    except (OSError, subprocess.TimeoutExpired):
+        return False
+    return done.returncode == 0
+
+
+def render_pixel(mi: Any) -> None:
+    """Render a pixel of a plain sky with the variant that is set.
+
+    Raises
+    ------
+    RuntimeError
+        It is not finite, or the variant does not work.
+    """
+    film = {"type": "hdrfilm", "width": 1, "height": 1}
+    scene = {"type": "scene", "sky": {"type": "constant"}, "sensor": {"type": "perspective", "film": film}}
+    picture = mi.render(mi.load_dict({**scene, "integrator": {"type": "direct"}}), spp=1)
+    if not np.isfinite(np.asarray(picture)).all():
+        raise RuntimeError("a pixel of the sky is not finite")
+
 
 Array = NDArray[np.float64]
 
@@ -296,3 +333,10 @@ def lens(mi: Any, photo: PosedPhoto, middle_enu_m: Array, moved_enu_m: Array | N
     props["shutter_close"] = 0.0 if way is None else 1.0
     props["sampler"] = mi.load_dict({"type": "independent"})
     return Lens(props)
+
+
+if __name__ == "__main__":
+    import mitsuba as mi
+
+    mi.set_variant(sys.argv[1])
+    render_pixel(mi)

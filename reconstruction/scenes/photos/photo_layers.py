@@ -14,8 +14,7 @@ from planning.geo.mesh import from_corners
 from planning.site.records import panel_triangles
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.base.ray_casting import RayCaster
-from reconstruction.dataset.layers import normals_to_16_bit, unit_normals
-from reconstruction.dataset.panel_images import draw_panels, facing
+from reconstruction.dataset.layers import draw_panels, facing, normals_to_16_bit, unit_normals
 from reconstruction.dataset.prepare import layer_path
 from reconstruction.scenes.photos.renderer import Photograph
 

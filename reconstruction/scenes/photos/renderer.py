@@ -38,7 +38,7 @@ from reconstruction.scenes.effect_names import (
     TILT,
     VIGNETTING,
 )
-from reconstruction.scenes.light.environment import ROWS
+from reconstruction.scenes.light.shading import ROWS
 from reconstruction.scenes.light.tracing import Light, Switches, Tracer
 from reconstruction.scenes.photos.motion_blur import moved_px, n_times, times, varies, windows
 from reconstruction.scenes.record import Scene

@@ -12,7 +12,7 @@ import numpy as np
 
 from planning.base.json_file import write_atomically
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.dataset.grow import grown_corners
+from reconstruction.dataset.refined_mesh import grown_corners
 from reconstruction.photos.write import Circumstances, photo_jpeg
 from reconstruction.scenes.mitsuba.renderer import renderer_of
 from reconstruction.scenes.photos.camera_model import USUAL_TAKING, Capture, Moment, Taking

@@ -5,20 +5,350 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from planning.coverage.sections import PanelFrames, panel_frames
-from planning.geo.mesh import TriangleMesh
-from planning.site.records import Site, SiteModel, panel_corners, require_panels
+from planning.geo.mesh import TriangleMesh, empty_mesh, from_corners
+from planning.site.records import Site, SiteModel, panel_corners, panel_triangles, require_panels
 from reconstruction.scenes.record import Body, Glass, Interiors, Layer, Panes, Scene, Sky
 from reconstruction.scenes.world.look import Look
-from reconstruction.scenes.world.panorama import panorama
-from reconstruction.scenes.world.profiles import edge_neighbours, profile_rings
 from reconstruction.scenes.world.rooms import furnished, painted, shared_rooms
 from reconstruction.scenes.world.surroundings import surround
-from reconstruction.scenes.world.textures import grain
-from reconstruction.scenes.world.wall_cut import without_openings
+from reconstruction.scenes.world.textures import grain, smooth_noise
+
+Array = NDArray[np.float64]
+
+
+# Openings for panes in a building's mesh: no ray from outside may meet the wall before the pane.
+#
+# Coarse meshes have their wall in the plane of the panels, or a little before it. The wall is not moved, which would
+# tear it from its neighbours: what lies in the prism that stands on a panel, from `BEHIND_M` behind it to `BEFORE_M`
+# before it, is cut out of the triangles. Between panels, and where the wall stands well behind or far before them, it
+# stays.
+
+CUT_BEHIND_M = 0.05
+"""Embree's float32 tells planes apart that are a hundredth of this apart."""
+
+BEFORE_M = 0.30
+"""Sills and frames of detailed models, and walls of coarse ones, stand before the glass by less."""
+
+TOUCHING_M = 1e-6
+"""Closer to a plane, a corner lies in it."""
+
+CUT_LEAST_AREA_M2 = 1e-8
+
+
+def without_openings(wall: TriangleMesh, panels: PanelFrames) -> TriangleMesh:
+    """The wall without what lies in the prisms of the panels; the mesh itself where nothing does."""
+    corners = wall.corners_enu_m
+    if not len(corners) or not len(panels):
+        return wall
+    prisms = _Prisms(panels)
+    is_near = _overlap(corners.min(axis=1), corners.max(axis=1), prisms.low.min(axis=0), prisms.high.max(axis=0))
+    kept = [corners[~is_near]]
+    everyone = np.arange(len(panels))
+    is_cut = False
+    for triangle in corners[is_near]:
+        pieces = prisms.cut(triangle, everyone)
+        is_cut |= len(pieces) != 1 or pieces[0] is not triangle
+        kept += [_fan(piece) for piece in pieces]
+    return from_corners(np.concatenate(kept)) if is_cut else wall
+
+
+class _Prisms:
+    """Six planes a panel, normals outwards: a point is inside where `normals @ point <= offsets` for all of them."""
+
+    def __init__(self, panels: PanelFrames) -> None:
+        corners, normals = panels.corners, panels.normals
+        edges = np.roll(corners, -1, axis=1) - corners
+        lengths = np.linalg.norm(edges, axis=2, keepdims=True)
+        sides = np.cross(edges, normals[:, None]) / np.where(lengths > 0.0, lengths, 1.0)
+        heights = np.einsum("mkx,mx->mk", corners, normals)
+        self.normals = np.concatenate([normals[:, None], -normals[:, None], sides], axis=1)
+        self.offsets = np.column_stack(
+            [
+                heights.max(axis=1) + BEFORE_M,
+                CUT_BEHIND_M - heights.min(axis=1),
+                np.einsum("mkx,mkx->mk", corners, sides),
+            ]
+        )
+        before, behind = BEFORE_M * normals[:, None], CUT_BEHIND_M * normals[:, None]
+        ends = np.concatenate([corners + before, corners - behind], axis=1)
+        self.low, self.high = ends.min(axis=1), ends.max(axis=1)
+
+    def cut(self, polygon: Array, panels: NDArray[np.int64]) -> list[Array]:
+        """What of a convex polygon, shape (k, 3), lies outside all prisms of `panels`."""
+        near = _overlap(self.low[panels], self.high[panels], polygon.min(axis=0), polygon.max(axis=0))
+        panels = panels[near]
+        # The middle one first, so that the pieces on both sides of it meet half of the others each.
+        for i in np.argsort(np.abs(np.arange(len(panels)) - len(panels) // 2), kind="stable"):
+            pieces = self._outside(polygon, int(panels[i]))
+            if pieces is not None:
+                others = np.delete(panels, i)
+                return [part for piece in pieces for part in self.cut(piece, others)]
+        return [polygon]
+
+    def _outside(self, polygon: Array, panel: int) -> list[Array] | None:
+        """Convex pieces of a polygon outside a prism; None where all of it is."""
+        pieces, rest = [], polygon
+        for normal, offset in zip(self.normals[panel], self.offsets[panel], strict=True):
+            heights = rest @ normal - offset
+            if (heights >= -TOUCHING_M).all():
+                # A degenerate side's plane has no normal and lets everything pass.
+                if normal.any():
+                    return None
+            elif (heights > TOUCHING_M).any():
+                piece, rest = _split(rest, heights)
+                pieces.append(piece)
+        return [piece for piece in pieces if _area(piece) > CUT_LEAST_AREA_M2]
+
+
+def _overlap(low_a: Array, high_a: Array, low_b: Array, high_b: Array) -> NDArray[np.bool_]:
+    return np.asarray(((low_a <= high_b) & (high_a >= low_b)).all(axis=-1))
+
+
+def _split(polygon: Array, heights: Array) -> tuple[Array, Array]:
+    """Parts of a convex polygon above and below a plane."""
+    above, below = [], []
+    for i in range(len(polygon)):
+        j = (i + 1) % len(polygon)
+        a, b = heights[i], heights[j]
+        if a >= 0.0:
+            above.append(polygon[i])
+        if a <= 0.0:
+            below.append(polygon[i])
+        if a * b < 0.0:
+            crossing = polygon[i] + a / (a - b) * (polygon[j] - polygon[i])
+            above.append(crossing)
+            below.append(crossing)
+    return np.array(above), np.array(below)
+
+
+def _area(polygon: Array) -> float:
+    relative = polygon - polygon[0]
+    return float(0.5 * np.linalg.norm(np.cross(relative[1:-1], relative[2:]).sum(axis=0)))
+
+
+def _fan(polygon: Array) -> Array:
+    """Triangles of a convex polygon, shape (k - 2, 3, 3)."""
+    first = np.broadcast_to(polygon[0], (len(polygon) - 2, 3))
+    return np.stack([first, polygon[1:-1], polygon[2:]], axis=1)
+
+
+# Mullions and transoms: a ring of profile around each pane, up to the middle of the gap to its neighbours.
+#
+# Where panels have a gap between them, their rings fill it and leave the glass free. Where they meet, or end, the
+# ring
+# covers half a profile's width of the glass along that edge, and half of it beyond an edge where no panel follows.
+
+WIDEST_GAP_M = 0.4
+"""Panels further apart have wall between them."""
+
+LEAST_COSINE = 0.85
+"""Of the angles between neighbours' normals and edges: around a sharper corner each panel has its own profile."""
+
+BEHIND_M = 0.02
+"""How far rings reach behind the glass, so that no ray passes between them."""
+
+MITRE = 3.0
+"""A corner moves this much further than its edges, at most: at sharp corners the ring is cut off."""
+
+COVERED = 0.2
+"""Share of a panel's shortest edge that its ring covers, at most."""
+
+N_CANDIDATES = 12
+"""Nearest edges that are looked at for an edge's neighbour."""
+
+
+def profile_rings(panels: PanelFrames, width_m: float, depth_m: float) -> TriangleMesh:
+    """Rings around panels, standing `depth_m` out before them.
+
+    Parameters
+    ----------
+    width_m
+        Of the profiles where no gap between panels says it.
+    """
+    if not len(panels):
+        return empty_mesh()
+    corners, normals = panels.corners, panels.normals[:, None]
+    gaps, cosines = edge_gaps(panels)
+    has_neighbour = np.isfinite(gaps)
+    lengths = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
+    most = COVERED * np.where(lengths > 0.0, lengths, np.inf).min(axis=1, keepdims=True)
+    half_gaps = np.where(has_neighbour, 0.5 * np.where(has_neighbour, gaps, 0.0), 0.5 * width_m)
+    covered = np.where(has_neighbour, np.clip(0.5 * width_m - half_gaps, 0.0, None), 0.5 * width_m)
+    # On convex facades rings lean apart: their fronts reach as far over as it takes to meet.
+    lean = depth_m * np.sqrt((1.0 - cosines) / (1.0 + cosines))
+    outer = corners + _moved_corners(panels, half_gaps + lean)
+    inner = corners - _moved_corners(panels, np.minimum(covered, most))
+    front, back = depth_m * normals, -BEHIND_M * normals
+    faces = [
+        _bands(inner + front, outer + front),
+        _bands(inner + back, inner + front),
+        _bands(outer + front, outer + back)[~has_neighbour.reshape(-1)],
+    ]
+    return from_corners(panel_triangles(np.concatenate(faces)))
+
+
+def _bands(first: Array, second: Array) -> Array:
+    """Quads between two closed rings of four corners, shape (m, 4, 3) each, to (4 m, 4, 3)."""
+    quads = np.stack([first, second, np.roll(second, -1, axis=1), np.roll(first, -1, axis=1)], axis=2)
+    return quads.reshape(-1, 4, 3)
+
+
+def edge_gaps(panels: PanelFrames) -> tuple[Array, Array]:
+    """Distance from each edge to the next panel and the cosine of the angle between their normals, both shape (m, 4).
+
+    Edges are those from a corner to the next; inf and 1 where no panel follows within `WIDEST_GAP_M`.
+    """
+    gaps, neighbours = edge_neighbours(panels)
+    cosines = np.einsum("mx,mkx->mk", panels.normals, panels.normals[neighbours])
+    return gaps, np.where(neighbours >= 0, np.clip(cosines, -1.0, 1.0), 1.0)
+
+
+def edge_neighbours(panels: PanelFrames) -> tuple[Array, NDArray[np.int64]]:
+    """Distance from each edge to the next panel, and which panel that is, both shape (m, 4); inf and -1 for none."""
+    from scipy.spatial import KDTree
+
+    starts = panels.corners.reshape(-1, 3)
+    ends = np.roll(panels.corners, -1, axis=1).reshape(-1, 3)
+    middles = 0.5 * (starts + ends)
+    n_edges = len(middles)
+    owners = np.repeat(np.arange(len(panels)), 4)
+    # The edges of the own panel are among the nearest.
+    _, others = KDTree(middles).query(middles, k=min(N_CANDIDATES, n_edges))
+    others = others.reshape(n_edges, -1)
+    along = (ends - starts)[others]
+    towards = middles[:, None] - starts[others]
+    lengths2 = np.maximum((along**2).sum(axis=2), 1e-12)
+    nearest = np.clip((towards * along).sum(axis=2) / lengths2, 0.0, 1.0)
+    distances = np.linalg.norm(towards - nearest[..., None] * along, axis=2)
+    cosines = np.einsum("ex,ekx->ek", panels.normals[owners], panels.normals[owners[others]])
+    is_neighbour = (owners[others] != owners[:, None]) & (distances <= WIDEST_GAP_M) & (cosines >= LEAST_COSINE)
+    # Neighbours' edges run against each other; an edge without length, as a triangle has one, meets none.
+    reversed_along = -np.einsum("ex,ekx->ek", ends - starts, along)
+    own_lengths = np.linalg.norm(ends - starts, axis=1)[:, None]
+    is_neighbour &= (reversed_along >= LEAST_COSINE * own_lengths * np.sqrt(lengths2)) & (own_lengths > 0.0)
+    distances = np.where(is_neighbour, distances, np.inf)
+    best = distances.argmin(axis=1)
+    rows = np.arange(n_edges)
+    gaps = distances[rows, best]
+    neighbours = np.where(np.isfinite(gaps), owners[others[rows, best]], -1)
+    return gaps.reshape(-1, 4), neighbours.reshape(-1, 4)
+
+
+def _moved_corners(panels: PanelFrames, offsets_m: Array) -> Array:
+    """How corners move when each edge moves outwards by its offset, shape (m, 4, 3)."""
+    edges = np.roll(panels.corners, -1, axis=1) - panels.corners
+    across = np.cross(edges, panels.normals[:, None])
+    lengths = np.linalg.norm(across, axis=2, keepdims=True)
+    across = np.where(lengths > 0.0, across / np.where(lengths > 0.0, lengths, 1.0), 0.0)
+    pairs = np.stack([np.roll(across, 1, axis=1), across], axis=2)
+    wanted = np.stack([np.roll(offsets_m, 1, axis=1), offsets_m], axis=2)
+    # The shortest move that suits both edges; one is enough where they lie in a line or an edge has no length.
+    moved = np.einsum("mkxp,mkp->mkx", np.linalg.pinv(pairs, rcond=1e-6), wanted)
+    length = np.linalg.norm(moved, axis=2, keepdims=True)
+    longest = MITRE * wanted.max(axis=2, initial=0.0)[..., None]
+    return np.asarray(moved * np.minimum(1.0, longest / np.maximum(length, 1e-12)))
+
+
+# Everything far away as one picture around: sky with clouds, a hazy skyline, and the ground down to the nadir.
+
+Picture = NDArray[np.float32]
+
+HEIGHT_PX = 1024
+"""0.18 degrees a pixel."""
+
+TILE_PX = 512
+
+CLOUD = np.array([0.93, 0.93, 0.94], np.float32)
+GROUND = np.array([0.22, 0.23, 0.19], np.float32)
+"""Mean light of streets and parks in the sun."""
+
+
+def panorama(rng: np.random.Generator, sky: Sky, clouds: float, skyline_deg: float) -> Picture:
+    """Picture as `Sky.panorama` has it, shape (HEIGHT_PX, 2 HEIGHT_PX, 3), 0 to 1.
+
+    Parameters
+    ----------
+    clouds
+        Share of the sky that they cover.
+    skyline_deg
+        Elevation of the highest building.
+    """
+    elevation = np.radians(90.0 - (np.arange(HEIGHT_PX) + 0.5) * (180.0 / HEIGHT_PX))
+    heading = np.radians((np.arange(2 * HEIGHT_PX) + 0.5) * (180.0 / HEIGHT_PX))
+    picture = np.empty((HEIGHT_PX, 2 * HEIGHT_PX, 3), np.float32)
+    half = HEIGHT_PX // 2
+    horizon, zenith = np.array(sky.horizon, np.float32), np.array(sky.zenith, np.float32)
+    rise = np.sin(elevation[:half]).astype(np.float32)
+    picture[:half] = (horizon + rise[:, None] * (zenith - horizon))[:, None]
+    # Clouds lie on a level plane, which the horizon is 0.12 heights short of reaching.
+    cover = _on_plane(_noise(rng, (4, 8, 16, 32, 64)), elevation[:half], heading, 0.12, 60.0)
+    threshold = np.quantile(cover[: half // 2], 1.0 - clouds) if 0.0 < clouds < 1.0 else 1.0 - clouds
+    share = np.clip(4.0 * (cover - np.float32(threshold)) + 0.5, 0.0, 1.0) if clouds > 0.0 else np.zeros_like(cover)
+    share *= np.clip(rise / 0.12, 0.0, 1.0)[:, None]
+    picture[:half] += share[..., None] * (CLOUD - picture[:half])
+    ground = GROUND * _on_plane(_blocks(rng), elevation[half:], heading, 0.02, 60.0)[..., None]
+    haze = np.exp(np.sin(elevation[half:]) * 12.0).astype(np.float32)[:, None, None]
+    picture[half:] = ground + 0.6 * haze * (horizon - ground)
+    if skyline_deg > 0.0:
+        _paint_skyline(rng, picture, sky, skyline_deg)
+    return np.clip(picture, 0.0, 1.0)
+
+
+def _noise(rng: np.random.Generator, sizes: tuple[int, ...]) -> Picture:
+    """Octaves of smooth noise, the finer the fainter, stretched to 0 to 1."""
+    value = smooth_noise(rng, TILE_PX, tuple((size, 1.0 / size) for size in sizes))
+    return np.asarray((value - value.min()) / (value.max() - value.min()), np.float32)
+
+
+def _blocks(rng: np.random.Generator) -> Picture:
+    """A town from above: roofs lighter and darker, with streets between them; around 1, and without a seam."""
+    side = 16
+    n = TILE_PX // side
+    value = np.repeat(np.repeat(rng.uniform(0.5, 1.6, (n, n)), side, axis=0), side, axis=1).astype(np.float32)
+    street = np.arange(TILE_PX) % side < 3
+    value[street], value[:, street] = 0.6, 0.6
+    return np.asarray(value * (0.8 + 0.4 * _noise(rng, (16, 64, 256))), np.float32)
+
+
+def _on_plane(
+    tile: Picture, elevation: NDArray[np.float64], heading: NDArray[np.float64], least: float, px: float
+) -> Picture:
+    """What lies on a level plane above or below, `px` pixels of the tile to its height."""
+    away = px / (np.tan(np.abs(elevation)) + least)
+    x = (away[:, None] * np.sin(heading)).astype(np.float32)
+    y = (away[:, None] * np.cos(heading)).astype(np.float32)
+    return np.asarray(cv2.remap(tile, x, y, cv2.INTER_LINEAR, borderMode=cv2.BORDER_WRAP), np.float32)
+
+
+def _paint_skyline(rng: np.random.Generator, picture: Picture, sky: Sky, highest_deg: float) -> None:
+    """Two rows of buildings, the further one hazier and higher."""
+    horizon, scale = HEIGHT_PX // 2, HEIGHT_PX / 180.0
+    haze_colour = np.array(sky.horizon)
+    for haze, part in ((0.6, 1.0), (0.3, 0.6)):
+        x = 0
+        while x < picture.shape[1]:
+            width = max(2, round(rng.uniform(1.0, 5.0) * scale))
+            height = round(highest_deg * part * rng.uniform(0.25, 1.0) * scale)
+            # Walls that face us are lit where the sun stands behind us.
+            towards_sun = np.cos(np.radians((x + width / 2) / scale - sky.sun_heading_deg - 180.0))
+            sun = np.sin(np.radians(max(0.0, 90.0 - sky.sun_elevation_deg))) * (sky.sun_elevation_deg > 0.0)
+            light = 0.35 + np.array(sky.sun) * sun * max(0.0, float(towards_sun))
+            shade = rng.uniform(0.25, 0.8) * rng.uniform(0.9, 1.0, 3) * light
+            block = np.broadcast_to(shade, (height + 2, width, 3)).copy()
+            window = rng.random((height + 2, width)) < 0.45
+            window[::3] = False
+            window[:, ::3] = False
+            block[window] *= rng.uniform(0.3, 0.7)
+            block += haze * (haze_colour - block)
+            right = min(x + width, picture.shape[1])
+            picture[horizon - height : horizon + 2, x:right] = block[:, : right - x]
+            x += width + round(rng.choice([0.0, 0.0, rng.uniform(0.5, 3.0)]) * scale)
+
 
 OTHER_COATING = 0.12
 """How much more or less panes of another batch mirror."""

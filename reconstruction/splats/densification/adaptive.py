@@ -15,12 +15,12 @@ import torch
 from torch import Tensor
 from torch.optim import Optimizer
 
-from reconstruction.splats.densification.seen_splats import SeenSplats
 from reconstruction.splats.densification.strategy import (
     CUT,
     NOTHING,
     Change,
     Limits,
+    SeenSplats,
     forget,
     keep_within,
     n_dead,

@@ -26,8 +26,14 @@ from torch import Tensor
 
 from planning.base.errors import InputError
 from planning.base.messages import say
-from reconstruction.splats.rasterising.footprints import shown_opacities
-from reconstruction.splats.rasterising.projection import Projected, blurred, depths_of, project, rotations
+from reconstruction.splats.rasterising.projection import (
+    Projected,
+    blurred,
+    depths_of,
+    project,
+    rotations,
+    shown_opacities,
+)
 from reconstruction.splats.rasterising.raster_types import SOLID, Raster, RasterSettings, steepest
 from reconstruction.splats.rasterising.views import View
 

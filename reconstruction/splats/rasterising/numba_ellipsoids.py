@@ -13,6 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.jit import inline, kernel
+from reconstruction.splats.rasterising.numba_gradients import (
+    CENTRE_X,
+    CENTRE_Y,
+    OF_FEATURES,
+    add_up,
+    back_to_quat,
+    in_world,
+)
 from reconstruction.splats.rasterising.numba_lanes import N_LANES
 from reconstruction.splats.rasterising.numba_projection import (
     HIGHEST,
@@ -35,14 +43,6 @@ from reconstruction.splats.rasterising.numba_projection import (
     rotation_columns,
     shown_opacity,
     slopes_of_shown,
-)
-from reconstruction.splats.rasterising.numba_splat_gradients import (
-    CENTRE_X,
-    CENTRE_Y,
-    OF_FEATURES,
-    add_up,
-    back_to_quat,
-    in_world,
 )
 
 LEAST_SQUARE = 1e-60

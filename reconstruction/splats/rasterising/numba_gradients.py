@@ -8,13 +8,14 @@ nothing depends on the order in which threads finish.
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.base.jit import kernel
-from reconstruction.splats.rasterising.numba_blocks import (
+from planning.base.jit import inline, kernel
+from reconstruction.splats.rasterising.numba_blend import (
     BLOCK_COLUMNS,
     BLOCK_ROWS,
     LOW_PASS2,
@@ -37,6 +38,7 @@ from reconstruction.splats.rasterising.numba_blocks import (
 from reconstruction.splats.rasterising.numba_lanes import (
     N_LANES,
     any_of,
+    fetch,
     load_lanes,
     load_number,
     select,
@@ -47,17 +49,223 @@ from reconstruction.splats.rasterising.numba_lanes import (
 )
 from reconstruction.splats.rasterising.numba_projection import (
     DEPTH,
+    EDGE_ON_JACOBIAN,
     J_XU,
     J_XV,
     J_YU,
     J_YV,
     N_GEOMETRY,
     OPACITY,
+    Array,
     E,
     F,
     Floats,
+    Four,
+    Pair,
+    Quat,
+    Triple,
+    blurred_disc,
+    covariance_of,
+    planes_of,
+    see,
+    slopes_of_shown,
 )
-from reconstruction.splats.rasterising.numba_splat_gradients import OF_FEATURES
+from reconstruction.splats.rasterising.projection import SMALLEST
+
+# The way back from each splat's geometry to its parameters, compiled.
+#
+# What the squares found is added up splat by splat in a fixed order; the formulas are those of `projection`, in
+# float64.
+
+CENTRE_X, CENTRE_Y, OF_FEATURES = 6, 7, 8
+"""Columns of a slot behind those of J, e and f: of the middle's pixel and, up to two from the end, of the features; the
+last two are of the depth and the opacity."""
+N_OTHERS = 10
+"""Columns of a slot that are not of features."""
+
+AHEAD = 8
+"""Slots that are fetched before they are needed: memory is slower than what is done with one."""
+
+
+@inline
+def in_world(camera: Array, x: float, y: float, z: float) -> Triple:
+    """A direction of camera axes in the model's frame."""
+    return (
+        camera[0, 0] * x + camera[1, 0] * y + camera[2, 0] * z,
+        camera[0, 1] * x + camera[1, 1] * y + camera[2, 1] * z,
+        camera[0, 2] * x + camera[1, 2] * y + camera[2, 2] * z,
+    )
+
+
+@inline
+def _back_through_disc(jacobian: Four, slopes: Pair, g: Array) -> tuple[Four, Pair]:
+    """From the gradients of the geometry to those of the Jacobian and the slopes."""
+    j_xu, j_xv, j_yu, j_yv = jacobian
+    q_u, q_v = slopes
+    over_area = 1.0 / (j_xu * j_yv - j_xv * j_yu)
+    e, f = j_yu * q_v - j_yv * q_u, j_xv * q_u - j_xu * q_v
+    g_xu, g_xv, g_yu, g_yv = g[J_XU] * over_area, g[J_XV] * over_area, g[J_YU] * over_area, g[J_YV] * over_area
+    g_e, g_f = g[E] * over_area, g[F] * over_area
+    g_area = -(g_xu * j_xu + g_xv * j_xv + g_yu * j_yu + g_yv * j_yv + g_e * e + g_f * f) * over_area
+    g_jacobian = (
+        g_xu + g_area * j_yv - g_f * q_v,
+        g_xv - g_area * j_yu + g_f * q_u,
+        g_yu - g_area * j_xv + g_e * q_v,
+        g_yv + g_area * j_xu - g_e * q_u,
+    )
+    return g_jacobian, (g_f * j_xv - g_e * j_yv, g_e * j_yu - g_f * j_xu)
+
+
+@inline
+def _back_through_blur(
+    jacobian: Four, slopes: Pair, blur2: float, steepest: float, g_drawn: Four, g_slopes: Pair, g_share: float
+) -> tuple[Four, Pair]:
+    """From the gradients of J', q' and the share to those of J and q; `blurred_disc` has the formulas."""
+    j_xu, j_xv, j_yu, j_yv = jacobian
+    (xx, xy, yy), root, area = covariance_of(jacobian, blur2)
+    square = root * root
+    likely, plane, over, is_flat = planes_of(jacobian, slopes, (xx, xy, yy), square, area, steepest)
+    rest, upper = 1.0 - over * area, math.sqrt(xx)
+    p_x, p_y = rest * likely[0] + over * plane[0], rest * likely[1] + over * plane[1]
+    beside, lower, over_upper = xy / upper, root / upper, 1.0 / upper
+    # q' to p' and J'.
+    g_px, g_py = -upper * g_slopes[0], -beside * g_slopes[0] - lower * g_slopes[1]
+    g_upper, g_beside = g_drawn[0] - p_x * g_slopes[0], g_drawn[2] - p_y * g_slopes[0]
+    g_lower = g_drawn[3] - p_y * g_slopes[1]
+    # p' to its two parts.
+    g_over = plane[0] * g_px + plane[1] * g_py - area * (likely[0] * g_px + likely[1] * g_py)
+    g_rx, g_ry = over * g_px, over * g_py
+    g_area = -over * (likely[0] * g_px + likely[1] * g_py)
+    steepness2 = plane[0] * plane[0] + plane[1] * plane[1]
+    if is_flat:
+        g_area -= over * over * g_over
+    elif steepness2 > SMALLEST * SMALLEST:
+        g_area += steepest * steepest / steepness2 * g_over
+        by_plane = 2.0 * over / steepness2 * g_over
+        g_rx, g_ry = g_rx - by_plane * plane[0], g_ry - by_plane * plane[1]
+    by_x, by_y = rest * g_px / square, rest * g_py / square
+    x, y = j_xu * slopes[0] + j_xv * slopes[1], j_yu * slopes[0] + j_yv * slopes[1]
+    g_x, g_y = by_y * xy - by_x * yy, by_x * xy - by_y * xx
+    # C, its determinant, and the area.
+    g_root = g_lower * over_upper - g_share * abs(area) / square
+    g_square = 0.5 * g_root / root - by_x * likely[0] - by_y * likely[1]
+    g_xx = 0.5 * over_upper * (g_upper - (g_beside * beside + g_lower * lower) * over_upper) - by_y * y
+    g_xy, g_yy = g_beside * over_upper + by_x * y + by_y * x, -by_x * x
+    g_area += 2.0 * g_square * area + g_share * math.copysign(1.0 / root, area)
+    g_xx, g_yy = 2.0 * (g_xx + blur2 * g_square), 2.0 * (g_yy + blur2 * g_square)
+    g_jacobian = (
+        g_xx * j_xu + g_xy * j_yu + g_area * j_yv + g_x * slopes[0] - g_ry * slopes[1],
+        g_xx * j_xv + g_xy * j_yv - g_area * j_yu + g_x * slopes[1] + g_ry * slopes[0],
+        g_yy * j_yu + g_xy * j_xu - g_area * j_xv + g_y * slopes[0] + g_rx * slopes[1],
+        g_yy * j_yv + g_xy * j_xv + g_area * j_xu + g_y * slopes[1] - g_rx * slopes[0],
+    )
+    g_u = g_x * j_xu + g_y * j_yu + g_ry * j_xv - g_rx * j_yv
+    return g_jacobian, (g_u, g_x * j_xv + g_y * j_yv + g_rx * j_yu - g_ry * j_xu)
+
+
+@inline
+def back_to_quat(q: Quat, g_u: Triple, g_v: Triple, out: Floats, i: int) -> None:
+    """From the gradients of a rotation's first two columns to the quaternion of any length."""
+    norm, w, x, y, z = q
+    g_w = 2.0 * (z * g_u[1] - y * g_u[2] - z * g_v[0] + x * g_v[2])
+    g_x = 2.0 * (y * g_u[1] + z * g_u[2] + y * g_v[0] - 2.0 * x * g_v[1] + w * g_v[2])
+    g_y = 2.0 * (x * g_u[1] - 2.0 * y * g_u[0] - w * g_u[2] + x * g_v[0] + z * g_v[2])
+    g_z = 2.0 * (w * g_u[1] - 2.0 * z * g_u[0] + x * g_u[2] - w * g_v[0] - 2.0 * z * g_v[1] + y * g_v[2])
+    along = w * g_w + x * g_x + y * g_y + z * g_z
+    over = 1.0 / norm if norm > 0.0 else 0.0
+    out[i, 0], out[i, 1] = (g_w - w * along) * over, (g_x - x * along) * over
+    out[i, 2], out[i, 3] = (g_y - y * along) * over, (g_z - z * along) * over
+
+
+@inline
+def add_up(slots: Floats, places: NDArray[np.int32], first: int, last: int, sums: Floats) -> None:
+    """Add up the slots at the places `first` to `last`, and have those fetched that come next."""
+    width, n_lanes = slots.shape[1], slots.shape[1] - 2
+    sums[:] = np.float32(0.0)
+    for at in range(first, last):
+        later = places[min(at + AHEAD, len(places) - 1)] * width
+        for c in range(0, width, 2 * N_LANES):
+            fetch(slots, later + c)
+        place = places[at] * width
+        for c in range(0, n_lanes, N_LANES):
+            store_lanes(sums, c, load_lanes(sums, c) + load_lanes(slots, place + c))
+        for c in range(n_lanes, width):
+            sums[c] += slots[places[at], c]
+
+
+@kernel
+def gradients_of_splats(
+    means: Floats,
+    quats_wxyz: Floats,
+    scales: Floats,
+    opacities: Floats,
+    camera: Array,
+    lens: Array,
+    geometry: Floats,
+    least: float,
+    blur_px: float,
+    steepest: float,
+    firsts: NDArray[np.int64],
+    places: NDArray[np.int32],
+    slots: Floats,
+    start: int,
+    stop: int,
+    g_means: Floats,
+    g_quats: Floats,
+    g_scales: Floats,
+    g_opacities: Floats,
+    g_features: Floats,
+    g_offsets: Floats,
+) -> None:
+    """Add up the slots of splats `start` to `stop`, and take them back to the parameters; the last six begin as 0.
+
+    Parameters
+    ----------
+    least, blur_px, steepest
+        The least alpha, and the last two of `project_splats`' limits.
+    """
+    n_features, width = g_features.shape[1], slots.shape[1]
+    sums, g = np.empty(width, np.float32), np.empty(N_LANES)
+    for i in range(start, stop):
+        if firsts[i] == firsts[i + 1]:
+            continue
+        add_up(slots, places, firsts[i], firsts[i + 1], sums)
+        for k in range(N_LANES):
+            g[k] = sums[k]
+        for k in range(n_features):
+            g_features[i, k] = sums[OF_FEATURES + k]
+        g_depth, g_opacities[i] = np.float64(sums[width - 2]), sums[width - 1]
+        g_offsets[i, 0], g_offsets[i, 1] = g[CENTRE_X], g[CENTRE_Y]
+        (x, y, z), quat, first, second, (q_u, q_v), jacobian = see(means, quats_wxyz, scales, camera, lens, i)
+        g_jacobian, g_slopes = (0.0, 0.0, 0.0, 0.0), (0.0, 0.0)
+        if blur_px > 0.0:
+            blur2 = blur_px * blur_px
+            as_drawn, slopes, share = blurred_disc(jacobian, (q_u, q_v), blur2, steepest)
+            by_opacity, by_share = slopes_of_shown(opacities[i], share, least)
+            g_drawn, g_slopes = _back_through_disc(as_drawn, slopes, g)
+            g_share = np.float64(sums[width - 1]) * by_share
+            g_opacities[i] *= by_opacity
+            g_jacobian, g_slopes = _back_through_blur(jacobian, (q_u, q_v), blur2, steepest, g_drawn, g_slopes, g_share)
+        elif geometry[i, J_XU] != EDGE_ON_JACOBIAN:
+            g_jacobian, g_slopes = _back_through_disc(jacobian, (q_u, q_v), g)
+        # x / z and y / z appear in the middle's pixel and in the Jacobian; the rest is divided by z.
+        over_z = 1.0 / z
+        ux, vx = g_jacobian[0] * lens[0], g_jacobian[1] * lens[0]
+        uy, vy = g_jacobian[2] * lens[1], g_jacobian[3] * lens[1]
+        uz, vz = g_slopes[0] - (ux * x + uy * y) * over_z, g_slopes[1] - (vx * x + vy * y) * over_z
+        g_xz, g_yz = g[CENTRE_X] * lens[0] - ux * q_u - vx * q_v, g[CENTRE_Y] * lens[1] - uy * q_u - vy * q_v
+        along_u = ux * first[0] + uy * first[1] + uz * first[2]
+        along_v = vx * second[0] + vy * second[1] + vz * second[2]
+        s_u, s_v = np.float64(scales[i, 0]), np.float64(scales[i, 1])
+        g_scales[i, 0], g_scales[i, 1] = along_u * over_z, along_v * over_z
+        g_over_z = s_u * along_u + s_v * along_v + g_xz * x + g_yz * y
+        s_u, s_v = s_u * over_z, s_v * over_z
+        g_first = in_world(camera, s_u * ux, s_u * uy, s_u * uz)
+        g_second = in_world(camera, s_v * vx, s_v * vy, s_v * vz)
+        back_to_quat(quat, g_first, g_second, g_quats, i)
+        place = in_world(camera, g_xz * over_z, g_yz * over_z, g_depth - g_over_z * over_z * over_z)
+        g_means[i, 0], g_means[i, 1], g_means[i, 2] = place
+
 
 ALPHA, BEFORE, WEIGHT, GAIN = 0, N_LANES, 2 * N_LANES, 3 * N_LANES
 N_KEPT = 4 * N_LANES

@@ -10,9 +10,14 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor
 
-from reconstruction.splats.rasterising.ellipsoid_projection import project_ellipsoids
-from reconstruction.splats.rasterising.footprints import shown_opacities
-from reconstruction.splats.rasterising.projection import Projected, blurred, depths_of, project
+from reconstruction.splats.rasterising.projection import (
+    Projected,
+    blurred,
+    depths_of,
+    project,
+    project_ellipsoids,
+    shown_opacities,
+)
 from reconstruction.splats.rasterising.raster_types import SOLID, Raster, RasterSettings, steepest
 from reconstruction.splats.rasterising.views import View
 

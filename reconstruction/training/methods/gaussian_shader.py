@@ -27,19 +27,23 @@ from typing import Any
 import torch
 from torch import Tensor, nn
 
-from reconstruction.light.cube.map import CubeMap
-from reconstruction.light.directions.harmonics import harmonics
+from reconstruction.light.cube_map import CubeMap
+from reconstruction.light.harmonics import harmonics
 from reconstruction.light.shading import reflected_directions
-from reconstruction.splats.ellipsoid_axes import thinnest_axes
 from reconstruction.splats.harmonic_colour import N_HARMONICS
 from reconstruction.splats.rasterising.raster_types import Raster
 from reconstruction.splats.rasterising.views import View
-from reconstruction.splats.splats import Splats
+from reconstruction.splats.splats import Splats, thinnest_axes
 from reconstruction.training.config import Rates
-from reconstruction.training.losses.terms import surface_normals
-from reconstruction.training.methods.attributes import Attribute, require_not_negative
-from reconstruction.training.methods.shader import Shaded, Shader, directions_to
-from reconstruction.training.methods.start_colours import with_colours
+from reconstruction.training.losses import surface_normals
+from reconstruction.training.methods.shader import (
+    Attribute,
+    Shaded,
+    Shader,
+    directions_to,
+    require_not_negative,
+    with_colours,
+)
 
 SHORTEST = 1e-12
 """Squared length below which a normal is none, and the axis stands for it."""
@@ -129,7 +133,7 @@ def shading_normals(axes: Tensor, residual_normals: Tensor, omega_o: Tensor) -> 
     Parameters
     ----------
     axes
-        Unit shortest axes (`reconstruction.splats.ellipsoid_axes`), either way round, shape (n, 3).
+        Unit shortest axes (`reconstruction.splats.splats`), either way round, shape (n, 3).
     residual_normals
         Delta n_1 and Delta n_2, shape (n, 2, 3); where one takes its axis away, the axis stands.
     omega_o
@@ -157,7 +161,7 @@ def normal_loss(normals: Tensor, surface: Tensor, is_known: Tensor) -> Tensor:
     normals
         Blended, shape (h, w, 3), turned to the camera.
     surface, is_known
-        Of `reconstruction.training.losses.terms.surface_normals`.
+        Of `reconstruction.training.losses.surface_normals`.
     """
     counted = is_known.to(normals.dtype)
     return ((normals - surface).square().sum(dim=-1) * counted).sum() / counted.sum().clamp(min=1.0)

@@ -29,17 +29,19 @@ from typing import Any
 import torch
 from torch import Tensor, nn
 
-from reconstruction.light.cube.faces import FACES, sides_from
-from reconstruction.light.cube.linear_map import LinearMap
-from reconstruction.light.cube.lookup import Levels, averaged
+from reconstruction.light.cube_lookup import FACES, Levels, LinearMap, averaged, sides_from
 from reconstruction.light.shading import reflected_directions
 from reconstruction.splats.rasterising.raster_types import Raster
 from reconstruction.splats.rasterising.views import View
 from reconstruction.splats.splats import FEATURES, Splats
-from reconstruction.training.methods.attributes import Attribute, require_not_negative
-from reconstruction.training.methods.pixels import covered_pixels
-from reconstruction.training.methods.shader import Shaded, Shader
-from reconstruction.training.methods.start_colours import with_colours
+from reconstruction.training.methods.shader import (
+    Attribute,
+    Shaded,
+    Shader,
+    covered_pixels,
+    require_not_negative,
+    with_colours,
+)
 
 
 @dataclass(frozen=True, slots=True)

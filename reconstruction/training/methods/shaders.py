@@ -11,8 +11,7 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
-from reconstruction.splats.ellipsoid_axes import flattened
-from reconstruction.splats.splats import NO_PANEL, SHAPES, Splats
+from reconstruction.splats.splats import NO_PANEL, SHAPES, Splats, flattened
 from reconstruction.training.config import TrainConfig
 from reconstruction.training.method_registry import Primitive
 from reconstruction.training.methods.gaussian_shader import GaussianShader

@@ -14,21 +14,18 @@ from torch import Tensor
 from planning.base.effects import Decision
 from planning.base.json_file import expect_format, read_json, to_record
 from reconstruction.dataset.records import DATASET_FORMAT
-from reconstruction.light.config import Precision
-from reconstruction.light.directions.environment_map import EnvironmentMap
-from reconstruction.light.directions.reflection_mlp import ReflectionMlp
-from reconstruction.light.glass_learned import GlassLearned
+from reconstruction.light.config import GlassLearned, Precision
+from reconstruction.light.environment_map import EnvironmentMap
 from reconstruction.light.glass_light import GlassLight, LightModel
-from reconstruction.light.grid.grid_box import GridBox
-from reconstruction.light.grid.radiance_grid import RadianceGrid
 from reconstruction.light.photo_set import PanelPlanes
+from reconstruction.light.radiance_grid import GridBox, RadianceGrid
+from reconstruction.light.reflection_mlp import ReflectionMlp
 from reconstruction.splats.sky import Sky
 from reconstruction.splats.splats import Splats
 from reconstruction.training.config import TrainConfig
 from reconstruction.training.methods.shaders import empty_shader
 from reconstruction.training.model.joint_model import OF_SPLATS, SceneModel
-from reconstruction.training.photos.exposures import Exposures
-from reconstruction.training.photos.pose_corrections import Move
+from reconstruction.training.photos.exposures import Exposures, Move
 
 Vec3 = tuple[float, float, float]
 

@@ -15,8 +15,7 @@ from planning.base.progress import QUIET, Monitor
 from reconstruction.light.photo_set import PhotoSet
 from reconstruction.light.shading import linear_from_display
 from reconstruction.metrics.image_metrics import PictureScore, score_picture
-from reconstruction.metrics.lpips import lpips
-from reconstruction.metrics.lpips_weights import LpipsWeights
+from reconstruction.metrics.lpips import LpipsWeights, lpips
 from reconstruction.splats.rasterising.raster_types import RasterSettings
 from reconstruction.training.model.record import site_record
 from reconstruction.training.model.render import render_view

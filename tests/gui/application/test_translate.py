@@ -40,7 +40,7 @@ COMMANDS = {path.stem.rstrip("_") for path in (ROOT / "groundstation/cli/command
 
 COMMAND_LINE_ONLY = (
     *("reconstruction/colmap/", "reconstruction/records/", "reconstruction/metrics/", "reconstruction/tradeoff/"),
-    *("reconstruction/panels/panels_file.py", "reconstruction/panels/solving/known_grids.py", "reconstruction/scenes/"),
+    *("reconstruction/panels/panels_file.py", "reconstruction/panels/solving/facades.py", "reconstruction/scenes/"),
     *("reconstruction/exports/", "reconstruction/training/", "reconstruction/splats/", "reconstruction/light/"),
     *("planning/routing/tsplib.py", "planning/tradeoff/", "planning/base/parallel_map.py", "groundstation/cli/"),
     *("planning/routing/", "planning/site/importing/", "missions/flight/", "missions/mavlink/", "missions/simulator/"),

@@ -8,8 +8,7 @@ import cv2
 import numpy as np
 
 from reconstruction.base.cameras import Intrinsics, Pose, PosedPhoto
-from reconstruction.colmap.camera_models import camera_of
-from reconstruction.colmap.record import ColmapImage, ColmapModel, ColmapPoints, quaternion_of
+from reconstruction.colmap.record import ColmapImage, ColmapModel, ColmapPoints, camera_of, quaternion_of
 
 LENS = Intrinsics(2000, 1500, 1500.0, 1500.0, 1000.0, 750.0, (-0.05, 0.01, 0.0, 0.0, 0.0))
 

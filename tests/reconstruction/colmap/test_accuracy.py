@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from reconstruction.base.cameras import Intrinsics
-from reconstruction.colmap.camera_models import camera_of
+from reconstruction.colmap.record import camera_of
 from reconstruction.colmap.refine import LEAST_SIGMA_PX, pose_covariances
 from tests.reconstruction.colmap.models import LENS, covariance, model, photos, turned
 

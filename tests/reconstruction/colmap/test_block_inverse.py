@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import sparse
 
-from reconstruction.colmap import block_inverse
-from reconstruction.colmap.block_inverse import TooLargeError, inverse_blocks
+from reconstruction.colmap import refine
+from reconstruction.colmap.refine import TooLargeError, inverse_blocks
 
 
 def normal_matrix(n_blocks, size, n_border, reach, seed, weakest=1e-3):
@@ -69,7 +69,7 @@ def test_what_nothing_fixes_is_refused():
 
 
 def test_more_than_fits_into_memory_is_refused_before_it_is_tried(monkeypatch):
-    monkeypatch.setattr(block_inverse, "MAX_SEGMENT", 10)
+    monkeypatch.setattr(refine, "MAX_SEGMENT", 10)
     with pytest.raises(TooLargeError, match=r"\d\d"):
         inverse_blocks(sparse.csr_array(normal_matrix(12, 2, 0, 12, 0)), 2, 12)
     inverse_blocks(sparse.csr_array(normal_matrix(100, 2, 0, 1, 0)), 2, 100)

@@ -10,8 +10,7 @@ from hypothesis import strategies as st
 
 from planning.base.errors import InputError
 from reconstruction.base.cameras import Intrinsics
-from reconstruction.colmap.camera_models import RATIONAL_TOLERANCE_PX, camera_of, intrinsics_of
-from reconstruction.colmap.record import ColmapCamera
+from reconstruction.colmap.record import RATIONAL_TOLERANCE_PX, ColmapCamera, camera_of, intrinsics_of
 
 POINTS = np.stack([*np.meshgrid(np.linspace(-0.6, 0.6, 9), np.linspace(-0.45, 0.45, 7)), np.ones((7, 9))], axis=-1)
 

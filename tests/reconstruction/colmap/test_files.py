@@ -11,10 +11,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from planning.base.errors import InputError
-from reconstruction.colmap.binary import COUNT
-from reconstruction.colmap.camera_models import N_PARAMETERS
-from reconstruction.colmap.folder import read_model, write_model
+from reconstruction.colmap.folder import COUNT, read_model, write_model
 from reconstruction.colmap.record import (
+    N_PARAMETERS,
     NO_POINT,
     NO_POINTS,
     ColmapCamera,
@@ -145,13 +144,13 @@ def test_huge_counts_inside_entries_are_refused(tmp_path):
 
 @given(st.data())
 def test_files_cut_off_anywhere_are_refused_in_words(data):
-    from reconstruction.colmap import binary as files
+    from reconstruction.colmap import folder as files
 
     whole = model()
     for content, read in (
-        (files.cameras_bytes(list(whole.cameras.values())), files.read_cameras),
-        (files.images_bytes(list(whole.images.values())), files.read_images),
-        (files.points_bytes(whole.points), files.read_points),
+        (files.cameras_bytes(list(whole.cameras.values())), files.read_cameras_binary),
+        (files.images_bytes(list(whole.images.values())), files.read_images_binary),
+        (files.points_bytes(whole.points), files.read_points_binary),
     ):
         length = data.draw(st.integers(0, len(content) - 1))
         with pytest.raises(InputError, match=r"damaged|in the middle"):
@@ -160,13 +159,13 @@ def test_files_cut_off_anywhere_are_refused_in_words(data):
 
 @given(st.data())
 def test_damaged_bytes_never_do_more_than_be_refused(data):
-    from reconstruction.colmap import binary as files
+    from reconstruction.colmap import folder as files
 
     whole = model()
     for content, read in (
-        (files.cameras_bytes(list(whole.cameras.values())), files.read_cameras),
-        (files.images_bytes(list(whole.images.values())), files.read_images),
-        (files.points_bytes(whole.points), files.read_points),
+        (files.cameras_bytes(list(whole.cameras.values())), files.read_cameras_binary),
+        (files.images_bytes(list(whole.images.values())), files.read_images_binary),
+        (files.points_bytes(whole.points), files.read_points_binary),
     ):
         damaged = bytearray(content)
         for _ in range(3):

@@ -12,9 +12,15 @@ import pytest
 from planning.base.errors import InputError
 from reconstruction.base.cameras import Pose
 from reconstruction.colmap.folder import read_model, write_model
-from reconstruction.colmap.georeference import angle_between_deg, georeference, in_enu, model_of, posed_photos
+from reconstruction.colmap.georeference import (
+    Similarity,
+    angle_between_deg,
+    georeference,
+    in_enu,
+    model_of,
+    posed_photos,
+)
 from reconstruction.colmap.record import rotation_of
-from reconstruction.colmap.similarity import Similarity
 from tests.reconstruction.colmap.models import covariance, model, photos, turned
 from tests.slow import slow
 

@@ -13,11 +13,10 @@ import pytest
 from planning.base.errors import InputError, OperationCancelled
 from planning.base.progress import QUIET
 from reconstruction.base.cameras import Intrinsics, PosedPhoto
-from reconstruction.colmap import block_inverse
+from reconstruction.colmap import refine
 from reconstruction.colmap.folder import read_model
-from reconstruction.colmap.georeference import angle_between_deg, georeference, posed_photos
+from reconstruction.colmap.georeference import Similarity, angle_between_deg, georeference, posed_photos
 from reconstruction.colmap.refine import RefineParameters, _covariances, refine_poses
-from reconstruction.colmap.similarity import Similarity
 from tests.reconstruction.colmap.models import covariance, model, photos, turned
 
 UPRIGHT = Similarity(1.0, np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]]), np.zeros(3))
@@ -105,7 +104,7 @@ def test_a_refinement_can_be_cancelled(folder):
 
 
 def test_too_many_photos_that_are_linked_count_as_equally_good(monkeypatch):
-    monkeypatch.setattr(block_inverse, "MAX_SEGMENT", 12)
+    monkeypatch.setattr(refine, "MAX_SEGMENT", 12)
     posed = photos(9)
     found = model(posed)
     covariances, said = _covariances(found, georeference(found, posed), posed, QUIET)

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from reconstruction.colmap.georeference import Similarity, are_on_a_line, fit, fit_robustly, spread
 from reconstruction.colmap.record import rotation_of
-from reconstruction.colmap.similarity import Similarity, are_on_a_line, fit, fit_robustly, spread
 
 
 def known(seed):

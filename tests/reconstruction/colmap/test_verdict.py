@@ -9,7 +9,7 @@ import pytest
 
 from planning.base.findings import Severity
 from reconstruction.base.cameras import Pose, cam_from_enu
-from reconstruction.colmap.verdict import judge_poses
+from reconstruction.colmap.refined_folder import judge_poses
 from tests.reconstruction.colmap.models import covariance, photos, turned
 
 SIGMA_M, SIGMA_DEG = 0.02, 1.0

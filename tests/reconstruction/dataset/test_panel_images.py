@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from planning.geo.mesh import TriangleMesh, box_mesh, empty_mesh
 from reconstruction.base.cameras import Intrinsics, PosedPhoto
 from reconstruction.base.ray_casting import RayCaster
-from reconstruction.dataset.panel_images import draw_panels, facing, without_hidden
+from reconstruction.dataset.layers import draw_panels, facing, without_hidden
 from tests.reconstruction.panels.rectify.scenes import BENT, looking_at
 from tests.reconstruction.panels.rectify.test_surface import surface
 

@@ -20,18 +20,17 @@ from planning.geo.mesh import TriangleMesh, box_mesh, join
 from planning.site.records import Airspace, Facade, Obstacle, Panel, Site, SiteModel
 from reconstruction.base.cameras import Intrinsics, PosedPhoto
 from reconstruction.base.ray_casting import RayCaster
-from reconstruction.colmap.camera_models import intrinsics_of
 from reconstruction.colmap.folder import read_model
-from reconstruction.dataset.grow import frame_width_m, grown_corners
+from reconstruction.colmap.record import intrinsics_of
 from reconstruction.dataset.layers import (
     Scene,
     draw_layers,
+    draw_panels,
     normal_map,
     normals_from_16_bit,
     normals_to_16_bit,
     straightened,
 )
-from reconstruction.dataset.panel_images import draw_panels
 from reconstruction.dataset.prepare import (
     HiddenPanels,
     LensDistortion,
@@ -40,7 +39,7 @@ from reconstruction.dataset.prepare import (
     most_moved_px,
     prepare,
 )
-from reconstruction.dataset.refined_mesh import refine_mesh
+from reconstruction.dataset.refined_mesh import frame_width_m, grown_corners, refine_mesh
 from tests.reconstruction.dataset.test_panel_images import grid
 from tests.reconstruction.panels.rectify.scenes import looking_at, surface_mesh
 from tests.reconstruction.panels.rectify.test_surface import surface

@@ -6,9 +6,8 @@ from dataclasses import replace
 import numpy as np
 
 from planning.base.errors import OperationCancelled
-from reconstruction.exports.ellipsoids import Ellipsoids, ellipsoids_of_all
-from reconstruction.exports.gaussian_blocks import morton_order
-from reconstruction.exports.turned_axes import turned
+from reconstruction.exports.component_parts import Ellipsoids, ellipsoids_of_all
+from reconstruction.exports.gaussian_blocks import morton_order, turned
 from tests.reconstruction.objects.made_scene import made_scene
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import torch
 
-from reconstruction.exports.baked import LEAST_COSINE, N_DIRECTIONS, baked, needs_baking, outward_directions
+from reconstruction.exports.mesh import LEAST_COSINE, N_DIRECTIONS, baked, needs_baking, outward_directions
 from reconstruction.light.config import ReflectionConfig
 from reconstruction.light.photo_set import read_photo_set
 from reconstruction.light.shading import display_from_linear, schlick

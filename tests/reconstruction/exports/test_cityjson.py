@@ -14,7 +14,7 @@ from planning.site.importing.importer import import_site
 from planning.site.importing.options import ImportOptions
 from reconstruction.exports.cityjson import STEP_M, write_cityjson
 from reconstruction.objects.gs_scene import GsElement
-from reconstruction.records.global_ids import global_id_of
+from reconstruction.records.entries import global_id_of
 from tests.planning.facade_shapes import SHAPES, facades, normal
 from tests.reconstruction.exports.hard_scenes import Interrupted
 from tests.reconstruction.objects.made_scene import ORIGIN, made_scene

@@ -8,9 +8,9 @@ import torch
 from hypothesis import given
 from hypothesis import strategies as st
 
-from reconstruction.exports.ellipsoids import ellipsoids_of
+from reconstruction.exports.component_parts import ellipsoids_of
 from reconstruction.exports.tiles3d import branches_of, coarser_part, part_of_branch
-from reconstruction.splats.detail_tree import FEWEST
+from reconstruction.splats.merged_splats import FEWEST
 from reconstruction.splats.rasterising.raster_types import RasterSettings
 from reconstruction.splats.splats import Splats
 from tests.reconstruction.objects.made_scene import made_scene, pane

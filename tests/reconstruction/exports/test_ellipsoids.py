@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from reconstruction.exports.ellipsoids import THICKNESS_M, ellipsoids_of, ellipsoids_of_all, unit_quaternions
+from reconstruction.exports.component_parts import THICKNESS_M, ellipsoids_of, ellipsoids_of_all, unit_quaternions
 from reconstruction.splats.harmonic_colour import display_colours
 from reconstruction.splats.splats import normals_of
 from tests.reconstruction.objects.made_scene import made_scene

@@ -6,9 +6,9 @@ import struct
 import numpy as np
 import pytest
 
-from reconstruction.exports.ellipsoids import ellipsoids_of
+from reconstruction.exports.component_parts import ellipsoids_of
+from reconstruction.exports.glb import SPLATTING, SPZ
 from reconstruction.exports.gltf import GltfOptions, write_gltf
-from reconstruction.exports.gltf_meshes import SPLATTING, SPZ
 from reconstruction.exports.tiles3d import TilesOptions, write_tiles
 from tests.foreign import run_node
 from tests.reconstruction.exports.glb_reader import Glb

@@ -14,13 +14,13 @@ import numpy as np
 import pytest
 
 from reconstruction.exports.cityjson import write_cityjson
+from reconstruction.exports.component_parts import Ellipsoids, ellipsoids_of_all
 from reconstruction.exports.compression import Compression
-from reconstruction.exports.ellipsoids import Ellipsoids, ellipsoids_of_all
+from reconstruction.exports.gaussian_blocks import turned
 from reconstruction.exports.ply_export import write_ply
-from reconstruction.exports.sog.writing import write_sog
-from reconstruction.exports.spz.writing import write_spz
-from reconstruction.exports.turned_axes import turned
-from reconstruction.splats.ply_file import read_blocks, read_header
+from reconstruction.exports.sog import write_sog
+from reconstruction.exports.spz import write_spz
+from reconstruction.splats.ply import read_blocks, read_header
 from tests import foreign
 from tests.reconstruction.exports.hard_scenes import antialiased, in_order
 from tests.reconstruction.exports.sog.reading import read_sog

@@ -10,13 +10,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from planning.base.errors import InputError, OperationCancelled
-from reconstruction.exports.component_parts import AT_ONCE, part_of
+from reconstruction.exports.component_parts import AT_ONCE, ellipsoids_of, part_of
 from reconstruction.exports.compression import PRESETS
-from reconstruction.exports.ellipsoids import ellipsoids_of
-from reconstruction.exports.glb import GlbBuffer, write_glb
+from reconstruction.exports.glb import SPZ, GlbBuffer, identifier, one_after_the_other, write_glb
 from reconstruction.exports.gltf import GltfOptions, write_gltf
-from reconstruction.exports.gltf_meshes import SPZ
-from reconstruction.exports.gltf_tables import identifier, one_after_the_other
 from reconstruction.objects.gs_scene import GsGaussian
 from tests.reconstruction.exports.glb_reader import FEATURES, SPLATTING, Glb
 from tests.reconstruction.exports.spz.reading import read_spz

@@ -4,11 +4,10 @@ import numpy as np
 import pytest
 
 from planning.base.errors import InputError, OperationCancelled
-from reconstruction.exports.ellipsoids import ellipsoids_of_all
+from reconstruction.exports.component_parts import ellipsoids_of_all
+from reconstruction.exports.gaussian_blocks import turned
 from reconstruction.exports.ply_export import write_ply
-from reconstruction.exports.turned_axes import turned
-from reconstruction.splats.ply import ODD, read_splats
-from reconstruction.splats.ply_file import read_blocks, read_header
+from reconstruction.splats.ply import ODD, read_blocks, read_header, read_splats
 from tests.reconstruction.exports.hard_scenes import Interrupted, antialiased, quaternion_errors, scene_with
 from tests.reconstruction.objects.made_scene import made_scene
 

@@ -11,9 +11,8 @@ from pyproj import Transformer
 
 from planning.base.errors import InputError, OperationCancelled
 from planning.geo.enu import geodetic_from_enu
-from reconstruction.exports.component_parts import extents_m
-from reconstruction.exports.ellipsoids import Ellipsoids, ellipsoids_of
-from reconstruction.exports.gltf_meshes import SPZ
+from reconstruction.exports.component_parts import Ellipsoids, ellipsoids_of, extents_m
+from reconstruction.exports.glb import SPZ
 from reconstruction.exports.tiles3d import CONTENT, TilesOptions, branches_of, part_of_branch, write_tiles
 from tests.reconstruction.exports.glb_reader import SPLATTING, Glb
 from tests.reconstruction.exports.test_gltf import HOSTILE, Cancelling, component_with, rotation_of

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from planning.base.errors import InputError, OperationCancelled
-from reconstruction.exports.ellipsoids import ellipsoids_of
+from reconstruction.exports.component_parts import ellipsoids_of
 from reconstruction.exports.usd import UsdOptions, write_usd
 from tests.reconstruction.exports.test_gltf import HOSTILE, Cancelling, component_with
 from tests.reconstruction.objects.made_scene import made_scene

@@ -16,7 +16,7 @@ from contextlib import contextmanager
 import numpy as np
 import pytest
 
-from reconstruction.exports.web.page import WebOptions, write_web
+from reconstruction.exports.web import WebOptions, write_web
 
 GREY = np.full((4, 8, 3), 0.2158605, np.float16)  # sRGB 128
 

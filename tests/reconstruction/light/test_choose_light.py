@@ -9,9 +9,8 @@ from planning.base.errors import OperationCancelled
 from reconstruction.light.choose_light import Trials, choose_light, chosen
 from reconstruction.light.config import GridSettings, ReflectionConfig
 from reconstruction.light.glass_rays import glass_rays
-from reconstruction.light.grid.grid_box import box_around, box_of
-from reconstruction.light.grid.radiance_grid import RadianceGrid
 from reconstruction.light.photo_set import read_photo_set
+from reconstruction.light.radiance_grid import RadianceGrid, box_around, box_of
 from tests.reconstruction.light.made_folder import far, near, write_folder
 
 CONFIG = ReflectionConfig(environment_rows=32, steps=100, batch=512)

@@ -9,8 +9,7 @@ import torch
 from torch import nn
 
 from reconstruction.base.cameras import Pose
-from reconstruction.light.config import ReflectionConfig
-from reconstruction.light.glass_learned import GlassLearned
+from reconstruction.light.config import GlassLearned, ReflectionConfig
 from reconstruction.light.glass_light import GlassLight, pixel_offsets
 from reconstruction.light.glass_rays import glass_rays, rays_of_pixels
 from reconstruction.light.photo_set import PanelPlanes, read_photo_set

@@ -10,18 +10,17 @@ import torch
 from planning.base.errors import OperationCancelled, ReconstructionError
 from planning.base.progress import QUIET
 from reconstruction.light import light_training
-from reconstruction.light.config import PAPER_STAGES, GridSettings, ReflectionConfig
-from reconstruction.light.directions.reflection_mlp import MlpShape
-from reconstruction.light.glass_learned import GlassLearned
+from reconstruction.light.config import PAPER_STAGES, GlassLearned, GridSettings, ReflectionConfig
 from reconstruction.light.glass_rays import glass_rays
-from reconstruction.light.grid.radiance_grid import RadianceGrid
 from reconstruction.light.light_training import LEAST_BATCH, MOST_HALVINGS, Keeping, LightTraining, on_device
 from reconstruction.light.losses import ray_errors, ray_loss
 from reconstruction.light.photo_set import read_photo_set
+from reconstruction.light.radiance_grid import RadianceGrid
 from reconstruction.light.ray_table import RayTable
+from reconstruction.light.reflection_mlp import MlpShape
 from reconstruction.light.reflective_panels import ReflectivePanels
 from reconstruction.light.training import new_panels, train_reflections
-from reconstruction.training.checkpoints import read_checkpoint, write_checkpoint
+from reconstruction.training.training_state import read_checkpoint, write_checkpoint
 from tests.reconstruction.light.made_folder import near, write_folder
 
 GRID = GridSettings(most_cells=2048, levels=2, far_side=16, batch_share=1.0, rest=3, grown=0.6)

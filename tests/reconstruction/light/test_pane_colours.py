@@ -2,7 +2,7 @@
 
 import torch
 
-from reconstruction.light.pane_colours import pane_colours
+from reconstruction.light.reflective_panels import pane_colours
 from reconstruction.light.shading import display_from_linear, schlick, shade
 
 N, PANES = 300, 7

@@ -10,9 +10,9 @@ from safetensors.numpy import load_file, save_file
 
 from planning.base.errors import InputError
 from reconstruction.light.config import PAPER_STAGES, GridSettings, ReflectionConfig
-from reconstruction.light.directions.reflection_mlp import MlpShape
 from reconstruction.light.glass_rays import glass_rays
 from reconstruction.light.photo_set import read_photo_set
+from reconstruction.light.reflection_mlp import MlpShape
 from reconstruction.light.saved import DESCRIPTION, WEIGHTS, read_reflections, save_reflections
 from reconstruction.light.training import train_reflections
 from tests.reconstruction.light.made_folder import far, write_folder

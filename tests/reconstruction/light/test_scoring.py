@@ -13,12 +13,11 @@ import torch
 from planning.base.errors import InputError, OperationCancelled
 from reconstruction.base.cameras import Intrinsics
 from reconstruction.light.config import ReflectionConfig
-from reconstruction.light.directions.reflection_mlp import MlpShape
 from reconstruction.light.glass_rays import glass_rays, rays_of_photo
 from reconstruction.light.photo_set import PanelPlanes, held_out_names, read_photo_set
-from reconstruction.light.scoring import ReflectionScore, ViewScore, score_views
+from reconstruction.light.reflection_mlp import MlpShape
 from reconstruction.light.shading import display_from_linear, linear_from_display
-from reconstruction.light.training import train_reflections
+from reconstruction.light.training import ReflectionScore, ViewScore, score_views, train_reflections
 from reconstruction.tradeoff.scene_downstream import downstream_psnr
 from tests.reconstruction.light.made_folder import far, near, write_folder
 

@@ -7,12 +7,18 @@ import pytest
 import torch
 
 from planning.base.errors import OperationCancelled, ReconstructionError
-from reconstruction.light.config import LEAST_STEPS, PAPER_STAGES, GridSettings, HighFrequencyStage, ReflectionConfig
-from reconstruction.light.directions.reflection_mlp import MlpShape
-from reconstruction.light.glass_learned import GlassLearned
+from reconstruction.light.config import (
+    LEAST_STEPS,
+    PAPER_STAGES,
+    GlassLearned,
+    GridSettings,
+    HighFrequencyStage,
+    ReflectionConfig,
+)
 from reconstruction.light.glass_rays import GlassRays, glass_rays
 from reconstruction.light.losses import high_frequency_loss, ray_errors, ray_loss
 from reconstruction.light.photo_set import read_photo_set
+from reconstruction.light.reflection_mlp import MlpShape
 from reconstruction.light.shading import display_from_linear
 from reconstruction.light.training import faster_precision, mean_square_error, new_panels, psnr_db, train_reflections
 from tests.reconstruction.light.made_folder import far, near, write_folder

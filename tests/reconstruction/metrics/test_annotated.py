@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 
 from planning.base.errors import InputError
-from reconstruction.metrics.annotated import cmp_photos, coco_photos, ecp_photos
-from reconstruction.metrics.sets import PhotoSet, annotated_set, folder_set
+from reconstruction.metrics.sets import PhotoSet, annotated_set, cmp_photos, coco_photos, ecp_photos, folder_set
 
 GREY = np.full((30, 40, 3), 128, np.uint8)
 

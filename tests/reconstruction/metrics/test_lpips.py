@@ -14,8 +14,7 @@ from torch import nn
 
 from planning.base.errors import InputError
 from reconstruction.metrics import lpips as module
-from reconstruction.metrics.lpips import lpips, lpips_of_masks
-from reconstruction.metrics.lpips_weights import BACKBONES, LpipsWeights, WeightsFile, read_lpips_weights
+from reconstruction.metrics.lpips import BACKBONES, LpipsWeights, WeightsFile, lpips, lpips_of_masks, read_lpips_weights
 
 
 def random_weights(backbone, seed=0):

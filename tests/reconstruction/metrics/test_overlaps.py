@@ -9,8 +9,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
 from reconstruction.metrics.metrics import score_overlaps
-from reconstruction.metrics.overlaps import MOST_PANELS, pixel_overlaps, polygon_overlaps
-from reconstruction.metrics.raster import index_image
+from reconstruction.metrics.overlaps import MOST_PANELS, index_image, pixel_overlaps, polygon_overlaps
 
 indices = arrays.arrays(np.uint16, (7, 9), elements=st.integers(0, 4))
 masks = arrays.arrays(bool, (7, 9))

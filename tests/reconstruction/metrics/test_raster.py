@@ -11,8 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from reconstruction.metrics.metrics import score_overlaps
-from reconstruction.metrics.overlaps import pixel_overlaps
-from reconstruction.metrics.raster import found_index, found_region, index_image
+from reconstruction.metrics.overlaps import found_index, found_region, index_image, pixel_overlaps
 from reconstruction.panels.search.cells import facade_grid
 from reconstruction.panels.search.record import FacadeGrid, FoundPanel, GridLine, InclinedLine, Segmentation
 from reconstruction.panels.search.views import WholePicture

@@ -12,8 +12,18 @@ import numpy as np
 import pytest
 
 from reconstruction.metrics.metrics import summarise
-from reconstruction.metrics.report import COLUMNS, MISSED_BGR, photo_row, picture, summary, write_pictures, write_table
-from reconstruction.metrics.run import Answer, ScoredAnswer, score_answer
+from reconstruction.metrics.run import (
+    COLUMNS,
+    MISSED_BGR,
+    Answer,
+    ScoredAnswer,
+    photo_row,
+    picture,
+    score_answer,
+    summary,
+    write_pictures,
+    write_table,
+)
 from reconstruction.metrics.sets import ScoredPhoto
 
 

@@ -4,7 +4,7 @@ import pytest
 import torch
 
 from reconstruction.light.config import ReflectionConfig
-from reconstruction.light.directions.reflection_mlp import MlpShape
+from reconstruction.light.reflection_mlp import MlpShape
 from reconstruction.objects.organise import organised
 from reconstruction.training.config import TrainConfig
 from reconstruction.training.train import train_model

@@ -6,7 +6,7 @@ import numpy as np
 
 from planning.geo.frames import Origin
 from reconstruction.objects.gs_scene import GsAuxiliary, GsComponent, GsElement, GsGaussian, GsScene
-from reconstruction.records.global_ids import global_id_of
+from reconstruction.records.entries import global_id_of
 
 COLUMNS = {"means": (3,), "quats": (4,), "log_scales": (2,), "opacity_logits": (), "sh": (16, 3)} | {
     "reflectivity_logits": (),

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from reconstruction.objects.opening import LEAST_M, largest, middle_of, outward, places_of, standoff_m
+from reconstruction.objects.store import LEAST_M, largest, middle_of, outward, places_of, standoff_m
 
 
 def facade(width_m=20.0, height_m=10.0, n=5):

@@ -12,7 +12,7 @@ from planning.geo.frames import Origin
 from planning.site.records import Airspace, Facade, Panel, Site
 from reconstruction.objects.organise import PanelGlobalIds, organised, put_together
 from reconstruction.objects.store import read_scene, write_scene
-from reconstruction.records.global_ids import is_global_id
+from reconstruction.records.entries import is_global_id
 from reconstruction.records.objects import site_objects
 from reconstruction.training.config import config_of
 from reconstruction.training.model.saved import description_of, tensors_of

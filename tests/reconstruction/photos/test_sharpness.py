@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 import pytest
 
-from reconstruction.photos.sharpness import MOTION_TO_SIGMA, sharpness
+from reconstruction.photos.quality import MOTION_TO_SIGMA, sharpness
 from tests.reconstruction.photos.pictures import facade, moved
 
 

@@ -17,8 +17,9 @@ from reconstruction.records.entries import (
     Document,
     Inspection,
     Maintenance,
+    global_id_of,
+    new_global_id,
 )
-from reconstruction.records.global_ids import global_id_of, new_global_id
 from reconstruction.records.objects import ObjectRow
 
 ORIGIN = Origin(22.3372, 114.2636, 62.0)

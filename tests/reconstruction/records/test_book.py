@@ -14,9 +14,9 @@ from hypothesis import strategies as st
 
 from planning.base.errors import InputError
 from reconstruction.records.book import FILE, RecordBook
+from reconstruction.records.database import searched_texts
 from reconstruction.records.entries import KIND_OF, Attribute, Defect, Inspection, Maintenance
 from reconstruction.records.queries import attribute_values, history, search
-from reconstruction.records.rows import searched_texts
 from tests.reconstruction.records.cases import NASTY, ORIGIN, PANES, contents, entries, model, new_book, now, state
 
 ROOT = Path(__file__).resolve().parents[3]

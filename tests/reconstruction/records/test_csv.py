@@ -9,9 +9,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from planning.base.errors import InputError
-from reconstruction.records.csv.cells import guarded, number_cell, read_number, unguarded
-from reconstruction.records.csv.reading import kind_of_table, read_tables
-from reconstruction.records.csv.tables import TableError, write_tables
+from reconstruction.records.csv import (
+    TableError,
+    guarded,
+    kind_of_table,
+    number_cell,
+    read_number,
+    read_tables,
+    unguarded,
+    write_tables,
+)
 from reconstruction.records.entries import KIND_NAMED, KINDS, Attribute, Defect, Inspection
 from reconstruction.records.queries import history
 from tests.reconstruction.records.cases import NASTY, PANES, contents, entries, model, new_book, numbers, state, texts

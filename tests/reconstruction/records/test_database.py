@@ -12,7 +12,15 @@ from hypothesis import strategies as st
 
 from planning.base.errors import InputError
 from reconstruction.records.book import FILE, RecordBook, make_book
-from reconstruction.records.database import Database, create_database
+from reconstruction.records.database import (
+    APPLICATION_ID,
+    STEPS,
+    Database,
+    create_database,
+    migrate,
+    statements,
+    version_of,
+)
 from reconstruction.records.entries import Attribute, Defect
 from reconstruction.records.queries import (
     attribute_values,
@@ -21,7 +29,6 @@ from reconstruction.records.queries import (
     open_severities,
     search,
 )
-from reconstruction.records.schema import APPLICATION_ID, STEPS, migrate, statements, version_of
 from tests.reconstruction.records.cases import NASTY, PANES, contents, new_book
 
 

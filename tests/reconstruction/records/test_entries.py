@@ -7,8 +7,7 @@ import pytest
 from planning.base.errors import InputError
 from planning.geo.frames import Origin
 from planning.site.records import Airspace, Facade, Panel, Site
-from reconstruction.records.entries import KINDS, Attribute, Defect, Document, Inspection, Maintenance
-from reconstruction.records.global_ids import global_id_of
+from reconstruction.records.entries import KINDS, Attribute, Defect, Document, Inspection, Maintenance, global_id_of
 from reconstruction.records.objects import ObjectRow, check_objects, site_objects
 from tests.reconstruction.records.cases import CORNERS, PANES, model
 

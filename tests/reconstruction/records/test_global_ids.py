@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from planning.base.errors import InputError
-from reconstruction.records.global_ids import check_global_id, compressed, global_id_of, is_global_id, new_global_id
+from reconstruction.records.entries import check_global_id, compressed, global_id_of, is_global_id, new_global_id
 
 
 @given(st.uuids())

@@ -22,12 +22,15 @@ from planning.site.importing.importer import import_site
 from planning.site.importing.options import ImportOptions
 from reconstruction.records.book import RecordBook, make_book
 from reconstruction.records.entries import KINDS, Attribute, Defect, Document, Inspection, Maintenance
-from reconstruction.records.ifc.extend import extension
-from reconstruction.records.ifc.extract import extract
-from reconstruction.records.ifc.importing import entries_of_element, read_ifc_records
-from reconstruction.records.ifc.new import write_new_ifc
-from reconstruction.records.ifc.process import edited, extend_copy, read_properties
-from reconstruction.records.ifc.sets import OUR_SETS, property_sets, sets_of
+from reconstruction.records.ifc.extract import OUR_SETS, extract, property_sets, sets_of
+from reconstruction.records.ifc.importing import (
+    edited,
+    entries_of_element,
+    extend_copy,
+    read_ifc_records,
+    read_properties,
+)
+from reconstruction.records.ifc.new import extension, write_new_ifc
 from reconstruction.records.objects import ObjectRow, site_objects
 from tests.planning.facade_shapes import SHAPES, facades, normal
 from tests.reconstruction.records.cases import NASTY, ORIGIN, PANES, contents, entries, model, new_book

@@ -5,6 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from planning.base.errors import InputError
+from reconstruction.records.changes import query_of
 from reconstruction.records.entries import Attribute, Defect, Inspection
 from reconstruction.records.queries import (
     AttributeValue,
@@ -20,7 +21,6 @@ from reconstruction.records.queries import (
     search,
     worst_open_defects,
 )
-from reconstruction.records.search_words import query_of
 from tests.reconstruction.records.cases import NASTY, PANES, contents, defects, inspections, model, new_book, texts
 
 

@@ -16,9 +16,8 @@ from planning.photos.folder import read_photos
 from planning.site.bundled import single_panel
 from reconstruction.base.cameras import Intrinsics, Pose
 from reconstruction.colmap.folder import read_model
-from reconstruction.colmap.georeference import angle_between_deg
+from reconstruction.colmap.georeference import Similarity, angle_between_deg
 from reconstruction.colmap.georeference import posed_photos as of_colmap
-from reconstruction.colmap.similarity import Similarity
 from reconstruction.photos.lens import LensSource
 from reconstruction.photos.poses import pose_photos
 from reconstruction.scenes.effect_names import DISTORTION, EXPOSURE, GIMBAL_ERROR, MOTION_BLUR

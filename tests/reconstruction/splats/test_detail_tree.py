@@ -6,7 +6,7 @@ import torch
 from hypothesis import given
 from hypothesis import strategies as st
 
-from reconstruction.splats.detail_tree import ALONE, FEWEST, HALVINGS, detail_tree
+from reconstruction.splats.merged_splats import ALONE, FEWEST, HALVINGS, detail_tree
 from reconstruction.splats.rasterising.views import View
 from tests.reconstruction.splats.drawn_splats import turned_view
 

@@ -2,8 +2,8 @@ from __future__ import annotations
 
 import torch
 
-from reconstruction.splats.ellipsoid_axes import flattened, shortest_axes
 from reconstruction.splats.rasterising.projection import rotations
+from reconstruction.splats.splats import flattened, shortest_axes
 from tests.reconstruction.splats.drawn_splats import seeded
 
 

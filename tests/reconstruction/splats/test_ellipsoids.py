@@ -10,8 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from torch import Tensor
 
-from reconstruction.splats.rasterising.ellipsoid_projection import project_ellipsoids, slope_limits
-from reconstruction.splats.rasterising.projection import depths_of, rotations
+from reconstruction.splats.rasterising.projection import depths_of, project_ellipsoids, rotations, slope_limits
 from reconstruction.splats.rasterising.raster_types import RasterSettings
 from reconstruction.splats.rasterising.rasteriser import rasterise
 from tests.reconstruction.splats.drawn_splats import (

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 import torch
 
-from reconstruction.light.directions.harmonics import n_harmonics
+from reconstruction.light.harmonics import n_harmonics
 from reconstruction.light.shading import display_from_linear
 from reconstruction.splats.harmonic_colour import (
     AT_ONCE,

@@ -9,7 +9,7 @@ from reconstruction.splats.initialise import InitialParameters, initial_splats
 from reconstruction.splats.rasterising.rasteriser import rasterise
 from reconstruction.splats.rasterising.views import View
 from reconstruction.splats.splats import FEATURES
-from reconstruction.splats.start_data import KnownScene, model_origin
+from reconstruction.splats.surfels import KnownScene, model_origin
 
 LENS = Intrinsics(60, 45, 54.0, 54.0, 30.0, 22.5)
 FRAME_M = 0.1

@@ -3,8 +3,7 @@ import pytest
 import torch
 
 from reconstruction.light.shading import display_from_linear, linear_from_display
-from reconstruction.splats.detail_tree import FEWEST
-from reconstruction.splats.merged_splats import MOST_LARGER, MOST_OPAQUE, splats_of_detail
+from reconstruction.splats.merged_splats import FEWEST, MOST_LARGER, MOST_OPAQUE, splats_of_detail
 from reconstruction.splats.rasterising.rasteriser import rasterise
 from reconstruction.splats.rasterising.views import View
 from reconstruction.splats.splats import FEATURES, Splats

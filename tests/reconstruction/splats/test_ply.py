@@ -7,8 +7,7 @@ import torch
 from planning.base.errors import InputError
 from reconstruction.light.shading import BASE_REFLECTANCE, REFLECTIVITY
 from reconstruction.splats.harmonic_colour import display_colours
-from reconstruction.splats.ply import read_splats, write_splats
-from reconstruction.splats.ply_file import read_blocks, read_header, write_blocks
+from reconstruction.splats.ply import read_blocks, read_header, read_splats, write_blocks, write_splats
 from reconstruction.splats.splats import SHAPES, Splats
 from tests.reconstruction.splats.learned_scenes import random_splats
 

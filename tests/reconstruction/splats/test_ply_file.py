@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from planning.base.errors import InputError
-from reconstruction.splats.ply_file import read_blocks, read_header, write_blocks
+from reconstruction.splats.ply import read_blocks, read_header, write_blocks
 
 ROW = np.dtype([("x", "<f4"), ("red", "u1"), ("panel", "<i4")])
 HEAD = b"ply\nformat binary_little_endian 1.0\n"

@@ -9,8 +9,8 @@ from reconstruction.colmap.folder import write_model
 from reconstruction.colmap.record import ColmapModel, ColmapPoints
 from reconstruction.dataset.records import coloured_ply
 from reconstruction.light.photo_set import PanelPlanes, PhotoSet
-from reconstruction.splats.ply_file import write_blocks
-from reconstruction.splats.start_data import KnownScene, known_scene, points_alone, read_points
+from reconstruction.splats.ply import write_blocks
+from reconstruction.splats.surfels import KnownScene, known_scene, points_alone, read_points
 
 XYZ = np.array([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]])
 RGB = np.array([[10, 20, 30], [40, 50, 60]], np.uint8)

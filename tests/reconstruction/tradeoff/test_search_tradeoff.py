@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 
 from reconstruction.metrics.sets import PhotoSet, made_set, scored
-from reconstruction.panels.search.grid import Axes
+from reconstruction.panels.search.grid import Axes, Rows, posterior
 from reconstruction.panels.search.parameters import SegmentationParameters
-from reconstruction.panels.search.similarity import Rows, posterior
 from reconstruction.scenes.facades.cases import simple_case, wide_camera
 from reconstruction.scenes.facades.record import Layout
 from reconstruction.scenes.facades.render import make_facade

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from safetensors.torch import save
 
 from planning.base.errors import InputError
-from reconstruction.training.checkpoints import read_checkpoint, write_checkpoint
+from reconstruction.training.training_state import read_checkpoint, write_checkpoint
 
 leaves = st.one_of(
     st.none(), st.booleans(), st.integers(-(2**60), 2**60), st.floats(allow_nan=False), st.text(max_size=8)

@@ -12,7 +12,7 @@ from reconstruction.light.photo_set import read_photo_set
 from reconstruction.splats.initialise import InitialParameters, initial_splats
 from reconstruction.splats.ply import write_splats
 from reconstruction.splats.splats import NO_PANEL
-from reconstruction.splats.start_data import known_scene, model_origin
+from reconstruction.splats.surfels import known_scene, model_origin
 from reconstruction.training.config import TrainConfig
 from reconstruction.training.start import given_splats
 from reconstruction.training.train import train_model

@@ -8,16 +8,15 @@ import pytest
 import torch
 
 from planning.base.errors import InputError, OperationCancelled
-from reconstruction.light.config import GridSettings, ReflectionConfig
-from reconstruction.light.directions.reflection_mlp import MlpShape
-from reconstruction.light.glass_learned import GlassLearned
+from reconstruction.light.config import GlassLearned, GridSettings, ReflectionConfig
+from reconstruction.light.reflection_mlp import MlpShape
 from reconstruction.training import start as start_module
 from reconstruction.training import train
 from reconstruction.training.callbacks import Callbacks
-from reconstruction.training.checkpoints import read_checkpoint, write_checkpoint
 from reconstruction.training.config import TrainConfig
 from reconstruction.training.timer import Timer
 from reconstruction.training.train import resume_model, train_model
+from reconstruction.training.training_state import read_checkpoint, write_checkpoint
 
 TINY = ReflectionConfig(
     mlp=MlpShape(width=16, layers=4, position_order=3, direction_order=2),

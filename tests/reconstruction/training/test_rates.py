@@ -5,7 +5,7 @@ import torch
 
 from reconstruction.splats.splats import NO_PANEL, Splats
 from reconstruction.training.config import Rates
-from reconstruction.training.rates import take_step
+from reconstruction.training.training_state import take_step
 
 N = 12
 

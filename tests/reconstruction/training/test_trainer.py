@@ -10,19 +10,17 @@ import torch
 from planning.base.errors import OperationCancelled, ReconstructionError
 from planning.base.progress import Trace
 from reconstruction.light.config import GridSettings, ReflectionConfig
-from reconstruction.light.directions.reflection_mlp import MlpShape
 from reconstruction.light.photo_set import read_photo_set
+from reconstruction.light.reflection_mlp import MlpShape
 from reconstruction.training import trainer as trainer_module
 from reconstruction.training import training_state
 from reconstruction.training.callbacks import Callbacks, HeldOut
-from reconstruction.training.checkpoints import read_checkpoint
 from reconstruction.training.config import LossWeights, TrainConfig
 from reconstruction.training.photos.photo_stream import PhotoStream, StreamSettings
 from reconstruction.training.start import start_model
-from reconstruction.training.strategies import strategy_of
 from reconstruction.training.timer import Timer
-from reconstruction.training.trainer import Trainer
-from reconstruction.training.training_state import MOST_HALVINGS
+from reconstruction.training.trainer import Trainer, strategy_of
+from reconstruction.training.training_state import MOST_HALVINGS, read_checkpoint
 
 CONFIG = TrainConfig(
     method="2dgs", iterations=12, n_splats=150, max_splats=220, densify_from=0.2, densify_until=0.9, score_every_s=1e9

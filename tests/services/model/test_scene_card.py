@@ -10,7 +10,7 @@ from groundstation.services.model.scene_card import PanelRow, is_model, is_scene
 from planning.base.errors import InputError
 from reconstruction.objects.gs_scene import GsElement
 from reconstruction.objects.store import StoredScene, write_scene
-from reconstruction.records.global_ids import global_id_of
+from reconstruction.records.entries import global_id_of
 from tests.reconstruction.objects.made_scene import made_scene
 
 

@@ -113,7 +113,7 @@ def test_quick_pictures_of_small_models_are_as_they_are(folders, darkroom):
 def test_quick_pictures_of_large_models_look_like_them_and_have_sections(folders, darkroom, monkeypatch):
     """A model that counts as large, from so far away that pixels are as coarse as its cubes."""
     monkeypatch.setattr("groundstation.services.reconstruct.render_queue.LARGE", 100)
-    monkeypatch.setattr("reconstruction.splats.detail_tree.FEWEST", 20)
+    monkeypatch.setattr("reconstruction.splats.merged_splats.FEWEST", 20)
     near = camera(folders)
     lens = near.intrinsics
     small = replace(near, intrinsics=lens.scaled(lens.width_px // 4, lens.height_px // 4))

@@ -12,12 +12,10 @@ from numpy.typing import NDArray
 from planning.base.errors import InputError
 from planning.base.files import MIB, FileLimit, check_zip_directory, open_given
 from planning.base.json_file import parse_json, to_record
-from reconstruction.exports.ellipsoids import NO_PANEL, Ellipsoids
-from reconstruction.exports.sog.codebooks import CODES
-from reconstruction.exports.sog.images import Bytes, values_of
-from reconstruction.exports.sog.writing import FIRST_TAG, META, PALETTE_COLUMNS, STEPS
-from reconstruction.exports.spz.packing import LARGEST_SMALL, OTHERS
-from reconstruction.exports.turned_axes import Axes, turned_back
+from reconstruction.exports.component_parts import NO_PANEL, Ellipsoids
+from reconstruction.exports.gaussian_blocks import Axes, turned_back
+from reconstruction.exports.sog import CODES, FIRST_TAG, META, PALETTE_COLUMNS, STEPS, Bytes, values_of
+from reconstruction.exports.spz import LARGEST_SMALL, OTHERS
 from reconstruction.splats.harmonic_colour import N_HARMONICS
 from tests.reconstruction.exports.spz.reading import MOST_GAUSSIANS
 

@@ -12,12 +12,20 @@ from backports import zstd
 
 from planning.base.errors import InputError
 from planning.base.files import MIB, FileLimit, open_given
-from reconstruction.exports.ellipsoids import Ellipsoids
-from reconstruction.exports.spz import zstd as spz_zstd
-from reconstruction.exports.spz.packing import MOST_FRACTION_BITS, STREAMS, Bytes, sizes_of, unpacked
-from reconstruction.exports.spz.writing import GZIP, HEADER
-from reconstruction.exports.spz.zstd import AT_ONCE_BYTES, MAGIC
-from reconstruction.exports.turned_axes import Axes, turned_back
+from reconstruction.exports import spz
+from reconstruction.exports.component_parts import Ellipsoids
+from reconstruction.exports.gaussian_blocks import Axes, turned_back
+from reconstruction.exports.spz import (
+    AT_ONCE_BYTES,
+    GZIP,
+    HEADER,
+    MAGIC,
+    MOST_FRACTION_BITS,
+    STREAMS,
+    Bytes,
+    sizes_of,
+    unpacked,
+)
 
 SPZ_FILE = FileLimit("a SPZ file", 2048 * MIB)
 
@@ -119,21 +127,21 @@ def _read(inflated: _Inflated, size: int, path: Path) -> Ellipsoids:
 
 def _read_frames(stream: BinaryIO, size: int, path: Path) -> Ellipsoids:
     """A file of version 4."""
-    header = stream.read(spz_zstd.HEADER.size)
-    if len(header) < spz_zstd.HEADER.size:
+    header = stream.read(spz.ZSTD_HEADER.size)
+    if len(header) < spz.ZSTD_HEADER.size:
         raise InputError(f"{path}: ends too early; it is cut off or damaged")
-    _, version, n, degree, fraction, _, n_streams, table_at = spz_zstd.HEADER.unpack(header)
-    if version != spz_zstd.VERSION:
+    _, version, n, degree, fraction, _, n_streams, table_at = spz.ZSTD_HEADER.unpack(header)
+    if version != spz.VERSION:
         raise InputError(f"{path}: expected SPZ of version 2 to 4, found {version}; {HOW_TO_CONVERT}")
     sizes = _checked_sizes(version, n, degree, fraction, MOST_IN_FRAME * size, size, path)
     names = [name for name in STREAMS if sizes[name]]
-    if n_streams != len(names) or not spz_zstd.HEADER.size <= table_at <= spz_zstd.HEADER.size + MOST_AFTER:
+    if n_streams != len(names) or not spz.ZSTD_HEADER.size <= table_at <= spz.ZSTD_HEADER.size + MOST_AFTER:
         raise InputError(f"{path}: has {n_streams} streams from byte {table_at} on; expected {len(names)} from 32 on")
     stream.seek(table_at)
-    table = stream.read(n_streams * spz_zstd.ENTRY.size)
-    if len(table) < n_streams * spz_zstd.ENTRY.size:
+    table = stream.read(n_streams * spz.ENTRY.size)
+    if len(table) < n_streams * spz.ENTRY.size:
         raise InputError(f"{path}: ends too early; it is cut off or damaged")
-    entries = list(spz_zstd.ENTRY.iter_unpack(table))
+    entries = list(spz.ENTRY.iter_unpack(table))
     if table_at + len(table) + sum(packed for packed, _ in entries) != size:
         raise InputError(f"{path}: its streams do not end where it does; it is cut off or damaged")
     streams: dict[str, Bytes] = {"sh": np.zeros((n, 0), np.uint8)}

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from planning.base.effects import decide
-from reconstruction.panels.rectify.curvature import Curvature, FittedFacade, Unrolling, bent_by_px
-from reconstruction.panels.rectify.fit import fit_cylinder, fit_plane
+from reconstruction.panels.rectify.fit import Curvature, FittedFacade, Unrolling, bent_by_px, fit_cylinder, fit_plane
 from reconstruction.panels.rectify.view import surface_view
 from tests.reconstruction.panels.rectify.scenes import looking_at
 from tests.reconstruction.panels.rectify.test_fit import cloud, outside

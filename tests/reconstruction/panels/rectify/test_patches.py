@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from planning.geo.mesh import TriangleMesh, box_mesh, empty_mesh, join
-from reconstruction.panels.rectify.patches import facades_in_photo
+from reconstruction.panels.rectify.fit import facades_in_photo
 from reconstruction.panels.rectify.surface import FacadeSurface
 from tests.reconstruction.panels.rectify.scenes import looking_at, surface_mesh
 from tests.reconstruction.panels.rectify.test_surface import surface

@@ -7,7 +7,7 @@ import pytest
 
 from planning.base.errors import InfeasibleError
 from reconstruction.base.cameras import Intrinsics
-from reconstruction.panels.rectify.polynomial import exponents, fit_polynomial, polynomial_view
+from reconstruction.panels.rectify.surface import exponents, fit_polynomial, polynomial_view
 from reconstruction.panels.rectify.view import TangentView, surface_view
 from tests.reconstruction.panels.rectify.scenes import looking_at
 from tests.reconstruction.panels.rectify.test_surface import surface

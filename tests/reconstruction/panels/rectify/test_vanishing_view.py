@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from planning.base.errors import InfeasibleError
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.panels.rectify.surface import FacadeSurface
-from reconstruction.panels.rectify.vanishing_view import VanishingView, vanishing_view
+from reconstruction.panels.rectify.view import VanishingView, vanishing_view
 from tests.reconstruction.panels.rectify.scenes import SMALL, looking_at
 from tests.reconstruction.panels.rectify.test_surface import surface
 

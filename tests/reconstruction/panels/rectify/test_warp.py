@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from reconstruction.panels.rectify.polynomial import polynomial_view
-from reconstruction.panels.rectify.view import TangentView, surface_view
-from reconstruction.panels.rectify.warp import photo_places, warp
+from reconstruction.panels.rectify.surface import polynomial_view
+from reconstruction.panels.rectify.view import TangentView, photo_places, surface_view, warp
 from tests.reconstruction.panels.rectify.scenes import BENT, SMALL, looking_at
 from tests.reconstruction.panels.rectify.test_surface import surface
 from tests.slow import slow

@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from reconstruction.metrics.metrics import PhotoScores
-from reconstruction.metrics.raster import found_index, found_region
+from reconstruction.metrics.overlaps import found_index, found_region
 from reconstruction.metrics.run import Answer, score_answer
 from reconstruction.metrics.sets import scored
 from reconstruction.panels.search.parameters import SegmentationParameters

@@ -14,10 +14,11 @@ from reconstruction.panels.search.edges import (
     edges_of_segments,
     measured_edge,
     noise_of,
+    regressed_width,
+    unbiased_edges,
     vertical_edges,
 )
 from reconstruction.panels.search.evidence import local_maxima
-from reconstruction.panels.search.frame_edges import regressed_width, unbiased_edges
 
 Picture = NDArray[np.float32]
 FINE = 20

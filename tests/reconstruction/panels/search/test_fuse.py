@@ -10,10 +10,9 @@ from numpy.typing import NDArray
 
 from planning.base.errors import InputError
 from planning.base.progress import QUIET
-from reconstruction.panels.search.fuse import fused
 from reconstruction.panels.search.grid import Axes
 from reconstruction.panels.search.parameters import SegmentationParameters
-from reconstruction.panels.search.segment import segment_view, segment_views
+from reconstruction.panels.search.segment import fused, segment_view, segment_views
 from reconstruction.panels.search.views import WholePicture
 from tests.reconstruction.panels.search.pictures import draw, spans
 

@@ -11,7 +11,7 @@ from planning.base.errors import InputError
 from reconstruction.panels.search.parameters import DETECTORS, Detector, SegmentationParameters
 from reconstruction.panels.search.record import FacadeGrid
 from reconstruction.panels.search.segment import segment_image, segment_rectified
-from reconstruction.panels.search.straighten import straightening
+from reconstruction.panels.search.vanishing import straightening
 from reconstruction.panels.search.views import CorrectedView, WholePicture
 from tests.reconstruction.panels.search.pictures import Drawn, draw, spans
 

@@ -8,15 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from reconstruction.panels.search.similarity import (
-    C1,
-    C2,
-    Rows,
-    normalised_intensity,
-    posterior,
-    similarity_matrix,
-    softmax,
-)
+from reconstruction.panels.search.grid import C1, C2, Rows, normalised_intensity, posterior, similarity_matrix, softmax
 
 Array = NDArray[np.float64]
 

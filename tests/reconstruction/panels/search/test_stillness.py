@@ -14,8 +14,15 @@ from planning.base.progress import QUIET
 from reconstruction.metrics.metrics import PhotoScores
 from reconstruction.metrics.run import own_method, score_answer
 from reconstruction.metrics.sets import scored
-from reconstruction.panels.search.evidence import ENOUGH, UNSEEN, Evidence
-from reconstruction.panels.search.stillness import N_BANDS, OF_A_WITNESS, Stillness, spread_in_bands
+from reconstruction.panels.search.evidence import (
+    ENOUGH,
+    N_BANDS,
+    OF_A_WITNESS,
+    UNSEEN,
+    Evidence,
+    Stillness,
+    spread_in_bands,
+)
 from reconstruction.scenes.facades.cases import random_case
 from reconstruction.scenes.facades.render import make_facade
 from tests.slow import slow

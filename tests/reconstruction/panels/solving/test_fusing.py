@@ -13,18 +13,15 @@ from planning.base.effects import decide
 from planning.base.progress import QUIET
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.metrics.sets import STATED_POSE, surface_of
-from reconstruction.panels.rectify.curvature import Unrolling, decide_view
-from reconstruction.panels.rectify.fit import SurfaceFit
+from reconstruction.panels.rectify.fit import SurfaceFit, Unrolling, decide_view
 from reconstruction.panels.rectify.view import SurfaceView
 from reconstruction.panels.search.record import FacadeGrid
 from reconstruction.panels.solving.facades import Facade
-from reconstruction.panels.solving.find import FindParameters, SearchedFacade, search_facade
-from reconstruction.panels.solving.fusing import FoundSingly, Fusion, doubt
+from reconstruction.panels.solving.find import FindParameters, FoundSingly, Fusion, SearchedFacade, doubt, search_facade
 from reconstruction.panels.solving.solve import solve_facade
 from reconstruction.scenes.facades.cases import simple_case, wide_camera
-from reconstruction.scenes.facades.record import Disturbances, Layout, MadeFacade
+from reconstruction.scenes.facades.record import Disturbances, Layout, MadeFacade, Wall
 from reconstruction.scenes.facades.render import make_facade
-from reconstruction.scenes.facades.wall import Wall
 from tests.reconstruction.panels.solving.test_register import stated
 
 LAYOUT = Layout(4, 7, 1.5, 2.2)

@@ -14,14 +14,12 @@ from planning.base.errors import InputError
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.metrics.sets import surface_of
 from reconstruction.panels.panels_file import FileCell, FileInclined, FileLine, PanelsFile, panels_record
-from reconstruction.panels.rectify.curvature import ViewKind
-from reconstruction.panels.rectify.fit import SurfaceFit
+from reconstruction.panels.rectify.fit import SurfaceFit, ViewKind
 from reconstruction.panels.rectify.view import surface_view
 from reconstruction.panels.search.cells import facade_grid
 from reconstruction.panels.search.record import FacadeGrid, GridLine, InclinedLine, Segmentation
-from reconstruction.panels.solving.facades import Facade
+from reconstruction.panels.solving.facades import Facade, given_grid
 from reconstruction.panels.solving.find import FindParameters, find_panels
-from reconstruction.panels.solving.known_grids import given_grid
 from reconstruction.scenes.facades.record import MadeFacade
 from tests.reconstruction.made_photos import coarse_model, made_photos
 from tests.reconstruction.panels.solving.test_find import posed

@@ -11,14 +11,13 @@ import pytest
 
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.metrics.sets import surface_of
-from reconstruction.panels.rectify.rectification import Rectification
+from reconstruction.panels.rectify.surface import Rectification
 from reconstruction.panels.rectify.view import SurfaceView, surface_view
 from reconstruction.panels.solving.adjustment import moved_pose
 from reconstruction.panels.solving.register import registered
 from reconstruction.scenes.facades.cases import simple_case, wide_camera
-from reconstruction.scenes.facades.record import Disturbances, Layout, MadeFacade
+from reconstruction.scenes.facades.record import Disturbances, Layout, MadeFacade, Wall
 from reconstruction.scenes.facades.render import make_facade
-from reconstruction.scenes.facades.wall import Wall
 
 LAYOUT = Layout(5, 9, 1.5, 2.4)
 MIRRORING = Disturbances(reflection=0.45, opposite="grid", tilt_deg=0.3, clutter=True, blur_px=0.6, noise_grey=3.0)

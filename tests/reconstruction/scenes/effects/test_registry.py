@@ -28,7 +28,7 @@ from reconstruction.scenes.effect_names import (
     VIGNETTING,
 )
 from reconstruction.scenes.effects.registry import decide_effects
-from reconstruction.scenes.light.optics import pane_light
+from reconstruction.scenes.light.pane_surfaces import pane_light
 from reconstruction.scenes.photos.camera_model import Taking
 from reconstruction.scenes.photos.lens_effects import Sensor, developed, grey_levels, metered_exposure, vignette
 from reconstruction.scenes.photos.renderer import Photograph, Renderer, RenderSettings

@@ -11,11 +11,18 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from reconstruction.scenes.facades.cases import STRONG, photo_of, random_case, simple_case, wide_camera
-from reconstruction.scenes.facades.layout import area, clip, draw_up
-from reconstruction.scenes.facades.record import Case, Disturbances, Layout
+from reconstruction.scenes.facades.cases import (
+    STRONG,
+    area,
+    clip,
+    draw_up,
+    photo_of,
+    random_case,
+    simple_case,
+    wide_camera,
+)
+from reconstruction.scenes.facades.record import Case, Disturbances, Layout, Wall, first_hits
 from reconstruction.scenes.facades.render import make_facade
-from reconstruction.scenes.facades.wall import Wall, first_hits
 
 SMALL = wide_camera(400, 300)
 SOFTLY = replace(STRONG, blur_px=0.0, noise_grey=0.0)

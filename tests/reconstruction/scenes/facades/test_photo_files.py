@@ -10,7 +10,7 @@ from planning.base.errors import InputError
 from planning.photos.folder import read_photos
 from planning.site.records import Airspace, Facade, Panel, Site
 from reconstruction.photos.poses import pose_photos
-from reconstruction.scenes.facades.photo_files import BETWEEN, write_photos
+from reconstruction.scenes.facades.render import BETWEEN, write_photos
 from tests.reconstruction.made_photos import ORIGIN
 from tests.services.photo_cases import true_photos
 

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from reconstruction.scenes.light.optics import fresnel, mirrored, pane_light
+from reconstruction.scenes.light.pane_surfaces import fresnel, mirrored, pane_light
 from reconstruction.scenes.record import Glass
 
 CLEAR = (1.0, 1.0, 1.0)

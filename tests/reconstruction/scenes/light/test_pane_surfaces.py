@@ -15,8 +15,7 @@ from scipy.optimize import brentq
 
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.scenes.light.geometry import Geometry
-from reconstruction.scenes.light.optics import mirrored, pane_light
-from reconstruction.scenes.light.pane_surfaces import PaneSurfaces
+from reconstruction.scenes.light.pane_surfaces import PaneSurfaces, mirrored, pane_light
 from reconstruction.scenes.photos.renderer import Renderer, RenderSettings
 from reconstruction.scenes.record import Glass, Scene, Texture
 from tests.reconstruction.scenes.small_scenes import MIRROR, board, checkerboard, facing_south, photo, scene, with_panes

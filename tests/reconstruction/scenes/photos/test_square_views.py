@@ -8,7 +8,7 @@ import pytest
 from planning.geo.mesh import join
 from planning.geo.solids import Solids
 from reconstruction.base.cameras import Intrinsics
-from reconstruction.scenes.photos.square_views import MOST_ABOVE_DEG, MOST_ASIDE_DEG, square_photos
+from reconstruction.scenes.photos.flight_views import MOST_ABOVE_DEG, MOST_ASIDE_DEG, square_photos
 from reconstruction.scenes.world.bundled import bundled_scene
 
 LENS = Intrinsics(80, 60, 64.0, 64.0, 40.0, 30.0)

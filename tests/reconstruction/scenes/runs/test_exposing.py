@@ -15,7 +15,7 @@ from reconstruction.scenes.photos.camera_model import SHUTTERS_S, Moment, Taking
 from reconstruction.scenes.photos.lens_effects import grey_levels
 from reconstruction.scenes.photos.renderer import Renderer, RenderSettings
 from reconstruction.scenes.record import Layer, Scene
-from reconstruction.scenes.runs.exposing import captures_of, common_exposure
+from reconstruction.scenes.runs.photo_folder import captures_of, common_exposure
 from reconstruction.scenes.runs.photo_job import PhotoJob
 from tests.reconstruction.scenes.small_scenes import photo, quad, scene
 

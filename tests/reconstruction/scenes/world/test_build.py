@@ -19,11 +19,9 @@ from planning.site.free_space import free_space
 from planning.site.records import Airspace, Facade, Panel, Site, SiteModel, panel_corners, panel_triangles
 from reconstruction.base.ray_casting import RayCaster
 from reconstruction.scenes.record import Glass, Layer, Scene
-from reconstruction.scenes.world.build import build_scene
+from reconstruction.scenes.world.build import build_scene, edge_gaps, profile_rings, without_openings
 from reconstruction.scenes.world.look import Look, read_look
-from reconstruction.scenes.world.profiles import edge_gaps, profile_rings
-from reconstruction.scenes.world.solids import crown
-from reconstruction.scenes.world.wall_cut import without_openings
+from reconstruction.scenes.world.surroundings import crown
 
 FAR = Look(near=False, clouds=0.0, skyline_deg=0.0)
 

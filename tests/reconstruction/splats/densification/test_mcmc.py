@@ -4,8 +4,7 @@ import pytest
 import torch
 
 from reconstruction.splats.densification.mcmc import MarkovChain, McmcParameters, shared_out
-from reconstruction.splats.densification.seen_splats import HIDDEN_VIEWS
-from reconstruction.splats.densification.strategy import CUT, FixedNumber, Limits
+from reconstruction.splats.densification.strategy import CUT, HIDDEN_VIEWS, FixedNumber, Limits
 from reconstruction.splats.splats import SHAPES, normals_of
 from tests.reconstruction.splats.densification.test_adaptive import grey_wall, half_detailed
 from tests.reconstruction.splats.learned_scenes import (

@@ -3,11 +3,12 @@ import math
 import pytest
 import torch
 
-from reconstruction.splats.densification.seen_splats import HIDDEN_VIEWS, SeenSplats
 from reconstruction.splats.densification.strategy import (
     CUT,
+    HIDDEN_VIEWS,
     FixedNumber,
     Limits,
+    SeenSplats,
     forget,
     keep_within,
     n_dead,

@@ -12,8 +12,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from torch import Tensor
 
-from reconstruction.splats.rasterising.footprints import footprint_shares, shown_opacities
-from reconstruction.splats.rasterising.projection import Projected, areas_of, blurred, blurred_areas2
+from reconstruction.splats.rasterising.projection import (
+    Projected,
+    areas_of,
+    blurred,
+    blurred_areas2,
+    footprint_shares,
+    shown_opacities,
+)
 from reconstruction.splats.rasterising.raster_types import RasterSettings, steepest
 from reconstruction.splats.rasterising.rasteriser import rasterise
 from reconstruction.splats.rasterising.views import View

@@ -3,7 +3,7 @@
 import numpy as np
 import torch
 
-from reconstruction.splats.rasterising.numba_blocks import (
+from reconstruction.splats.rasterising.numba_blend import (
     BLOCK_COLUMNS,
     BLOCK_ROWS,
     bytes_a_splat,

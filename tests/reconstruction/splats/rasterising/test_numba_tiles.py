@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from reconstruction.splats.rasterising.numba_tiles import run_on_threads, sort_into_tiles
+from reconstruction.splats.rasterising.numba_backend import run_on_threads, sort_into_tiles
 
 
 @pytest.mark.parametrize("n_depths", [3, 40, 10**6])

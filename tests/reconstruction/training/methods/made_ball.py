@@ -5,7 +5,7 @@ import math
 import numpy as np
 import torch
 
-from reconstruction.light.directions.harmonics import harmonics
+from reconstruction.light.harmonics import harmonics
 from reconstruction.light.shading import display_from_linear, incidence_cosines, reflected_directions, schlick
 
 SUN = np.array([0.5, 0.6, 0.62]) / np.linalg.norm([0.5, 0.6, 0.62])

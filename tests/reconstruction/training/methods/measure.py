@@ -12,12 +12,11 @@ from pathlib import Path
 import numpy as np
 import torch
 
-from reconstruction.light.cube.faces import sides_from, solid_angles, texel_directions
-from reconstruction.light.cube.lookup import Levels, averaged
-from reconstruction.light.cube.map import filters, level_of
-from reconstruction.light.directions.environment_map import EnvironmentMap
-from reconstruction.light.directions.harmonics import harmonics
+from reconstruction.light.cube_lookup import Levels, averaged, sides_from, solid_angles, texel_directions
+from reconstruction.light.cube_map import filters, level_of
+from reconstruction.light.environment_map import EnvironmentMap
 from reconstruction.light.glass_rays import glass_rays
+from reconstruction.light.harmonics import harmonics
 from reconstruction.light.photo_set import held_out_names, read_photo_set
 from reconstruction.light.shading import (
     display_from_linear,
@@ -28,7 +27,6 @@ from reconstruction.light.shading import (
     shade,
 )
 from reconstruction.splats.harmonic_colour import light_of_display
-from reconstruction.training.methods.attributes import Attribute
 from reconstruction.training.methods.gaussian_shader import (
     GaussianShaderSettings,
     GaussianShaderShading,
@@ -36,7 +34,8 @@ from reconstruction.training.methods.gaussian_shader import (
 )
 from reconstruction.training.methods.ref_gaussian import RefGaussianSettings, RefGaussianShading
 from reconstruction.training.methods.ref_gs import RefGsSettings, RefGsShading
-from tests.reconstruction.light.cube.test_lobes import ggx_by_half_vectors
+from reconstruction.training.methods.shader import Attribute
+from tests.reconstruction.light.test_lobes import ggx_by_half_vectors
 from tests.reconstruction.training.methods.made_ball import environment, psnr, psnr_of_harmonics, seen, trained, unit
 
 SIDE, PLACES, STEPS, BATCH = 64, 4, 400, 4096

@@ -3,10 +3,10 @@
 import pytest
 import torch
 
-from reconstruction.training.methods.attributes import Attribute
 from reconstruction.training.methods.gaussian_shader import GaussianShaderSettings
 from reconstruction.training.methods.ref_gaussian import RefGaussianSettings
 from reconstruction.training.methods.ref_gs import RefGsSettings
+from reconstruction.training.methods.shader import Attribute
 
 
 @pytest.mark.parametrize("settings", [GaussianShaderSettings(), RefGaussianSettings(), RefGsSettings()])

@@ -5,7 +5,7 @@ import math
 import pytest
 import torch
 
-from reconstruction.light.directions.harmonics import harmonics
+from reconstruction.light.harmonics import harmonics
 from reconstruction.light.shading import reflected_directions
 from reconstruction.splats.harmonic_colour import N_HARMONICS
 from reconstruction.training.methods.gaussian_shader import (

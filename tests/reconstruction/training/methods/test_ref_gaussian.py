@@ -3,8 +3,7 @@
 import pytest
 import torch
 
-from reconstruction.light.cube.split_sum import reflectance
-from reconstruction.light.directions.harmonics import harmonics
+from reconstruction.light.harmonics import harmonics
 from reconstruction.light.shading import display_from_linear, incidence_cosines, reflected_directions
 from reconstruction.splats.harmonic_colour import N_HARMONICS
 from reconstruction.training.methods.gaussian_shader import GaussianShaderSettings, GaussianShaderShading
@@ -13,6 +12,7 @@ from reconstruction.training.methods.ref_gaussian import (
     RefGaussianSettings,
     RefGaussianShading,
     indirect_light,
+    reflectance,
 )
 from reconstruction.training.methods.ref_gs import RefGsSettings, RefGsShading
 from tests.reconstruction.training.methods.made_ball import N_TRAINED, N_UNSEEN, psnr, psnr_of_harmonics, seen, trained

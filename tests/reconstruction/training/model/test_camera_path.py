@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from planning.base.errors import InputError
 from reconstruction.base.cameras import Intrinsics, Pose, PosedPhoto
-from reconstruction.training.model.camera_path import cameras_between, frame_names
+from reconstruction.training.model.render import cameras_between, frame_names
 
 LENS = Intrinsics(40, 30, 36.0, 36.0, 20.0, 15.0)
 

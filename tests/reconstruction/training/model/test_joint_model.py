@@ -7,9 +7,8 @@ import pytest
 import torch
 from torch import nn
 
-from reconstruction.light.config import ReflectionConfig
-from reconstruction.light.directions.environment_map import EnvironmentMap
-from reconstruction.light.glass_learned import GlassLearned
+from reconstruction.light.config import GlassLearned, ReflectionConfig
+from reconstruction.light.environment_map import EnvironmentMap
 from reconstruction.light.glass_light import GlassLight
 from reconstruction.light.photo_set import read_photo_set
 from reconstruction.light.shading import display_from_linear, reflected_directions
@@ -18,7 +17,7 @@ from reconstruction.splats.initialise import InitialParameters, initial_splats
 from reconstruction.splats.rasterising.rasteriser import rasterise
 from reconstruction.splats.sky import Sky
 from reconstruction.splats.splats import FEATURES, NO_PANEL, SHAPES, Splats, logit
-from reconstruction.splats.start_data import known_scene, model_origin
+from reconstruction.splats.surfels import known_scene, model_origin
 from reconstruction.training.layers import LAYERS
 from reconstruction.training.model.joint_model import LEAST_REFLECTIVITY, SceneModel
 from reconstruction.training.model.render import OF_PICTURE, render_view

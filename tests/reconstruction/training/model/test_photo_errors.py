@@ -10,8 +10,7 @@ from reconstruction.light.photo_set import read_photo_set
 from reconstruction.metrics.image_metrics import score_picture
 from reconstruction.splats.rasterising.raster_types import RasterSettings
 from reconstruction.training.config import TrainConfig
-from reconstruction.training.model.photo_errors import PhotoErrors
-from reconstruction.training.model.render import LEAST_LIGHT, OF_PICTURE, render_view
+from reconstruction.training.model.render import LEAST_LIGHT, OF_PICTURE, PhotoErrors, render_view
 from reconstruction.training.photos.photo_stream import PhotoStream
 from reconstruction.training.start import start_model
 

@@ -11,8 +11,8 @@ from safetensors.torch import load_file, save_file
 
 from planning.base.errors import InputError
 from reconstruction.light.config import GridSettings, ReflectionConfig
-from reconstruction.light.directions.reflection_mlp import MlpShape
 from reconstruction.light.photo_set import read_photo_set
+from reconstruction.light.reflection_mlp import MlpShape
 from reconstruction.splats.ply import read_splats
 from reconstruction.training.config import TrainConfig
 from reconstruction.training.model.record import site_record

@@ -5,7 +5,7 @@ import torch
 
 from reconstruction.light.photo_set import PanelPlanes
 from reconstruction.light.ray_table import RayTable
-from reconstruction.training.photos.pose_corrections import moved
+from reconstruction.training.photos.exposures import moved
 from tests.reconstruction.light.made_folder import cameras, corners_of
 
 MOVE = (0.2, -0.1, 0.05, 0.004, -0.006, 0.003)

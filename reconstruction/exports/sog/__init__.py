@@ -1,1 +1,0 @@
-"""SOG files (PlayCanvas)."""

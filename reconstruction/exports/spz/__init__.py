@@ -1,1 +1,0 @@
-"""SPZ files (Niantic)."""

@@ -1,1 +1,0 @@
-"""Environment maps on cubes, as methods of others use them."""

@@ -1,1 +1,0 @@
-"""Mirrored light as a radiance grid."""

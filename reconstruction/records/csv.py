@@ -1,0 +1,531 @@
+"""CSV tables into a book: all of a table or nothing, and every wrong cell named at once."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import re
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import MISSING, dataclass, fields
+from pathlib import Path
+from typing import Any
+
+from planning.base.errors import InputError
+from planning.base.files import MIB, FileLimit, check_lines, make_folder, read_given
+from planning.base.json_file import write_together
+from planning.base.messages import say
+from reconstruction.records.book import RecordBook
+from reconstruction.records.changes import Changes
+from reconstruction.records.entries import (
+    COMPUTED,
+    KINDS,
+    STANDARD,
+    TYPES,
+    Attribute,
+    AttributeType,
+    Entry,
+    Kind,
+    Value,
+)
+from reconstruction.records.limits import check_number
+from reconstruction.records.objects import ObjectRow
+
+# Cells of CSV tables: numbers, dates and texts to text and back, and nothing that a spreadsheet would compute.
+#
+# A text that begins like a formula gets an apostrophe in front, on its way in it loses it again; a text that has one
+# there of its own gets another, so that every text reads back as it was.
+
+_FORMULA = re.compile("'*[=+\\-@\t\r\n＝＋－＠]")
+_GUARDED = re.compile("'+[=+\\-@\t\r\n＝＋－＠]")
+_NUMBER = re.compile(r"[+-]?([0-9]+([.][0-9]*)?|[.][0-9]+)([eE][+-]?[0-9]{1,3})?")
+
+YES, NO = "yes", "no"
+
+_PLAIN = frozenset({"date", "found_on", "repaired_on", "next_due", "key", "inspection", "status", "sha256", "currency"})
+"""Fields in which blanks at the ends mean nothing."""
+
+
+def guarded(text: str) -> str:
+    """Text that no spreadsheet takes for a formula."""
+    return f"'{text}" if _FORMULA.match(text) else text
+
+
+def unguarded(text: str) -> str:
+    """The text that `guarded` was given."""
+    return text[1:] if _GUARDED.match(text) else text
+
+
+def number_cell(value: float) -> str:
+    """The shortest text that reads back as the number; one below zero is no formula, spreadsheets read it."""
+    return str(int(value)) if value == int(value) and abs(value) < 1e15 else repr(value)
+
+
+def read_number(text: str, field: str, comma: bool) -> float:
+    """Number of a cell.
+
+    Parameters
+    ----------
+    comma
+        The table is parted by semicolons, so that a comma is a decimal one.
+
+    Raises
+    ------
+    InputError
+        It is none.
+    """
+    plain = text.strip()
+    if comma and plain.count(",") == 1 and "." not in plain:
+        plain = plain.replace(",", ".")
+    if not _NUMBER.fullmatch(plain):
+        hint = " with a point (commas in tables parted by semicolons only)" if "," in plain and not comma else ""
+        raise InputError(f"{field}: expected a number{hint}, got '{text[:40]}'")
+    value = float(plain)
+    check_number(value, field)
+    return value
+
+
+def read_whole(text: str, field: str, comma: bool) -> int:
+    """Whole number of a cell.
+
+    Raises
+    ------
+    InputError
+        It is none.
+    """
+    value = read_number(text, field, comma)
+    if value != int(value):
+        raise InputError(f"{field}: expected a whole number, got '{text[:40]}'")
+    return int(value)
+
+
+def read_truth(text: str, field: str) -> bool:
+    """Truth of a cell.
+
+    Raises
+    ------
+    InputError
+        It is neither yes nor no.
+    """
+    word = text.strip().lower()
+    if word in (YES, "true", "1"):
+        return True
+    if word in (NO, "false", "0"):
+        return False
+    raise InputError(f"{field}: expected yes or no, got '{text[:40]}'")
+
+
+def read_outline(text: str, field: str) -> tuple[tuple[float, float], ...]:
+    """Outline of a cell, `[[u, v], ...]`.
+
+    Raises
+    ------
+    InputError
+        It is none.
+    """
+    try:
+        found: Any = json.loads(text)
+        return tuple((float(u), float(v)) for u, v in found)
+    except (ValueError, TypeError, RecursionError) as error:
+        raise InputError(f"{field}: expected places such as [[0.1, 0.2], ...], got '{text[:40]}'") from error
+
+
+_READERS: dict[str, Callable[[str, str, bool], Any]] = {
+    "severity": read_whole,
+    "u": read_number,
+    "v": read_number,
+    "cost": read_number,
+    "outline": lambda text, field, _: read_outline(text, field),
+}
+
+
+def read_field(field: str, text: str, comma: bool = False) -> Any:
+    """Value of an entry's field; "" where the cell is empty.
+
+    Raises
+    ------
+    InputError
+        It is no such value.
+    """
+    plain = text.strip()
+    if field in _READERS:
+        return _READERS[field](plain, field, comma) if plain else ""
+    return plain if field in _PLAIN else text
+
+
+def read_value(type_name: AttributeType, text: str, field: str, comma: bool = False) -> Value:
+    """Value of an attribute of a type; texts and dates as they are.
+
+    Raises
+    ------
+    InputError
+        It is no such value.
+    """
+    if type_name == "number":
+        return read_number(text, field, comma)
+    return read_truth(text, field) if type_name == "yes/no" else text
+
+
+# Records as CSV tables, one for each kind of them, written so that reading them brings the same records back.
+
+OBJECT = ("global_id", "name")
+"""First two columns of each table: either says which object a line is about."""
+
+Column = tuple[str, AttributeType, str]
+"""Name, type and unit of an attribute, which together make a column's head."""
+
+_HEAD = re.compile(r"(?P<name>[^\[\]()]*[^\[\]() ])(?: \[(?P<unit>[^\[\]()]+)\])?(?: \((?P<type>[a-z/]+)\))?")
+
+
+def table_name(kind: Kind) -> str:
+    """Name of a kind's file."""
+    return f"{kind.table}.csv"
+
+
+def write_tables(book: RecordBook, folder: Path, semicolon: bool = False) -> tuple[Path, ...]:
+    """Write a table of each kind of entries into a folder; the files written.
+
+    Parameters
+    ----------
+    semicolon
+        Part cells by semicolons, as spreadsheets want them where numbers have a decimal comma.
+
+    Raises
+    ------
+    InputError
+        The records are damaged, or a file cannot be written.
+    """
+    with book.database.snapshot():
+        names = {row.global_id: row for row in book.objects(with_absent=True)}
+        tables = [(kind, _table(book, kind, names)) for kind in KINDS]
+    make_folder(folder)
+    delimiter = ";" if semicolon else ","
+    files = {folder / table_name(kind): _bytes(head, lines, delimiter) for kind, (head, lines) in tables}
+    write_together(files)
+    return tuple(files)
+
+
+def column_head(column: Column) -> str:
+    """Head of an attribute's column: `thickness [mm] (number)`."""
+    name, kind, unit = column
+    return f"{name}{f' [{unit}]' if unit else ''}{'' if kind == 'text' else f' ({kind})'}"
+
+
+def column_of_head(head: str) -> Column:
+    """The attribute of a column; standard ones have their type and unit also where the head leaves them out.
+
+    Raises
+    ------
+    InputError
+        It is no head of such a column.
+    """
+    found = _HEAD.fullmatch(head)
+    kind = next((kind for kind in TYPES if found and kind == (found["type"] or "text")), None)
+    if found is None or kind is None:
+        raise InputError(
+            f"expected heads such as 'maker' or 'thickness [mm] (number)', found '{head[:60]}'; types are "
+            f"{', '.join(TYPES)}"
+        )
+    standard = STANDARD.get(found["name"])
+    if standard is not None and found["type"] is None and found["unit"] in (None, standard[1]):
+        return found["name"], *standard
+    return found["name"], kind, found["unit"] or ""
+
+
+def _bytes(head: Iterable[str], lines: Iterable[Iterable[str]], delimiter: str) -> bytes:
+    text = io.StringIO(newline="")
+    writer = csv.writer(text, delimiter=delimiter, lineterminator="\r\n")
+    writer.writerow(guarded(cell) for cell in head)
+    writer.writerows(lines)
+    # The mark at the start tells spreadsheets that it is UTF-8.
+    return text.getvalue().encode("utf-8-sig")
+
+
+def _table(book: RecordBook, kind: Kind, names: Mapping[str, ObjectRow]) -> tuple[list[str], list[list[str]]]:
+    entries = book.entries(kind.record)
+    if kind.record is Attribute:
+        return _wide(entries, names)
+    columns = [field.name for field in fields(kind.record) if field.name != "global_id"]
+    lines = [
+        [entry.global_id, guarded(names[entry.global_id].name), *(_cell(getattr(entry, column)) for column in columns)]
+        for entry in entries
+    ]
+    return [*OBJECT, *columns], lines
+
+
+def _wide(entries: Iterable[Attribute], names: Mapping[str, ObjectRow]) -> tuple[list[str], list[list[str]]]:
+    """A line for each object that is in the model or has attributes, a column for each attribute."""
+    standard: list[Column] = [(name, kind, unit) for name, (kind, unit) in STANDARD.items()]
+    free: set[Column] = set()
+    values: dict[str, dict[Column, str]] = {}
+    for entry in entries:
+        column = (entry.name, entry.type, entry.unit)
+        free.add(column)
+        values.setdefault(entry.global_id, {})[column] = _cell(entry.value)
+    columns = [*standard, *sorted(free - set(standard))]
+    lines = []
+    for global_id, row in names.items():
+        found = values.get(global_id, {})
+        sizes = [_cell(row.width_m), _cell(row.height_m)]
+        lines.append([global_id, guarded(row.name), *sizes, *(found.get(column, "") for column in columns)])
+    return [*OBJECT, *(f"{name} [m]" for name in COMPUTED), *map(column_head, columns)], lines
+
+
+def _cell(value: Any) -> str:
+    if value is None:
+        return ""
+    if isinstance(value, bool):
+        return YES if value else NO
+    if isinstance(value, (int, float)):
+        return number_cell(value)
+    if isinstance(value, tuple):
+        return json.dumps(value) if value else ""
+    return guarded(str(value))
+
+
+class TableError(InputError):
+    """A table that is not taken, with every place in it that is wrong.
+
+    Parameters
+    ----------
+    problems
+        Texts such as `line 3, column 'severity': expected 1, 2, 3, 4, 5, got 9`.
+    """
+
+    def __init__(self, path: Path, problems: tuple[str, ...], shown: int = 20) -> None:
+        more = say("; and {} more", len(problems) - shown) if len(problems) > shown else ""
+        super().__init__(f"{path}: nothing was taken over: {'; '.join(problems[:shown])}{more}")
+        self.path, self.problems = path, problems
+
+
+TABLE_FILE, MAX_LINES = FileLimit("a CSV table", 256 * MIB), 2_000_000
+
+_FIELD = re.compile(r"[a-z_][a-z0-9_, ]{0,60}")
+
+
+@dataclass(frozen=True, slots=True)
+class Taken:
+    """What came of a table: lines read, and records that were added or changed by it."""
+
+    kind: str
+    n_lines: int
+    n_changed: int
+
+
+@dataclass(frozen=True, slots=True)
+class _Table:
+    path: Path
+    comma: bool
+    head: tuple[str, ...]
+    lines: tuple[tuple[int, list[str]], ...]
+
+
+class _Problems:
+    """Collects what is wrong, by line and column."""
+
+    def __init__(self) -> None:
+        self.texts: list[str] = []
+
+    def add(self, line: int, column: str, error: InputError) -> None:
+        """One more; a record's own refusal names the field first, which is the column then."""
+        field, colon, rest = str(error).partition(": ")
+        is_named = bool(colon) and _FIELD.fullmatch(field) is not None
+        self.texts.append(f"line {line}, column '{field if is_named else column[:60]}': {rest if is_named else error}")
+
+
+def kind_of_table(path: Path) -> Kind:
+    """Kind of entries that a file of this name holds, such as `defects.csv`.
+
+    Raises
+    ------
+    InputError
+        The name is none of ours.
+    """
+    for kind in KINDS:
+        if path.stem.lower() == kind.table:
+            return kind
+    names = ", ".join(f"{kind.table}.csv" for kind in KINDS)
+    raise InputError(f"{path}: expected a name of {names}, or name the kind with --kind")
+
+
+def read_tables(book: RecordBook, tables: Sequence[tuple[Path, Kind]]) -> tuple[Taken, ...]:
+    """Take tables over, all of all of them or nothing.
+
+    A line with the key of an entry replaces it, one without key is a new entry; an attribute's empty cell leaves what
+    the book has.
+
+    Raises
+    ------
+    TableError
+        Cells are wrong; all those of the first table with such are named.
+    InputError
+        A file cannot be read, is no table of its kind, or the records cannot be written.
+    """
+    taken = []
+    what = f"import of {', '.join(path.name for path, _ in tables)}"
+    with book.changing(what[:200]) as changes:
+        objects = _Objects(book)
+        # Inspections before the defects that belong to them.
+        for path, kind in sorted(tables, key=lambda table: table[1].code):
+            taken.append(_take(_read(path), kind, objects, changes))
+    return tuple(taken)
+
+
+def _take(table: _Table, kind: Kind, objects: _Objects, changes: Changes) -> Taken:
+    problems, n_before = _Problems(), changes.n_changed
+    read = _attributes if kind.record is Attribute else _entries
+    entries = list(read(table, kind, objects, problems))
+    seen: dict[tuple[str, ...], int] = {}
+    for line, entry in entries:
+        mark = (entry.global_id, entry.name) if isinstance(entry, Attribute) else (entry.key,)
+        if mark[-1] and mark in seen:
+            problems.add(line, "key", InputError(f"'{mark[-1]}' stands in line {seen[mark]} already"))
+        seen[mark] = line
+    for line, entry in () if problems.texts else entries:
+        try:
+            changes.put(entry)
+        except InputError as error:
+            problems.add(line, "key", error)
+    if problems.texts:
+        raise TableError(table.path, tuple(problems.texts))
+    return Taken(kind.name, len(table.lines), changes.n_changed - n_before)
+
+
+class _Objects:
+    """Finds the object of a line."""
+
+    def __init__(self, book: RecordBook) -> None:
+        rows = book.objects(with_absent=True)
+        self._by_id: Mapping[str, ObjectRow] = {row.global_id: row for row in rows}
+        present = book.objects()
+        counts = Counter(row.name for row in present)
+        self._by_name = {row.name: row.global_id for row in present if counts[row.name] == 1}
+        self._ambiguous = {name for name, count in counts.items() if count > 1}
+
+    def find(self, global_id: str, name: str) -> str:
+        """GlobalId of the object that a line is about; its GlobalId goes before its name."""
+        if global_id:
+            if global_id not in self._by_id:
+                raise InputError(f"global_id: expected an object of the model, got '{global_id[:40]}'")
+            return global_id
+        if not name:
+            raise InputError("global_id: expected a GlobalId, or a name in the column 'name', found neither")
+        if name in self._ambiguous:
+            raise InputError(f"name: several objects have the name '{name[:40]}'; give the GlobalId")
+        if name not in self._by_name:
+            raise InputError(f"name: expected the name of an object of the model, got '{name[:40]}'")
+        return self._by_name[name]
+
+
+def _read(path: Path) -> _Table:
+    content = read_given(path, TABLE_FILE)
+    check_lines(content, MAX_LINES, path)
+    try:
+        text = content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = content[: error.start].count(b"\n") + 1
+        raise InputError(f"{path}: line {line}: expected UTF-8, found other bytes; save it as CSV UTF-8") from error
+    delimiter = ";" if _is_headed(text, ";") and not _is_headed(text, ",") else ","
+    reader = csv.reader(io.StringIO(text, newline=""), delimiter=delimiter, strict=True)
+    lines: list[tuple[int, list[str]]] = []
+    start = 1
+    try:
+        for cells in reader:
+            if any(cell.strip() for cell in cells):
+                if lines and len(cells) != len(lines[0][1]):
+                    raise InputError(
+                        f"{path}: line {start}: expected {len(lines[0][1])} cells parted by '{delimiter}', found "
+                        f"{len(cells)}"
+                    )
+                lines.append((start, cells))
+            start = reader.line_num + 1
+    except csv.Error as error:
+        raise InputError(f"{path}: line {start}: is no CSV ({error})") from error
+    if not lines:
+        raise InputError(f"{path}: the table is empty; expected a line with the names of its columns")
+    head = tuple(unguarded(cell).strip() for cell in lines[0][1])
+    repeated = next((name for name in head if head.count(name) > 1), None) if len(set(head)) < len(head) else None
+    if repeated is not None:
+        raise InputError(f"{path}: line 1: the column '{repeated[:60]}' occurs twice")
+    if not any(name in head for name in OBJECT):
+        raise InputError(f"{path}: line 1: expected a column 'global_id' or 'name', found {_listed(head)}")
+    return _Table(path, delimiter == ";", head, tuple(lines[1:]))
+
+
+def _is_headed(text: str, delimiter: str) -> bool:
+    """Whether a table parted so has a column that says which object a line is about."""
+    try:
+        head = next(csv.reader(io.StringIO(text[:100_000], newline=""), delimiter=delimiter), [])
+    except csv.Error:
+        return False
+    return any(name.strip() in OBJECT for name in head) and len(head) > 1
+
+
+def _listed(names: Sequence[str]) -> str:
+    return ", ".join(f"'{name[:40]}'" for name in names[:12])
+
+
+def _cells(table: _Table, cells: list[str]) -> dict[str, str]:
+    return {name: unguarded(cell) for name, cell in zip(table.head, cells, strict=True)}
+
+
+def _object(objects: _Objects, cells: dict[str, str], line: int, problems: _Problems) -> str:
+    """GlobalId of a line's object, "" where there is none."""
+    try:
+        return objects.find(cells.get("global_id", "").strip(), cells.get("name", "").strip())
+    except InputError as error:
+        problems.add(line, "global_id", error)
+        return ""
+
+
+def _entries(table: _Table, kind: Kind, objects: _Objects, problems: _Problems) -> Iterator[tuple[int, Entry]]:
+    known = (*OBJECT, *kind.columns)
+    unknown = next((name for name in table.head if name not in known), None)
+    if unknown is not None:
+        raise InputError(f"{table.path}: line 1: there is no column '{unknown[:60]}'; known are {', '.join(known)}")
+    required = [f.name for f in fields(kind.record) if f.default is MISSING and f.name != "global_id"]
+    missing = next((name for name in required if name not in table.head), None)
+    if missing is not None:
+        raise InputError(f"{table.path}: line 1: the column '{missing}' is missing")
+    for line, texts in table.lines:
+        cells, n_before = _cells(table, texts), len(problems.texts)
+        values: dict[str, Any] = {"global_id": _object(objects, cells, line, problems)}
+        for column in kind.columns:
+            text = cells.get(column, "")
+            try:
+                value = read_field(column, text, table.comma)
+                if value != "":
+                    values[column] = value
+                elif column in required:
+                    raise InputError(f"{column}: expected a value, found none")
+            except InputError as error:
+                problems.add(line, column, error)
+        if len(problems.texts) == n_before:
+            try:
+                yield line, kind.record(**values)
+            except InputError as error:
+                problems.add(line, table.head[0], error)
+
+
+def _attributes(table: _Table, kind: Kind, objects: _Objects, problems: _Problems) -> Iterator[tuple[int, Entry]]:
+    columns = _columns(table)
+    for line, texts in table.lines:
+        cells = _cells(table, texts)
+        global_id = _object(objects, cells, line, problems)
+        for head, (name, type_name, unit) in columns.items():
+            text = cells[head] if type_name == "text" else cells[head].strip()
+            if not text.strip() or name in COMPUTED or not global_id:
+                continue
+            try:
+                yield line, Attribute(global_id, name, read_value(type_name, text, name, table.comma), type_name, unit)
+            except InputError as error:
+                problems.add(line, head, error)
+
+
+def _columns(table: _Table) -> dict[str, Column]:
+    """Attributes that the columns are about, by their heads."""
+    try:
+        return {head: column_of_head(head) for head in table.head if head not in OBJECT}
+    except InputError as error:
+        raise InputError(f"{table.path}: line 1: {error}") from error

@@ -1,1 +1,0 @@
-"""Records as CSV tables, there and back."""
