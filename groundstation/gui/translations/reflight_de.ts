@@ -546,7 +546,7 @@ Bild in dieser Entfernung: {4} x {5}</translation>
     </message>
     <message>
         <source>{0} of {1}</source>
-        <translation>{0} von {1}</translation>
+        <translation>{0} aus {1}</translation>
     </message>
 </context>
 <context>
