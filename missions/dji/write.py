@@ -160,8 +160,8 @@ def _gimbal_pitch(pitch_deg: float) -> list[Node]:
 MAX_SPEED_M_S = 15.0
 """Highest autoFlightSpeed and globalTransitionalSpeed of the format."""
 
-MIN_RTH_HEIGHT_M = 20.0
-"""Lowest return height that DJI's remote controllers accept."""
+LOWEST_RETURN_M, HIGHEST_RETURN_M = 20.0, 1500.0
+"""Return heights above take-off that DJI's remote controllers take; the higher is that of all heights of waylines."""
 
 STOP_MODE = "toPointAndStopWithDiscontinuityCurvature"
 
@@ -183,7 +183,7 @@ class DjiOptions:
     ----------
     rth_height_m
         Height above take-off at which the aircraft returns when it leaves the mission (low battery, the return button,
-        `LinkLoss.GO_HOME`); it must clear everything on the site.
+        `LinkLoss.GO_HOME`); it must clear everything on the site. From `LOWEST_RETURN_M` to `HIGHEST_RETURN_M`.
     created_ms
         Time of writing, milliseconds since 1970 UTC, for createTime and updateTime.
     """
@@ -193,6 +193,12 @@ class DjiOptions:
     height_reference: HeightReference = HeightReference.ABOVE_TAKEOFF
     link_loss: LinkLoss = LinkLoss.CONTINUE
     security_height_m: float = MIN_HEIGHT_ABOVE_GROUND_M
+
+    def __post_init__(self) -> None:
+        if not LOWEST_RETURN_M <= self.rth_height_m <= HIGHEST_RETURN_M:
+            raise ValueError(
+                f"rth_height_m: expected {LOWEST_RETURN_M:g} to {HIGHEST_RETURN_M:g} m, got {self.rth_height_m:g}"
+            )
 
 
 def kmz_bytes(mission: Mission, options: DjiOptions) -> bytes:
@@ -286,7 +292,7 @@ class _Writer:
             ("takeOffSecurityHeight", number(climb_m, 1)),
             *(reference if is_template else []),
             ("globalTransitionalSpeed", self.speed),
-            ("globalRTHHeight", number(max(self.options.rth_height_m, MIN_RTH_HEIGHT_M), 1)),
+            ("globalRTHHeight", number(self.options.rth_height_m, 1)),
             ("droneInfo", [("droneEnumValue", str(drone[0])), ("droneSubEnumValue", str(drone[1]))]),
             ("waylineAvoidLimitAreaMode", "0"),
             (

@@ -30,7 +30,8 @@ class ExportOptions:
     autopilot
         Whose rules MAVLink files follow; None: PX4 for the profile px4, ArduPilot for all others.
     link_loss, rth_height_m
-        For DJI. Without a height above take-off the aircraft returns as high as `site` or, without it, the path needs.
+        For DJI. Without a height above take-off the aircraft returns as high as `site` or, without it, the path needs,
+        and as remote controllers take.
     site
         For the return height and for fences.
     clock
@@ -173,7 +174,64 @@ def _security_height_m(plan: Plan, options: ExportOptions) -> float:
 
 
 def dji_return_height(plan: Plan, missions: Sequence[Mission], options: ExportOptions) -> tuple[float, list[Finding]]:
-    """Height above take-off at which an aircraft that leaves its mission flies home, and what there is to say of it."""
+    """Height above take-off at which an aircraft that leaves its mission flies home, and what there is to say of it.
+
+    The height is always one that DJI's remote controllers take.
+    """
+    from missions.dji.write import HIGHEST_RETURN_M, LOWEST_RETURN_M
+
+    asked_m = options.rth_height_m
+    if asked_m is not None and not LOWEST_RETURN_M <= asked_m <= HIGHEST_RETURN_M:
+        text = say(
+            "the return height is none that DJI's remote controllers take: expected {:g} to {:g} m above take-off, "
+            "got {:g} m",
+            LOWEST_RETURN_M,
+            HIGHEST_RETURN_M,
+            asked_m,
+        )
+        limit_m = LOWEST_RETURN_M if asked_m < LOWEST_RETURN_M else HIGHEST_RETURN_M
+        return limit_m, [Finding(Severity.ERROR, "return-height", text, "", asked_m, limit_m, "m")]
+    wanted_m, findings = _clear_return_height(plan, missions, options)
+    flown_m = min(max(wanted_m, LOWEST_RETURN_M), HIGHEST_RETURN_M)
+    if flown_m < wanted_m:
+        text = say(
+            "the return height would have to be {:g} m above take-off: DJI's remote controllers take no more than "
+            "{:g} m",
+            wanted_m,
+            flown_m,
+        )
+        findings.append(Finding(Severity.ERROR, "return-height", text, "", wanted_m, flown_m, "m"))
+    elif flown_m > wanted_m:
+        ceiling_m = math.inf
+        if options.site is not None:
+            site = options.site.site
+            ceiling_m = site.airspace.max_enu_m[2] - site.home_enu_m[2]
+        findings.append(_raised_return(wanted_m, flown_m, ceiling_m))
+    return flown_m, findings
+
+
+def _raised_return(wanted_m: float, flown_m: float, ceiling_m: float) -> Finding:
+    if flown_m <= ceiling_m:
+        text = say(
+            "an aircraft that leaves its mission returns {:g} m above take-off, where {:g} m would do: DJI's remote "
+            "controllers take no less",
+            flown_m,
+            wanted_m,
+        )
+        return Finding(Severity.NOTE, "return-height", text, "", flown_m, None, "m")
+    text = say(
+        "an aircraft that leaves its mission returns {:g} m above take-off, though the airspace ends at {:.1f} m: "
+        "DJI's remote controllers take no less",
+        flown_m,
+        ceiling_m,
+    )
+    return Finding(Severity.WARNING, "return-height", text, "", flown_m, ceiling_m, "m")
+
+
+def _clear_return_height(
+    plan: Plan, missions: Sequence[Mission], options: ExportOptions
+) -> tuple[float, list[Finding]]:
+    """The pilot's height, else one that clears what is known, and what there is to say of it."""
     path_m = max(m.height_above_takeoff_m(w.position) for m in missions for w in m.waypoints)
     if options.site is None:
         if options.rth_height_m is not None:

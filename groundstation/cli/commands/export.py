@@ -9,9 +9,6 @@ from typing import Any
 from groundstation.cli.options import PluginNames, number, words
 from planning.base.plugins import PluginGroup
 
-MAX_RETURN_HEIGHT_M = 1500.0
-"""Highest that DJI's waylines allow for any height above take-off."""
-
 MISSIONS = ("dji-kmz", "mavlink-plan", "mavlink-wpl", "kml", "csv")
 MODELS = ("web", "gltf", "3d-tiles", "usd", "ply", "ply-2dgs", "spz", "spz-4", "sog", "mesh", "cityjson", "ifc")
 ALL_MODELS = PluginNames(MODELS, PluginGroup.MODEL_FORMATS)
@@ -72,7 +69,12 @@ def add_parser(subparsers: Any) -> None:
     )
     add("--autopilot", choices=("ardupilot", "px4"), help="whose rules MAVLink files follow (default: by profile)")
     add("--link-loss", choices=("continue", "go-home"), default="continue", help="DJI: what to do without radio link")
-    add("--return-height", type=number, metavar="M", help="DJI: above take-off (default: above everything on the site)")
+    add(
+        "--return-height",
+        type=number,
+        metavar="M",
+        help="DJI: above take-off, 20 to 1500 (default: above everything)",
+    )
     model = parser.add_argument_group("models")
     model.add_argument("--colours", choices=("baked", "own"), default="baked", help=COLOURS_HELP)
     model.add_argument(
@@ -125,17 +127,13 @@ def _export_plan(options: argparse.Namespace) -> int:
     from missions.formats.encode import ExportOptions
     from missions.mavlink.autopilots import Autopilot
     from missions.mission.model import HeightReference
-    from planning.base.errors import InputError
     from planning.base.findings import Severity
 
-    height_m = options.return_height
-    if height_m is not None and not 0.0 < height_m <= MAX_RETURN_HEIGHT_M:
-        raise InputError(f"--return-height: expected a height up to {MAX_RETURN_HEIGHT_M:g} m, got {height_m:g}")
     export_options = ExportOptions(
         height_reference=HeightReference(options.heights),
         autopilot=None if options.autopilot is None else Autopilot(options.autopilot),
         link_loss=LinkLoss(options.link_loss),
-        rth_height_m=height_m,
+        rth_height_m=options.return_height,
     )
     paths, findings = export_plan(options.plan, options.format, options.out, options.site, export_options)
     if options.json:

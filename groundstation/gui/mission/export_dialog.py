@@ -23,7 +23,7 @@ from groundstation.services.mission.files import (
     write_export,
 )
 from groundstation.services.units import UnitSystem
-from missions.dji.write import MIN_RTH_HEIGHT_M, LinkLoss
+from missions.dji.write import HIGHEST_RETURN_M, LOWEST_RETURN_M, LinkLoss
 from missions.formats.encode import ExportOptions
 from missions.formats.registry import FORMATS, mission_format, mission_formats
 from missions.mavlink.autopilots import Autopilot
@@ -34,9 +34,6 @@ from planning.plan import Plan
 from planning.site.records import SiteModel
 
 # What a pilot chooses for mission files: the format and the options that it has.
-
-MAX_RETURN_HEIGHT_M = 1500.0
-"""Highest that DJI's waylines allow for any height above take-off."""
 
 FIRST_RETURN_HEIGHT_M = 60.0
 
@@ -51,7 +48,7 @@ class ExportForm(QWidget):
         self._format, self._heights, self._autopilot, self._link_loss = (ChoiceBox() for _ in range(4))
         self._return_auto = QCheckBox(self.tr("above everything on the site"))
         self._return_auto.setChecked(True)
-        self._return = LengthBox(MIN_RTH_HEIGHT_M, MAX_RETURN_HEIGHT_M, 5.0, units)
+        self._return = LengthBox(LOWEST_RETURN_M, HIGHEST_RETURN_M, 5.0, units)
         self._return.setValue(FIRST_RETURN_HEIGHT_M)
         self._fill()
         form = self._form = Form(self)

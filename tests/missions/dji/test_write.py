@@ -12,7 +12,7 @@ from xml.etree import ElementTree
 import pytest
 from hypothesis import given, settings
 
-from missions.dji.write import DjiOptions, LinkLoss, kmz_bytes
+from missions.dji.write import HIGHEST_RETURN_M, LOWEST_RETURN_M, DjiOptions, LinkLoss, kmz_bytes
 from missions.formats.encode import ExportOptions
 from missions.formats.registry import encode
 from missions.mission.build import missions_from_plan
@@ -238,10 +238,15 @@ def test_aircraft_never_fly_sideways_below_the_lowest_flight(first_m: float, low
         assert climb_m == pytest.approx(max(math.floor(first_m * 10.0) / 10.0, math.ceil(least_m * 10.0) / 10.0))
 
 
-def test_return_height_is_the_pilots_but_at_least_what_remote_controllers_accept() -> None:
+def test_return_height_is_written_as_it_was_chosen_and_none_that_remote_controllers_do_not_take() -> None:
     mission = missions_from_plan(example_plan())[0]
     assert text(config(parts(mission)[1]), "globalRTHHeight") == "60"
-    assert text(config(parts(mission, replace(OPTIONS, rth_height_m=5.0))[1]), "globalRTHHeight") == "20"
+    for height_m in (LOWEST_RETURN_M, HIGHEST_RETURN_M):
+        written = text(config(parts(mission, replace(OPTIONS, rth_height_m=height_m))[1]), "globalRTHHeight")
+        assert float(written) == height_m
+    for height_m in (LOWEST_RETURN_M - 0.1, HIGHEST_RETURN_M + 0.1, math.nan):
+        with pytest.raises(ValueError, match="expected 20 to 1500 m"):
+            replace(OPTIONS, rth_height_m=height_m)
 
 
 def test_lost_link_continues_on_the_checked_path_unless_asked_otherwise() -> None:

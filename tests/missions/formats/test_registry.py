@@ -20,7 +20,7 @@ from missions.mission.build import missions_from_plan
 from missions.mission.model import FileFormat, GeoPoint, HeightReference, ReadMission, altitude_amsl_m
 from missions.mission.to_plan import viewpoints_and_sorties
 from planning.base.errors import InputError, MissionError
-from planning.base.findings import Severity
+from planning.base.findings import Finding, Severity
 from planning.geo.geoid import undulation_m
 from planning.geo.mesh import box_mesh, empty_mesh
 from planning.motion.timing import photo_vertices
@@ -216,8 +216,8 @@ def test_mavlink_files_follow_the_profiles_autopilot_and_else_ardupilot() -> Non
     assert is_px4(example_plan(), replace(FIXED, autopilot=Autopilot.PX4))
 
 
-def site_model(tower_top_m: float = 45.0) -> SiteModel:
-    corners = ((-5.0, -10.0, 0.0), (5.0, -10.0, 0.0), (5.0, -10.0, 30.0), (-5.0, -10.0, 30.0))
+def site_model(tower_top_m: float = 45.0, facade_top_m: float = 30.0) -> SiteModel:
+    corners = ((-5.0, -10.0, 0.0), (5.0, -10.0, 0.0), (5.0, -10.0, facade_top_m), (-5.0, -10.0, facade_top_m))
     zones = (NoFlyZone("road", ((60.0, 60.0), (70.0, 60.0), (70.0, 70.0), (60.0, 70.0)), 0.0, 100.0),)
     airspace = Airspace((-100.0, -100.0, 5.0), (100.0, 100.0, 100.0), 0.0, zones)
     tower = ((50.0, 50.0, 0.0), (52.0, 52.0, tower_top_m))
@@ -240,6 +240,9 @@ class TestReturnHeight:
         assert found is not None
         return float(found[1])
 
+    def findings(self, options: ExportOptions) -> tuple[Finding, ...]:
+        return encode(example_plan(), None, None, FileFormat.DJI_KMZ, options).findings
+
     def test_aircraft_return_above_everything_on_the_site(self) -> None:
         assert self.height(replace(FIXED, site=site_model())) == math.ceil(45.0 - HOME[2] + CLEARANCE_M)
         assert self.height(replace(FIXED, site=site_model(80.0))) == math.ceil(80.0 - HOME[2] + CLEARANCE_M)
@@ -249,6 +252,31 @@ class TestReturnHeight:
         low = replace(FIXED, site=site_model(), rth_height_m=40.0)
         with pytest.raises(MissionError, match="return height is below the highest point"):
             export(example_plan(), None, None, FileFormat.DJI_KMZ, tmp_path / "m.kmz", low)
+
+    @pytest.mark.parametrize("height_m", [5.0, 19.9, 1500.1])
+    @pytest.mark.parametrize("has_site", [True, False])
+    def test_a_return_height_that_remote_controllers_do_not_take_is_refused(
+        self, tmp_path: Path, height_m: float, has_site: bool
+    ) -> None:
+        options = replace(FIXED, site=site_model(3.0, 3.0) if has_site else None, rth_height_m=height_m)
+        expected = f"expected 20 to 1500 m above take-off, got {height_m:g} m"
+        with pytest.raises(MissionError, match=expected):
+            export(example_plan(), None, None, FileFormat.DJI_KMZ, tmp_path / "m.kmz", options)
+
+    def test_where_less_would_clear_everything_the_height_that_is_flown_is_told_with_its_reason(self) -> None:
+        low = site_model(3.0, 3.0)
+        options = replace(FIXED, site=low)
+        assert self.height(options) == 20.0
+        found = [f for f in self.findings(options) if f.code == "return-height"]
+        assert [(f.severity, f.value) for f in found] == [(Severity.NOTE, 20.0)]
+        assert re.search(r"returns 20 m above take-off, where 1\d m would do: .* no less", found[0].message)
+        ceiling_z_m = HOME[2] + 15.0
+        airspace = replace(low.site.airspace, max_enu_m=(100.0, 100.0, ceiling_z_m))
+        options = replace(FIXED, site=replace(low, site=replace(low.site, airspace=airspace)))
+        assert self.height(options) == 20.0
+        found = [f for f in self.findings(options) if f.code == "return-height"]
+        assert [(f.severity, f.limit) for f in found] == [(Severity.WARNING, 15.0)]
+        assert "the airspace ends at 15.0 m" in found[0].message
 
     @pytest.mark.parametrize("top_m", [45.0, 80.04, 120.0])
     def test_the_refusal_of_a_low_return_height_names_the_lowest_that_is_taken(

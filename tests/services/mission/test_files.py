@@ -45,12 +45,14 @@ def test_every_format_is_prepared_and_then_written(planned, tmp_path, file_forma
     assert back.coverage.covered == plan.coverage.covered
 
 
-def test_a_return_height_below_the_building_is_said_and_keeps_files_from_being_written(planned):
+def test_a_return_height_that_is_refused_is_said_and_keeps_files_from_being_written(planned):
     plan, model = planned
     options = ExportOptions(rth_height_m=5.0, link_loss=LinkLoss.GO_HOME)
     prepared = prepare_export(plan, model, FileFormat.DJI_KMZ, options)
     assert not prepared.can_be_written
-    assert any(f.code == "return-height" and f.severity is Severity.ERROR for f in prepared.findings)
+    found = [f for f in prepared.findings if f.code == "return-height"]
+    assert [f.severity for f in found] == [Severity.ERROR]
+    assert "expected 20 to 1500 m above take-off, got 5 m" in found[0].message
 
 
 def test_what_a_format_cannot_do_is_a_refusal_with_its_reason(planned):
