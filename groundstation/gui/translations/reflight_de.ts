@@ -5760,6 +5760,14 @@ Damit weiterarbeiten?</translation>
         <translation>über {0} und unter {1}</translation>
     </message>
     <message>
+        <source>an aircraft that leaves its mission returns {0} m above take-off, though the airspace ends at {1} m: DJI&apos;s remote controllers take no less</source>
+        <translation>ein Fluggerät, das seine Mission verlässt, kehrt {0} m über dem Startplatz zurück, obwohl der Luftraum bei {1} m endet: weniger nehmen DJIs Fernsteuerungen nicht an</translation>
+    </message>
+    <message>
+        <source>an aircraft that leaves its mission returns {0} m above take-off, where {1} m would do: DJI&apos;s remote controllers take no less</source>
+        <translation>ein Fluggerät, das seine Mission verlässt, kehrt {0} m über dem Startplatz zurück, wo {1} m genügen würden: weniger nehmen DJIs Fernsteuerungen nicht an</translation>
+    </message>
+    <message>
         <source>more than {0}</source>
         <translation>mehr als {0}</translation>
     </message>
@@ -5778,6 +5786,14 @@ Damit weiterarbeiten?</translation>
     <message>
         <source>template and waylines name different cameras</source>
         <translation>template und waylines nennen verschiedene Kameras</translation>
+    </message>
+    <message>
+        <source>the return height is none that DJI&apos;s remote controllers take: expected {0} to {1} m above take-off, got {2} m</source>
+        <translation>diese Rückkehrhöhe nehmen DJIs Fernsteuerungen nicht an: erwartet {0} bis {1} m über dem Startplatz, angegeben sind {2} m</translation>
+    </message>
+    <message>
+        <source>the return height would have to be {0} m above take-off: DJI&apos;s remote controllers take no more than {1} m</source>
+        <translation>die Rückkehrhöhe müsste {0} m über dem Startplatz sein: DJIs Fernsteuerungen nehmen höchstens {1} m an</translation>
     </message>
     <message>
         <source>the template has {0} waypoints, the wayline {1}</source>
