@@ -93,7 +93,7 @@ def measure(context: Context) -> Iterator[Row]:
     site, plan = large_site(), large_plan()
     scene = "10 000 panels, 1000 viewpoints"
     with shown_view() as (application, view):
-        from groundstation.gui.view3d.layers import Layer
+        from groundstation.gui.view3d.drawables import Layer
         from planning.coverage.sections import SectionGrid
 
         def rows(what: str, is_goal: bool = False) -> Iterator[Row]:

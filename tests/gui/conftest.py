@@ -45,7 +45,7 @@ def _no_dialog_waits(request):
 
 @pytest.fixture(scope="package", autouse=True)
 def _garbage_stays_in_this_thread():
-    """As in the running window (`groundstation.gui.application.garbage`): no job's thread may free widgets."""
+    """As in the running window (`groundstation.gui.application.interpreter`): no job's thread may free widgets."""
     gc.disable()
     yield
     gc.enable()

@@ -11,10 +11,9 @@ from hypothesis import strategies as st
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
-from groundstation.gui.camera_preview.flight import camera_flight
-from groundstation.gui.camera_preview.photo_overlay import horizon_px
-from groundstation.gui.camera_preview.seen_panels import covered_by_view, nearest_covered, site_sight
-from groundstation.gui.view3d.pinhole import photo_pinhole
+from groundstation.gui.camera_preview.flight import camera_flight, covered_by_view, nearest_covered, site_sight
+from groundstation.gui.camera_preview.photo_box import horizon_px
+from groundstation.gui.view3d.orbit import photo_pinhole
 from groundstation.services.units import UnitSystem
 from planning.aircraft.catalogue import profiles
 from planning.coverage.model import exact_sections

@@ -247,7 +247,7 @@ def test_files_of_further_sorties_are_replaced_after_a_yes_only(application, con
 
 
 def test_the_brief_is_saved_where_it_is_told_and_printed_after_a_yes(application, controller, tmp_path):
-    from groundstation.gui.mission.brief_dialog import BriefDialog
+    from groundstation.gui.mission.brief_printer import BriefDialog
 
     controller.window.show_tab("mission")
     turn_until_idle(application, controller)

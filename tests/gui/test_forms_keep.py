@@ -208,7 +208,7 @@ def test_the_light_keeps_the_place_of_the_sun(application, heading_deg, elevatio
 @given(numbers(-89.9, 89.9), numbers(-179.9, 179.9), numbers(-400.0, 9000.0))
 @quick
 def test_a_place_on_earth_is_kept(application, lat_deg, lon_deg, height_m):
-    from groundstation.gui.site.origin_box import OriginBox
+    from groundstation.gui.site.pages import OriginBox
 
     origin = Origin(lat_deg, lon_deg, height_m)
     box = OriginBox(IMPERIAL)
@@ -258,7 +258,7 @@ def test_a_grid_of_panels_is_kept(application, n_rows, n_columns, gap_m, toleran
 )
 @quick
 def test_options_of_an_import_are_kept(application, tmp_path_factory, ground_z, margin_m, unit, up, building, order, h):
-    from groundstation.gui.site.import_dialog import ImportForm
+    from groundstation.gui.site.site_opener import ImportForm
 
     options = ImportOptions(
         ground_z=ground_z,

@@ -13,7 +13,7 @@ from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.camera_preview.photo_box import LightBox
 from groundstation.gui.camera_preview.preview import panel_lines
 from groundstation.gui.shared_view import SharedViewPage, Stage
-from groundstation.gui.view3d.pinhole import pinhole_at
+from groundstation.gui.view3d.orbit import pinhole_at
 from groundstation.services.jobs.runner import JobRunner
 from groundstation.services.project.document import Document, Item, ItemKind, PlanEntry
 from groundstation.services.project.session import Session

@@ -160,7 +160,7 @@ def test_corners_of_a_polygon_are_added_half_way_and_removed_down_to_three(appli
 
 
 def test_heights_of_the_origin_follow_each_other_and_impossible_ones_are_told(application):
-    from groundstation.gui.site.origin_box import OriginBox
+    from groundstation.gui.site.pages import OriginBox
 
     zurich = Origin(47.376912345678, 8.541712345678, 457.0)
     box = OriginBox(METRIC)
@@ -204,7 +204,7 @@ def test_grid_form_gives_back_its_wish_and_reckons_the_panels_size(application):
 
 @pytest.mark.parametrize("name", ["a.ifc", "a.gml", "a.json", "a.obj"])
 def test_import_form_gives_back_its_options(application, name):
-    from groundstation.gui.site.import_dialog import ImportForm
+    from groundstation.gui.site.site_opener import ImportForm
 
     form = ImportForm(Path(name), METRIC)
     assert form.value() == ImportOptions()
@@ -221,7 +221,7 @@ def test_import_form_gives_back_its_options(application, name):
 
 
 def test_place_of_a_mesh_is_never_guessed(application):
-    from groundstation.gui.site.import_dialog import ImportForm
+    from groundstation.gui.site.site_opener import ImportForm
 
     form = ImportForm(Path("tower.obj"), METRIC)
     assert form.value().origin is None
@@ -230,7 +230,7 @@ def test_place_of_a_mesh_is_never_guessed(application):
 
 
 def test_findings_name_their_place(application):
-    from groundstation.gui.site.findings_list import FindingsList, item_of
+    from groundstation.gui.site.site_panels import FindingsList, item_of
 
     shown = FindingsList()
     home = Finding(Severity.ERROR, "home-unusable", "move home", "home")

@@ -8,7 +8,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
 from groundstation.gui.shared_view import SharedViewPage
-from groundstation.gui.view3d.layers import Layer
+from groundstation.gui.view3d.drawables import Layer
 from groundstation.services.project.document import Document, Item, ItemKind, PlanEntry
 from groundstation.services.project.folder import open_project
 from planning.base.findings import Severity

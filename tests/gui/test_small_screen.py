@@ -282,7 +282,7 @@ def _in_the_plan_tab(looks, page, window):
 
 
 def _in_the_mission_tab(looks, window):
-    from groundstation.gui.mission.brief_dialog import BriefDialog
+    from groundstation.gui.mission.brief_printer import BriefDialog
 
     window.show_tab("mission")
     page = window.tab("mission")

@@ -12,7 +12,7 @@ import pytest
 from PySide6.QtCore import QTranslator
 from PySide6.QtWidgets import QMenu, QWidget
 
-from groundstation.gui.application.languages import FOLDER
+from groundstation.gui.application.translate import FOLDER
 from groundstation.services.settings import Language
 from tests.gui.driving import close_controller, turn_until
 
@@ -171,7 +171,7 @@ def test_no_two_german_entries_of_a_menu_share_a_letter(controller):
 
 
 def test_keys_have_german_names_wherever_they_are_shown(controller):
-    from groundstation.gui.window.shortcuts import sections
+    from groundstation.gui.window.menus import sections
 
     controller.choose(language=Language.GERMAN)
     told = " ".join(keys for _, rows in sections(controller.window) for keys, _ in rows)

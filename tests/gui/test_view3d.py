@@ -9,7 +9,7 @@ from PySide6.QtCore import QCoreApplication, QEvent, QPoint, QPointF, Qt
 from PySide6.QtGui import QMouseEvent, QWheelEvent
 from PySide6.QtTest import QTest
 
-from groundstation.gui.view3d.layers import Drawable, Layer
+from groundstation.gui.view3d.drawables import Drawable, Layer
 from groundstation.gui.view3d.orbit import Orbit
 from groundstation.gui.view3d.paint import ColourScale, flat
 from groundstation.gui.widgets.theme import DARK, FACADES, LIGHT, Theme, apply_theme
@@ -161,7 +161,7 @@ def test_hemispheres_are_painted_and_taken_away(application, view):
 
 
 def test_layers_are_hidden_and_shown(application, view, plan):
-    from groundstation.gui.view3d.layers import Layer
+    from groundstation.gui.view3d.drawables import Layer
 
     view.set_site(canyon())
     view.set_plan(plan)
@@ -547,7 +547,7 @@ def test_a_double_click_ends_a_polygon(application, view):
 
 
 def test_a_viewpoint_is_dragged_and_the_drag_taken_back_with_escape(application, view, plan):
-    from groundstation.gui.view3d.viewpoint_tool import ViewpointTool
+    from groundstation.gui.view3d.tools import ViewpointTool
 
     view.set_site(office())
     view.set_plan(plan)

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from groundstation.gui.view3d.drawables import Drawable, arrows, frusta
 from groundstation.gui.view3d.hemispheres import (
     OPEN,
     UNDECIDED,
@@ -17,13 +18,10 @@ from groundstation.gui.view3d.hemispheres import (
     nearest_panels,
     state_colours,
 )
-from groundstation.gui.view3d.layers import Drawable
-from groundstation.gui.view3d.orbit import Orbit, facing, shifted_by_drag, turned_by_drag
+from groundstation.gui.view3d.orbit import Orbit, facing, photo_pinhole, shifted_by_drag, turned_by_drag
 from groundstation.gui.view3d.overlay import round_length
 from groundstation.gui.view3d.paint import NO_VALUE, ColourScale, ValueKind, flat, rgba, shaded
-from groundstation.gui.view3d.pinhole import photo_pinhole
-from groundstation.gui.view3d.plan_scene import ends_of_sorties
-from groundstation.gui.view3d.shapes import arrows, frusta
+from groundstation.gui.view3d.site_scene import ends_of_sorties
 from groundstation.gui.widgets.theme import DARK, LIGHT
 from planning.aircraft.catalogue import profiles
 from planning.coverage.sections import SectionGrid, in_picture, panel_frames, sections_of

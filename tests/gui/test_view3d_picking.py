@@ -5,13 +5,10 @@ import time
 import numpy as np
 import pytest
 
-from groundstation.gui.view3d.layers import Layer
-from groundstation.gui.view3d.orbit import Orbit, facing
+from groundstation.gui.view3d.drawables import Layer, shown_panels
+from groundstation.gui.view3d.orbit import Orbit, facing, photo_pinhole
 from groundstation.gui.view3d.picking import PickIndex, footprint, pick
-from groundstation.gui.view3d.pinhole import photo_pinhole
-from groundstation.gui.view3d.plan_scene import plan_scene
-from groundstation.gui.view3d.shapes import shown_panels
-from groundstation.gui.view3d.site_scene import site_scene
+from groundstation.gui.view3d.site_scene import plan_scene, site_scene
 from groundstation.gui.widgets.theme import LIGHT
 from groundstation.services.project.document import Item, ItemKind
 from planning.aircraft.catalogue import profiles

@@ -11,8 +11,7 @@ from groundstation.gui.view3d.drawing_tools import BoxState, BoxTool, PolygonToo
 from groundstation.gui.view3d.orbit import Orbit
 from groundstation.gui.view3d.picking import PickIndex
 from groundstation.gui.view3d.site_scene import site_scene
-from groundstation.gui.view3d.tools import Hint, HomeTool, Key, Pointer, PointTool
-from groundstation.gui.view3d.viewpoint_tool import DragState, ViewpointTool
+from groundstation.gui.view3d.tools import DragState, Hint, HomeTool, Key, Pointer, PointTool, ViewpointTool
 from groundstation.gui.widgets.theme import LIGHT
 from planning.geo.frames import camera_axes
 from planning.site.bundled import library, office

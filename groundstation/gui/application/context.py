@@ -12,15 +12,56 @@ from typing import Any
 
 from PySide6.QtCore import QObject, Signal
 
-from groundstation.gui.application.job_bridge import JobBridge
 from groundstation.gui.application.translate import translated, with_fields
-from groundstation.services.jobs.runner import ENDED, Job, JobContext, JobRunner, JobState, JobStateChanged
+from groundstation.services.jobs.runner import (
+    ENDED,
+    Job,
+    JobBounded,
+    JobContext,
+    JobEvent,
+    JobImproved,
+    JobProgress,
+    JobRunner,
+    JobState,
+    JobStateChanged,
+)
 from groundstation.services.project.document import Document, Item, exists
 from groundstation.services.project.session import Session
 from groundstation.services.units import UnitSystem
 from planning.base.errors import GroundStationError, shortened
 from planning.base.findings import Severity
 from planning.base.plugins import untold_problems
+
+# Brings job events from worker threads to the window's thread as Qt signals.
+
+
+class JobBridge(QObject):
+    """Signals with the events of a job runner; they arrive in the thread this object lives in."""
+
+    state_changed = Signal(object)
+    progressed = Signal(object)
+    improved = Signal(object)
+    bounded = Signal(object)
+
+    def __init__(self, runner: JobRunner, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._unsubscribe = runner.subscribe(self._forward)
+
+    def close(self) -> None:
+        """Hear nothing more."""
+        self._unsubscribe()
+
+    def _forward(self, event: JobEvent) -> None:
+        # Emitted on the worker's thread: Qt queues the call for receivers that live in another one.
+        if isinstance(event, JobStateChanged):
+            self.state_changed.emit(event)
+        elif isinstance(event, JobProgress):
+            self.progressed.emit(event)
+        elif isinstance(event, JobImproved):
+            self.improved.emit(event)
+        elif isinstance(event, JobBounded):
+            self.bounded.emit(event)
+
 
 Work = Callable[[JobContext], Any]
 Done = Callable[[Any], None]

@@ -12,21 +12,21 @@ from PySide6.QtGui import QHideEvent, QImage, QResizeEvent, QShortcut, QShowEven
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QSlider, QVBoxLayout, QWidget
 
 from groundstation.gui.application.translate import translated
-from groundstation.gui.camera_preview.flight import CameraFlight, CameraPose, camera_flight
-from groundstation.gui.camera_preview.photo_box import PhotoBox
-from groundstation.gui.camera_preview.photo_overlay import Lines, PhotoOverlay
-from groundstation.gui.camera_preview.seen_panels import (
+from groundstation.gui.camera_preview.flight import (
+    CameraFlight,
+    CameraPose,
     NearestPanel,
     SiteSight,
+    camera_flight,
     covered_by_view,
     nearest_covered,
     site_sight,
 )
+from groundstation.gui.camera_preview.photo_box import Lines, PhotoBox, PhotoOverlay
 from groundstation.gui.view3d.canvas import Canvas, image_array
-from groundstation.gui.view3d.layers import Drawable, Layer
+from groundstation.gui.view3d.drawables import Drawable, Layer, outlines, quads
+from groundstation.gui.view3d.orbit import Pinhole, photo_pinhole
 from groundstation.gui.view3d.paint import flat, rgba, shaded
-from groundstation.gui.view3d.pinhole import Pinhole, photo_pinhole
-from groundstation.gui.view3d.shapes import outlines, quads
 from groundstation.gui.view3d.site_scene import SiteScene, site_scene
 from groundstation.gui.widgets.inputs import ChoiceBox, calm
 from groundstation.gui.widgets.scrolling import scrolled

@@ -1,4 +1,4 @@
-"""What the Fly tab does: connect, ask, follow, and plan what comes after. It belongs to the workspace, not to a window.
+"""What the Fly tab does: connect, ask, follow, and plan what comes after. It belongs to the application, not a window.
 
 Events of a flight come from its thread as Qt signals, in the window's thread; nothing here waits for the link.
 """
@@ -6,16 +6,15 @@ Events of a flight come from its thread as Qt signals, in the window's thread; n
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from groundstation.gui.application.context import ApplicationContext
-from groundstation.gui.fly.active_flight import ActiveFlight
-from groundstation.gui.fly.after_flight import AfterFlight
 from groundstation.gui.fly.signing_controller import SigningController
 from groundstation.gui.fly.simulation_controller import SimulationController
 from groundstation.services.fly.connection import Connection, VehicleAt, flights_folder
@@ -46,19 +45,221 @@ from groundstation.services.fly.options import (
 )
 from groundstation.services.fly.readouts import BEFORE_TAKE_OFF
 from groundstation.services.fly.signing import link_signer
-from groundstation.services.fly.sortie import LiveSortie, prepare_sortie
+from groundstation.services.fly.sortie import LiveSortie, is_same_place, prepare_sortie
 from groundstation.services.jobs.runner import JobContext
 from groundstation.services.mission.readiness import TooLong, shared_out, too_long
-from groundstation.services.project.document import PlanEntry
+from groundstation.services.plan.top_up import flown_plan, resume_flight, top_up_flight
+from groundstation.services.project.document import Document, PlanEntry
 from groundstation.services.settings import write_kept
 from groundstation.services.site.edits import move_home
 from groundstation.vehicle.preflight import stands_enu_m
 from groundstation.vehicle.setup import ParameterChange
+from groundstation.vehicle.state import VehicleText
+from missions.flight.flight_file import flight_of
+from missions.flight.record import FlightRecord
 from missions.mavlink.autopilots import Autopilot
+from missions.mission.resume import Resumed
 from planning.base.errors import InputError
-from planning.base.findings import Severity
+from planning.base.findings import Finding, Severity
 from planning.checks.case import Case
+from planning.geo.frames import Vec3
 from planning.plan import Plan
+from planning.revision.top_up import TopUp, TopUpRequest
+from planning.site.records import SiteModel
+
+# What is known of the flight that is shown, also after it ended.
+
+
+@dataclass(slots=True)
+class ActiveFlight:
+    """Grows as the flight tells.
+
+    Parameters
+    ----------
+    track_enu_m
+        Where the aircraft was, ten times a second at most.
+    link_problem
+        Why both ends of an open link do not understand each other; empty where nothing shows it.
+    photos
+        By the view that they are of.
+    notes
+        What happened: how long after take-off (None on the ground), how severe, and the text.
+    took_off_s
+        When the motors started, by the vehicle's own clock; None on the ground.
+    """
+
+    sortie: LiveSortie
+    view: LiveView | None = None
+    link: LinkState = LinkState.OPENING
+    link_problem: str = ""
+    track_enu_m: list[Vec3] = field(default_factory=list)
+    photos: dict[str, PhotoCounted] = field(default_factory=dict)
+    counted: PhotoCounted | None = None
+    ended: FlightEnded | None = None
+    notes: list[tuple[float | None, Severity, str]] = field(default_factory=list)
+    last_text_s: float = -math.inf
+    battery: float | None = None
+    took_off_s: float | None = None
+
+    def take_view(self, view: LiveView) -> tuple[VehicleText, ...]:
+        """The flight as it stands now; returns the autopilot's texts that are new."""
+        self.view = view
+        state = view.state
+        if self.took_off_s is None and state.is_armed:
+            self.took_off_s = state.boot_time_s
+        if state.motion is not None and view.link is LinkState.ALIVE:
+            place = state.motion.value.position_enu_m
+            if not self.track_enu_m or self.track_enu_m[-1] != place:
+                self.track_enu_m.append(place)
+        if view.readouts.battery is not None:
+            self.battery = view.readouts.battery
+        # Those that a state keeps are the last ones of all.
+        texts = tuple(text for text in state.texts if text.time_s > self.last_text_s)
+        if texts:
+            self.last_text_s = texts[-1].time_s
+        return texts
+
+    def since_take_off_s(self, view: LiveView) -> float | None:
+        """How long the motors have been running, as plans and reports count; None on the ground."""
+        now_s = view.state.boot_time_s
+        return None if self.took_off_s is None or now_s is None else max(0.0, now_s - self.took_off_s)
+
+    def take_photo(self, counted: PhotoCounted) -> None:
+        """A photo was taken."""
+        self.counted = counted
+        if counted.view_id:
+            self.photos[counted.view_id] = counted
+
+
+# What comes after a flight, as new plans: a top-up for what it missed, or the rest of an interrupted sortie.
+
+MOST_BATTERIES = 20
+"""Full batteries that a top-up may take at most; more than anybody has with them."""
+
+
+class AfterFlight(QObject):
+    """Keeps what was flown of each plan, and plans what is left, as jobs.
+
+    Signals
+    -------
+    restFound(TopUp)
+        So little is missing that a flight for it wants a decision; `take` makes it a plan.
+    """
+
+    restFound = Signal(object)  # noqa: N815  (Qt's own way of naming)
+
+    def __init__(self, workspace: ApplicationContext, parent: QObject) -> None:
+        super().__init__(parent)
+        self._workspace = workspace
+        self._flown: dict[int, tuple[Plan, tuple[FlightRecord, ...]]] = {}
+        self._last: tuple[Plan, SiteModel] | None = None
+        self._battery: float | None = None
+        self._on_board: tuple[Plan, float] | None = None
+
+    def flown(self, plan: Plan) -> tuple[FlightRecord, ...]:
+        """What was flown of a plan since the program was started."""
+        _, records = self._flown.get(id(plan), (plan, ()))
+        return records
+
+    def add(self, plan: Plan, site_model: SiteModel, record: FlightRecord, battery: float | None) -> None:
+        """A sortie of a plan was flown over a site; `battery` is what it left of the charge, 1 full."""
+        self._flown[id(plan)] = (plan, (*self.flown(plan), record))
+        self._last, self._battery = (plan, site_model), battery
+        self._on_board = None
+
+    def charge(self, plan: Plan, number: int) -> float:
+        """Charge of the battery that a sortie, from 1, begins with, 1 full: of a top-up, what the flight before left.
+
+        Further sorties, other plans, and a top-up that is flown again have a full one.
+        """
+        if self._on_board is None or number != 1:
+            return 1.0
+        top_up, battery = self._on_board
+        return battery if top_up is plan else 1.0
+
+    def top_up(self) -> None:
+        """Plan the shortest flight that closes what is missing, with the battery that is left, as a new plan."""
+        flown = self._flown_here()
+        if flown is None:
+            return
+        plan, site_model, records = flown
+        battery = self._battery
+        # Full ones come into it where the one on board does not suffice.
+        request = TopUpRequest(battery=battery, n_batteries=None if battery is None else MOST_BATTERIES)
+
+        def work(context: JobContext) -> tuple[TopUp, tuple[Finding, ...]]:
+            found = flown_plan(flight_of(plan, site_model, records), plan, site_model)
+            return top_up_flight(found, request, monitor=context)
+
+        def done(result: tuple[TopUp, tuple[Finding, ...]]) -> None:
+            found, findings = result
+            for finding in findings:
+                self._workspace.say(finding.severity, self._workspace.words(finding.message))
+            if found.wanted == 0:
+                self._workspace.say(Severity.OK, self.tr("Nothing is missing: the photos show all that was planned."))
+            elif found.is_negligible and found.plan is not None:
+                self.restFound.emit(found)
+            else:
+                self.take(found)
+
+        self._workspace.start(self.tr("Top-up flight"), work, done)
+
+    def take(self, found: TopUp) -> None:
+        """Make a top-up a plan of the project."""
+        if found.plan is None:
+            return
+        battery = self._battery
+        text = self.tr("Top-up planned, photos: {0}; it closes {1} of {2} missing sections").format(
+            len(found.plan.viewpoints), found.closed, found.wanted
+        )
+        on_board = found.on_board and battery is not None
+        needed = (
+            self.tr("Fly it before the battery is changed.")
+            if on_board and len(found.plan.sorties) == 1
+            else self.tr("Fly the first sortie before the battery is changed, the others with full ones.")
+            if on_board
+            else self.tr("It needs a full battery: change it first.")
+        )
+        self._add_plan(self.tr("Top-up"), found.plan, self.tr("{0}. {1}").format(text, needed))
+        self._on_board = (found.plan, battery) if on_board and battery is not None else None
+
+    def resume_sortie(self) -> None:
+        """Plan the rest of the sortie that was interrupted, for a full battery, as a new plan."""
+        flown = self._flown_here()
+        if flown is None:
+            return
+        plan, site_model, records = flown
+
+        def work(context: JobContext) -> Resumed:
+            found = flown_plan(flight_of(plan, site_model, records), plan, site_model)
+            return resume_flight(found, monitor=context)
+
+        def done(rest: Resumed) -> None:
+            text = self.tr("Rest of sortie {0} planned, photos: {1}. It needs a full battery: change it first.").format(
+                rest.mission.number, len(rest.plan.viewpoints)
+            )
+            self._add_plan(self.tr("Rest of sortie {0}").format(rest.mission.number), rest.plan, text)
+
+        self._workspace.start(self.tr("Resume sortie"), work, done)
+
+    def _flown_here(self) -> tuple[Plan, SiteModel, tuple[FlightRecord, ...]] | None:
+        """The plan that was flown last, the site as it is now, and all that was flown of the plan."""
+        site_model = self._workspace.document.site
+        if self._last is None or site_model is None:
+            return None
+        plan, flown_over = self._last
+        if not is_same_place(flown_over.site, site_model.site):
+            text = self.tr("This flight was over the site {0}: open its project first.").format(flown_over.site.name)
+            self._workspace.say(Severity.WARNING, text)
+            return None
+        return plan, site_model, self.flown(plan)
+
+    def _add_plan(self, title: str, plan: Plan, text: str) -> None:
+        document: Document = self._workspace.document
+        entry = PlanEntry(document.free_plan_id(), title, plan)
+        self._workspace.change(title, document.with_plan(entry))
+        self._workspace.say(Severity.OK, text)
+
 
 # Plans with more photos in a sortie than the autopilot keeps items for: found, and shared out anew as a plan.
 

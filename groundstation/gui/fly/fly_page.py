@@ -17,17 +17,12 @@ from PySide6.QtWidgets import (
 
 from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.application.translate import translated
-from groundstation.gui.fly.active_flight import ActiveFlight
 from groundstation.gui.fly.connection_box import ConnectionBox
-from groundstation.gui.fly.flight_buttons import APART_PX, FlightButtons
-from groundstation.gui.fly.flight_words import FlightWords
-from groundstation.gui.fly.fly_controller import BEFORE_FLIGHT, FlyController
-from groundstation.gui.fly.live_pictures import LivePictures
-from groundstation.gui.fly.photo_strip import PhotoStrip, ScrolledStrip
-from groundstation.gui.fly.preflight_list import PreflightList
+from groundstation.gui.fly.flight_buttons import APART_PX, FlightButtons, PreflightList
+from groundstation.gui.fly.fly_controller import BEFORE_FLIGHT, ActiveFlight, FlyController
+from groundstation.gui.fly.live_pictures import LivePictures, PhotoStrip, ScrolledStrip
 from groundstation.gui.fly.questions import FlightQuestions
-from groundstation.gui.fly.readouts_view import ReadoutsView
-from groundstation.gui.fly.report_view import ReportView
+from groundstation.gui.fly.readouts_view import ReadoutsView, ReportView
 from groundstation.gui.fly.simulation_controller import SimulationPage
 from groundstation.gui.shared_view import Stage
 from groundstation.gui.widgets.findings_list import FindingsList
@@ -42,9 +37,72 @@ from groundstation.services.plan.places import item_of_place
 from groundstation.services.project.document import Document, Item, ItemKind
 from groundstation.services.units import UnitSystem, minutes_text
 from groundstation.vehicle.preflight import Mend, PreflightCheck
+from groundstation.vehicle.sortie.run_records import Phase
 from groundstation.vehicle.watch import FlightWarning
 from planning.base.findings import Severity
 from planning.revision.top_up import TopUp
+
+# Where a flight stands, in the window's language.
+
+
+class FlightWords(QObject):
+    """Says what a controller is doing."""
+
+    def __init__(self, workspace: ApplicationContext, controller: FlyController, parent: QObject) -> None:
+        super().__init__(parent)
+        self._workspace, self._controller = workspace, controller
+
+    def connected_to(self) -> str:
+        """The other end of the link; empty where there is none."""
+        controller = self._controller
+        if not controller.is_connected:
+            return ""
+        if controller.choice.url:
+            is_signed = controller.choice.is_signed
+            return self.tr("{0}, signed").format(controller.choice.url) if is_signed else controller.choice.url
+        return self.tr("Simulation, {0:g} times as fast").format(controller.choice.speed_up)
+
+    def where_it_stands(self) -> str:
+        """What is going on, or what to do first."""
+        controller, in_hand = self._controller, self._controller.in_hand
+        if self._workspace.document.site is None and not controller.is_connected:
+            return self.tr("Open or import a site first, on the Site tab.")
+        if (controller.plan is None or not controller.plan.sorties) and not controller.is_connected:
+            return self.tr("Plan a flight first, on the Plan tab.")
+        if controller.is_preparing:
+            return self.tr("The flight is being prepared ...")
+        if not controller.is_connected or in_hand is None:
+            return self.tr("Not connected.")
+        if in_hand.link is LinkState.OPENING or in_hand.view is None:
+            return self.tr("The link is being opened ...")
+        if in_hand.link is LinkState.SILENT:
+            if in_hand.link_problem:
+                return str(self._workspace.words(in_hand.link_problem))
+            return self.tr("The link is open; no vehicle was heard yet.")
+        return self._phase_text(in_hand.view)
+
+    def _phase_text(self, view: LiveView) -> str:
+        texts = {
+            None: self.tr("Connected. Upload the mission."),
+            Phase.CONNECTING: self.tr("Connecting ..."),
+            Phase.PREPARING: self.tr("The vehicle is being prepared ..."),
+            Phase.UPLOADING: self.tr("Uploading ..."),
+            Phase.CHECKING: self.tr("On board. Waiting for the list."),
+            Phase.READY: self.tr("Ready for take-off."),
+            Phase.STARTING: self.tr("Starting ..."),
+            Phase.FLYING: self.tr("Flying."),
+            Phase.ENDED: self.tr("Landed."),
+        }
+        text = texts[view.phase]
+        if not self._controller.is_for_shown_plan and not view.state.is_armed:
+            return self.tr("This connection is for another plan. Disconnect, and connect for the plan that is shown.")
+        what, done, total = view.doing
+        if view.phase is Phase.UPLOADING and total > 0.0:
+            return self.tr("{0} {1} ({2:.0f} of {3:.0f})").format(text, self._workspace.words(what), done, total)
+        if view.phase is Phase.FLYING and view.state.mode is not None:
+            return self.tr("{0} Mode: {1}").format(text, view.state.mode.value)
+        return text
+
 
 # A band across the whole window while the link is lost, whatever tab is in front.
 

@@ -8,8 +8,7 @@ from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QDialog, QDialogButtonBox, QLabel, QLineEdit, QWidget
 
 from groundstation.gui.application.context import ApplicationContext
-from groundstation.gui.fly.connection_box import ConnectionBox
-from groundstation.gui.fly.signing_box import KeyAction
+from groundstation.gui.fly.connection_box import ConnectionBox, KeyAction
 from groundstation.gui.widgets.inputs import Form
 from groundstation.gui.widgets.questions import agrees
 from groundstation.services.fly.options import ConnectionChoice

@@ -10,40 +10,194 @@ import threading
 from pathlib import Path
 
 import numpy as np
-from PySide6.QtCore import QEvent, QPointF, QSize, Qt, QTimer, Signal
-from PySide6.QtGui import (
-    QColor,
-    QPainter,
-    QPaintEvent,
-    QResizeEvent,
-)
+from numpy.typing import NDArray
+from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt, QTimer, Signal
+from PySide6.QtGui import QColor, QFont, QImage, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QHBoxLayout, QToolButton, QVBoxLayout, QWidget
 
 from groundstation.gui.application.translate import translated
-from groundstation.gui.map.map_canvas import MapCanvas
-from groundstation.gui.map.map_layer import MapLayer
 from groundstation.gui.map.map_paint import (
     paint_grid,
+    paint_landings,
     paint_north,
     paint_note,
+    paint_plan,
     paint_ring,
     paint_scale_bar,
+    paint_site,
     paint_text_box,
     paint_tiles,
 )
-from groundstation.gui.map.map_pick import find_item, place_of
 from groundstation.gui.map.tile_store import TileStore
-from groundstation.gui.map.viewport import Viewport
+from groundstation.gui.map.viewport import MapCanvas, Viewport
 from groundstation.gui.widgets.questions import choose_file
-from groundstation.gui.widgets.theme import colours
-from groundstation.services.map.shapes import PlanShapes, SiteShapes, airspace_outline, plan_shapes, site_shapes
+from groundstation.gui.widgets.theme import Colours, colours
+from groundstation.services.map.shapes import Area, PlanShapes, SiteShapes, airspace_outline, plan_shapes, site_shapes
 from groundstation.services.map.tiles import MapTiles
 from groundstation.services.map.web_mercator import MAX_LAT_DEG, geodetic_from_world, world_from_geodetic
-from groundstation.services.project.document import Document, Item
+from groundstation.services.project.document import Document, Item, ItemKind
 from groundstation.services.units import UnitSystem
 from planning.base.errors import InputError
 from planning.plan import Plan
 from planning.site.records import SiteModel
+
+# Site and plan painted once into a picture larger than the map, so that panning and zooming only move that picture.
+
+MARGIN = 0.5
+"""Part of its width and height by which the picture reaches beyond the map on each side."""
+
+SAME_ZOOM = 1e-6
+
+
+class MapLayer:
+    """The picture, and the viewport that it was painted for."""
+
+    def __init__(self) -> None:
+        self._picture: QImage | None = None
+        self._made_for = Viewport()
+
+    def forget(self) -> None:
+        """What it shows has changed."""
+        self._picture = None
+
+    def is_usable(self) -> bool:
+        """Whether there is a picture at all."""
+        return self._picture is not None
+
+    def is_sharp(self, viewport: Viewport) -> bool:
+        """Whether the picture has the zoom of what is in sight and reaches all of it."""
+        if self._picture is None or abs(viewport.zoom - self._made_for.zoom) > SAME_ZOOM:
+            return False
+        return self._target(viewport).contains(QRectF(0.0, 0.0, viewport.width_px, viewport.height_px))
+
+    def make(
+        self,
+        viewport: Viewport,
+        site: SiteShapes,
+        plan: PlanShapes | None,
+        found: Colours,
+        font: QFont,
+        pixel_ratio: float,
+    ) -> None:
+        """Paint site and plan for what is in sight and its margin."""
+        width, height = (round(size * (1.0 + 2.0 * MARGIN)) for size in (viewport.width_px, viewport.height_px))
+        wide = viewport.resized(width, height)
+        picture = QImage(
+            round(width * pixel_ratio), round(height * pixel_ratio), QImage.Format.Format_ARGB32_Premultiplied
+        )
+        picture.setDevicePixelRatio(pixel_ratio)
+        picture.fill(Qt.GlobalColor.transparent)
+        painter = QPainter(picture)
+        painter.setFont(font)
+        paint_site(painter, wide, site, found)
+        if plan is not None:
+            paint_plan(painter, wide, plan)
+        paint_landings(painter, wide.screen(site.landings()), found)
+        painter.end()
+        self._picture, self._made_for = picture, wide
+
+    def paint(self, painter: QPainter, viewport: Viewport) -> None:
+        """Put the picture where it belongs in what is in sight, stretched where the zoom has changed since."""
+        if self._picture is None:
+            return
+        target = self._target(viewport)
+        if abs(viewport.zoom - self._made_for.zoom) <= SAME_ZOOM:
+            painter.drawImage(QPointF(round(target.x()), round(target.y())), self._picture)
+        else:
+            painter.drawImage(target, self._picture, QRectF(self._picture.rect()))
+
+    def _target(self, viewport: Viewport) -> QRectF:
+        made = self._made_for
+        stretch = viewport.scale / made.scale
+        width, height = made.width_px * stretch, made.height_px * stretch
+        x = (made.centre[0] - viewport.centre[0]) * viewport.scale + (viewport.width_px - width) / 2.0
+        y = (made.centre[1] - viewport.centre[1]) * viewport.scale + (viewport.height_px - height) / 2.0
+        return QRectF(x, y, width, height)
+
+
+# What is where on the map: from a pixel to the thing drawn there, and from a thing to its place.
+
+REACH_PX = 14.0
+"""How far from a point a finger or mouse may be to mean it."""
+
+LINE_REACH_PX = 7.0
+
+
+def find_item(
+    at_px: NDArray[np.float64], viewport: Viewport, site: SiteShapes | None, plan: PlanShapes | None
+) -> Item | None:
+    """The thing at a pixel, shape (2,): points first, then panels, then what covers ground."""
+    if plan is not None and len(plan.viewpoints):
+        away = np.linalg.norm(viewport.screen(plan.viewpoints) - at_px, axis=1)
+        nearest = int(np.argmin(away))
+        if away[nearest] <= REACH_PX:
+            return Item(ItemKind.VIEWPOINT, plan.viewpoint_ids[nearest])
+    if site is None:
+        return None
+    landings = np.linalg.norm(viewport.screen(site.landings()) - at_px, axis=1)
+    nearest = int(np.argmin(landings))
+    if landings[nearest] <= REACH_PX:
+        return site.rally[nearest - 1][0] if nearest else Item(ItemKind.HOME)
+    for item, panels in site.facades:
+        corners = viewport.screen(panels.reshape(-1, 2)).reshape(-1, 4, 2)
+        if _distance_px(corners, np.roll(corners, -1, axis=1), at_px) <= LINE_REACH_PX:
+            return item
+    areas = (*site.no_fly, *reversed(site.solids))
+    return next((area.item for area in areas if _is_inside(area, viewport, at_px)), None)
+
+
+def place_of(item: Item, site: SiteShapes | None, plan: PlanShapes | None) -> NDArray[np.float64] | None:
+    """World coordinates of a thing, shape (n, 2), n >= 1; None where the map does not show it."""
+    if plan is not None:
+        if item.kind is ItemKind.VIEWPOINT and item.id in plan.viewpoint_ids:
+            return plan.viewpoints[plan.viewpoint_ids.index(item.id)][None]
+        if item.kind in (ItemKind.SORTIE, ItemKind.LEG):
+            return _place_on_route(item, plan)
+    if site is None:
+        return None
+    if item.kind is ItemKind.HOME:
+        return site.home[None]
+    if item.kind is ItemKind.AIRSPACE:
+        return site.airspace.rings[0]
+    if item.kind is ItemKind.RALLY:
+        return next((place[None] for point, place in site.rally if point == item), None)
+    areas = (*site.no_fly, *site.solids)
+    found = next((area for area in areas if area.item == item), None)
+    if found is not None and found.rings:
+        return np.concatenate(found.rings)
+    return next((panels.reshape(-1, 2) for facade, panels in site.facades if facade == item), None)
+
+
+def _place_on_route(item: Item, plan: PlanShapes) -> NDArray[np.float64] | None:
+    number, _, leg = item.id.partition("/")
+    if not number.isdecimal() or not 1 <= int(number) <= len(plan.routes):
+        return None
+    route = plan.routes[int(number) - 1]
+    if item.kind is ItemKind.SORTIE:
+        return route if len(route) else None
+    end = int(leg) if leg.isdecimal() else 0
+    return route[end - 1 : end + 1] if 1 <= end < len(route) else None
+
+
+def _distance_px(starts: NDArray[np.float64], ends: NDArray[np.float64], at_px: NDArray[np.float64]) -> float:
+    """Distance of a pixel to the nearest of many segments, shapes (..., 2)."""
+    legs, rays = ends - starts, at_px - starts
+    along = np.clip((rays * legs).sum(axis=-1) / np.maximum((legs**2).sum(axis=-1), 1e-12), 0.0, 1.0)
+    return float(np.linalg.norm(rays - along[..., None] * legs, axis=-1).min())
+
+
+def _is_inside(area: Area, viewport: Viewport, at_px: NDArray[np.float64]) -> bool:
+    """Even-odd rule over all rings."""
+    inside = False
+    for ring in area.rings:
+        a = viewport.screen(ring) - at_px
+        b = np.roll(a, -1, axis=0)
+        crosses = (a[:, 1] > 0.0) != (b[:, 1] > 0.0)
+        a, b = a[crosses], b[crosses]
+        right = (b[:, 0] - a[:, 0]) * -a[:, 1] / (b[:, 1] - a[:, 1]) + a[:, 0] > 0.0
+        inside ^= bool(np.count_nonzero(right) % 2)
+    return inside
+
 
 MARGIN_PX = 64.0
 """Around the site when all of it is shown: room for the scale bar and the note above it."""

@@ -14,10 +14,8 @@ from PySide6.QtWidgets import QCheckBox, QComboBox, QHBoxLayout, QLabel, QPushBu
 from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.model.model_controller import ModelController
 from groundstation.gui.model.picture_places import places_in
-from groundstation.gui.reconstruct.guided_camera import USUAL_DISTANCE_M, LedCamera
-from groundstation.gui.reconstruct.looks import Looks, View
-from groundstation.gui.reconstruct.model_view import Mark, ModelView
-from groundstation.gui.reconstruct.names import layer_names
+from groundstation.gui.reconstruct.looks import Looks, View, layer_names
+from groundstation.gui.reconstruct.model_view import USUAL_DISTANCE_M, LedCamera, Mark, ModelView
 from groundstation.gui.widgets.inputs import ChoiceBox, calm
 from groundstation.gui.widgets.scrolling import WrappingRow, labelled
 from groundstation.gui.widgets.theme import colours

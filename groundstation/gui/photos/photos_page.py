@@ -25,16 +25,13 @@ from PySide6.QtWidgets import (
 )
 
 from groundstation.gui.application.context import ApplicationContext
-from groundstation.gui.charts.trial_chart import TrialChart
+from groundstation.gui.charts.quality_chart import TrialChart
 from groundstation.gui.map.place_map import PlaceMap
-from groundstation.gui.photos.coverage_shown import CoverageShown
-from groundstation.gui.photos.grid_view import Tool
-from groundstation.gui.photos.panel_sightings import PanelSightings
-from groundstation.gui.photos.photo_pane import PhotoPane
+from groundstation.gui.photos.coverage_shown import CoverageShown, PanelSightings
+from groundstation.gui.photos.grid_view import Tool, ToolBox
+from groundstation.gui.photos.photo_pane import PhotoPane, ThumbnailStrip
 from groundstation.gui.photos.photo_store import PhotoStore
 from groundstation.gui.photos.photos_controller import PhotosController
-from groundstation.gui.photos.thumbnail_strip import ThumbnailStrip
-from groundstation.gui.photos.tool_box import ToolBox
 from groundstation.gui.shared_view import Stage
 from groundstation.gui.widgets.findings_list import FindingsList
 from groundstation.gui.widgets.questions import Questions

@@ -9,7 +9,7 @@ from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import QCheckBox, QLabel, QToolButton, QVBoxLayout, QWidget
 
 from groundstation.gui.application.translate import translated
-from groundstation.gui.plan.method_names import method_name
+from groundstation.gui.plan.plan_controller import method_name
 from groundstation.gui.widgets.inputs import ChoiceBox, Form, QuantityBox
 from groundstation.gui.widgets.parameter_form import ParameterRow, add_rows, rows_of, tip_of, title_of
 from groundstation.gui.widgets.questions import choose_file

@@ -5,28 +5,27 @@ from __future__ import annotations
 import itertools
 import time
 from dataclasses import replace
+from enum import StrEnum
 
 import numpy as np
 from numpy.typing import NDArray
-from PySide6.QtCore import QCoreApplication, QObject
+from PySide6.QtCore import QCoreApplication, QObject, Signal
 from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import QLabel, QPushButton, QTabWidget, QVBoxLayout, QWidget
 
 from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.charts.quality_chart import QualityChart
-from groundstation.gui.plan.effects_controller import EffectsController
-from groundstation.gui.plan.paint_bar import PaintBar, PanelPaint, RoutePaint
-from groundstation.gui.plan.panel_detail import PanelDetail
-from groundstation.gui.plan.plan_controller import PlanController
+from groundstation.gui.plan.plan_controller import EffectsController, PlanController
 from groundstation.gui.plan.plan_form import PlanForm
 from groundstation.gui.plan.plan_lists import PlanLists
-from groundstation.gui.plan.viewpoint_page import ViewpointPage
+from groundstation.gui.plan.viewpoint_page import PanelDetail, ViewpointPage
 from groundstation.gui.shared_view import Stage
 from groundstation.gui.view3d.hemispheres import OPEN, UNDECIDED, UNREACHABLE
 from groundstation.gui.view3d.paint import ColourScale, ValueKind
 from groundstation.gui.view3d.scene_view import SceneView
 from groundstation.gui.widgets.effects_panel import EffectsPanel
-from groundstation.gui.widgets.scrolling import scrolled
+from groundstation.gui.widgets.inputs import ChoiceBox
+from groundstation.gui.widgets.scrolling import WrappingRow, labelled, scrolled
 from groundstation.services.jobs.runner import Job, JobBounded, JobImproved
 from groundstation.services.mission.readiness import findings_beside
 from groundstation.services.plan.plan_cache import ActivePlan
@@ -37,6 +36,62 @@ from planning.base.progress import QualityPoint
 from planning.insight.sections import PlanInsight, SectionState
 from planning.plan import Plan
 from planning.request import PlanRequest
+
+# What the 3-D view paints on panels and routes; a value of two choices.
+
+
+class PanelPaint(StrEnum):
+    """What panels show."""
+
+    FACADE = "facade"
+    SHARE = "share"
+    GSD = "gsd"
+    HEMISPHERES = "hemispheres"
+
+
+class RoutePaint(StrEnum):
+    """What routes show."""
+
+    SORTIE = "sortie"
+    CLEARANCE = "clearance"
+
+
+class PaintBar(QWidget):
+    """Two boxes beside the buttons of the stage.
+
+    Signals
+    -------
+    valueChanged(PanelPaint, RoutePaint)
+    """
+
+    valueChanged = Signal(object, object)  # noqa: N815  (Qt's own way of naming)
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._panels, self._routes = ChoiceBox(), ChoiceBox()
+        for paint, text in (
+            (PanelPaint.FACADE, self.tr("facade")),
+            (PanelPaint.SHARE, self.tr("coverage")),
+            (PanelPaint.HEMISPHERES, self.tr("hemispheres")),
+            (PanelPaint.GSD, self.tr("pixel size")),
+        ):
+            self._panels.addItem(text, paint)
+        for route, text in ((RoutePaint.SORTIE, self.tr("sortie")), (RoutePaint.CLEARANCE, self.tr("clearance"))):
+            self._routes.addItem(text, route)
+        layout = WrappingRow(self)
+        for text, box in ((self.tr("Panels by"), self._panels), (self.tr("Route by"), self._routes)):
+            layout.addWidget(labelled(text, box))
+            box.currentIndexChanged.connect(lambda _index: self.valueChanged.emit(*self.value()))
+
+    def value(self) -> tuple[PanelPaint, RoutePaint]:
+        """What is chosen."""
+        return PanelPaint(self._panels.currentData()), RoutePaint(self._routes.currentData())
+
+    def setValue(self, panels: PanelPaint, routes: RoutePaint) -> None:  # noqa: N802
+        """Choose."""
+        self._panels.setCurrentIndex(self._panels.findData(panels))
+        self._routes.setCurrentIndex(self._routes.findData(routes))
+
 
 # What the current plan paints in the 3-D view: coverage or pixel sizes on panels, clearance on routes.
 

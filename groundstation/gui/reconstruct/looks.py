@@ -1,4 +1,4 @@
-"""Asks the process of models for the pictures of a view: coarse ones while it is led about, a fine one at rest.
+"""The pictures of a view, asked of the process of models, and what its layers are called.
 
 One look is on its way for each place; what is wished meanwhile is asked for when it has come back, so that the newest
 wish wins and nothing piles up. While a model learns, it is looked at again now and then.
@@ -12,12 +12,59 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from PySide6.QtCore import QObject, QTimer, Signal
+from PySide6.QtCore import QCoreApplication, QObject, QTimer, Signal
 from PySide6.QtGui import QImage
 
 from groundstation.services.reconstruct.guided_camera import PicturePace, sized
 from groundstation.services.reconstruct.messages import Look, Section, Seen, Subject, Tints
 from reconstruction.base.cameras import PosedPhoto
+from reconstruction.training.layers import LAYERS, PICTURE
+
+# What the tab calls layers, terms of the loss, stages and lights.
+
+
+def layer_names() -> dict[str, str]:
+    """Layers by name, in the order in which they are offered; those that are not known here by their own names."""
+    translate = QCoreApplication.translate
+    known = {
+        PICTURE: translate("LayerNames", "Picture"),
+        "diffuse": translate("LayerNames", "Diffuse"),
+        "reflectivity": translate("LayerNames", "Reflectivity"),
+        "fresnel": translate("LayerNames", "Fresnel"),
+        "reflection": translate("LayerNames", "Reflection"),
+        "mirrored": translate("LayerNames", "Mirrored light"),
+        "normals": translate("LayerNames", "Normals"),
+        "panels": translate("LayerNames", "Panels"),
+        "depth": translate("LayerNames", "Depth"),
+        "alpha": translate("LayerNames", "Coverage by splats"),
+    }
+    return {name: text for name, text in known.items() if name in (PICTURE, *LAYERS)} | {
+        name: name for name in LAYERS if name not in known
+    }
+
+
+def term_name(term: str) -> str:
+    """A term of the loss."""
+    names = {
+        "colour": QCoreApplication.translate("LossTerms", "colour"),
+        "normal consistency": QCoreApplication.translate("LossTerms", "normals and depth"),
+        "normal prior": QCoreApplication.translate("LossTerms", "known normals"),
+        "high frequency": QCoreApplication.translate("LossTerms", "worst pixels"),
+    }
+    return names.get(term, term)
+
+
+def light_name(light: str) -> str:
+    """A model of mirrored light."""
+    names = {
+        "auto": QCoreApplication.translate("LightNames", "as the scene calls for"),
+        "harmonics": QCoreApplication.translate("LightNames", "none apart from the splats (harmonics)"),
+        "environment-map": QCoreApplication.translate("LightNames", "far away (environment map)"),
+        "mlp": QCoreApplication.translate("LightNames", "network by place and direction (paper)"),
+        "radiance-grid": QCoreApplication.translate("LightNames", "near things (radiance grid)"),
+    }
+    return names.get(light, light)
+
 
 QUICK_S = 0.12
 """What a picture may take while the camera is led about, where so few pixels help (`picture_pace`)."""

@@ -10,10 +10,8 @@ from PySide6.QtGui import QAction, QCloseEvent
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QSplitter, QTabWidget, QVBoxLayout, QWidget
 
 from groundstation.gui.application.context import ApplicationContext
-from groundstation.gui.reconstruct.choice_side import ChoiceSide
-from groundstation.gui.reconstruct.light_page import LightPage
-from groundstation.gui.reconstruct.machine_words import MachineWords
-from groundstation.gui.reconstruct.progress_page import ProgressPage
+from groundstation.gui.reconstruct.choice_side import ChoiceSide, MachineWords
+from groundstation.gui.reconstruct.progress_page import LightPage, ProgressPage
 from groundstation.gui.reconstruct.reconstruct_controller import Phase, ReconstructController
 from groundstation.gui.reconstruct.view_pane import ViewPane
 from groundstation.gui.shared_view import Stage

@@ -179,7 +179,7 @@ class _Photographer(QObject):
         self._wait_until_idle()
 
     def _planned(self) -> None:
-        from groundstation.gui.plan.paint_bar import PanelPaint, RoutePaint
+        from groundstation.gui.plan.plan_page import PanelPaint, RoutePaint
 
         workspace, page = self._controller.workspace, self._controller.window.tab("plan")
         site = workspace.document.site

@@ -1,25 +1,206 @@
-"""The two sides of the Site tab, and how tree, tools, properties and checks work together."""
+"""The two sides of the Site tab, and how tree, tools, properties and findings work together."""
 
 from __future__ import annotations
 
-from PySide6.QtGui import QAction
-from PySide6.QtWidgets import QLabel, QPushButton, QVBoxLayout, QWidget
+from collections.abc import Callable
+
+from PySide6.QtCore import QSize, Qt, Signal
+from PySide6.QtGui import QAction, QColor
+from PySide6.QtWidgets import QLabel, QListWidget, QListWidgetItem, QPushButton, QVBoxLayout, QWidget
 
 from groundstation.gui.application.context import ApplicationContext
+from groundstation.gui.application.translate import translated
 from groundstation.gui.shared_view import Stage
-from groundstation.gui.site.findings_list import FindingsList
-from groundstation.gui.site.grid_form import GridForm
-from groundstation.gui.site.grid_maker import GridMaker
-from groundstation.gui.site.property_panel import PropertyPanel
+from groundstation.gui.site.grid_form import GridForm, GridMaker
+from groundstation.gui.site.pages import (
+    SITE,
+    AirspacePage,
+    Edit,
+    FacadePage,
+    HomePage,
+    ItemPage,
+    NoFlyPage,
+    ObstaclePage,
+    Page,
+    PanelPage,
+    RallyPage,
+    SitePage,
+)
 from groundstation.gui.site.site_editor import SiteEditor
 from groundstation.gui.site.site_opener import SiteOpener
 from groundstation.gui.site.site_tools import SiteTools
 from groundstation.gui.site.site_tree import SiteTree
 from groundstation.gui.widgets.scrolling import ButtonGrid, CurrentStack, scrolled
+from groundstation.gui.widgets.theme import colours
 from groundstation.gui.widgets.value_boxes import muted
-from groundstation.services.project.document import Document, Item
+from groundstation.services.project.document import Document, Item, ItemKind
 from groundstation.services.units import UnitSystem
-from planning.base.findings import Finding
+from planning.base.findings import Finding, Severity
+
+# What the check of the site found, one line each; a click shows the place.
+
+
+def item_of(finding: Finding) -> Item | None:
+    """What a finding of `site_findings` is about: "home", "facade/A"."""
+    kind, _, name = finding.place.partition("/")
+    return Item(ItemKind(kind), name) if kind in set(ItemKind) else None
+
+
+class FindingsList(QWidget):
+    """Shows findings.
+
+    Signals
+    -------
+    chosen(Item)
+        The user wants to see what a finding is about.
+    """
+
+    chosen = Signal(object)
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._title, self._list = QLabel(), QListWidget()
+        self._title.setWordWrap(True)
+        self._list.setWordWrap(True)
+        self._list.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self._list.setVerticalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self._list.itemClicked.connect(self._choose)
+        self._findings: tuple[Finding, ...] = ()
+        self._units = UnitSystem.METRIC
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(self._title)
+        layout.addWidget(self._list)
+        self.set_findings(None)
+
+    def set_findings(self, findings: tuple[Finding, ...] | None) -> None:
+        """Show findings; None while there are none of the site as it is."""
+        self._shown, self._findings = findings, findings or ()
+        self._list.clear()
+        self._list.setVisible(bool(findings))
+        worst = {finding.severity for finding in self._findings}
+        role = "muted" if findings is None else "ok"
+        if worst:
+            role = "error" if Severity.ERROR in worst else "warning"
+        self._title.setProperty("role", role)
+        self._title.style().unpolish(self._title)
+        self._title.style().polish(self._title)
+        if findings is None:
+            self._title.setText(self.tr("The site is being checked ..."))
+        elif not findings:
+            self._title.setText(self.tr("Home, airspace and facades: nothing wrong found."))
+        else:
+            self._title.setText(self.tr("The site's check found: {0}").format(len(findings)))
+        look = {Severity.ERROR: colours().error, Severity.WARNING: colours().warning}
+        words = {Severity.ERROR: self.tr("Error"), Severity.WARNING: self.tr("Warning"), Severity.NOTE: self.tr("Note")}
+        for finding in self._findings:
+            row = QListWidgetItem(f"{words.get(finding.severity, '')}: {translated(finding.message, self._units)}")
+            row.setForeground(QColor(look.get(finding.severity, colours().text)))
+            row.setSizeHint(QSize(0, self._height(row.text())))
+            self._list.addItem(row)
+        # As tall as its rows: the column that it stands in scrolls.
+        self._list.setFixedHeight(sum(self._list.item(k).sizeHint().height() for k in range(self._list.count())) + 6)
+
+    def set_units(self, units: UnitSystem) -> None:
+        """Show lengths in other units."""
+        if units is not self._units:
+            self._units = units
+            self.set_findings(self._shown)
+
+    def findings(self) -> tuple[Finding, ...]:
+        """What is shown."""
+        return self._findings
+
+    def _height(self, text: str) -> int:
+        """Height of a wrapped row; the list itself reckons with one line."""
+        width = max(200, self.width() - 40)
+        flags = Qt.TextFlag.TextWordWrap
+        return int(self.fontMetrics().boundingRect(0, 0, width, 4000, flags, text).height()) + 14
+
+    def _choose(self, row: QListWidgetItem) -> None:
+        item = item_of(self._findings[self._list.row(row)])
+        if item is not None:
+            self.chosen.emit(item)
+
+
+# Properties of what is selected, each in its editor; values that cannot be stay at their box with the reason.
+
+PAGES: dict[ItemKind, Callable[[UnitSystem], Page]] = {
+    ItemKind.BUILDING: SitePage,
+    ItemKind.FACADE: FacadePage,
+    ItemKind.PANEL: PanelPage,
+    ItemKind.OBSTACLE: ObstaclePage,
+    ItemKind.NO_FLY: NoFlyPage,
+    ItemKind.AIRSPACE: AirspacePage,
+    ItemKind.HOME: HomePage,
+    ItemKind.RALLY: RallyPage,
+}
+
+
+class PropertyPanel(QWidget):
+    """Shows the page of the selected thing; of the site where nothing of a site is selected."""
+
+    def __init__(self, workspace: ApplicationContext, editor: SiteEditor, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._workspace, self._editor = workspace, editor
+        self._pages: dict[ItemKind, Page] = {}
+        self._shown: Page | None = None
+        # No stack: it would be as tall as its tallest page.
+        self._layout = QVBoxLayout(self)
+        self._layout.setContentsMargins(0, 0, 0, 0)
+        workspace.documentChanged.connect(self._document_changed)
+        workspace.selectionChanged.connect(self._show)
+        workspace.unitsChanged.connect(self._set_units)
+        self._show(workspace.selection)
+
+    def page(self) -> Page | None:
+        """The page that is shown."""
+        return self._shown
+
+    def focus_name(self) -> None:
+        """Put the cursor into the name of what is selected."""
+        page = self.page()
+        if isinstance(page, ItemPage):
+            page.name_box().setFocus()
+            page.name_box().selectAll()
+
+    def _show(self, item: Item | None) -> None:
+        model = self._workspace.document.site
+        if model is None:
+            return
+        shown = item if item is not None and item.kind in PAGES else SITE
+        page = self._page(shown.kind)
+        page.show_error("")
+        if isinstance(page, PanelPage):
+            page.set_found(self._workspace.document.found_facades)
+        page.show_item(model, shown)
+        for other in self._pages.values():
+            other.setVisible(other is page)
+        self._shown = page
+
+    def _page(self, kind: ItemKind) -> Page:
+        if kind not in self._pages:
+            page = PAGES[kind](self._workspace.units)
+            page.edited.connect(self._edit)
+            self._pages[kind] = page
+            self._layout.addWidget(page)
+        return self._pages[kind]
+
+    def _edit(self, label: str, edit: Edit, select: Item | None) -> None:
+        page = self.page()
+        error = self._editor.apply(label, edit, select)
+        if page is not None:
+            page.show_error(error)
+
+    def _document_changed(self, before: Document, after: Document) -> None:
+        if after.site is not before.site:
+            self._show(self._workspace.selection)
+
+    def _set_units(self, units: UnitSystem) -> None:
+        for page in self._pages.values():
+            page.set_units(units)
+        self._show(self._workspace.selection)
+
 
 # What stands in the Site tab before there is a site: what to do first.
 

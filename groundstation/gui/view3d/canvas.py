@@ -18,8 +18,8 @@ from PySide6.QtWidgets import QWidget
 from pyvistaqt import QtInteractor
 from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper
 
-from groundstation.gui.view3d.layers import Drawable
-from groundstation.gui.view3d.pinhole import Pinhole
+from groundstation.gui.view3d.drawables import Drawable
+from groundstation.gui.view3d.orbit import Pinhole
 
 COLOURS = "colours"
 

@@ -14,10 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from groundstation.gui.view3d.canvas import Canvas
-from groundstation.gui.view3d.layers import Drawable, Layer
+from groundstation.gui.view3d.drawables import PANEL_OFFSET_M, Drawable, Layer, Shape, outlines
+from groundstation.gui.view3d.orbit import Pinhole
 from groundstation.gui.view3d.paint import flat, rgba, shaded
-from groundstation.gui.view3d.pinhole import Pinhole
-from groundstation.gui.view3d.shapes import PANEL_OFFSET_M, Shape, outlines
 from groundstation.gui.widgets.theme import Colours
 from planning.coverage.sections import PanelFrames, SectionGrid
 from planning.insight.sections import in_enu, section_shapes

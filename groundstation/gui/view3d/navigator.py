@@ -10,8 +10,7 @@ from PySide6.QtCore import QEvent, QObject, QPointF, Qt, QTimer, Signal
 from PySide6.QtGui import QFocusEvent, QKeyEvent, QMouseEvent, QTouchEvent, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
-from groundstation.gui.view3d.orbit import Orbit, shifted_by_drag, turned_by_drag
-from groundstation.gui.view3d.pinhole import Pinhole
+from groundstation.gui.view3d.orbit import Orbit, Pinhole, shifted_by_drag, turned_by_drag
 
 # Mouse, wheel, keys and fingers on the canvas, told apart into clicks, drags, zooms and hovering.
 

@@ -13,11 +13,10 @@ from PySide6.QtCore import QObject, QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFontMetricsF, QLinearGradient, QPainter, QPaintEvent, QPen, QPolygonF
 from PySide6.QtWidgets import QWidget
 
-from groundstation.gui.view3d.layers import Label, Layer
+from groundstation.gui.view3d.drawables import Label, Layer
+from groundstation.gui.view3d.orbit import Pinhole
 from groundstation.gui.view3d.paint import NO_VALUE, SCALE_STOPS, ColourScale, ValueKind
-from groundstation.gui.view3d.pinhole import Pinhole
-from groundstation.gui.view3d.plan_scene import PlanScene, ends_of_sorties
-from groundstation.gui.view3d.site_scene import HOME, LANDING_LABEL_M, SiteScene
+from groundstation.gui.view3d.site_scene import HOME, LANDING_LABEL_M, PlanScene, SiteScene, ends_of_sorties
 from groundstation.gui.widgets.theme import SORTIES, colours
 from groundstation.services.project.document import Item, ItemKind
 from groundstation.services.units import UnitSystem, length_unit

@@ -7,11 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from groundstation.gui.view3d.layers import Layer
-from groundstation.gui.view3d.pinhole import Pinhole
-from groundstation.gui.view3d.plan_scene import PlanScene
-from groundstation.gui.view3d.shapes import shown_panels
-from groundstation.gui.view3d.site_scene import SiteScene, landing_pad
+from groundstation.gui.view3d.drawables import Layer, shown_panels
+from groundstation.gui.view3d.orbit import Pinhole
+from groundstation.gui.view3d.site_scene import PlanScene, SiteScene, landing_pad
 from groundstation.services.project.document import Item, ItemKind
 from planning.geo.bvh import Bvh, build_bvh, segment_hits, segment_hits_triangle
 from planning.site.records import panel_triangles

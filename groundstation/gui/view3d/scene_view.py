@@ -2,18 +2,220 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QPointF, Qt, Signal
+from collections.abc import Callable
+
+import numpy as np
+from PySide6.QtCore import QObject, QPointF, Qt, QTimer, Signal
 from PySide6.QtGui import QKeyEvent
 from PySide6.QtWidgets import QWidget
 
-from groundstation.gui.view3d.layers import Layer
+from groundstation.gui.view3d.drawables import ON_TOP, Drawable, Layer, joined, polyline
 from groundstation.gui.view3d.navigator import Drag, Gestures
 from groundstation.gui.view3d.overlay import Tip
+from groundstation.gui.view3d.paint import flat
 from groundstation.gui.view3d.scene_picture import ScenePicture, StandardView
-from groundstation.gui.view3d.tool_driver import ToolDriver, preview_drawables
-from groundstation.gui.view3d.tools import Pointer, Tool
-from groundstation.gui.widgets.theme import colours
-from groundstation.services.units import UnitSystem
+from groundstation.gui.view3d.tools import Hint, Key, Pointer, Preview, Tool, ViewpointTool
+from groundstation.gui.widgets.theme import Colours, colours
+from groundstation.services.units import UnitSystem, length_unit
+
+# Lets the user work with one tool at a time: feeds it pointers and keys, draws its preview, tells its results.
+
+MOVED_MS = 50
+"""Results on the way are told at most this often: whoever follows may count coverage anew each time."""
+
+KEYS = {
+    Qt.Key.Key_Return: Key.CONFIRM,
+    Qt.Key.Key_Enter: Key.CONFIRM,
+    Qt.Key.Key_Backspace: Key.BACK,
+    Qt.Key.Key_Left: Key.LEFT,
+    Qt.Key.Key_Right: Key.RIGHT,
+    Qt.Key.Key_Up: Key.UP,
+    Qt.Key.Key_Down: Key.DOWN,
+    Qt.Key.Key_PageUp: Key.NEARER,
+    Qt.Key.Key_PageDown: Key.FARTHER,
+}
+
+
+class ToolDriver(QObject):
+    """One tool at a time.
+
+    Signals
+    -------
+    moved(object)
+        Result as it would be now, throttled.
+    finished(object)
+        A result; the tool has ended, but for `ViewpointTool`, which goes on.
+    ended()
+        No tool is in use any more, whether one finished or was cancelled.
+    changed()
+        Preview or hint are different.
+    """
+
+    moved = Signal(object)
+    finished = Signal(object)
+    ended = Signal()
+    changed = Signal()
+
+    def __init__(self, pointer_at: Callable[[float, float, bool], Pointer], parent: QObject) -> None:
+        super().__init__(parent)
+        self._pointer_at = pointer_at
+        self._tool: Tool | None = None
+        self._holds = False
+        self._throttle = QTimer(self)
+        self._throttle.setSingleShot(True)
+        self._throttle.timeout.connect(self._tell_moved)
+
+    @property
+    def tool(self) -> Tool | None:
+        """The tool in use."""
+        return self._tool
+
+    def start(self, tool: Tool) -> None:
+        """Use a tool, in place of the one in use."""
+        self.cancel()
+        self._tool = tool
+        self.changed.emit()
+
+    def cancel(self) -> None:
+        """Put the tool away; nothing comes of it."""
+        if self._tool is not None:
+            self._end()
+
+    def hover(self, x_px: float, y_px: float, shift: bool) -> None:
+        """The pointer moves without a button."""
+        if self._tool is not None:
+            self._tool.move(self._pointer_at(x_px, y_px, shift))
+            self._moved()
+
+    def click(self, x_px: float, y_px: float, shift: bool) -> bool:
+        """A click; True where a tool took it."""
+        if self._tool is None:
+            return False
+        self._take(self._tool.click(self._pointer_at(x_px, y_px, shift)))
+        return True
+
+    def double_click(self) -> bool:
+        """The second click of a pair; True where a tool took it."""
+        if self._tool is None:
+            return False
+        self._take(self._tool.press_key(Key.CONFIRM, False))
+        return True
+
+    def start_drag(self, x_px: float, y_px: float, shift: bool) -> bool:
+        """A drag starts; True where it is the tool's."""
+        self._holds = self._tool is not None and self._tool.grabs(self._pointer_at(x_px, y_px, shift))
+        return self._holds
+
+    def drag(self, x_px: float, y_px: float, shift: bool) -> None:
+        """A drag of the tool's goes on."""
+        if self._tool is not None and self._holds:
+            self._tool.move(self._pointer_at(x_px, y_px, shift))
+            self._moved()
+
+    def end_drag(self, x_px: float, y_px: float, shift: bool) -> None:
+        """A drag of the tool's ends."""
+        if self._tool is not None and self._holds:
+            self._holds = False
+            self._take(self._tool.release(self._pointer_at(x_px, y_px, shift)))
+
+    def key(self, event: QKeyEvent) -> bool:
+        """A key; True where a tool took it."""
+        if self._tool is None:
+            return False
+        if event.key() == Qt.Key.Key_Escape:
+            self._escape(self._tool)
+            return True
+        key = KEYS.get(Qt.Key(event.key()))
+        if key is None:
+            return False
+        has_steps = isinstance(self._tool, ViewpointTool)
+        if not has_steps and key not in (Key.CONFIRM, Key.BACK):
+            return False
+        self._take(self._tool.press_key(key, bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier)))
+        return True
+
+    def _escape(self, tool: Tool) -> None:
+        """Let go what is held; with nothing held, put the tool away."""
+        if isinstance(tool, ViewpointTool) and self._holds:
+            self._holds = False
+            tool.cancel()
+            self.moved.emit(tool.value)
+            self.changed.emit()
+        else:
+            self._end()
+
+    def _take(self, result: object | None) -> None:
+        if result is None:
+            self.changed.emit()
+            return
+        self._throttle.stop()
+        if isinstance(self._tool, ViewpointTool):
+            self.changed.emit()
+            self.finished.emit(result)
+        else:
+            self._tool = None
+            self.changed.emit()
+            self.finished.emit(result)
+            if self._tool is None:
+                self.ended.emit()
+
+    def _end(self) -> None:
+        self._tool, self._holds = None, False
+        self._throttle.stop()
+        self.changed.emit()
+        self.ended.emit()
+
+    def _moved(self) -> None:
+        self.changed.emit()
+        if not self._throttle.isActive():
+            self._throttle.start(MOVED_MS)
+
+    def _tell_moved(self) -> None:
+        if self._tool is not None and self._tool.value is not None:
+            self.moved.emit(self._tool.value)
+
+    def hint_text(self, units: UnitSystem) -> str:
+        """What is to be done next, with the sizes drawn so far."""
+        if self._tool is None:
+            return ""
+        text = {
+            Hint.CLICK_POINT: self.tr("Click a point. Esc cancels."),
+            Hint.CLICK_LOWER_LEFT: self.tr("Click the lower left corner, as seen from outside. Esc cancels."),
+            Hint.CLICK_LOWER_RIGHT: self.tr("Click the lower right corner. Shift keeps a slope, Backspace goes back."),
+            Hint.CLICK_UPPER_LEFT: self.tr("Click the upper edge. Backspace goes back, Esc cancels."),
+            Hint.CLICK_CORNER: self.tr("Click a corner on the ground. Esc cancels."),
+            Hint.CLICK_MORE_CORNERS: self.tr("Click more corners; Enter, a double click or the first corner ends."),
+            Hint.POLYGON_CROSSES: self.tr("This side would cross another: click elsewhere, or Backspace to go back."),
+            Hint.CLICK_OPPOSITE_CORNER: self.tr("Click the opposite corner. Backspace goes back."),
+            Hint.CLICK_HEIGHT: self.tr("Move up to the height and click. Backspace goes back."),
+            Hint.CLICK_HOME: self.tr("Click where the aircraft takes off and lands. Esc cancels."),
+            Hint.CLICK_RALLY: self.tr("Click where the aircraft may land when it returns. Esc cancels."),
+            Hint.DRAG_VIEWPOINT: self.tr(
+                "Drag the viewpoint; Shift moves it along its line of sight. Arrow and Page keys move it by 1 m, "
+                "with Shift by 0.1 m. Esc ends."
+            ),
+            Hint.NOTHING_THERE: self.tr("There is nothing at this place. Click on the building or on the ground."),
+        }[self._tool.hint]
+        unit = length_unit(units)
+        lengths = self.tr(" x ").join(unit.text(length) for length in self._tool.preview.lengths_m)
+        return f"{text}\n{lengths}" if lengths else text
+
+
+def preview_drawables(preview: Preview, look: Colours) -> tuple[Drawable, ...]:
+    """What is drawn of a preview, over everything: red where it would be refused."""
+    colour = look.error if preview.is_refused else look.accent
+    parts = []
+    if preview.lines:
+        points, cells = joined([polyline(line) for line in preview.lines])
+        # A light line below a dark one is seen on glass, wall and sky alike.
+        for line_colour, width_px in ((look.base, 5.0), (colour, 2.5)):
+            parts.append(Drawable(points, cells, flat(line_colour, len(cells)), width_px=width_px, depth_shift=ON_TOP))
+    if preview.dots:
+        n = len(preview.dots)
+        cells = np.arange(n)[:, None]
+        parts.append(Drawable(np.stack(preview.dots), cells, flat(colour, n), width_px=10.0, depth_shift=ON_TOP))
+    return tuple(parts)
+
 
 __all__ = ["SceneView", "StandardView"]
 

@@ -15,7 +15,7 @@ from PySide6.QtWidgets import (
 )
 
 from groundstation.gui.application.context import ApplicationContext, Message
-from groundstation.gui.widgets.short_text import ShortText, severity_words
+from groundstation.gui.widgets.scrolling import ShortText, severity_words
 from groundstation.services.jobs.runner import JobProgress
 
 SHOW_AFTER_MS = 150

@@ -21,7 +21,7 @@ from PySide6.QtWidgets import (
 )
 
 from groundstation.gui.application.context import ApplicationContext
-from groundstation.gui.application.loading import BackgroundImport
+from groundstation.gui.application.interpreter import BackgroundImport
 from groundstation.gui.shared_view import Stage
 from groundstation.gui.tabs import Place, Tab, TabSpec, find_tabs
 from groundstation.gui.widgets.job_bar import JobBar

@@ -34,7 +34,7 @@ from PySide6.QtWidgets import (
 )
 
 from groundstation.gui.application.context import ApplicationContext, Message
-from groundstation.gui.widgets.short_text import ShortText, severity_words
+from groundstation.gui.widgets.scrolling import ShortText, severity_words
 from groundstation.gui.widgets.theme import colours
 from groundstation.services.project.document import Document
 from planning.base.findings import Severity

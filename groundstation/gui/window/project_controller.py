@@ -17,9 +17,8 @@ from PySide6.QtGui import QCloseEvent
 from PySide6.QtWidgets import QApplication
 
 from groundstation.gui.application.context import ApplicationContext
-from groundstation.gui.application.garbage import GarbageCollector
-from groundstation.gui.application.languages import Translations
-from groundstation.gui.application.loading import leave_modules_alone
+from groundstation.gui.application.interpreter import GarbageCollector, leave_modules_alone
+from groundstation.gui.application.translate import Translations
 from groundstation.gui.widgets.questions import Answer, Questions, file_name
 from groundstation.gui.widgets.theme import apply_theme
 from groundstation.gui.window.main_window import MainWindow

@@ -31,7 +31,7 @@ def litter(n=5000):
 
 
 def test_a_job_that_makes_garbage_searches_for_none(application, collections):
-    from groundstation.gui.application.garbage import GarbageCollector
+    from groundstation.gui.application.interpreter import GarbageCollector
 
     before = gc.isenabled()
     gc.enable()
@@ -61,7 +61,7 @@ def test_what_others_left_out_stays_left_out_and_what_the_window_made_is_freed(a
     """Python gives back all that was left out at once: a search took 2.5 s after each window of these tests."""
     import weakref
 
-    from groundstation.gui.application.garbage import GarbageCollector
+    from groundstation.gui.application.interpreter import GarbageCollector
 
     gc.freeze()
     before = gc.get_freeze_count()
@@ -78,7 +78,7 @@ def test_what_others_left_out_stays_left_out_and_what_the_window_made_is_freed(a
 
 
 def test_a_window_that_left_things_out_gives_them_back(application):
-    from groundstation.gui.application.garbage import GarbageCollector
+    from groundstation.gui.application.interpreter import GarbageCollector
 
     n_frozen = gc.get_freeze_count()
     gc.unfreeze()
@@ -96,7 +96,7 @@ def test_a_window_that_left_things_out_gives_them_back(application):
 def test_a_round_frees_what_was_left_behind(application):
     import weakref
 
-    from groundstation.gui.application.garbage import FULL_EVERY, GarbageCollector
+    from groundstation.gui.application.interpreter import FULL_EVERY, GarbageCollector
 
     collector = GarbageCollector()
     try:
@@ -113,7 +113,7 @@ def test_a_round_frees_what_was_left_behind(application):
 def test_the_long_search_waits_while_the_window_is_busy(application):
     import weakref
 
-    from groundstation.gui.application.garbage import FULL_EVERY, GarbageCollector
+    from groundstation.gui.application.interpreter import FULL_EVERY, GarbageCollector
 
     busy = [True]
     collector = GarbageCollector(is_busy=lambda: busy[0])

@@ -12,9 +12,7 @@ import pytest
 from PySide6.QtCore import QTranslator
 
 from groundstation.gui.application.collect_messages import HOUSES, templates
-from groundstation.gui.application.languages import FOLDER
-from groundstation.gui.application.translate import translated
-from groundstation.gui.application.words import IN_WINDOW, WORDS
+from groundstation.gui.application.translate import FOLDER, IN_WINDOW, WORDS, translated
 from groundstation.services.messages import FIELD
 from groundstation.services.site.findings import site_findings
 from groundstation.services.site.sources import preview_import

@@ -8,11 +8,9 @@ import pytest
 from PySide6.QtCore import QTranslator
 
 from groundstation.gui.application.context import ApplicationContext
-from groundstation.gui.application.languages import FOLDER
-from groundstation.gui.application.translate import translated_finding
-from groundstation.gui.application.words import IN_WINDOW, OPTION_FIELDS
-from groundstation.gui.plan.method_names import method_name
-from groundstation.gui.site.findings_list import FindingsList as SiteFindingsList
+from groundstation.gui.application.translate import FOLDER, IN_WINDOW, OPTION_FIELDS, translated_finding
+from groundstation.gui.plan.plan_controller import method_name
+from groundstation.gui.site.site_panels import FindingsList as SiteFindingsList
 from groundstation.gui.widgets.effects_panel import EffectsPanel
 from groundstation.gui.widgets.findings_list import FindingsList
 from groundstation.gui.widgets.job_bar import JobBar

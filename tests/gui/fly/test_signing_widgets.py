@@ -119,7 +119,7 @@ def test_signed_is_remembered_for_each_address_and_offered_for_none_in_the_simul
 
 
 def test_a_key_is_set_given_withdrawn_and_forgotten_and_never_shown(application, controller, page):
-    from groundstation.gui.fly.signing_box import KeyAction
+    from groundstation.gui.fly.connection_box import KeyAction
 
     key, box = key_from_passphrase(PASSPHRASE), page.connection.signing
     with Autopilot() as vehicle:
@@ -147,7 +147,7 @@ def test_a_key_is_set_given_withdrawn_and_forgotten_and_never_shown(application,
 
 
 def test_nothing_is_done_when_the_pilot_thinks_better_of_it(application, controller, page):
-    from groundstation.gui.fly.signing_box import KeyAction
+    from groundstation.gui.fly.connection_box import KeyAction
 
     signing.set_passphrase(PASSPHRASE)
     choose(application, controller, page, "tcp:127.0.0.1:1")
@@ -160,7 +160,7 @@ def test_nothing_is_done_when_the_pilot_thinks_better_of_it(application, control
 
 
 def test_a_vehicle_that_cannot_be_given_the_key_is_told_of(application, controller, page):
-    from groundstation.gui.fly.signing_box import KeyAction
+    from groundstation.gui.fly.connection_box import KeyAction
 
     signing.set_passphrase(PASSPHRASE)
     choose(application, controller, page, "tcp:127.0.0.1:1")

@@ -19,7 +19,7 @@ FINDINGS = (
 
 @pytest.fixture
 def view(application):
-    from groundstation.gui.mission.findings_view import FindingsView
+    from groundstation.gui.mission.mission_page import FindingsView
 
     view = FindingsView()
     view.resize(330, 400)
@@ -107,7 +107,7 @@ def test_click_asks_for_the_place_where_there_is_one(view, qtbot):
 def test_severities_differ_in_shape_not_only_in_colour(application):
     from dataclasses import replace
 
-    from groundstation.gui.widgets.severity_icon import severity_icon
+    from groundstation.gui.widgets.findings_list import severity_icon
     from groundstation.gui.widgets.theme import LIGHT
 
     grey = replace(LIGHT, error="#404040", warning="#404040", note="#404040", ok="#404040")

@@ -246,7 +246,7 @@ def test_export_shows_findings_first_then_writes_and_remembers_the_folder(
 def test_closed_dialogs_leave_the_window_also_while_their_jobs_run(page, workspace, planned, idle):
     from PySide6.QtCore import QCoreApplication, QEvent
 
-    from groundstation.gui.mission.brief_dialog import BriefDialog
+    from groundstation.gui.mission.brief_printer import BriefDialog
     from groundstation.gui.mission.export_dialog import ExportDialog
 
     workspace.session.open(opened(planned), None)
@@ -409,7 +409,7 @@ def test_all_photos_in_another_order_are_neither_the_plan_nor_strangers(page, wo
 
 
 def test_brief_is_shown_and_saved(page, workspace, planned, idle, tmp_path):
-    from groundstation.gui.mission.brief_dialog import BriefDialog
+    from groundstation.gui.mission.brief_printer import BriefDialog
 
     workspace.session.open(opened(planned), None)
     idle(lambda: page.findings.verdict().startswith("Ready to fly"))

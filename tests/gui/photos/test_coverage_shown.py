@@ -177,6 +177,6 @@ def test_a_view_that_is_open_when_the_window_is_made_anew_is_freed(application, 
 
 
 def _panel_page():
-    from groundstation.gui.site.item_pages import PanelPage
+    from groundstation.gui.site.pages import PanelPage
 
     return PanelPage

@@ -69,8 +69,8 @@ def test_a_file_that_has_gone_is_told(application, store, photos, tmp_path):
 @pytest.mark.slow
 def test_thousands_of_photos_are_shown_at_once_and_few_of_them_decoded(application, store, photos):
     from groundstation.gui.map.place_map import PlaceMap
+    from groundstation.gui.photos.photo_pane import ThumbnailStrip
     from groundstation.gui.photos.photo_store import MAX_WANTED
-    from groundstation.gui.photos.thumbnail_strip import ThumbnailStrip
 
     posed = true_photos()[0]
     cards = tuple(

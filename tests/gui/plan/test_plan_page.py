@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from groundstation.gui.plan.paint_bar import PanelPaint, RoutePaint
+from groundstation.gui.plan.plan_page import PanelPaint, RoutePaint
 from groundstation.services.project.document import Document, Item, ItemKind, PlanEntry
 from planning.planner import plan_flight
 from planning.request import PlanRequest
@@ -226,7 +226,7 @@ def test_nothing_is_planned_while_the_form_makes_no_sense(application, controlle
 
 
 def test_moving_in_the_view_goes_on_from_where_the_viewpoint_is_until_it_is_put_away(application, controller, page):
-    from groundstation.gui.view3d.viewpoint_tool import MovedViewpoint, ViewpointTool
+    from groundstation.gui.view3d.tools import MovedViewpoint, ViewpointTool
 
     first, second = first_views(controller, 2)
     scene = controller.window.stage.scene()

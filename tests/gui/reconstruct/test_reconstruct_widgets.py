@@ -12,10 +12,9 @@ from PySide6.QtGui import QFocusEvent, QImage, QKeyEvent, QWheelEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
-from groundstation.gui.charts.lines_plot import Line, LinesPlot
+from groundstation.gui.charts.axes import Line, LinesPlot
 from groundstation.gui.reconstruct.choice_side import ChoiceForm
-from groundstation.gui.reconstruct.guided_camera import LedCamera
-from groundstation.gui.reconstruct.looks import image_of
+from groundstation.gui.reconstruct.looks import image_of, layer_names
 from groundstation.gui.reconstruct.model_view import (
     FASTER,
     FLIGHT_MS,
@@ -26,12 +25,12 @@ from groundstation.gui.reconstruct.model_view import (
     STEP_WHEEL,
     TURN_RAD_KEY,
     TURN_RAD_PX,
+    LedCamera,
     ModelView,
     flight,
 )
-from groundstation.gui.reconstruct.names import layer_names
 from groundstation.gui.reconstruct.progress_page import ProgressPage
-from groundstation.gui.widgets.thumbnails import SIDE_PX, SmallPictures
+from groundstation.gui.widgets.photo_strip import SIDE_PX, SmallPictures
 from groundstation.services.reconstruct.choices import TrainChoice
 from groundstation.services.reconstruct.curves import ThinCurve
 from reconstruction.base.cameras import Intrinsics, Pose, PosedPhoto

@@ -19,7 +19,7 @@ class Dialog:
 
     def __init__(self, application, path):
         from groundstation.gui.application.context import ApplicationContext
-        from groundstation.gui.site.import_dialog import ImportDialog
+        from groundstation.gui.site.site_opener import ImportDialog
 
         self.application, self.runner = application, JobRunner()
         self.workspace = ApplicationContext(Session(Document()), self.runner)
@@ -208,7 +208,7 @@ def test_bad_files_are_told_in_the_dialog_and_nothing_can_be_imported(opened, tm
 def test_dialog_that_is_closed_while_it_reads_takes_nothing_over(application, shared_data):
     hands = Dialog.__new__(Dialog)
     from groundstation.gui.application.context import ApplicationContext
-    from groundstation.gui.site.import_dialog import ImportDialog
+    from groundstation.gui.site.site_opener import ImportDialog
 
     hands.application, hands.runner = application, JobRunner()
     hands.workspace = ApplicationContext(Session(Document()), hands.runner)

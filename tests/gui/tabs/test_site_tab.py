@@ -106,7 +106,7 @@ def test_without_a_site_the_tab_says_what_to_do_and_a_bundled_site_fills_it(open
 
 
 def test_selection_follows_between_tree_view_and_properties(opened):
-    from groundstation.gui.site.item_pages import ObstaclePage, PanelPage
+    from groundstation.gui.site.pages import ObstaclePage, PanelPage
 
     hands = opened("canyon")
     tree = hands.tab.left.tree
@@ -400,8 +400,7 @@ def test_edits_of_a_large_site_do_not_hold_the_window_up(opened):
 
 
 def test_errors_of_checks_are_answers_for_the_form_and_no_failures(application):
-    from groundstation.gui.site.grid_form import GridRequest
-    from groundstation.gui.site.grid_maker import checked_grid
+    from groundstation.gui.site.grid_form import GridRequest, checked_grid
 
     office = bundled_site("office")
     far = GridRequest(((0.0, -40.0, 0.0), (10.0, -40.0, 0.0), (0.0, -40.0, 10.0)), 2, 2)

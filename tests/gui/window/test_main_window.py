@@ -12,7 +12,7 @@ import pytest
 
 from groundstation.gui.shared_view import SharedViewPage
 from groundstation.gui.window import menus
-from groundstation.gui.window.shortcuts import VIEWS
+from groundstation.gui.window.menus import VIEWS
 from groundstation.services.project.document import Item, ItemKind
 from groundstation.services.settings import Language, Theme
 from groundstation.services.units import UnitSystem
@@ -224,7 +224,7 @@ def keys_in(module):
 def test_every_key_of_a_menu_tab_or_shortcut_is_in_the_list_and_none_twice(application, controller):
     from PySide6.QtGui import QAction, QKeySequence, QShortcut
 
-    from groundstation.gui.window.shortcuts import ShortcutsDialog, sections
+    from groundstation.gui.window.menus import ShortcutsDialog, sections
 
     for page in SharedViewPage:
         controller.window.stage.show_page(page)
@@ -248,7 +248,7 @@ def test_every_key_of_a_menu_tab_or_shortcut_is_in_the_list_and_none_twice(appli
 
 
 def test_every_key_that_a_view_takes_by_itself_is_in_the_list(application):
-    from groundstation.gui.window.shortcuts import view_keys
+    from groundstation.gui.window.menus import view_keys
 
     taking = {
         path.relative_to(GUI).as_posix()

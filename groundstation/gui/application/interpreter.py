@@ -1,0 +1,135 @@
+"""What the window does to Python itself: long imports on another thread, and garbage collected while there is time."""
+
+from __future__ import annotations
+
+import contextlib
+import gc
+import importlib
+import sys
+import threading
+from collections.abc import Callable, Sequence
+
+from PySide6.QtCore import QObject, QTimer, Signal
+
+# Python's search for cyclic garbage, done in the window's thread only and when there is time.
+#
+# Left to itself it runs on whatever thread makes the next object. On the thread of a job it would free widgets there,
+# which Qt does not survive, and it would hold the interpreter's lock for as long as the search takes: a tenth of a
+# second
+# and more once the numerical libraries are loaded.
+
+INTERVAL_MS = 1000
+
+FULL_EVERY = 60
+"""Least number of rounds between searches through everything that was made since the last of them; such a search took
+75 ms after three plans of 560 views."""
+
+
+def _never() -> bool:
+    return False
+
+
+class GarbageCollector(QObject):
+    """Takes the search over, until `close`.
+
+    What exists when `settle` is called, modules above all, is left out from then on: that is most of all objects.
+
+    Parameters
+    ----------
+    is_busy
+        While it is, the window must answer at once: long searches wait.
+    """
+
+    def __init__(self, parent: QObject | None = None, is_busy: Callable[[], bool] = _never) -> None:
+        super().__init__(parent)
+        self._is_busy = is_busy
+        self._round, self._was_on = 0, gc.isenabled()
+        # What others left out stays so: Python gives back all or nothing, and a search through all of it takes seconds.
+        self._may_leave_out = gc.get_freeze_count() == 0
+        self._timer = QTimer(self)
+        self._timer.timeout.connect(self._collect)
+        gc.disable()
+        self._timer.start(INTERVAL_MS)
+
+    def settle(self) -> None:
+        """What has been imported until now stays."""
+        if self._may_leave_out:
+            gc.freeze()
+
+    def close(self) -> None:
+        """Leave the search as it was."""
+        self._timer.stop()
+        if self._may_leave_out:
+            gc.unfreeze()
+        if self._was_on:
+            gc.enable()
+
+    def _collect(self) -> None:
+        self._round += 1
+        if self._round >= FULL_EVERY and not self._is_busy():
+            self._round = 0
+            gc.collect()
+            self.settle()
+        elif gc.get_count()[0] > gc.get_threshold()[0]:
+            # What outlives a round waits for the next long search: rounds that look at it again, as Python's own do,
+            # took up to 40 ms once a plan was there.
+            gc.collect(1)
+
+
+LOOK_MS = 10
+"""How often it is looked what has been imported. The thread tells nobody itself: its listener may be gone by then."""
+
+
+class BackgroundImport(QObject):
+    """Imports modules one after the other.
+
+    Signals
+    -------
+    imported(str)
+        Name of a module, in the order asked for, in the window's thread. Also for one that failed: whoever imports it
+        again gets the error.
+    """
+
+    imported = Signal(str)
+
+    def __init__(self, modules: Sequence[str], parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._modules = tuple(modules)
+        self._done: list[str] = []
+        self._told = 0
+        self._timer = QTimer(self)
+        self._timer.timeout.connect(self._look)
+
+    def start(self) -> None:
+        """Begin."""
+        modules, done = self._modules, self._done
+
+        def work() -> None:
+            for module in modules:
+                # Whoever imports it again, in the window's thread, gets the error and can tell it.
+                with contextlib.suppress(Exception):
+                    importlib.import_module(module)
+                done.append(module)
+
+        threading.Thread(target=work, name="import", daemon=True).start()
+        self._timer.start(LOOK_MS)
+
+    def _look(self) -> None:
+        while self._told < len(self._done):
+            self._told += 1
+            self.imported.emit(self._done[self._told - 1])
+        if self._told == len(self._modules):
+            self._timer.stop()
+
+
+def leave_modules_alone() -> None:
+    """Keep Qt's Python from reading the source of every module that is imported after it.
+
+    It looks for modules that ask for its own other spellings, which none of ours does. Looking, it asks modules for
+    attributes while they are half imported: pydantic, which comes with Open3D, then fails, and with it the first
+    coverage or flight that wants rays. Only what it finds the spellings by is replaced; where that is called otherwise,
+    nothing is done.
+    """
+    feature = sys.modules.get("shibokensupport.feature")
+    if feature is not None and hasattr(feature, "_mod_uses_pyside"):
+        vars(feature)["_mod_uses_pyside"] = lambda _module: False
