@@ -1,7 +1,5 @@
 """The application on its virtual screen, and the pilot before a new window."""
 
-import gc
-
 import pytest
 
 from groundstation.services.settings import Language
@@ -29,4 +27,3 @@ def pilot(application, worker, tmp_path, monkeypatch, request):
     yield pilot
     pilot.speak(Language.ENGLISH)
     close_controller(controller)
-    gc.collect()

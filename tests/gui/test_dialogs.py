@@ -1,6 +1,5 @@
 """The dialogs of the window, clicked: what accepting them does, and that nothing happens without."""
 
-import gc
 from pathlib import Path
 
 import pytest
@@ -53,7 +52,6 @@ def shown(application, worker, tmp_path_factory):
         turn_until(application, lambda: controller.window.stage.scene() is not None)
         yield controller
         close_controller(controller)
-        gc.collect()
 
 
 @pytest.fixture

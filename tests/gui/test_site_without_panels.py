@@ -1,6 +1,5 @@
 """A coarse model without panels in the real window: imported, kept, shown everywhere, filled from photos, planned."""
 
-import gc
 from dataclasses import replace
 
 import pytest
@@ -72,7 +71,6 @@ class Window:
 
     def close(self):
         close_controller(self.controller)
-        gc.collect()
 
 
 @pytest.fixture

@@ -4,8 +4,6 @@ In each tab, phase and dialog, whatever can be pressed or filled in lies on the 
 scrolls to it; and buttons are wide enough for their words.
 """
 
-import gc
-
 import pytest
 from PySide6.QtCore import QPoint, QRect, Qt
 from PySide6.QtGui import QImage
@@ -228,7 +226,6 @@ def looks(application, worker, tmp_path, monkeypatch, request):
     controller.choose(language=Language.ENGLISH, text_scale=1.0)
     turn_until(application, lambda: controller.window.stage.scene() is not None)
     close_controller(controller)
-    gc.collect()
 
 
 def test_everything_can_be_reached_in_every_tab_phase_and_dialog(looks):

@@ -1,7 +1,5 @@
 """A window with the Model tab, whose process is a list of what it was told."""
 
-import gc
-
 import pytest
 
 from reconstruction.objects.store import write_scene
@@ -20,7 +18,6 @@ def controller(application, worker, tmp_path_factory):
         controller.window.setGeometry(0, 0, 1280, 720)
         yield controller
         close_controller(controller)
-        gc.collect()
 
 
 @pytest.fixture

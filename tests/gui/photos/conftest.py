@@ -1,7 +1,5 @@
 """A window with the Photos tab, its photos read, and panels found in them."""
 
-import gc
-
 import pytest
 
 from tests.gui.driving import close_controller, turn_until
@@ -30,7 +28,6 @@ def controller(application, worker, tmp_path_factory):
         turn_until(application, lambda: controller.window.stage.scene() is not None)
         yield controller
         close_controller(controller)
-        gc.collect()
 
 
 @pytest.fixture

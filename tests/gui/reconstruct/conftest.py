@@ -1,7 +1,5 @@
 """A window with the Reconstruct tab, whose process is a list of what it was told until a test wants the real one."""
 
-import gc
-
 import pytest
 
 from tests.gui.driving import close_controller, turn_until
@@ -25,7 +23,6 @@ def controller(application, worker, tmp_path_factory):
         controller.window.setGeometry(0, 0, 1280, 720)
         yield controller
         close_controller(controller)
-        gc.collect()
 
 
 class Told:
