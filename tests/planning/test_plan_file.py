@@ -154,7 +154,7 @@ def put(*path_and_value: Any) -> Callable[[Any], None]:
         (put("coverage", "covered", 1.5), r"coverage\.covered: expected whole number"),
         (put("constraints", "section_step_deg", 7), "section_step_deg: expected a divisor of 90"),
         (put("constraints", "min_distance_m", -1), "min_distance_m: expected 0 or more, got -1"),
-        (put("constraints", "occlusion", "maybe"), "occlusion: expected auto, on or off, got 'maybe'"),
+        (put("constraints", "occlusion", "maybe"), "occlusion: expected auto, off, on, got 'maybe'"),
         (put("constraints", "max_distance_m", 5), "max_distance_m: expected more than the minimum distance 10"),
         (put("camera", "focal_length_mm", 0), "focal_length_mm: expected a positive number, got 0"),
         (put("camera", "gimbal_pitch_deg", [35, -90]), "expected .lowest, highest. within -180 to 90"),
