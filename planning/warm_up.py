@@ -15,7 +15,7 @@ from planning.insight.clearance import route_clearance
 from planning.insight.reasons import section_reasons
 from planning.insight.sections import panel_sampling
 from planning.insight.things import first_things_hit, things_of
-from planning.motion import smooth_path
+from planning.motion import speed_profile
 from planning.parameters import DEFAULT_PROFILE, Constraints, GreedyParameters, Precision
 from planning.plan import Sortie, ViewpointArrays
 from planning.planner import plan_flight
@@ -59,7 +59,7 @@ def compile_kernels() -> None:
         check_plan(plan_flight(model, request).plan, model)
     _analyse()
     _count_coverage(panel_frames(panel_corners(model.site)))
-    for module in (lower_bound, orienteering, smooth_path, sorties, tour):
+    for module in (lower_bound, orienteering, sorties, speed_profile, tour):
         module.compile_kernels()
 
 

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from planning.motion.smooth_path import ARC_NODES, PathGrid, arrivals_s, fastest_sweep, path_grid
+from planning.motion.speed_profile import ARC_NODES, PathGrid, arrivals_s, fastest_sweep, path_grid
 from planning.motion.timing import FlightPath, MotionLimits, stopping_times_s
 
 LIMITS = MotionLimits(10.0, 4.0, 3.0, 2.5, 1.0, 1.0)
