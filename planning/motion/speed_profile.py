@@ -13,7 +13,8 @@ left out: it is not convex in b.
 All decisions are made with the sweep, `fastest_sweep`. `solver="nlp"` is its reference: the same problem as one convex
 and sparse nonlinear program, solved by Ipopt through CasADi; tests hold the two against each other. The program is also
 the place for limits that couple more than two neighbouring nodes, which no sweep can keep. As long as there are none,
-the sweep finds the same profile in a fraction of the time (benchmark `speed-profile`). This is the only module that imports casadi.
+the sweep finds the same profile in a fraction of the time (benchmark `speed-profile`). This is the only module that
+imports casadi.
 """
 
 from __future__ import annotations
