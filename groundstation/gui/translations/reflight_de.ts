@@ -9304,10 +9304,6 @@ Damit weiterarbeiten?</translation>
         <translation>Blick ins Freie</translation>
     </message>
     <message>
-        <source>speed profile</source>
-        <translation>Geschwindigkeitsprofil</translation>
-    </message>
-    <message>
         <source>reading the mission</source>
         <translation>Mission wird gelesen</translation>
     </message>
