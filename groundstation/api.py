@@ -13,7 +13,6 @@ from groundstation.services.mission.export import export_plan, import_missions
 from groundstation.services.mission.readiness import preflight
 from groundstation.services.model.export import ModelExport, ModelExporter, ModelToExport, WrittenModel, export_model
 from groundstation.services.plan.planning import plan_site
-from groundstation.services.reconstruct.request import TrainRequest
 from groundstation.services.reconstruct.training import TrainedFiles, train_files
 from missions.formats.encode import EncodedFiles, ExportOptions
 from missions.formats.registry import MissionFormat, mission_formats, read_missions
@@ -28,6 +27,7 @@ from planning.site.bundled import write_scene
 from planning.site.file import read_site, write_site
 from planning.site.records import Site, SiteModel
 from reconstruction.training.method_registry import Method, training_methods
+from reconstruction.training.parameters import TrainRequest
 
 __all__ = [
     "Constraints",

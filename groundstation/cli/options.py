@@ -8,7 +8,7 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from planning.base.errors import InputError
 from planning.base.files import PLAIN_ENDINGS, check_ending, check_folder_name
@@ -98,7 +98,7 @@ def in_words_of_options(record: type[Any] = PlanParameters) -> Iterator[None]:
         raise InputError(f"{own.get(name) or OPTIONS.get(name, name)}{colon}{rest}") from error
 
 
-def add_parameter(place: Any, each: Declared, *, unset: str = "") -> None:
+def add_parameter(place: Any, each: Declared, *, unset: str = "") -> argparse.Action:
     """Add the option of a parameter to a parser or a group of one; only what is typed stands in the options then.
 
     Words that can be listed are wrong usage unless they are; with a `metavar` the record itself refuses them.
@@ -116,13 +116,13 @@ def add_parameter(place: Any, each: Declared, *, unset: str = "") -> None:
     told = f"{known.help} ({_default_text(each)})" if _default_text(each) else known.help
     facts: dict[str, Any] = {"help": told.replace("%", "%%"), "default": argparse.SUPPRESS}
     if each.kind is bool and not words:
-        place.add_argument(known.option, action="store_true", **facts)
-        return
+        return cast("argparse.Action", place.add_argument(known.option, action="store_true", **facts))
     if known.metavar:
         facts["metavar"] = known.metavar
     elif words:
         facts["choices"] = words
-    place.add_argument(known.option, type={int: int, float: number}.get(each.kind, str), **facts)
+    kind = {int: int, float: number}.get(each.kind, str)
+    return cast("argparse.Action", place.add_argument(known.option, type=kind, **facts))
 
 
 def _default_text(each: Declared) -> str:

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal
 
 from planning.base.errors import InputError
 from planning.base.json_file import settings_over
+from planning.base.parameters import check, like, parameter
 from reconstruction.light.config import PAPER_STAGES, HighFrequencyStage, ReflectionConfig
 from reconstruction.splats.rasterising.raster_types import RasterSettings
 from reconstruction.training.method_registry import DEFAULT_METHOD, Method, method_named
+from reconstruction.training.parameters import TrainRequest
 
-LightWish = Literal["auto", "harmonics", "environment-map", "mlp", "radiance-grid"]
+LightSetting = Literal["auto", "harmonics", "environment-map", "mlp", "radiance-grid"]
 """What mirrored light is learned with; `auto` leaves it to the scene."""
 
 GeometrySource = Literal["panels", "splats"]
@@ -24,7 +26,7 @@ StartFrom = Literal["surfaces", "points"]
 
 Device = Literal["cpu", "cuda"]
 
-DensifyWish = Literal["adaptive", "mcmc", "none"]
+DensifySetting = Literal["adaptive", "mcmc", "none"]
 
 ANTIALIASED = RasterSettings(blur_px=math.sqrt(0.1), antialiased=True)
 """With the blur of Mip-Splatting (Yu et al., 2024), about as wide as a pixel, which is 1/12 px^2; 3DGS has 0.3."""
@@ -56,20 +58,16 @@ class LossWeights:
         Share of the training after which they begin: before, every pixel is among the worst.
     """
 
-    dssim: float = 0.2
-    normal_consistency: float = 0.05
-    normal_prior: float = 0.1
-    normal_smoothness: float = 0.0
-    consistent_from: float = 0.25
+    dssim: float = parameter(0.2, least=0.0, most=1.0)
+    normal_consistency: float = parameter(0.05, least=0.0)
+    normal_prior: float = parameter(0.1, least=0.0)
+    normal_smoothness: float = parameter(0.0, least=0.0)
+    consistent_from: float = parameter(0.25, least=0.0, most=1.0)
     high_frequency: tuple[HighFrequencyStage, ...] = PAPER_STAGES
-    high_frequency_from: float = 0.25
+    high_frequency_from: float = parameter(0.25, least=0.0, most=1.0)
 
     def __post_init__(self) -> None:
-        _require_share("dssim", self.dssim)
-        _require_share("consistent_from", self.consistent_from)
-        _require_share("high_frequency_from", self.high_frequency_from)
-        for name in ("normal_consistency", "normal_prior", "normal_smoothness"):
-            _require(name, getattr(self, name), "0 or more", getattr(self, name) >= 0.0)
+        check(self)
 
     def stage(self, progress: float) -> HighFrequencyStage | None:
         """Of the high-frequency loss by progress, 0 to 1; None where it does not count."""
@@ -109,30 +107,25 @@ class Rates:
         Steps in which all rates rise from 0: the first gradients come from one photo each.
     """
 
-    means: float = 1.6e-4
-    means_last: float = 0.01
-    quats: float = 1e-3
-    scales: float = 5e-3
-    opacities: float = 5e-2
-    colours: float = 2.5e-3
-    colour_details: float = 0.05
-    glass_geometry: float = 1.0
-    reflectivity: float = 1e-2
-    f0: float = 1e-2
-    light: float = 0.25
-    sky: float = 1e-2
-    exposures: float = 1e-3
-    corner_loss: float = 2e-3
-    last: float = 0.1
-    warm_up: int = 30
+    means: float = parameter(1.6e-4, least=0.0)
+    means_last: float = parameter(0.01, least=0.0, most=1.0)
+    quats: float = parameter(1e-3, least=0.0)
+    scales: float = parameter(5e-3, least=0.0)
+    opacities: float = parameter(5e-2, least=0.0)
+    colours: float = parameter(2.5e-3, least=0.0)
+    colour_details: float = parameter(0.05, least=0.0)
+    glass_geometry: float = parameter(1.0, least=0.0, most=1.0)
+    reflectivity: float = parameter(1e-2, least=0.0)
+    f0: float = parameter(1e-2, least=0.0)
+    light: float = parameter(0.25, least=0.0)
+    sky: float = parameter(1e-2, least=0.0)
+    exposures: float = parameter(1e-3, least=0.0)
+    corner_loss: float = parameter(2e-3, least=0.0)
+    last: float = parameter(0.1, least=0.0, most=1.0)
+    warm_up: int = parameter(30, least=0)
 
     def __post_init__(self) -> None:
-        for each in fields(self):
-            value = getattr(self, each.name)
-            _require(each.name, value, "0 or more", value >= 0.0)
-        _require_share("means_last", self.means_last)
-        _require_share("glass_geometry", self.glass_geometry)
-        _require_share("last", self.last)
+        check(self)
 
     def share(self, step: int, progress: float) -> float:
         """Of the rates but that of means: rising over the warm-up, falling along half a cosine."""
@@ -156,10 +149,6 @@ class TrainConfig:
     method, light, geometry
         What is trained, and one of `METHODS` as how. With `panels`, place and normal of glass are exact; with `splats`
         they are the rendered ones, as in the paper, and errors of both show in what is mirrored.
-    iterations
-        Steps of Adam, one photo or window each.
-    time_limit_s
-        For all of it, from reading photos to writing the model; it ends with its rates at their last. None for none.
     light_share
         Of the time that is left when light begins to be learned alone, at most, for that.
     reflections
@@ -184,10 +173,6 @@ class TrainConfig:
         finer than a pixel in many photos (`python -m tests.tables --only 3b`).
     held_out
         Share of the views that are kept for scoring, chosen by their names and `seed`.
-    memory_bytes
-        For decoded photos, and as much for rays of glass.
-    device
-        `cuda` needs the extra of that name.
     threads
         Of torch and the rasteriser. With one of torch, the same seed gives the same bits on a processor.
     checkpoint_every_s
@@ -197,46 +182,38 @@ class TrainConfig:
     """
 
     method: str = DEFAULT_METHOD
-    light: LightWish = "auto"
+    light: LightSetting = like(TrainRequest, "light", "auto")
     geometry: GeometrySource = "panels"
-    iterations: int = 6000
-    time_limit_s: float | None = None
-    light_share: float = 0.35
+    iterations: int = like(TrainRequest, "iterations", 6000)
+    time_limit_s: float | None = like(TrainRequest, "time_limit_s", None, unset="none")
+    light_share: float = parameter(0.35, least=0.0, most=1.0)
     reflections: ReflectionConfig = field(default_factory=ReflectionConfig)
     start_from: StartFrom = "surfaces"
-    n_splats: int = 12_000
-    max_splats: int = 30_000
-    densification: DensifyWish = "adaptive"
-    densify_from: float = 0.05
-    densify_until: float = 0.6
-    degree: int = 3
-    degree_every: float = 0.0
-    window_px: int = 256 * 192
-    reduce: int = 1
+    n_splats: int = parameter(12_000, least=1)
+    max_splats: int = parameter(30_000, least=1)
+    densification: DensifySetting = "adaptive"
+    densify_from: float = parameter(0.05, least=0.0, most=1.0)
+    densify_until: float = parameter(0.6, least=0.0, most=1.0)
+    degree: int = parameter(3, least=0, most=3)
+    degree_every: float = parameter(0.0, least=0.0, most=1.0)
+    window_px: int = parameter(256 * 192, least=1)
+    reduce: int = parameter(1, least=1)
     raster: RasterSettings = ANTIALIASED
     losses: LossWeights = field(default_factory=LossWeights)
     rates: Rates = field(default_factory=Rates)
-    held_out: float = 0.15
-    seed: int = 0
-    memory_bytes: int = 1 << 30
-    device: Device = "cpu"
-    threads: int = 1
-    checkpoint_every_s: float = 120.0
-    score_every_s: float = 20.0
+    held_out: float = parameter(0.15, above=0.0, below=1.0)
+    seed: int = like(TrainRequest, "seed", 0)
+    memory_bytes: int = like(TrainRequest, "memory_bytes", 1 << 30)
+    device: Device = like(TrainRequest, "device", "cpu")
+    threads: int = parameter(1, least=1)
+    checkpoint_every_s: float = parameter(120.0, above=0.0)
+    score_every_s: float = parameter(20.0, above=0.0)
 
     def __post_init__(self) -> None:
         method_named(self.method)
-        for name in ("iterations", "n_splats", "max_splats", "window_px", "reduce", "memory_bytes", "threads"):
-            _require(name, getattr(self, name), "1 or more", getattr(self, name) >= 1)
-        _require("max_splats", self.max_splats, f"n_splats ({self.n_splats}) or more", self.max_splats >= self.n_splats)
-        _require("degree", self.degree, "0 to 3", 0 <= self.degree <= 3)
-        for name in ("light_share", "densify_from", "densify_until", "degree_every"):
-            _require_share(name, getattr(self, name))
-        _require("held_out", self.held_out, "above 0 and below 1", 0.0 < self.held_out < 1.0)
-        for name in ("checkpoint_every_s", "score_every_s"):
-            _require(name, getattr(self, name), "more than 0", getattr(self, name) > 0.0)
-        if self.time_limit_s is not None:
-            _require("time_limit_s", self.time_limit_s, "more than 0", self.time_limit_s > 0.0)
+        check(self)
+        if self.max_splats < self.n_splats:
+            raise ValueError(f"max_splats: expected n_splats ({self.n_splats}) or more, got {self.max_splats}")
 
     @property
     def trained_by(self) -> Method:
@@ -263,12 +240,3 @@ def config_of(content: dict[str, Any], base: TrainConfig, path: Path) -> TrainCo
     except ValueError as error:
         raise InputError(f"{path}: {error}") from error
     return settings_over(settings_over(base, of_method, path), content, path)
-
-
-def _require(name: str, value: float, expected: str, is_met: bool) -> None:
-    if not (math.isfinite(value) and is_met):
-        raise ValueError(f"{name}: expected {expected}, got {value}")
-
-
-def _require_share(name: str, value: float) -> None:
-    _require(name, value, "0 to 1", 0.0 <= value <= 1.0)

@@ -8,12 +8,12 @@ from planning.base.errors import InputError
 from reconstruction.light.config import LEAST_STEPS, GridSettings, ReflectionConfig
 from reconstruction.light.reflection_mlp import MlpShape
 from reconstruction.training.config import TrainConfig
-from reconstruction.training.names import PRESETS
+from reconstruction.training.parameters import PRESETS, TrainRequest
 
 LEAST_LIGHT_STEPS = 20
 """Of learning light alone, in however short a training."""
 
-MINUTE_S, HOUR_S = 60.0, 3600.0
+MINUTE_S = 60.0
 
 PAPER_MLP = MlpShape(width=512, layers=8, position_order=12, direction_order=12)
 
@@ -21,10 +21,9 @@ FINE_GRID = GridSettings(most_cells=1 << 20)
 """0.9 dB more than the usual 260 000 vertices, for half as much time again (128 x 96 pixels)."""
 
 _CONFIGS = {
-    "10min": TrainConfig(time_limit_s=10.0 * MINUTE_S),
+    "10min": TrainConfig(),
     "1h": TrainConfig(
         iterations=30_000,
-        time_limit_s=HOUR_S,
         n_splats=25_000,
         max_splats=80_000,
         window_px=384 * 288,
@@ -37,7 +36,6 @@ _CONFIGS = {
     ),
     "overnight": TrainConfig(
         iterations=200_000,
-        time_limit_s=10.0 * HOUR_S,
         n_splats=60_000,
         max_splats=300_000,
         window_px=768 * 576,
@@ -64,32 +62,23 @@ def preset(name: str) -> TrainConfig:
     """
     if name not in _CONFIGS:
         raise InputError(f"--preset: expected {', '.join(PRESETS)}, got '{name}'")
-    return _CONFIGS[name]
+    minutes = PRESETS[name].minutes
+    return replace(_CONFIGS[name], time_limit_s=None if minutes is None else minutes * MINUTE_S)
 
 
-def with_wishes(
-    base: TrainConfig,
-    *,
-    light: str | None = None,
-    iterations: int | None = None,
-    time_limit_s: float | None = None,
-    seed: int | None = None,
-) -> TrainConfig:
-    """Settings with what the user asked for; iterations alone take the preset's time limit away, and the other way.
+def as_asked(base: TrainConfig, asked: TrainRequest) -> TrainConfig:
+    """Settings with what was asked for by itself; iterations alone take the preset's time limit away.
 
     Raises
     ------
-    InputError
+    ValueError
         A value is out of range.
     """
-    if iterations is not None:
+    if asked.iterations is not None:
         # Fewer steps learn light for a shorter time, too, but not so much shorter that nothing is learned.
-        full, share = base.reflections.steps, min(1.0, iterations / base.iterations)
-        steps = max(LEAST_LIGHT_STEPS, round(share * full), min(LEAST_STEPS, iterations, full))
-        base = replace(
-            base, iterations=iterations, time_limit_s=None, reflections=replace(base.reflections, steps=steps)
-        )
-    if time_limit_s is not None:
-        base = replace(base, time_limit_s=time_limit_s)
-    wishes = {"light": light, "seed": seed}
-    return replace(base, **{name: value for name, value in wishes.items() if value is not None})  # type: ignore[arg-type]
+        full, share = base.reflections.steps, min(1.0, asked.iterations / base.iterations)
+        steps = max(LEAST_LIGHT_STEPS, round(share * full), min(LEAST_STEPS, asked.iterations, full))
+        base = replace(base, time_limit_s=None, reflections=replace(base.reflections, steps=steps))
+    names = ("light", "iterations", "time_limit_s", "seed", "device", "memory_bytes")
+    values = {name: value for name in names if (value := getattr(asked, name)) is not None}
+    return replace(base, **values)

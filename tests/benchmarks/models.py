@@ -11,7 +11,7 @@ from pathlib import Path
 from groundstation.services.scenes.photos import photograph_files
 from groundstation.services.scenes.views import SceneRequest
 from reconstruction.light.photo_set import read_photo_set
-from reconstruction.training.config import LightWish, TrainConfig
+from reconstruction.training.config import LightSetting, TrainConfig
 from reconstruction.training.model.score import mean_of, score_views
 from reconstruction.training.train import train_model
 from tests.benchmarks.harness import Benchmark, Context, Row, stopwatch
@@ -19,7 +19,7 @@ from tests.benchmarks.harness import Benchmark, Context, Row, stopwatch
 N_VIEWS, WIDTH_PX = 60, 128
 QUICK_N_VIEWS, QUICK_WIDTH_PX = 10, 48
 
-KINDS: tuple[tuple[str, str, LightWish], ...] = (
+KINDS: tuple[tuple[str, str, LightSetting], ...] = (
     ("2DGS", "2dgs", "auto"),
     ("with an environment map", "reflight", "environment-map"),
     ("with the Reflection MLP", "reflight", "mlp"),
@@ -53,7 +53,7 @@ def measure(context: Context) -> Iterator[Row]:
     yield Row("planar", "the best above 2DGS", round(gained, 2), "dB", None, "", *wished)
 
 
-def _config(is_quick: bool, method: str, light: LightWish) -> TrainConfig:
+def _config(is_quick: bool, method: str, light: LightSetting) -> TrainConfig:
     config = TrainConfig(method=method, light=light, iterations=700, n_splats=8000, max_splats=16_000)
     if not is_quick:
         return replace(config, reflections=replace(config.reflections, steps=500))

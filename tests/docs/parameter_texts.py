@@ -6,9 +6,11 @@ import json
 import textwrap
 from typing import Any
 
+from groundstation.services.model.export import ModelExport
 from missions.simulator.conditions import Conditions
 from planning.base.parameters import declared
 from planning.parameters import PlanParameters
+from reconstruction.training.parameters import TrainRequest
 
 HEADER = '''"""Titles and tool tips of declared parameters, for Qt Linguist.
 
@@ -22,7 +24,7 @@ from PySide6.QtCore import QT_TRANSLATE_NOOP
 TEXTS = (
 '''
 
-RECORDS: tuple[type[Any], ...] = (PlanParameters, Conditions)
+RECORDS: tuple[type[Any], ...] = (PlanParameters, Conditions, ModelExport, TrainRequest)
 """Records whose parameters have rows in forms."""
 
 LINE = 120
@@ -35,7 +37,10 @@ def module() -> str:
         for each in declared(record).values():
             if each.parameter.row:
                 labels = [choice.label for choice in each.parameter.choices if choice.label]
-                found |= dict.fromkeys([each.parameter.label, each.parameter.help, *labels])
+                values = [choice.value for choice in each.parameter.choices]
+                is_listed = labels and each.default is None and each.parameter.unset not in values
+                unset = [each.parameter.unset] if is_listed else []
+                found |= dict.fromkeys([each.parameter.label, each.parameter.help, *labels, *unset])
     return HEADER + "".join(_marked(text) for text in found if text) + ")\n"
 
 

@@ -43,6 +43,7 @@ class SettingsFile:
 def settings_files() -> Sequence[SettingsFile]:
     """Every file, in the order of the page; imported here, since half of them bring torch."""
     from groundstation.services.fly.options import FlightSettings
+    from groundstation.services.model.export import ModelExport
     from groundstation.services.settings import Settings
     from missions.simulator.conditions import Conditions
     from planning.parameters import PlanParameters
@@ -51,6 +52,7 @@ def settings_files() -> Sequence[SettingsFile]:
     from reconstruction.scenes.photos.camera_model import Taking
     from reconstruction.scenes.world.look import Look
     from reconstruction.training.config import TrainConfig
+    from reconstruction.training.parameters import TrainRequest
 
     return (
         SettingsFile("The program: settings.toml", "In the user's folder for settings.", Settings),
@@ -62,7 +64,9 @@ def settings_files() -> Sequence[SettingsFile]:
         SettingsFile("Search for panels", "`segment --parameters FILE`.", SegmentationParameters),
         SettingsFile("Look of a virtual scene", "`scene render --look FILE`.", Look),
         SettingsFile("Camera model of rendered photos", "`scene render --camera FILE`.", Taking),
+        SettingsFile("What is asked of a training", "Options of `train`, rows in the Reconstruct tab.", TrainRequest),
         SettingsFile("Training", "`train --settings FILE`.", TrainConfig),
+        SettingsFile("Export of models", "Options of `export`, rows of its dialog in the Model tab.", ModelExport),
     )
 
 

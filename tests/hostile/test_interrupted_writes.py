@@ -68,7 +68,7 @@ def whole_model(folder: Path) -> None:
     """A model that can be read, and splats that are its own."""
     from reconstruction.splats.ply import read_splats
     from reconstruction.training.model.saved import SPLATS, read_model
-    from reconstruction.training.names import MODEL as DESCRIPTION
+    from reconstruction.training.parameters import MODEL as DESCRIPTION
 
     if (folder / "out/m" / DESCRIPTION).exists():
         model = read_model(folder / "out/m").model

@@ -6,31 +6,24 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from groundstation.cli.options import PluginNames, number, words
+from groundstation.cli.options import PluginNames, add_parameter, in_words_of_options, number, typed_values, words
+from groundstation.services.model.export import EXPORTERS, GROUP, ModelExport, ModelExporter, export_model
+from planning.base.parameters import declared, with_values
 from planning.base.plugins import PluginGroup
 
 MISSIONS = ("dji-kmz", "mavlink-plan", "mavlink-wpl", "kml", "csv")
-MODELS = ("web", "gltf", "3d-tiles", "usd", "ply", "ply-2dgs", "spz", "spz-4", "sog", "mesh", "cityjson", "ifc")
-ALL_MODELS = PluginNames(MODELS, PluginGroup.MODEL_FORMATS)
-ALL_FORMATS = PluginNames((*MISSIONS, *MODELS), PluginGroup.MISSION_FORMATS, PluginGroup.MODEL_FORMATS)
+ALL_MODELS = PluginNames(EXPORTERS, PluginGroup.MODEL_FORMATS)
+ALL_FORMATS = PluginNames((*MISSIONS, *EXPORTERS), PluginGroup.MISSION_FORMATS, PluginGroup.MODEL_FORMATS)
 
-COLOURS_HELP = "baked: what panels mirror is in their colours (default); own: without"
-GAUSSIANS_HELP = (
-    "of gltf (default numbers) and 3d-tiles (default spz): as numbers; compressed, as CesiumJS wants them; or coloured "
-    "points in their place"
-)
 
-EPILOG = """formats of models:
-  web           folder with one page that any browser shows without a network, with picking and records
-  gltf          .glb: splats (KHR_gaussian_splatting), and panels to pick with their GlobalIds and attributes
-  3d-tiles      folder: the same in tiles, placed on Earth
-  usd           .usdc or .usda: splats and panels
-  ply, ply-2dgs splats for SuperSplat and others, as ellipsoids or as discs
-  spz, sog      splats, compressed
-  spz-4         the same as spz in its newer version, smaller, for the newest programs
-  mesh          .glb: panels with pictures of their fronts, for programs that know no splats
-  cityjson, ifc the panels alone, as windows and plates of the building
+def _line(name: str, exporter: ModelExporter) -> str:
+    """What a format is for, as a line of the help."""
+    ending = exporter.endings[0] if exporter.endings else "folder"
+    return f"  {name:<12}  {ending:<11}  {exporter.about}\n"
 
+
+EPILOG = f"""formats of models:
+{"".join(_line(name, each) for name, each in EXPORTERS.items())}
 examples:
   export office.plan.json --format dji-kmz -o office.kmz
   export tower.gsscene --format web -o tower.web
@@ -75,18 +68,9 @@ def add_parser(subparsers: Any) -> None:
         metavar="M",
         help="DJI: above take-off, 20 to 1500 (default: above everything)",
     )
-    model = parser.add_argument_group("models")
-    model.add_argument("--colours", choices=("baked", "own"), default="baked", help=COLOURS_HELP)
-    model.add_argument(
-        "--degree", type=int, choices=(0, 1, 2, 3), help="of colours by direction (default: the format's)"
-    )
-    model.add_argument(
-        "--preset",
-        choices=("small", "balanced", "fine"),
-        default="balanced",
-        help="of spz, spz-4, sog and --gaussians spz (default balanced)",
-    )
-    model.add_argument("--gaussians", choices=("numbers", "spz", "points"), help=GAUSSIANS_HELP)
+    model = parser.add_argument_group(GROUP)
+    for each in declared(ModelExport).values():
+        add_parameter(model, each)
     model.add_argument("--components", type=words, metavar="LIST", help="such as A,background (default: all)")
     add("--json", action="store_true", help="print one JSON object instead of text")
 
@@ -98,16 +82,10 @@ def run(options: argparse.Namespace) -> int:
 
 def _export_model(options: argparse.Namespace) -> int:
     from groundstation.cli.console import print_json, run_job
-    from groundstation.services.model.export import ModelExport, export_model
 
-    wanted = ModelExport(
-        options.format,
-        options.colours == "baked",
-        options.degree,
-        options.preset,
-        options.components,
-        options.gaussians,
-    )
+    with in_words_of_options(ModelExport):
+        typed = typed_values(options, ModelExport)
+        wanted = with_values(ModelExport(options.format, components=options.components), typed)
     done = run_job("export", lambda context: export_model(options.plan, options.out, wanted, context))
     if options.json:
         content = {"file": str(done.path), "format": options.format, "bytes": done.n_bytes, "notes": list(done.notes)}

@@ -32,7 +32,7 @@ from planning.base.errors import InputError
 from planning.base.messages import say
 from planning.base.plugins import PluginGroup
 from reconstruction.training.method_registry import DEFAULT_METHOD, METHODS
-from reconstruction.training.names import PRESETS
+from reconstruction.training.parameters import PRESETS
 
 if TYPE_CHECKING:
     from groundstation.services.plan.tradeoff import PlanRuns

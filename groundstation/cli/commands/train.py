@@ -8,16 +8,17 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from groundstation.cli.options import PluginNames, above_zero, count, new_folder
+from groundstation.cli.options import PluginNames, add_parameter, in_words_of_options, new_folder, typed_values
 from planning.base.errors import InputError, OperationCancelled
+from planning.base.parameters import declared, with_values
 from planning.base.plugins import PluginGroup
-from reconstruction.training.method_registry import DEFAULT_METHOD, METHODS
-from reconstruction.training.names import LIGHTS, PRESETS
+from reconstruction.training.method_registry import METHODS
+from reconstruction.training.parameters import PRESETS, TrainRequest
 
 if TYPE_CHECKING:
-    from groundstation.services.reconstruct.training import TrainedFiles, TrainRequest
+    from groundstation.services.reconstruct.training import TrainedFiles
 
-PRESET_LINES = "\n".join(f"  {name:<11} {text}" for name, text in PRESETS.items())
+PRESET_LINES = "\n".join(f"  {name:<11} {each.what}" for name, each in PRESETS.items())
 
 METHOD_LINES = "\n".join(f"  {name:<30} {method.title}" for name, method in METHODS.items())
 METHOD_NAMES = PluginNames(METHODS, PluginGroup.TRAINING_METHODS)
@@ -49,9 +50,6 @@ Several processes of one machine train together, each looking at other photos, w
   torchrun --nproc-per-node 4 -m groundstation train tower.dataset -o tower.model
 """
 
-SETTINGS = ("preset", "light", "iterations", "time_budget", "seed", "settings", "start")
-"""Options that a training begins with; one that is gone on with has them already."""
-
 
 def add_parser(subparsers: Any) -> None:
     """Describe the command."""
@@ -67,12 +65,11 @@ def add_parser(subparsers: Any) -> None:
     add = parser.add_argument
     add("dataset", type=Path, metavar="DATASET", help="folder of a data set")
     add("-o", "--out", type=new_folder, required=True, metavar="MODEL", help="folder for the model")
-    add("--method", choices=METHOD_NAMES, metavar="METHOD", help=f"one of those below (default {DEFAULT_METHOD})")
-    add("--preset", choices=tuple(PRESETS), help="how long one can wait (default 10min)")
-    add("--iterations", type=count, metavar="N", help="steps, whatever time they take, instead of the preset's")
-    add("--time-budget", type=above_zero, metavar="S", help="end after so many seconds, all in all")
-    add("--light", choices=LIGHTS, help="what mirrored light is learned with (default auto)")
-    add("--seed", type=int, metavar="N", help="of everything random (default 0)")
+    for name, each in declared(TrainRequest).items():
+        if each.parameter.option:
+            option = add_parameter(parser, each)
+            if name == "method":
+                option.choices = METHOD_NAMES
     add("--settings", type=Path, metavar="FILE", help="TOML file with settings that differ from the preset's")
     add("--start", type=Path, metavar="PLY", help="splats to start from, instead of new ones")
     add("--resume", action="store_true", help="go on with a training that was interrupted")
@@ -87,10 +84,12 @@ def run(options: argparse.Namespace) -> int:
     from groundstation.services.reconstruct.training import preview_to, train_files, train_summary
 
     wish = wish_of(options)
-    given = [name for name in SETTINGS if getattr(options, name) is not None]
-    if options.resume and given:
-        option = given[0].replace("_", "-")
-        raise InputError(f"--resume goes on with the settings that the training was begun with; leave --{option} out")
+    typed = typed_values(options, TrainRequest)
+    given = [each.parameter.option for each in declared(TrainRequest).values() if each.path in typed]
+    given += [f"--{name}" for name in ("settings", "start") if getattr(options, name) is not None]
+    if options.resume and set(given) - {"--method"}:
+        option = next(option for option in given if option != "--method")
+        raise InputError(f"--resume goes on with the settings that the training was begun with; leave {option} out")
     preview = None if options.preview is None else preview_to(options.preview)
     try:
         made = run_job(
@@ -122,19 +121,9 @@ def run(options: argparse.Namespace) -> int:
 
 def wish_of(options: argparse.Namespace) -> TrainRequest:
     """What the options ask for."""
-    from groundstation.cli.options import checked_seed
-    from groundstation.services.reconstruct.training import DEFAULT_PRESET, TrainRequest
-
-    return TrainRequest(
-        options.preset or DEFAULT_PRESET,
-        options.method,
-        options.light,
-        options.iterations,
-        options.time_budget,
-        None if options.seed is None else checked_seed(options.seed),
-        options.settings,
-        options.start,
-    )
+    with in_words_of_options(TrainRequest):
+        asked = TrainRequest(settings=options.settings, start=options.start)
+        return with_values(asked, typed_values(options, TrainRequest))
 
 
 def _print(made: TrainedFiles, options: argparse.Namespace) -> None:

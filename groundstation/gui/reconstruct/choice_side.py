@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QComboBox, QLabel, QPushButton, QSizePolicy, QVBox
 from groundstation.gui.application.translate import translated
 from groundstation.gui.reconstruct.reconstruct_controller import BUSY, Phase, ReconstructController
 from groundstation.gui.widgets.inputs import ChoiceBox, Form, NumberBox
+from groundstation.gui.widgets.parameter_form import choice_text, title_of
 from groundstation.gui.widgets.scrolling import ButtonGrid, WrappingRow
 from groundstation.services.reconstruct.choices import (
     LONGEST_MIN,
@@ -23,6 +24,8 @@ from groundstation.services.reconstruct.choices import (
 )
 from groundstation.services.reconstruct.folders import LEAST_FREE_BYTES, DataSetCard, Standing
 from groundstation.services.units import UnitSystem
+from planning.base.parameters import declared
+from reconstruction.training.parameters import PRESETS, TrainRequest
 
 # What this computer has, and what follows for a training, in words.
 
@@ -220,11 +223,12 @@ class ChoiceForm(QWidget):
         self.about.setWordWrap(True)
         self.about.setProperty("role", "muted")
         self._form = Form()
-        self._form.addRow(self.tr("Method"), self.method)
+        known = declared(TrainRequest)
+        self._form.addRow(title_of(known["method"].parameter), self.method)
         self._form.addRow(self.about)
-        self._form.addRow(self.tr("Time"), self.time)
+        self._form.addRow(title_of(known["preset"].parameter), self.time)
         self._form.addRow(self.tr("At most"), self.minutes)
-        self._form.addRow(self.tr("Compute on"), self.device)
+        self._form.addRow(title_of(known["device"].parameter), self.device)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addLayout(self._form)
@@ -233,12 +237,13 @@ class ChoiceForm(QWidget):
         for number, row in enumerate(self._methods.values()):
             self.method.addItem(row.title, row.name)
             self.method.setItemData(number, translated(row.what, UnitSystem.METRIC), Qt.ItemDataRole.ToolTipRole)
-        times = {"10min": self.tr("10 minutes"), "1h": self.tr("1 hour"), "overnight": self.tr("overnight, 10 hours")}
+        known = declared(TrainRequest)["preset"].parameter
         for number, preset in enumerate(preset_rows()):
-            self.time.addItem(times.get(preset.name, preset.name), preset.name)
-            self.time.setItemData(number, translated(preset.what, UnitSystem.METRIC), Qt.ItemDataRole.ToolTipRole)
+            self.time.addItem(choice_text(known, preset), preset)
+            tip = translated(PRESETS[preset].what, UnitSystem.METRIC)
+            self.time.setItemData(number, tip, Qt.ItemDataRole.ToolTipRole)
         self.time.addItem(self.tr("Custom time"), OWN)
-        self.device.addItem(self.tr("the processor"))
+        self.device.addItem(choice_text(declared(TrainRequest)["device"].parameter, "cpu"))
 
     def _changed(self) -> None:
         preset = str(self.time.currentData())

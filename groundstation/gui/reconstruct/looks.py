@@ -15,10 +15,13 @@ import numpy as np
 from PySide6.QtCore import QCoreApplication, QObject, QTimer, Signal
 from PySide6.QtGui import QImage
 
+from groundstation.gui.widgets.parameter_form import choice_text
 from groundstation.services.reconstruct.guided_camera import PicturePace, sized
 from groundstation.services.reconstruct.messages import Look, Section, Seen, Subject, Tints
+from planning.base.parameters import declared
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.training.layers import LAYERS, PICTURE
+from reconstruction.training.parameters import TrainRequest
 
 # What the tab calls layers, terms of the loss, stages and lights.
 
@@ -56,14 +59,7 @@ def term_name(term: str) -> str:
 
 def light_name(light: str) -> str:
     """A model of mirrored light."""
-    names = {
-        "auto": QCoreApplication.translate("LightNames", "as the scene calls for"),
-        "harmonics": QCoreApplication.translate("LightNames", "none apart from the splats (harmonics)"),
-        "environment-map": QCoreApplication.translate("LightNames", "far away (environment map)"),
-        "mlp": QCoreApplication.translate("LightNames", "network by place and direction (paper)"),
-        "radiance-grid": QCoreApplication.translate("LightNames", "near things (radiance grid)"),
-    }
-    return names.get(light, light)
+    return choice_text(declared(TrainRequest)["light"].parameter, light)
 
 
 QUICK_S = 0.12

@@ -9,11 +9,14 @@ from groundstation.gui.charts.axes import Line, LinesPlot
 from groundstation.gui.reconstruct.looks import light_name, term_name
 from groundstation.gui.widgets.effects_panel import EffectsPanel
 from groundstation.gui.widgets.inputs import ChoiceBox
+from groundstation.gui.widgets.parameter_form import title_of
 from groundstation.services.plan.effects import EffectChoice
-from groundstation.services.reconstruct.choices import MethodRow, light_names
+from groundstation.services.reconstruct.choices import MethodRow
 from groundstation.services.reconstruct.curves import ThinCurve, smoothed
 from groundstation.services.units import UnitSystem
 from planning.base.effects import Decision
+from planning.base.parameters import declared
+from reconstruction.training.parameters import LIGHTS, TrainRequest
 
 # Which model of mirrored light the scene calls for and why; and what the user wishes instead.
 
@@ -40,10 +43,10 @@ class LightPage(QWidget):
             self.tr("Try the cheap models on the photos for some seconds, and say which one is worth it")
         )
         self.words.setWordWrap(True)
-        heading = QLabel(self.tr("Mirrored light is learned as"))
+        heading = QLabel(title_of(declared(TrainRequest)["light"].parameter))
         heading.setProperty("role", "heading")
-        for light in light_names():
-            self.light.addItem(light_name(light), light)
+        for light in LIGHTS:
+            self.light.addItem(light_name(light.value), light.value)
         self.light.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
         self.light.setMinimumContentsLength(10)
         self.light.currentIndexChanged.connect(self._changed)

@@ -104,11 +104,13 @@ class ParameterRow(QObject):
 
     def _made(self) -> QCheckBox | ChoiceBox | NumberBox | WholeBox | QuantityBox:
         known, kind = self.declared.parameter, self.declared.kind
-        if kind is bool:
+        if kind is bool and not any(choice.label for choice in known.choices):
             return QCheckBox(title_of(known))
         listed = [choice.value for choice in known.choices] or list(known.suggested)
         if listed:
             box = ChoiceBox()
+            if self.declared.default is None:
+                box.addItem(QCoreApplication.translate(CONTEXT, known.unset), None)
             for value in listed:
                 box.addItem(self._names(value), value)
             return box
@@ -138,8 +140,10 @@ class ParameterRow(QObject):
         return round(MM_PER_M * value, 6) if self.declared.parameter.unit == "mm" else value
 
     def setValue(self, value: Any) -> None:  # noqa: N802
-        """Show a value; None, which no box has, leaves it as it is."""
+        """Show a value; None, which only lists of such a default have, leaves other boxes as they are."""
         if value is None:
+            if self.declared.default is None and isinstance(self.widget, ChoiceBox):
+                self.widget.setCurrentIndex(0)
             return
         if isinstance(self.widget, QCheckBox):
             self.widget.setChecked(value)

@@ -7,8 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from enum import StrEnum
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -16,6 +15,7 @@ from planning.base.errors import InputError
 from planning.base.files import check_ending, check_folder_name, read_given
 from planning.base.json_file import check_output
 from planning.base.messages import say
+from planning.base.parameters import Choice, check, parameter
 from planning.base.plugins import Plugin, PluginGroup, expect_type, guarded, load_plugins, told_problem
 from planning.base.progress import QUIET, Monitor, Stop, Trace
 
@@ -25,26 +25,9 @@ if TYPE_CHECKING:
     from reconstruction.training.model.saved import TrainedModel
 
 Preset = Literal["small", "balanced", "fine"]
-
-
-class ModelFormat(StrEnum):
-    """What this program itself writes models as, by the names of the command line."""
-
-    WEB = "web"
-    GLTF = "gltf"
-    TILES = "3d-tiles"
-    USD = "usd"
-    PLY = "ply"
-    PLY_2DGS = "ply-2dgs"
-    SPZ = "spz"
-    SPZ_4 = "spz-4"
-    SOG = "sog"
-    MESH = "mesh"
-    CITYJSON = "cityjson"
-    IFC = "ifc"
-
-
 Gaussians = Literal["numbers", "spz", "points"]
+
+GROUP = "models"
 
 TWO_LAYERS = say("CesiumJS: show gaussians.json and panels.json as two layers")
 NO_CESIUM = say(
@@ -58,29 +41,55 @@ class ModelExport:
 
     Parameters
     ----------
-    baked
-        Whether what panels mirror is put into their Gaussians' colours, for programs that mirror nothing.
-    degree
-        Of the harmonics that are written, 0 to 3; None: as the format has it by itself.
-    preset
-        Of compressed formats, and of Gaussians as `spz`.
     components
         Names of those that are wanted; None for all.
-    gaussians
-        Of glTF and 3D Tiles: as numbers, compressed, or coloured points in their place; None: as the format has them by
-        itself.
     """
 
     format: str
-    baked: bool = True
-    degree: int | None = None
-    preset: Preset = "balanced"
+    baked: bool = parameter(
+        True,
+        "what panels mirror is baked into their colours, for programs that mirror nothing, or panels have their own",
+        label="Colours",
+        choices=(Choice(True, "with what panels mirror", "baked"), Choice(False, "panels' own colours", "own")),
+        option="--colours",
+        group=GROUP,
+        row="first",
+    )
+    degree: int | None = parameter(
+        None,
+        "of the harmonics by which colours depend on the direction",
+        label="Degree of colours",
+        choices=tuple(Choice(degree) for degree in range(4)),
+        option="--degree",
+        metavar="{0,1,2,3}",
+        group=GROUP,
+        unset="as the format has it",
+        row="first",
+    )
+    preset: Preset = parameter(
+        "balanced",
+        "of spz, spz-4, sog and Gaussians that are compressed: how small",
+        label="File size",
+        choices=(Choice("small", "small"), Choice("balanced", "balanced"), Choice("fine", "fine")),
+        option="--preset",
+        group=GROUP,
+        row="first",
+    )
     components: tuple[str, ...] | None = None
-    gaussians: Gaussians | None = None
+    gaussians: Gaussians | None = parameter(
+        None,
+        "of gltf (by itself numbers) and 3d-tiles (by itself spz): as numbers; compressed, as CesiumJS wants them; or "
+        "coloured points in their place",
+        label="Gaussians",
+        choices=(Choice("numbers", "as numbers"), Choice("spz", "compressed"), Choice("points", "as coloured points")),
+        option="--gaussians",
+        group=GROUP,
+        unset="as the format has it",
+        row="first",
+    )
 
     def __post_init__(self) -> None:
-        if self.degree is not None and self.degree not in (0, 1, 2, 3):
-            raise ValueError(f"degree: expected 0 to 3, got {self.degree}")
+        check(self)
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,7 +132,7 @@ def export_model(folder: Path, out: Path, wanted: ModelExport, monitor: Monitor 
         The folder holds no model, or a file cannot be read or written.
     """
     check_name(out, wanted.format)
-    if wanted.format == ModelFormat.IFC:
+    if wanted.format == "ifc":
         return _ifc(folder, out)
     exporter = model_exporter(wanted.format)
     whole, trained = _read(folder, monitor)
@@ -302,18 +311,16 @@ def _usd(export: ModelToExport) -> list[str]:
     return []
 
 
-def _ply(export: ModelToExport) -> list[str]:
+def _ply(export: ModelToExport, kind: Literal["2dgs", "3dgs"] = "3dgs") -> list[str]:
     from reconstruction.exports.ply_export import write_ply
 
-    kind: Literal["2dgs", "3dgs"] = "2dgs" if export.wanted.format == ModelFormat.PLY_2DGS else "3dgs"
     done = write_ply(export.scene, export.out, kind, degree=export.degree(3), monitor=export.monitor)
     return _left_out(done)
 
 
-def _spz(export: ModelToExport) -> list[str]:
+def _spz(export: ModelToExport, version: Literal[3, 4] = 3) -> list[str]:
     from reconstruction.exports.spz import write_spz
 
-    version: Literal[3, 4] = 4 if export.wanted.format == ModelFormat.SPZ_4 else 3
     compression = _compression(export)
     return _left_out(write_spz(export.scene, export.out, compression, monitor=export.monitor, version=version))
 
@@ -349,23 +356,30 @@ class ModelExporter:
     write
         Writes a `ModelToExport`; gives what a reader of the file should know.
     title, about
-        Of a plug-in, in the window's list: what it is called, and in one sentence what it is for. For the formats of
-        this program the window has words in the user's language.
+        What it is called, and in one sentence what it is for. Those of this program are translated in the window.
+    splats, panels, attributes
+        For the docs: what a reader of the file finds of splats, of panels to pick, and of records.
     has_presets
         Whether a preset decides the size.
     has_parts
         Whether components can be written alone.
     has_colours
         Whether Gaussians, with their colours, are written; otherwise panels alone.
+    has_gaussians
+        Whether Gaussians can be written in other ways than as numbers.
     """
 
     endings: tuple[str, ...]
     write: Callable[[ModelToExport], list[str]]
     title: str = ""
     about: str = ""
+    splats: str = ""
+    panels: str = ""
+    attributes: str = ""
     has_presets: bool = False
     has_parts: bool = True
     has_colours: bool = True
+    has_gaussians: bool = False
 
     def __post_init__(self) -> None:
         if not all(ending.startswith(".") for ending in self.endings):
@@ -377,18 +391,124 @@ def _in_another_way(_export: ModelToExport) -> list[str]:
 
 
 EXPORTERS: dict[str, ModelExporter] = {
-    ModelFormat.WEB: ModelExporter((), _web),
-    ModelFormat.GLTF: ModelExporter((".glb",), _gltf),
-    ModelFormat.TILES: ModelExporter((), _tiles, has_presets=True),
-    ModelFormat.USD: ModelExporter((".usdc", ".usda", ".usd"), _usd),
-    ModelFormat.PLY: ModelExporter((".ply",), _ply),
-    ModelFormat.PLY_2DGS: ModelExporter((".ply",), _ply),
-    ModelFormat.SPZ: ModelExporter((".spz",), _spz, has_presets=True),
-    ModelFormat.SPZ_4: ModelExporter((".spz",), _spz, has_presets=True),
-    ModelFormat.SOG: ModelExporter((".sog",), _sog, has_presets=True),
-    ModelFormat.MESH: ModelExporter((".glb",), _mesh, has_colours=False),
-    ModelFormat.CITYJSON: ModelExporter((".city.json", ".json"), _cityjson, has_colours=False),
-    ModelFormat.IFC: ModelExporter((".ifc",), _in_another_way, has_parts=False, has_colours=False),
+    "web": ModelExporter(
+        (),
+        _web,
+        say("Web page"),
+        say("A folder with one page that shows the model and all records in any browser, without a network."),
+        "yes",
+        "yes",
+        "all records",
+    ),
+    "gltf": ModelExporter(
+        (".glb",),
+        _gltf,
+        "glTF",
+        say("Splats, and panels to pick with their GlobalIds and attributes, in one file."),
+        "KHR_gaussian_splatting",
+        "quads, EXT_mesh_features",
+        "EXT_structural_metadata",
+        has_gaussians=True,
+    ),
+    "3d-tiles": ModelExporter(
+        (),
+        _tiles,
+        "3D Tiles",
+        say("A folder with splats and panels in tiles, placed on Earth, as CesiumJS shows them."),
+        "the same in tiles, compressed",
+        "the same",
+        "the same",
+        has_presets=True,
+        has_gaussians=True,
+    ),
+    "usd": ModelExporter(
+        (".usdc", ".usda", ".usd"),
+        _usd,
+        "USD",
+        say("Splats and panels for film and simulation programs."),
+        "ParticleField3DGaussianSplat",
+        "quads",
+        "customData",
+    ),
+    "ply": ModelExporter(
+        (".ply",),
+        _ply,
+        "PLY",
+        say("Splats as ellipsoids: SuperSplat and nearly all viewers open it. Large."),
+        "ellipsoids",
+        "`panel_id` of each splat",
+        "no",
+    ),
+    "ply-2dgs": ModelExporter(
+        (".ply",),
+        partial(_ply, kind="2dgs"),
+        "PLY (2DGS)",
+        say("Splats as flat discs, as they were learned."),
+        "discs",
+        "`panel_id` of each splat",
+        "no",
+    ),
+    "sog": ModelExporter(
+        (".sog",),
+        _sog,
+        "SOG",
+        say("Splats, compressed most: for SuperSplat and PlayCanvas."),
+        "compressed",
+        "no",
+        "no",
+        has_presets=True,
+    ),
+    "spz": ModelExporter(
+        (".spz",),
+        _spz,
+        "SPZ",
+        say("Splats, compressed: most viewers of splats open it."),
+        "compressed",
+        "no",
+        "no",
+        has_presets=True,
+    ),
+    "spz-4": ModelExporter(
+        (".spz",),
+        partial(_spz, version=4),
+        "SPZ 4",
+        say("The newer version of SPZ: smaller, for the newest programs."),
+        "compressed",
+        "no",
+        "no",
+        has_presets=True,
+    ),
+    "mesh": ModelExporter(
+        (".glb",),
+        _mesh,
+        say("Mesh (glTF)"),
+        say("Panels with pictures of their fronts, for programs that know no splats."),
+        "no: each panel a picture of its front",
+        "an object each",
+        "extras",
+        has_colours=False,
+    ),
+    "cityjson": ModelExporter(
+        (".city.json", ".json"),
+        _cityjson,
+        "CityJSON",
+        say("The panels alone, as windows of the building, with their attributes."),
+        "no",
+        "Window of a WallSurface",
+        "yes",
+        has_colours=False,
+    ),
+    "ifc": ModelExporter(
+        (".ifc",),
+        _in_another_way,
+        "IFC",
+        say("The panels alone, as plates of curtain walls, with their property sets."),
+        "no",
+        "IfcPlate of an IfcCurtainWall",
+        "property sets",
+        has_parts=False,
+        has_colours=False,
+    ),
 }
 """Of this program, by the name on the command line."""
 

@@ -94,7 +94,7 @@ def organised_beside(folder: Path, monitor: Monitor = QUIET) -> Path:
         It holds neither, or a file cannot be read or written.
     """
     from reconstruction.objects.store import DESCRIPTION as SCENE
-    from reconstruction.training.names import MODEL
+    from reconstruction.training.parameters import MODEL
 
     model, out = folder / MODEL, folder.with_name(folder.name.removesuffix(".model") + SUFFIX)
     if (folder / SCENE).is_file() or not model.is_file():
@@ -115,7 +115,7 @@ def scene_of(folder: Path, monitor: Monitor = QUIET) -> GsScene:
     from reconstruction.objects.store import DESCRIPTION as SCENE
     from reconstruction.objects.store import read_scene
     from reconstruction.training.model.saved import read_model
-    from reconstruction.training.names import MODEL
+    from reconstruction.training.parameters import MODEL
 
     if not (folder / SCENE).is_file() and (folder / MODEL).is_file():
         return organised(read_model(folder))

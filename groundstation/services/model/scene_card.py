@@ -29,7 +29,7 @@ from reconstruction.objects.store import (
     places_of,
     standoff_m,
 )
-from reconstruction.training.names import MODEL
+from reconstruction.training.parameters import MODEL
 
 Array = NDArray[np.float64]
 

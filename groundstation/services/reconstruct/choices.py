@@ -8,13 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from groundstation.services.reconstruct.folders import DataSetCard
-from groundstation.services.reconstruct.request import TrainRequest
 from reconstruction.training.method_registry import DEFAULT_METHOD, method_named, training_methods
-from reconstruction.training.names import LIGHTS, PRESETS
+from reconstruction.training.parameters import DEFAULT_PRESET, PRESETS, TrainRequest
 from reconstruction.training.photos.decoded_photo import DECODING_BYTES_PER_PX, Decoding, decoded_bytes
-
-MINUTES = {"10min": 10.0, "1h": 60.0, "overnight": 600.0, "smoke": 1.0}
-"""What presets take at most; `smoke` ends by its steps."""
 
 LONGEST_MIN = 7 * 24 * 60
 
@@ -59,28 +55,15 @@ def method_rows() -> tuple[MethodRow, ...]:
     return tuple(sorted(rows, key=lambda row: row.name != DEFAULT_METHOD))
 
 
-def light_names() -> tuple[str, ...]:
-    """Models of mirrored light; `auto` first."""
-    return LIGHTS
-
-
-@dataclass(frozen=True, slots=True)
-class PresetRow:
-    """A preset: its name, how long it takes at most, minutes, and what it is for."""
-
-    name: str
-    minutes: float
-    what: str
-
-
-def preset_rows() -> tuple[PresetRow, ...]:
-    """Presets that somebody would wait for."""
-    return tuple(PresetRow(name, MINUTES[name], what) for name, what in PRESETS.items() if name != "smoke")
+def preset_rows() -> dict[str, float]:
+    """Presets that somebody would wait for, and how long at most, minutes."""
+    return {name: each.minutes for name, each in PRESETS.items() if each.minutes is not None}
 
 
 def preset_for(minutes: float) -> str:
     """The preset whose settings fit a time: that which is nearest to it by factors."""
-    return min(preset_rows(), key=lambda row: max(row.minutes / minutes, minutes / row.minutes)).name
+    rows = preset_rows()
+    return min(rows, key=lambda name: max(rows[name] / minutes, minutes / rows[name]))
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +77,7 @@ class TrainChoice:
     """
 
     method: str = DEFAULT_METHOD
-    preset: str = "10min"
+    preset: str = DEFAULT_PRESET
     minutes: float | None = None
     light: str = "auto"
     on_cuda: bool = False

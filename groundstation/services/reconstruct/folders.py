@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from groundstation.services.reconstruct.request import TrainRequest
 from planning.base.effects import Decision
 from planning.base.errors import InputError
 from planning.base.files import make_folder, real_path
@@ -19,7 +18,7 @@ from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor, QualityPoint
 from planning.site.records import Site
 from reconstruction.light.photo_set import PhotoSet, read_photo_set
-from reconstruction.training.names import CHECKPOINT, MODEL
+from reconstruction.training.parameters import CHECKPOINT, MODEL, TrainRequest
 
 DATA_SET, NOTE = "dataset.json", "training.json"
 """Files by which folders are known."""

@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from groundstation.services.jobs.channel import NICENESS, Listener, Process
-from groundstation.services.reconstruct.request import TrainRequest
 from planning.base.effects import Decision
 from reconstruction.base.cameras import PosedPhoto
+from reconstruction.training.parameters import TrainRequest
 
 # The process that trains a model and shows models, as the window sees it: torch never touches the window's own.
 #

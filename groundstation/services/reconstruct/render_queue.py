@@ -243,7 +243,7 @@ def probed(probe: Probe, shown: ShownModel, model: SceneModel) -> Probed:
 def _descriptions(folder: Path) -> tuple[Path, ...]:
     """Files that tell of a model in a folder, as objects or as it was trained."""
     from reconstruction.objects.store import DESCRIPTION as SCENE
-    from reconstruction.training.names import MODEL
+    from reconstruction.training.parameters import MODEL
 
     return folder / SCENE, folder / MODEL
 

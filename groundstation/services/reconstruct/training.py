@@ -8,13 +8,13 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from groundstation.services.reconstruct.request import DEFAULT_PRESET, TrainRequest
 from planning.base.errors import InputError
 from planning.base.files import check_ending, make_folder
 from planning.base.json_file import check_output, read_toml, write_atomically
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor, Stop, Trace, never
 from planning.tradeoff.runner import Compared, Subject, compare
+from reconstruction.training.parameters import DEFAULT_PRESET, TrainRequest
 
 if TYPE_CHECKING:
     from planning.base.effects import Decision
@@ -59,22 +59,14 @@ def config_of_wish(wish: TrainRequest) -> TrainConfig:
         There is no such preset, the file cannot be used, or a value is out of range.
     """
     from reconstruction.training.config import config_of
-    from reconstruction.training.presets import preset, with_wishes
+    from reconstruction.training.presets import as_asked, preset
 
     config = preset(wish.preset)
     if wish.method is not None:
         config = config_of({"method": wish.method}, config, Path("--method"))
     if wish.settings is not None:
         config = config_of(read_toml(wish.settings, dict[str, Any]), config, wish.settings)
-    found = with_wishes(
-        config,
-        light=wish.light,
-        iterations=wish.iterations,
-        time_limit_s=wish.time_limit_s,
-        seed=wish.seed,
-    )
-    wishes = {"device": wish.device, "memory_bytes": wish.memory_bytes}
-    return replace(found, **{name: value for name, value in wishes.items() if value is not None})  # type: ignore[arg-type]
+    return as_asked(config, wish)
 
 
 def train_files(
@@ -116,7 +108,7 @@ def train_files(
     begun_s = time.perf_counter() if begun_s is None else begun_s
     from reconstruction.training.callbacks import Callbacks
     from reconstruction.training.model.saved import save_model
-    from reconstruction.training.names import CHECKPOINT
+    from reconstruction.training.parameters import CHECKPOINT
     from reconstruction.training.ranks import ranks_of_environment
     from reconstruction.training.timer import Timer
 
@@ -185,7 +177,7 @@ def light_of_scene(dataset: Path, wish: TrainRequest, monitor: Monitor = QUIET) 
 def _trained(
     dataset: Path, out: Path, wish: TrainRequest, resume: bool, watching: Callbacks, ranks: Ranks, watch: Timer
 ) -> TrainedModel:
-    from reconstruction.training.names import CHECKPOINT
+    from reconstruction.training.parameters import CHECKPOINT
     from reconstruction.training.train import resume_model, train_model
 
     checkpoint = out / CHECKPOINT

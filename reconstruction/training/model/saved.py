@@ -29,7 +29,7 @@ from reconstruction.splats.ply import Kind, render_mode, write_splats
 from reconstruction.splats.splats import splats_from_tensors
 from reconstruction.training.model.joint_model import SceneModel
 from reconstruction.training.model.record import ModelRecord, empty_model
-from reconstruction.training.names import CHECKPOINT, MODEL
+from reconstruction.training.parameters import CHECKPOINT, MODEL
 from reconstruction.training.photos.exposures import Exposures
 
 FORMAT = "reflight-model/1"

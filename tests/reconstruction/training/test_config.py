@@ -8,8 +8,8 @@ import pytest
 from planning.base.errors import InputError
 from reconstruction.training.config import LossWeights, Rates, TrainConfig, config_of
 from reconstruction.training.method_registry import METHODS
-from reconstruction.training.names import LIGHTS, PRESETS
-from reconstruction.training.presets import preset, with_wishes
+from reconstruction.training.parameters import LIGHTS, PRESETS, TrainRequest
+from reconstruction.training.presets import as_asked, preset
 
 HERE = Path("settings.toml")
 
@@ -66,9 +66,9 @@ def test_wrong_calls_are_refused(wrong):
 
 def test_names_for_the_command_line_are_those_of_the_settings():
     assert {preset(name).method for name in PRESETS} <= set(METHODS)
-    assert {preset(name).light for name in PRESETS} <= set(LIGHTS)
+    assert {preset(name).light for name in PRESETS} <= {light.value for light in LIGHTS}
     for light in LIGHTS:
-        assert config_of({"light": light}, TrainConfig(), HERE).light == light
+        assert config_of({"light": light.value}, TrainConfig(), HERE).light == light.value
     with pytest.raises(InputError, match="--preset"):
         preset("soon")
 
@@ -79,10 +79,10 @@ def test_presets_take_longer_one_after_the_other():
 
 
 def test_asking_for_steps_takes_the_time_limit_away_and_shortens_what_goes_before():
-    config = with_wishes(preset("10min"), iterations=100, seed=7)
+    config = as_asked(preset("10min"), TrainRequest(iterations=100, seed=7))
     assert (config.iterations, config.time_limit_s, config.seed) == (100, None, 7)
     assert config.reflections.steps < preset("10min").reflections.steps
-    both = with_wishes(preset("10min"), iterations=100, time_limit_s=5.0)
+    both = as_asked(preset("10min"), TrainRequest(iterations=100, time_limit_s=5.0))
     assert (both.iterations, both.time_limit_s) == (100, 5.0)
 
 

@@ -32,8 +32,8 @@ from groundstation.services.reconstruct.folders import (
     standing,
     usual_data_set,
 )
-from groundstation.services.reconstruct.request import TrainRequest
 from planning.base.errors import InputError
+from reconstruction.training.parameters import TrainRequest
 from tests.reconstruction.training.made_data_set import write_data_set
 
 
@@ -161,7 +161,7 @@ def test_methods_and_presets_have_rows(card):
     assert rows[0].name == TrainChoice().method
     assert len({row.name for row in rows}) == len(rows)
     assert all(row.title and row.what for row in rows)
-    assert [row.name for row in preset_rows()] == ["10min", "1h", "overnight"]
+    assert list(preset_rows()) == ["10min", "1h", "overnight"]
 
 
 @pytest.mark.parametrize(

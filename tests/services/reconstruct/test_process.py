@@ -36,8 +36,8 @@ from groundstation.services.reconstruct.messages import (
     Train,
     WatchErrors,
 )
-from groundstation.services.reconstruct.request import TrainRequest
 from planning.base.errors import InputError
+from reconstruction.training.parameters import TrainRequest
 from tests.reconstruction.training.made_data_set import write_data_set
 
 TRAINING = Subject("training")

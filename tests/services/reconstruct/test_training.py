@@ -3,9 +3,9 @@
 import pytest
 
 from groundstation.services.reconstruct import training as model_training
-from groundstation.services.reconstruct.request import TrainRequest
 from groundstation.services.reconstruct.training import config_of_wish, light_of_scene
 from planning.base.errors import InputError, OperationCancelled
+from reconstruction.training.parameters import TrainRequest
 from reconstruction.training.timer import Timer
 from tests.reconstruction.training.made_data_set import write_data_set
 

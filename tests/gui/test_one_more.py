@@ -1,0 +1,131 @@
+"""One more model format, training method or simulated effect, as a row and a module, is everywhere at once."""
+
+import argparse
+import importlib
+import io
+from contextlib import redirect_stdout
+from pathlib import Path
+
+import pytest
+
+from groundstation.services.model import export as exports
+from planning.base.errors import InputError
+from reconstruction.scenes import effect_names
+from reconstruction.scenes.effects import registry
+from reconstruction.scenes.photos import renderer
+from reconstruction.training import method_registry
+
+
+def options_of(module, *words):
+    """Options of a command that is described anew, and its help."""
+    importlib.reload(module)
+    parser = argparse.ArgumentParser()
+    module.add_parser(parser.add_subparsers())
+    told = io.StringIO()
+    with redirect_stdout(told), pytest.raises(SystemExit):
+        parser.parse_args([*words, "-h"])
+    return parser, " ".join(told.getvalue().split())
+
+
+@pytest.fixture
+def voxels(monkeypatch):
+    """A format more."""
+
+    def write(export):
+        export.out.write_text(f"{len(export.scene)} Gaussians")
+        return ["coarse"]
+
+    made = exports.ModelExporter((".voxels",), write, "Voxels", "Cubes for games.", "cubes", "no", "no")
+    monkeypatch.setitem(exports.EXPORTERS, "voxels", made)
+    exports.model_exporters.cache_clear()
+    yield made
+    exports.model_exporters.cache_clear()
+
+
+def test_a_format_is_offered_by_command_window_and_docs_and_in_messages(voxels, application, tmp_path):
+    from groundstation.cli.commands import export
+    from groundstation.gui.model.export_dialog import ExportDialog
+    from tests.docs.generated import with_formats
+
+    parser, told = options_of(export, "export")
+    assert "voxels .voxels Cubes for games." in told
+    assert parser.parse_args(["export", "a", "--format", "voxels", "-o", "b"]).format == "voxels"
+    dialog = ExportDialog(())
+    dialog.format.setCurrentIndex(dialog.format.findData("voxels"))
+    assert (dialog.format.currentText(), dialog.about.text()) == ("Voxels", "Cubes for games.")
+    assert dialog.wanted() == exports.ModelExport("voxels")
+    page = Path("docs/reference/exports.md").read_text("utf-8")
+    row = "| `voxels` | `.voxels` | Cubes for games. | cubes | no | no |"
+    assert row in with_formats(page)
+    assert row not in page
+    with pytest.raises(InputError, match=r"known are: .*, voxels"):
+        exports.model_exporter("absent")
+    assert exports.with_ending(tmp_path / "a", "voxels").name == "a.voxels"
+
+
+@pytest.fixture
+def glow(monkeypatch):
+    """A training method more, with a shading of its own."""
+    from reconstruction.training.methods import shader, shaders
+
+    class Glow(shader.Shader):
+        """Harmonics, by another name."""
+
+    made = method_registry.Method("Glow", "nobody, never", "splats that glow", settings={"iterations": 7})
+    monkeypatch.setitem(method_registry.METHODS, "glow", made)
+    monkeypatch.setitem(shaders._SHADERS, "glow", lambda config, surroundings: Glow())
+    method_registry.training_methods.cache_clear()
+    yield Glow
+    method_registry.training_methods.cache_clear()
+
+
+def test_a_method_is_offered_by_command_window_and_settings_and_in_messages(glow, application):
+    from groundstation.cli.commands import train
+    from groundstation.gui.reconstruct.choice_side import ChoiceForm
+    from groundstation.services.reconstruct.training import config_of_wish
+    from reconstruction.training.methods.shaders import Surroundings, shader_of
+
+    parser, told = options_of(train, "train")
+    assert " glow Glow " in told
+    asked = train.wish_of(parser.parse_args(["train", "a", "-o", "b", "--method", "glow"]))
+    config = config_of_wish(asked)
+    assert (config.method, config.iterations) == ("glow", 7)
+    assert isinstance(shader_of(config, Surroundings(None)), glow)
+    form = ChoiceForm()
+    form.method.setCurrentIndex(form.method.findData("glow"))
+    assert (form.value().method, form.about.text()) == ("glow", "splats that glow")
+    with pytest.raises(ValueError, match=r"expected .*, glow, got"):
+        method_registry.method_named("absent")
+
+
+@pytest.fixture
+def haze(monkeypatch):
+    """An effect more."""
+
+    class Haze:
+        """Air that is not clear."""
+
+        name, what, tolerance, unit = "haze", "air that is not clear", 1.0, "grey levels"
+
+        def assess(self, _probe):
+            """Never worth it."""
+            raise AssertionError("it is switched on")
+
+    names, known = (*effect_names.EFFECTS, "haze"), registry.effects
+    monkeypatch.setattr(effect_names, "EFFECTS", names)
+    monkeypatch.setattr(renderer, "EFFECTS", names)
+    monkeypatch.setattr(registry, "effects", lambda *given: (*known(*given), Haze()))
+
+
+def test_an_effect_is_taken_by_the_command_decided_and_named_in_messages(haze):
+    from groundstation.cli.commands import scene
+
+    parser, _ = options_of(scene, "scene", "render")
+    words = ["scene", "render", "planar", "-o", "a", "--effects", "none", "--effects", "haze=on"]
+    asked = scene._wish(parser.parse_args(words))
+    assert asked.settings.is_on("haze")
+    assert not asked.settings.is_on("noise")
+    with pytest.raises(InputError, match=r"--effects.*haze"):
+        scene._wish(parser.parse_args([*words, "--effects", "absent=on"]))
+    with pytest.raises(InputError, match=r"there is no effect 'absent'; expected one of .*, haze"):
+        renderer.RenderSettings(wishes={"absent": "on"})
