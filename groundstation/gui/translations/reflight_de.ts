@@ -556,40 +556,12 @@ Bild in dieser Entfernung: {4} x {5}</translation>
         <translation> min</translation>
     </message>
     <message>
-        <source>Method</source>
-        <translation>Verfahren</translation>
-    </message>
-    <message>
-        <source>Time</source>
-        <translation>Zeit</translation>
-    </message>
-    <message>
         <source>At most</source>
         <translation>Höchstens</translation>
     </message>
     <message>
-        <source>Compute on</source>
-        <translation>Rechnen auf</translation>
-    </message>
-    <message>
-        <source>10 minutes</source>
-        <translation>10 Minuten</translation>
-    </message>
-    <message>
-        <source>1 hour</source>
-        <translation>1 Stunde</translation>
-    </message>
-    <message>
-        <source>overnight, 10 hours</source>
-        <translation>über Nacht, 10 Stunden</translation>
-    </message>
-    <message>
         <source>Custom time</source>
         <translation>eigene Zeit</translation>
-    </message>
-    <message>
-        <source>the processor</source>
-        <translation>dem Prozessor</translation>
     </message>
 </context>
 <context>
@@ -1202,40 +1174,12 @@ Bild in dieser Entfernung: {4} x {5}</translation>
         <translation>das ganze Modell</translation>
     </message>
     <message>
-        <source>with what panels mirror</source>
-        <translation>mit dem, was Scheiben spiegeln</translation>
-    </message>
-    <message>
-        <source>panels&apos; own colours</source>
-        <translation>eigene Farben der Scheiben</translation>
-    </message>
-    <message>
-        <source>small</source>
-        <translation>klein</translation>
-    </message>
-    <message>
-        <source>balanced</source>
-        <translation>ausgewogen</translation>
-    </message>
-    <message>
-        <source>fine</source>
-        <translation>fein</translation>
-    </message>
-    <message>
         <source>Format</source>
         <translation>Format</translation>
     </message>
     <message>
         <source>Part</source>
         <translation>Teil</translation>
-    </message>
-    <message>
-        <source>Colours</source>
-        <translation>Farben</translation>
-    </message>
-    <message>
-        <source>File size</source>
-        <translation>Dateigröße</translation>
     </message>
     <message>
         <source>Choose a place ...</source>
@@ -2400,29 +2344,6 @@ Scheiben: {2}, je {3} × {4}</translation>
     </message>
 </context>
 <context>
-    <name>LightNames</name>
-    <message>
-        <source>as the scene calls for</source>
-        <translation>wie es die Szene verlangt</translation>
-    </message>
-    <message>
-        <source>none apart from the splats (harmonics)</source>
-        <translation>keines neben den Splats (Kugelfunktionen)</translation>
-    </message>
-    <message>
-        <source>far away (environment map)</source>
-        <translation>weit entfernt (Umgebungsbild)</translation>
-    </message>
-    <message>
-        <source>network by place and direction (paper)</source>
-        <translation>Netz nach Ort und Richtung (Veröffentlichung)</translation>
-    </message>
-    <message>
-        <source>near things (radiance grid)</source>
-        <translation>nahe Dinge (Strahlungsgitter)</translation>
-    </message>
-</context>
-<context>
     <name>LightPage</name>
     <message>
         <source>Ask the scene</source>
@@ -2431,10 +2352,6 @@ Scheiben: {2}, je {3} × {4}</translation>
     <message>
         <source>Try the cheap models on the photos for some seconds, and say which one is worth it</source>
         <translation>Die günstigen Modelle einige Sekunden an den Fotos versuchen und sagen, welches sich lohnt</translation>
-    </message>
-    <message>
-        <source>Mirrored light is learned as</source>
-        <translation>Gespiegeltes Licht wird gelernt als</translation>
     </message>
     <message>
         <source>as the method has it: {0}</source>
@@ -3036,65 +2953,6 @@ Scheiben: {2}, je {3} × {4}</translation>
     </message>
 </context>
 <context>
-    <name>ModelFormats</name>
-    <message>
-        <source>Web page</source>
-        <translation>Webseite</translation>
-    </message>
-    <message>
-        <source>A folder with one page that shows the model and all records in any browser, without a network.</source>
-        <translation>Ein Ordner mit einer Seite, die das Modell und alle Einträge in jedem Browser zeigt, ohne Netz.</translation>
-    </message>
-    <message>
-        <source>Splats, and panels to pick with their GlobalIds and attributes, in one file.</source>
-        <translation>Splats, und Scheiben zum Anklicken mit GlobalIds und Merkmalen, in einer Datei.</translation>
-    </message>
-    <message>
-        <source>A folder with splats and panels in tiles, placed on Earth, as CesiumJS shows them.</source>
-        <translation>Ein Ordner mit Splats und Scheiben in Kacheln, auf der Erde verortet, wie CesiumJS sie zeigt.</translation>
-    </message>
-    <message>
-        <source>Splats and panels for film and simulation programs.</source>
-        <translation>Splats und Scheiben für Film- und Simulationsprogramme.</translation>
-    </message>
-    <message>
-        <source>Splats as ellipsoids: SuperSplat and nearly all viewers open it. Large.</source>
-        <translation>Splats als Ellipsoide: SuperSplat und fast alle Betrachter öffnen es. Groß.</translation>
-    </message>
-    <message>
-        <source>Splats as flat discs, as they were learned.</source>
-        <translation>Splats als flache Scheiben, wie sie gelernt wurden.</translation>
-    </message>
-    <message>
-        <source>Splats, compressed most: for SuperSplat and PlayCanvas.</source>
-        <translation>Splats, am stärksten komprimiert: für SuperSplat und PlayCanvas.</translation>
-    </message>
-    <message>
-        <source>Splats, compressed: most viewers of splats open it.</source>
-        <translation>Splats, komprimiert: die meisten Betrachter von Splats öffnen es.</translation>
-    </message>
-    <message>
-        <source>The newer version of SPZ: smaller, for the newest programs.</source>
-        <translation>Die neuere Fassung von SPZ: kleiner, für die neuesten Programme.</translation>
-    </message>
-    <message>
-        <source>Mesh (glTF)</source>
-        <translation>Netz (glTF)</translation>
-    </message>
-    <message>
-        <source>Panels with pictures of their fronts, for programs that know no splats.</source>
-        <translation>Scheiben mit Bildern ihrer Vorderseite, für Programme ohne Splats.</translation>
-    </message>
-    <message>
-        <source>The panels alone, as windows of the building, with their attributes.</source>
-        <translation>Nur die Scheiben, als Fenster des Gebäudes, mit ihren Merkmalen.</translation>
-    </message>
-    <message>
-        <source>The panels alone, as plates of curtain walls, with their property sets.</source>
-        <translation>Nur die Scheiben, als Platten von Vorhangfassaden, mit ihren Eigenschaftssätzen.</translation>
-    </message>
-</context>
-<context>
     <name>ModelPage</name>
     <message>
         <source>Folder of a model</source>
@@ -3642,6 +3500,138 @@ Blickrichtung: {3}</translation>
     <message>
         <source>without RTK</source>
         <translation>ohne RTK</translation>
+    </message>
+    <message>
+        <source>Colours</source>
+        <translation>Farben</translation>
+    </message>
+    <message>
+        <source>what panels mirror is baked into their colours, for programs that mirror nothing, or panels have their own</source>
+        <translation>was die Scheiben spiegeln, ist in ihre Farben gerechnet, für Programme ohne Spiegelung; oder sie haben ihre eigenen</translation>
+    </message>
+    <message>
+        <source>with what panels mirror</source>
+        <translation>mit dem, was Scheiben spiegeln</translation>
+    </message>
+    <message>
+        <source>panels&apos; own colours</source>
+        <translation>eigene Farben der Scheiben</translation>
+    </message>
+    <message>
+        <source>Degree of colours</source>
+        <translation>Grad der Farben</translation>
+    </message>
+    <message>
+        <source>of the harmonics by which colours depend on the direction</source>
+        <translation>der Harmonischen, mit denen Farben von der Richtung abhängen</translation>
+    </message>
+    <message>
+        <source>File size</source>
+        <translation>Dateigröße</translation>
+    </message>
+    <message>
+        <source>of spz, spz-4, sog and Gaussians that are compressed: how small</source>
+        <translation>bei spz, spz-4, sog und komprimierten Gauß-Splats: wie klein</translation>
+    </message>
+    <message>
+        <source>small</source>
+        <translation>klein</translation>
+    </message>
+    <message>
+        <source>balanced</source>
+        <translation>ausgewogen</translation>
+    </message>
+    <message>
+        <source>fine</source>
+        <translation>fein</translation>
+    </message>
+    <message>
+        <source>Gaussians</source>
+        <translation>Gauß-Splats</translation>
+    </message>
+    <message>
+        <source>of gltf (by itself numbers) and 3d-tiles (by itself spz): as numbers; compressed, as CesiumJS wants them; or coloured points in their place</source>
+        <translation>bei gltf (sonst Zahlen) und 3d-tiles (sonst spz): als Zahlen; komprimiert, wie CesiumJS sie will; oder farbige Punkte an ihrer Stelle</translation>
+    </message>
+    <message>
+        <source>as numbers</source>
+        <translation>als Zahlen</translation>
+    </message>
+    <message>
+        <source>compressed</source>
+        <translation>komprimiert</translation>
+    </message>
+    <message>
+        <source>as coloured points</source>
+        <translation>als farbige Punkte</translation>
+    </message>
+    <message>
+        <source>as the format has it</source>
+        <translation>wie im Format üblich</translation>
+    </message>
+    <message>
+        <source>Time</source>
+        <translation>Zeit</translation>
+    </message>
+    <message>
+        <source>how long one can wait</source>
+        <translation>wie lange man warten kann</translation>
+    </message>
+    <message>
+        <source>10 minutes</source>
+        <translation>10 Minuten</translation>
+    </message>
+    <message>
+        <source>1 hour</source>
+        <translation>1 Stunde</translation>
+    </message>
+    <message>
+        <source>overnight, 10 hours</source>
+        <translation>über Nacht, 10 Stunden</translation>
+    </message>
+    <message>
+        <source>what is trained, and how</source>
+        <translation>was trainiert wird, und wie</translation>
+    </message>
+    <message>
+        <source>Mirrored light is learned as</source>
+        <translation>Gespiegeltes Licht wird gelernt als</translation>
+    </message>
+    <message>
+        <source>what mirrored light is learned with</source>
+        <translation>womit gespiegeltes Licht gelernt wird</translation>
+    </message>
+    <message>
+        <source>as the scene calls for</source>
+        <translation>wie es die Szene verlangt</translation>
+    </message>
+    <message>
+        <source>none apart from the splats (harmonics)</source>
+        <translation>keines neben den Splats (Kugelfunktionen)</translation>
+    </message>
+    <message>
+        <source>far away (environment map)</source>
+        <translation>weit entfernt (Umgebungsbild)</translation>
+    </message>
+    <message>
+        <source>network by place and direction (paper)</source>
+        <translation>Netz nach Ort und Richtung (Veröffentlichung)</translation>
+    </message>
+    <message>
+        <source>near things (radiance grid)</source>
+        <translation>nahe Dinge (Strahlungsgitter)</translation>
+    </message>
+    <message>
+        <source>Compute on</source>
+        <translation>Rechnen auf</translation>
+    </message>
+    <message>
+        <source>what to compute on; cuda needs the extra of that name</source>
+        <translation>worauf gerechnet wird; cuda braucht das gleichnamige Extra</translation>
+    </message>
+    <message>
+        <source>the processor</source>
+        <translation>dem Prozessor</translation>
     </message>
 </context>
 <context>
@@ -5754,6 +5744,62 @@ Damit weiterarbeiten?</translation>
     <message>
         <source>, {0} m</source>
         <translation>, {0} m</translation>
+    </message>
+    <message>
+        <source>A folder with one page that shows the model and all records in any browser, without a network.</source>
+        <translation>Ein Ordner mit einer Seite, die das Modell und alle Einträge in jedem Browser zeigt, ohne Netz.</translation>
+    </message>
+    <message>
+        <source>A folder with splats and panels in tiles, placed on Earth, as CesiumJS shows them.</source>
+        <translation>Ein Ordner mit Splats und Scheiben in Kacheln, auf der Erde verortet, wie CesiumJS sie zeigt.</translation>
+    </message>
+    <message>
+        <source>Mesh (glTF)</source>
+        <translation>Netz (glTF)</translation>
+    </message>
+    <message>
+        <source>Panels with pictures of their fronts, for programs that know no splats.</source>
+        <translation>Scheiben mit Bildern ihrer Vorderseite, für Programme ohne Splats.</translation>
+    </message>
+    <message>
+        <source>Splats and panels for film and simulation programs.</source>
+        <translation>Splats und Scheiben für Film- und Simulationsprogramme.</translation>
+    </message>
+    <message>
+        <source>Splats as ellipsoids: SuperSplat and nearly all viewers open it. Large.</source>
+        <translation>Splats als Ellipsoide: SuperSplat und fast alle Betrachter öffnen es. Groß.</translation>
+    </message>
+    <message>
+        <source>Splats as flat discs, as they were learned.</source>
+        <translation>Splats als flache Scheiben, wie sie gelernt wurden.</translation>
+    </message>
+    <message>
+        <source>Splats, and panels to pick with their GlobalIds and attributes, in one file.</source>
+        <translation>Splats, und Scheiben zum Anklicken mit GlobalIds und Merkmalen, in einer Datei.</translation>
+    </message>
+    <message>
+        <source>Splats, compressed most: for SuperSplat and PlayCanvas.</source>
+        <translation>Splats, am stärksten komprimiert: für SuperSplat und PlayCanvas.</translation>
+    </message>
+    <message>
+        <source>Splats, compressed: most viewers of splats open it.</source>
+        <translation>Splats, komprimiert: die meisten Betrachter von Splats öffnen es.</translation>
+    </message>
+    <message>
+        <source>The newer version of SPZ: smaller, for the newest programs.</source>
+        <translation>Die neuere Fassung von SPZ: kleiner, für die neuesten Programme.</translation>
+    </message>
+    <message>
+        <source>The panels alone, as plates of curtain walls, with their property sets.</source>
+        <translation>Nur die Scheiben, als Platten von Vorhangfassaden, mit ihren Eigenschaftssätzen.</translation>
+    </message>
+    <message>
+        <source>The panels alone, as windows of the building, with their attributes.</source>
+        <translation>Nur die Scheiben, als Fenster des Gebäudes, mit ihren Merkmalen.</translation>
+    </message>
+    <message>
+        <source>Web page</source>
+        <translation>Webseite</translation>
     </message>
     <message>
         <source>above {0} and below {1}</source>
