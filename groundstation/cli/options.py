@@ -14,7 +14,7 @@ from planning.base.errors import InputError
 from planning.base.files import PLAIN_ENDINGS, check_ending, check_folder_name
 from planning.base.parameters import Declared, declared, with_values
 from planning.base.plugins import Plugin, PluginGroup, installed_plugins
-from planning.parameters import DEFAULT_PROFILE, LARGEST_SEED, PlanParameters
+from planning.parameters import DEFAULT_PROFILE, PlanParameters
 
 if TYPE_CHECKING:
     from groundstation.services.mission.readiness import FlightDay
@@ -292,8 +292,8 @@ def checked_seed(seed: int) -> int:
     InputError
         It is negative or too large.
     """
-    if not 0 <= seed <= LARGEST_SEED:
-        raise InputError(f"--seed: expected 0 to {LARGEST_SEED}, got {seed}")
+    with in_words_of_options():
+        declared(PlanParameters)["seed"].parameter.check("seed", seed)
     return seed
 
 

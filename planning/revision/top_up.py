@@ -17,13 +17,14 @@ from numpy.typing import NDArray
 
 from planning.base.errors import InfeasibleError
 from planning.base.messages import say
+from planning.base.parameters import check, declared, like, parameter
 from planning.base.progress import QUIET, Monitor, QualityPoint, Stop, TimeLimit, Trace, any_of, never
 from planning.coverage.evaluate import coverage
 from planning.coverage.model import exact_coverage
 from planning.coverage.reach_kernel import REACHABLE, UNREACHABLE
 from planning.coverage.reachability import MAX_CELLS
 from planning.motion.timing import usable_battery_s
-from planning.parameters import LARGEST_SEED
+from planning.parameters import PlanParameters
 from planning.plan import HistoryPoint, Plan, Viewpoint, ViewpointArrays, viewpoint_arrays
 from planning.planner import plan_records
 from planning.revision.closing_flights import Batteries, ClosingFlights, Wanted, closing_flights
@@ -91,21 +92,15 @@ class TopUpRequest:
     """
 
     target: Target = Target.PROMISED
-    battery: float | None = None
-    n_batteries: int | None = None
-    seed: int = 0
-    time_budget_s: float = 5.0
+    battery: float | None = parameter(None, least=0.0, most=1.0, expected="a charge from 0 to 1")
+    n_batteries: int | None = like(PlanParameters, "n_batteries", None, least=0)
+    seed: int = like(PlanParameters, "seed", 0)
+    time_budget_s: float = like(PlanParameters, "time_budget_s", 5.0)
 
     def __post_init__(self) -> None:
-        if self.battery is not None and not 0.0 <= self.battery <= 1.0:
-            raise ValueError(f"battery: expected a charge from 0 to 1, got {self.battery}")
-        least = 1 if self.battery is None else 0
-        if self.n_batteries is not None and not least <= self.n_batteries <= 100:
-            raise ValueError(f"batteries: expected {least} to 100, got {self.n_batteries}")
-        if not 0 <= self.seed <= LARGEST_SEED:
-            raise ValueError(f"seed: expected 0 to {LARGEST_SEED}, got {self.seed}")
-        if not self.time_budget_s > 0.0:
-            raise ValueError(f"time budget: expected more than 0 s, got {self.time_budget_s}")
+        check(self)
+        if self.battery is None and self.n_batteries is not None:
+            declared(PlanParameters)["n_batteries"].parameter.check("n_batteries", self.n_batteries)
 
 
 @dataclass(frozen=True, slots=True)
