@@ -89,11 +89,6 @@ def plan_records(
     return tuple(viewpoints), tuple(sorties)
 
 
-def viewpoints_of(views: ViewpointArrays, prefix: str) -> tuple[Viewpoint, ...]:
-    """Viewpoints in the order of `views`, named with the prefix and a number from 0000 on; in no flight."""
-    return tuple(_record(f"{prefix}{number:04d}", views, number) for number in range(len(views.heading_rad)))
-
-
 def _record(viewpoint_id: str, views: ViewpointArrays, view: int) -> Viewpoint:
     x, y, z = (float(value) for value in views.positions_enu_m[view])
     heading_deg = round(float(np.degrees(views.heading_rad[view])), ANGLE_DECIMALS)

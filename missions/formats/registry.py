@@ -165,38 +165,6 @@ def _on_passing(plan: Plan, missions: Sequence[Mission]) -> Iterator[Finding]:
             yield Finding(Severity.WARNING, "in-passing", text, place, mission.duration_s, sortie.duration_s, "s")
 
 
-def export(
-    plan: Plan,
-    origin: Origin | None,
-    home_enu_m: Vec3 | None,
-    file_format: str,
-    path: Path,
-    options: ExportOptions = DEFAULT_OPTIONS,
-) -> tuple[Path, ...]:
-    """Write a plan as mission files, all of them or none.
-
-    The first sortie gets exactly `path`, the next ones `<stem>-2<suffix>` and so on; KML and CSV hold all sorties.
-
-    Parameters
-    ----------
-    origin, home_enu_m
-        Of the site, for plans that do not carry them.
-
-    Returns
-    -------
-    paths
-        The files written.
-
-    Raises
-    ------
-    InputError
-        Something is missing from the plan, or the folder cannot be written.
-    MissionError
-        The plan cannot be flown as it stands, or not with this format; nothing is written.
-    """
-    return write_files(encode(plan, origin, home_enu_m, file_format, options), path)
-
-
 def write_files(encoded: EncodedFiles, path: Path) -> tuple[Path, ...]:
     """Write encoded missions, all of them or none; see `export`."""
     errors = [finding for finding in encoded.findings if finding.severity is Severity.ERROR]

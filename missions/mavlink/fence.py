@@ -79,36 +79,6 @@ def _fence_items(fence: Fence) -> list[MissionItem]:
     return [MissionItem(command, frame, (n_corners, 0.0, 0.0, 0.0, lat, lon, 0.0)) for lat, lon in fence.corners]
 
 
-def fences_of(items: Sequence[MissionItem]) -> tuple[Fence, ...]:
-    """Fences of items that were read back; a return point is none, and is left out.
-
-    Raises
-    ------
-    MissionError
-        A polygon is not complete, or an item is no part of a fence.
-    """
-    fences: list[Fence] = []
-    corners: list[tuple[float, float]] = []
-    for number, item in enumerate(items, 1):
-        lat_deg, lon_deg = item.params[4:6]
-        if item.command in _POLYGONS:
-            corners.append((lat_deg, lon_deg))
-            if len(corners) == item.params[0]:
-                fences.append(FencePolygon(tuple(corners), _POLYGONS[item.command]))
-                corners = []
-                continue
-            following = items[number] if number < len(items) else None
-            if following is None or (following.command, following.params[0]) != (item.command, item.params[0]):
-                raise MissionError(
-                    f"fence item {number}: its polygon has {len(corners)} corners; expected {item.params[0]:g}"
-                )
-        elif item.command in _CIRCLES:
-            fences.append(FenceCircle(lat_deg, lon_deg, item.params[0], _CIRCLES[item.command]))
-        elif item.command != mavlink.MAV_CMD_NAV_FENCE_RETURN_POINT:
-            raise MissionError(f"fence item {number}: the command {item.command} is no part of a fence")
-    return tuple(fences)
-
-
 def rally_points(site: Site) -> tuple[GeoPoint, ...]:
     """The rally points of a site on the globe."""
     if not site.rally_points:

@@ -25,7 +25,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
-from missions.mavlink.messages import Address, Message, Received
+from missions.mavlink.messages import Address, Heartbeat, Message, Received
 from missions.mavlink.signing import Signer
 from missions.mavlink.wire import Counts, Decoder, Encoder
 from planning.base.errors import InputError, LinkError, LinkTimeout
@@ -239,11 +239,6 @@ class TcpServerChannel:
     def port(self) -> int:
         """Own port."""
         return int(self._server.getsockname()[1])
-
-    @property
-    def n_clients(self) -> int:
-        """Connections that are open."""
-        return len(self._clients)
 
     def read(self, timeout_s: float) -> Chunk | None:
         """Bytes of one client; takes in clients that knock."""
@@ -530,3 +525,10 @@ _SOCKETS: dict[str, Callable[[str, int], Channel]] = {
     "tcp": TcpChannel,
     "tcpin": TcpServerChannel,
 }
+
+
+HEARTBEAT_EVERY_S = 1.0
+
+
+GROUND_HEARTBEAT = Heartbeat(type=6, autopilot=8, base_mode=0, custom_mode=0, system_status=4)
+"""MAV_TYPE_GCS, MAV_AUTOPILOT_INVALID, MAV_STATE_ACTIVE: a vehicle that hears none may think the link lost."""

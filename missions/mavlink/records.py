@@ -118,41 +118,6 @@ MESSAGES: Mapping[str, Mapping[str, Any]] = {
 """The messages that are used, by the names of their records, and the fields that may be left out, with what they are
 then."""
 
-NOTES: Mapping[str, str] = {
-    "Statustext": "`severity` 0 emergency to 7 debug; longer texts come in chunks with one `id`.",
-    "RadioStatus": "Made by a telemetry radio itself: signal and noise at both ends, buffer left in percent.",
-    "SetupSigning": "Gives the vehicle a key of 32 bytes; all zero ends signing.",
-    "CommandAck": "`result` is a MAV_RESULT; `progress` in percent while it is IN_PROGRESS.",
-    "ParamRequestRead": "`param_index` -1: by name.",
-    "ParamSet": "PX4 puts the bytes of an integer into the float, ArduPilot its value.",
-    "RequestDataStream": "ArduPilot still knows it.",
-    "MissionRequest": "Deprecated; ArduPilot still asks with it.",
-    "MissionItemInt": "`x`, `y` are 1e-7 degrees where the command has a position, raw numbers where not.",
-    "MissionItem": "Deprecated: float positions, off by up to a metre.",
-    "MissionAck": "`type` is a MAV_MISSION_RESULT.",
-    "MissionWritePartialList": "A part of the list will be written anew.",
-    "MissionChanged": "Deprecated: the vehicle says that a list was changed, and by whom.",
-    "MissionCurrent": "`total` 65535: no mission, 0: not told; the numbers of the lists are 0 where not told.",
-    "GlobalPositionInt": "`alt` is above mean sea level.",
-    "Attitude": "Yaw is clockwise from north.",
-    "GpsRawInt": "`fix_type` 3 is 3-D, 4 DGPS, 5 RTK float, 6 RTK fixed.",
-    "HomePosition": "`altitude` is above mean sea level.",
-    "ExtendedSysState": "`landed_state` 1 on the ground, 2 in the air, 3 taking off, 4 landing.",
-    "SysStatus": "-1 where it is not known.",
-    "BatteryStatus": "`voltages` of each cell or, in the first, of all.",
-    "EkfStatusReport": "ArduPilot's.",
-    "EstimatorStatus": "PX4's.",
-    "Wind": "ArduPilot's: where the wind comes from.",
-    "WindCov": "PX4's: towards north, east, down.",
-    "CameraFeedback": "ArduPilot's: the attitude is the vehicle's, never the gimbal's.",
-    "CameraCaptureStatus": "`image_count` is the number of photos ever taken.",
-    "CameraImageCaptured": "`q` turns from the camera's axes to north, east, down; w first.",
-    "GimbalDeviceAttitudeStatus": "`q` w first; its yaw is the vehicle's or the earth's by `flags`.",
-    "MountStatus": "Of older ArduPilots: 0.01 degrees, `pointing_a` pitch, `pointing_c` yaw from the nose.",
-    "MountOrientation": "Of older PX4s: `yaw` counts from the nose, `yaw_absolute` from north.",
-}
-"""What autopilots make of a message, which its XML does not say."""
-
 
 def _add_to_dialect(name: str, number: int, crc_extra: int, layout: str, fields: Mapping[str, str]) -> None:
     """Put a message's class into the dialect as pymavlink makes them, of single numbers in the order of the wire."""

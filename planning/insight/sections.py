@@ -9,14 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.jit import kernel
-from planning.base.messages import say
-from planning.base.progress import QUIET, Monitor
-from planning.coverage.model import exact_sections
 from planning.coverage.reach_kernel import REACHABLE, UNREACHABLE
 from planning.coverage.sections import NOT_SEEN, PanelFrames, SectionGrid
 from planning.insight.reasons import SectionReasons
 from planning.parameters import Constraints
-from planning.plan import Camera, Plan, viewpoint_arrays
+from planning.plan import Camera, Plan
 from planning.site.records import SiteModel
 from planning.viewpoints.prepare import Prepared
 
@@ -258,27 +255,6 @@ class PlanInsight:
         """Covered share of what is possible, 0 to 1, shape (m,); NaN for panels that nobody can see."""
         possible = self.possible_per_panel
         return np.where(possible > 0, self.covered_per_panel / np.maximum(possible, 1), np.nan)
-
-
-def plan_insight(
-    site_model: SiteModel, prepared: Prepared, plan: Plan, reasons: SectionReasons, monitor: Monitor = QUIET
-) -> PlanInsight:
-    """What a plan covers on a prepared site, seen with the prepared camera under the prepared constraints.
-
-    Parameters
-    ----------
-    reasons
-        Of the same prepared site (`planning.insight.reasons.section_reasons`); they do not depend on the plan.
-    """
-    model, verdicts = prepared.problem.model, prepared.problem.reachability.verdicts
-    if reasons.shape != verdicts.shape:
-        raise ValueError(f"reasons: expected those of this site, shape {verdicts.shape}, got {reasons.shape}")
-    monitor.report(say("counting what each view covers"), 0, 1)
-    views = viewpoint_arrays(plan.viewpoints)
-    sections = exact_sections(model, views)
-    counts = section_counts(sections, model.grid.n_sections)
-    sampling = panel_sampling(model.frames, model.camera, views.positions_enu_m, sections)
-    return assembled(site_model, prepared, plan, sections.astype(np.int16), counts, sampling, reasons)
 
 
 def assembled(

@@ -39,33 +39,6 @@ class CoverageGain(Protocol):
         """Take a candidate out of the set that is in it."""
 
 
-class Prizes:
-    """Each candidate is worth its own prize, whatever else is in the set; prizes of shape (n,), none negative."""
-
-    def __init__(self, prizes: Floats) -> None:
-        if prizes.ndim != 1 or not (np.isfinite(prizes).all() and (prizes >= 0.0).all()):
-            raise ValueError(f"prizes: expected finite numbers, none negative, of shape (n,), got {prizes!r}")
-        self._prizes = np.asarray(prizes, float)
-        self._is_in = np.zeros(len(prizes), np.bool_)
-
-    @property
-    def value(self) -> float:
-        """Sum of the prizes in the set."""
-        return float(self._prizes[self._is_in].sum())
-
-    def marginals(self) -> Floats:
-        """The prizes, shape (n,)."""
-        return self._prizes
-
-    def add(self, candidate: int) -> None:
-        """Put a candidate into the set."""
-        self._is_in[candidate] = True
-
-    def remove(self, candidate: int) -> None:
-        """Take a candidate out of the set."""
-        self._is_in[candidate] = False
-
-
 Ints = NDArray[np.int64]
 
 

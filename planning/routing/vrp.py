@@ -19,7 +19,6 @@ from pyvrp.stop import NoImprovement
 
 from planning.base.errors import InfeasibleError
 from planning.base.progress import QUIET, SLICE_S, Monitor, Stop, Trace, never
-from planning.routing.sorties import SortieProblem, Sorties, sortie_durations_s
 from planning.routing.tour import check_costs, tour_length
 
 Floats = NDArray[np.float64]
@@ -87,71 +86,6 @@ def solve_tour(
     if trace is not None:
         trace.record(length)
     return order
-
-
-def improve_sorties(
-    problem: SortieProblem,
-    sorties: Sorties,
-    *,
-    warm: bool = True,
-    seed: int = 0,
-    max_iterations: int | None = None,
-    stop: Stop = never,
-    trace: Trace | None = None,
-    monitor: Monitor = QUIET,
-) -> Sorties:
-    """PyVRP's sorties, with no more of them than those given (cold: with any number).
-
-    Parameters
-    ----------
-    sorties
-        Sorties that keep the limits, for example from `planning.routing.sorties.solve_sorties`.
-    warm
-        Start from them; otherwise they only serve to tell whether the result is any better.
-
-    Returns
-    -------
-    sorties
-        The better ones: fewer, if that is asked for, or shorter.
-    """
-    n = problem.n_stops
-    if n == 0:
-        return sorties
-    worst = float(np.max(problem.travel_s, initial=0.0, where=np.isfinite(problem.travel_s)))
-    total_s = (2 * n) * worst + float(problem.service_s.sum())
-    scale = _scale(max(total_s, problem.budget_s if math.isfinite(problem.budget_s) else 0.0))
-    budget_s = min(problem.budget_s, total_s)
-    n_vehicles = n if not warm else len(sorties) if problem.fewest_first else min(n, 2 * len(sorties))
-    load_scale = _scale(float(problem.load.sum()))
-    capacity = min(problem.capacity, float(problem.load.sum()))
-    data = _problem_data(
-        duration=np.ceil(scale * np.where(np.isinf(problem.travel_s), 2.0 * budget_s, problem.travel_s)),
-        clients=[
-            pyvrp.Client(i + 1, delivery=[math.ceil(load_scale * load)], service_duration=math.ceil(scale * service))
-            for i, (load, service) in enumerate(zip(problem.load, problem.service_s, strict=True))
-        ],
-        depots=[pyvrp.Depot(0)],
-        vehicle=pyvrp.VehicleType(
-            n_vehicles,
-            capacity=[math.floor(load_scale * capacity)],
-            shift_duration=math.floor(scale * budget_s),
-            # One sortie less outweighs any time: together they take no more than this.
-            fixed_cost=math.ceil(scale * min(total_s, n_vehicles * budget_s)) if problem.fewest_first else 0,
-            unit_distance_cost=0,
-            unit_duration_cost=1,
-        ),
-    )
-    record = _recorder(trace, lambda solution: solution.duration() / scale)
-    routes = [list(sortie) for sortie in sorties] if warm else None
-    best = _run(data, routes, seed, max_iterations, stop, record, monitor)
-    if not best.is_feasible():
-        return sorties
-    found = tuple(tuple(visits) for visits in _visits(best))
-
-    def quality(candidate: Sorties) -> tuple[int, float]:
-        return len(candidate) if problem.fewest_first else 0, math.fsum(sortie_durations_s(problem, candidate))
-
-    return min(sorties, found, key=quality)
 
 
 def _scale(largest_total: float) -> float:

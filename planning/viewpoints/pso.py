@@ -49,16 +49,6 @@ class PsoParameters:
             raise ValueError("expected a population of 1 or more and 0 or more iterations")
 
 
-USUAL_SETTINGS: dict[str, PsoParameters] = {
-    "constriction (Clerc & Kennedy 2002)": PsoParameters(),
-    "decreasing inertia (Shi & Eberhart 1998)": PsoParameters(inertia=(0.9, 0.4), cognitive=2.0, social=2.0),
-    "explorative (Trelea 2003, set 1)": PsoParameters(inertia=(0.6, 0.6), cognitive=1.7, social=1.7),
-    "social": PsoParameters(inertia=(0.7298, 0.7298), cognitive=0.5, social=2.5),
-    "small steps": PsoParameters(max_step=0.02),
-}
-"""Parameter settings in use; benchmarks report the best of them for this method."""
-
-
 def pso(
     problem: ViewProblem,
     goal: Goal,

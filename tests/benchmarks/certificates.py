@@ -14,10 +14,11 @@ from planning.site.bundled import SCENES, panel_grid
 from planning.site.records import SiteModel
 from planning.viewpoints import cover_kernel as kernel
 from planning.viewpoints.candidates import spread_candidates
-from planning.viewpoints.greedy import dual_bound, exact_optimum
+from planning.viewpoints.greedy import dual_bound
 from planning.viewpoints.improve import Exchange, cover_state
 from planning.viewpoints.prepare import prepare
 from tests.benchmarks.harness import Benchmark, Context, Row, stopwatch
+from tests.planning.viewpoints.exact_optimum import exact_optimum
 
 CASES = ((100, 20), (100, 25), (200, 25), (400, 30))
 """Candidates and views."""

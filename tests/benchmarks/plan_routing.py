@@ -6,14 +6,16 @@ import math
 from collections.abc import Iterator
 
 import numpy as np
+import pyvrp
 
 from planning.aircraft.catalogue import profile
-from planning.base.progress import TimeLimit
+from planning.base.progress import QUIET, Monitor, Stop, TimeLimit, Trace, never
 from planning.parameters import FlightRules
 from planning.planner import as_written
 from planning.routing import vrp
 from planning.routing.flights import flight_times
 from planning.routing.sorties import SortieProblem, Sorties, plan_sorties, solve_sorties, sortie_durations_s
+from planning.routing.vrp import _problem_data, _recorder, _run, _scale, _visits
 from planning.viewpoints.greedy import greedy
 from tests.benchmarks.harness import Benchmark, Context, Row, stopwatch
 from tests.benchmarks.problems import PLANAR_VIEWS, choose, prepared
@@ -81,3 +83,68 @@ BENCHMARK = Benchmark(
     "those of flying, turning and taking photos, without take-off and landing.",
     measure,
 )
+
+
+def improve_sorties(
+    problem: SortieProblem,
+    sorties: Sorties,
+    *,
+    warm: bool = True,
+    seed: int = 0,
+    max_iterations: int | None = None,
+    stop: Stop = never,
+    trace: Trace | None = None,
+    monitor: Monitor = QUIET,
+) -> Sorties:
+    """PyVRP's sorties, with no more of them than those given (cold: with any number).
+
+    Parameters
+    ----------
+    sorties
+        Sorties that keep the limits, for example from `planning.routing.sorties.solve_sorties`.
+    warm
+        Start from them; otherwise they only serve to tell whether the result is any better.
+
+    Returns
+    -------
+    sorties
+        The better ones: fewer, if that is asked for, or shorter.
+    """
+    n = problem.n_stops
+    if n == 0:
+        return sorties
+    worst = float(np.max(problem.travel_s, initial=0.0, where=np.isfinite(problem.travel_s)))
+    total_s = (2 * n) * worst + float(problem.service_s.sum())
+    scale = _scale(max(total_s, problem.budget_s if math.isfinite(problem.budget_s) else 0.0))
+    budget_s = min(problem.budget_s, total_s)
+    n_vehicles = n if not warm else len(sorties) if problem.fewest_first else min(n, 2 * len(sorties))
+    load_scale = _scale(float(problem.load.sum()))
+    capacity = min(problem.capacity, float(problem.load.sum()))
+    data = _problem_data(
+        duration=np.ceil(scale * np.where(np.isinf(problem.travel_s), 2.0 * budget_s, problem.travel_s)),
+        clients=[
+            pyvrp.Client(i + 1, delivery=[math.ceil(load_scale * load)], service_duration=math.ceil(scale * service))
+            for i, (load, service) in enumerate(zip(problem.load, problem.service_s, strict=True))
+        ],
+        depots=[pyvrp.Depot(0)],
+        vehicle=pyvrp.VehicleType(
+            n_vehicles,
+            capacity=[math.floor(load_scale * capacity)],
+            shift_duration=math.floor(scale * budget_s),
+            # One sortie less outweighs any time: together they take no more than this.
+            fixed_cost=math.ceil(scale * min(total_s, n_vehicles * budget_s)) if problem.fewest_first else 0,
+            unit_distance_cost=0,
+            unit_duration_cost=1,
+        ),
+    )
+    record = _recorder(trace, lambda solution: solution.duration() / scale)
+    routes = [list(sortie) for sortie in sorties] if warm else None
+    best = _run(data, routes, seed, max_iterations, stop, record, monitor)
+    if not best.is_feasible():
+        return sorties
+    found = tuple(tuple(visits) for visits in _visits(best))
+
+    def quality(candidate: Sorties) -> tuple[int, float]:
+        return len(candidate) if problem.fewest_first else 0, math.fsum(sortie_durations_s(problem, candidate))
+
+    return min(sorties, found, key=quality)

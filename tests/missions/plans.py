@@ -5,9 +5,12 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Sequence
+from pathlib import Path
 
 from hypothesis import strategies as st
 
+from missions.formats.encode import DEFAULT_OPTIONS, ExportOptions
+from missions.formats.registry import encode, write_files
 from planning.aircraft.catalogue import profile
 from planning.geo.frames import Origin, Vec3
 from planning.parameters import Constraints, FlightRules
@@ -120,3 +123,35 @@ def plans(draw: st.DrawFn, profile_name: str = "m3e") -> Plan:
         max_speed_m_s=draw(st.sampled_from((None, 3.0))),
     )
     return make_plan(sorties, origin, profile_name, rules)
+
+
+def export(
+    plan: Plan,
+    origin: Origin | None,
+    home_enu_m: Vec3 | None,
+    file_format: str,
+    path: Path,
+    options: ExportOptions = DEFAULT_OPTIONS,
+) -> tuple[Path, ...]:
+    """Write a plan as mission files, all of them or none.
+
+    The first sortie gets exactly `path`, the next ones `<stem>-2<suffix>` and so on; KML and CSV hold all sorties.
+
+    Parameters
+    ----------
+    origin, home_enu_m
+        Of the site, for plans that do not carry them.
+
+    Returns
+    -------
+    paths
+        The files written.
+
+    Raises
+    ------
+    InputError
+        Something is missing from the plan, or the folder cannot be written.
+    MissionError
+        The plan cannot be flown as it stands, or not with this format; nothing is written.
+    """
+    return write_files(encode(plan, origin, home_enu_m, file_format, options), path)

@@ -21,13 +21,14 @@ from planning.site.free_space import free_space
 from planning.site.records import Airspace, panel_corners
 from planning.viewpoints import cover_kernel as kernel
 from planning.viewpoints.candidates import candidate_pool
-from planning.viewpoints.greedy import choose_greedily, dual_bound, element_weights, exact_optimum, greedy
+from planning.viewpoints.greedy import choose_greedily, dual_bound, element_weights, greedy
 from planning.viewpoints.improve import Exchange, cover_state, refine_views
 from planning.viewpoints.noto import noto
 from planning.viewpoints.orbit import orbit
 from planning.viewpoints.problem import Goal, ViewProblem
 from planning.viewpoints.pso import PsoParameters, pso
 from tests.planning.routing_cases import Counting
+from tests.planning.viewpoints.exact_optimum import exact_optimum
 
 FAST = GreedyParameters(n_candidates=3000)
 

@@ -15,8 +15,8 @@ from groundstation.services.scenes.photos import photograph_files
 from groundstation.services.scenes.views import SITE_FILE, SceneRequest
 from groundstation.services.scenes.views import as_written as site_as_written
 from planning.parameters import Constraints, GreedyParameters
-from planning.plan import Plan, write_plan
-from planning.planner import Planned, as_written, viewpoints_of
+from planning.plan import Plan, Viewpoint, ViewpointArrays, write_plan
+from planning.planner import Planned, _record, as_written
 from planning.request import PlanRequest
 from planning.viewpoints.candidates import spread_candidates
 from planning.viewpoints.problem import take
@@ -145,3 +145,8 @@ def _drawn(planned: Planned, photos: Photos) -> Plan:
         raise ValueError(f"{photos.scene}: expected {photos.n_views} views of {DRAWN} times as many to see panels")
     chosen = rng.permutation(len(views.heading_rad))[: photos.n_views]
     return replace(planned.plan, viewpoints=viewpoints_of(take(views, np.sort(chosen)), "u"), sorties=())
+
+
+def viewpoints_of(views: ViewpointArrays, prefix: str) -> tuple[Viewpoint, ...]:
+    """Viewpoints in the order of `views`, named with the prefix and a number from 0000 on; in no flight."""
+    return tuple(_record(f"{prefix}{number:04d}", views, number) for number in range(len(views.heading_rad)))

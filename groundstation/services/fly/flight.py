@@ -53,8 +53,7 @@ from missions.flight.matching import DEFAULT_GATES, Gates, pose_of_photo
 from missions.flight.record import FlightRecord, TakenPhoto
 from missions.flight.report_rules import DEFAULT_LIMITS, Limits
 from missions.mavlink.autopilots import Autopilot
-from missions.mavlink.drive import GROUND_HEARTBEAT, HEARTBEAT_EVERY_S
-from missions.mavlink.link import GROUND_STATION
+from missions.mavlink.link import GROUND_HEARTBEAT, GROUND_STATION, HEARTBEAT_EVERY_S
 from missions.mavlink.messages import Address, Message, Received
 from planning.base.errors import GroundStationError, LinkError
 from planning.base.messages import say

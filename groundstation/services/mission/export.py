@@ -76,7 +76,7 @@ def export_plan(
     site_path: Path | None = None,
     options: ExportOptions = DEFAULT_OPTIONS,
 ) -> tuple[tuple[Path, ...], tuple[Finding, ...]]:
-    """Write a plan as mission files (see `missions.formats.registry.export`): the files, and what their checks found.
+    """Write a plan as mission files: the files, and what their checks found.
 
     Plans that do not say where their site lies take it from the site file. A plan that is not ready to fly on its site
     is written all the same, with a warning.

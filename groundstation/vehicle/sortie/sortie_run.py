@@ -31,8 +31,7 @@ from groundstation.vehicle.state import VehicleState
 from groundstation.vehicle.telemetry import LocalFrame, folded
 from groundstation.vehicle.watch import Watch, WatchRules, watched
 from missions.flight.record import FlightEvent
-from missions.mavlink.drive import GROUND_HEARTBEAT, HEARTBEAT_EVERY_S
-from missions.mavlink.link import GROUND_STATION
+from missions.mavlink.link import GROUND_HEARTBEAT, GROUND_STATION, HEARTBEAT_EVERY_S
 from missions.mavlink.messages import (
     Address,
     CameraCaptureStatus,

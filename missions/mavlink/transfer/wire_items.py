@@ -75,14 +75,6 @@ def _whole(value: float, scale: float, place: str) -> int:
     return round(value)
 
 
-def from_wire(
-    messages: Sequence[MissionItemInt], autopilot: Autopilot, mission_type: MissionType = MissionType.MISSION
-) -> tuple[MissionItem, ...]:
-    """Items of messages that were read back, without home."""
-    flown = messages[1:] if has_home(autopilot, mission_type) else messages
-    return tuple(_item(message) for message in flown)
-
-
 def _item(message: MissionItemInt) -> MissionItem:
     scale = SCALE if has_place(message.command, message.frame) else 1.0
     params = (message.param1, message.param2, message.param3, message.param4)

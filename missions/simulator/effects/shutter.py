@@ -9,18 +9,6 @@ from missions.simulator.effects.wind import GustResponse
 from missions.simulator.scene import FlightScene
 from planning.base.effects import Assessment
 from planning.base.messages import say
-from planning.geo.frames import Vec3
-
-
-def blur_px(
-    velocity_enu_m_s: Vec3, turn_rate_rad_s: float, exposure_s: float, distance_m: float, pixel_angle_rad: float
-) -> float:
-    """Length of the trail of a point at a distance, pixels at the image centre.
-
-    exposure * (speed / distance + rate of turn) / pixel angle: the worst direction of both.
-    """
-    angle_rad = exposure_s * (math.hypot(*velocity_enu_m_s) / distance_m + abs(turn_rate_rad_s))
-    return angle_rad / pixel_angle_rad
 
 
 class PhotoTiming:

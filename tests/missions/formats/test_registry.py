@@ -14,7 +14,7 @@ import pytest
 from hypothesis import given, settings
 
 from missions.formats.encode import ExportOptions, takeoff_check
-from missions.formats.registry import encode, export, read_missions, sortie_path
+from missions.formats.registry import encode, read_missions, sortie_path
 from missions.mavlink.autopilots import Autopilot
 from missions.mission.build import missions_from_plan
 from missions.mission.model import FileFormat, GeoPoint, HeightReference, ReadMission, altitude_amsl_m
@@ -27,7 +27,7 @@ from planning.motion.timing import photo_vertices
 from planning.plan import Plan, Sortie, Viewpoint
 from planning.routing.rally import CLEARANCE_M
 from planning.site.records import Airspace, Facade, NoFlyZone, Obstacle, Panel, Site, SiteModel
-from tests.missions.plans import HOME, HONG_KONG, example_plan, plans
+from tests.missions.plans import HOME, HONG_KONG, example_plan, export, plans
 
 FIXED = ExportOptions(clock=lambda: 1_700_000_000.0)
 SUFFIX = {

@@ -7,12 +7,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from missions.mavlink.autopilots import Autopilot
-from missions.mavlink.fence import Fence, FenceCircle, FencePolygon, fence_items, fences_of, rally_items
+from missions.mavlink.fence import Fence, FenceCircle, FencePolygon, fence_items, rally_items
 from missions.mavlink.items import MissionItem
 from missions.mavlink.transfer.exchange import MissionType
-from missions.mavlink.transfer.wire_items import from_wire, to_wire
+from missions.mavlink.transfer.wire_items import to_wire
 from missions.mission.model import GeoPoint
 from planning.base.errors import MissionError
+from tests.missions.mavlink.driving import fences_of, from_wire
 
 TRIANGLE = ((22.1, 114.1), (22.2, 114.1), (22.2, 114.2))
 DEGREES = st.integers(-899_999_999, 899_999_999).map(lambda whole: whole / 1e7)

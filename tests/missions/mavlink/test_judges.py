@@ -10,12 +10,11 @@ from typing import Any
 import pytest
 
 from missions.formats.encode import ExportOptions
-from missions.formats.registry import export
 from missions.mavlink.autopilots import Autopilot, facts
 from missions.mavlink.items import MissionItem, mission_items
 from missions.mission.build import missions_from_plan
 from missions.mission.model import FileFormat, HeightReference
-from tests.missions.plans import example_plan
+from tests.missions.plans import example_plan, export
 
 SCALE = 1e7
 """Latitude and longitude are whole numbers on the wire, of positions; other items carry params 5 and 6 as they are."""

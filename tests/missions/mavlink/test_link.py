@@ -10,13 +10,22 @@ from dataclasses import dataclass, field
 
 import pytest
 
-from missions.mavlink.drive import GROUND_HEARTBEAT, drive
-from missions.mavlink.link import PEER_KEPT_S, VEHICLE, ChannelLink, Link, UdpChannel, memory_pair, open_link
+from missions.mavlink.link import (
+    GROUND_HEARTBEAT,
+    PEER_KEPT_S,
+    VEHICLE,
+    ChannelLink,
+    Link,
+    UdpChannel,
+    memory_pair,
+    open_link,
+)
 from missions.mavlink.messages import Address, Heartbeat, Message, MissionAck, Received, Statustext
 from missions.mavlink.signing import Signer
 from missions.mavlink.transfer.exchange import Ending, Route
 from missions.mavlink.transfer.verified import Clear, Verified, VerifiedUpload
 from planning.base.errors import InputError, LinkError, LinkTimeout, OperationCancelled
+from tests.missions.mavlink.driving import drive
 from tests.missions.mavlink.transfer.twins import ARDUPILOT, OWN, TwinVehicle, waypoints
 
 WAIT_S = 60.0

@@ -15,9 +15,8 @@ from typing import Any
 import pytest
 
 from missions.mavlink.autopilots import Autopilot
-from missions.mavlink.drive import GROUND_HEARTBEAT, drive
 from missions.mavlink.fence import FenceCircle, FencePolygon, fence_items, rally_items
-from missions.mavlink.link import ChannelLink, open_link
+from missions.mavlink.link import GROUND_HEARTBEAT, ChannelLink, open_link
 from missions.mavlink.messages import Heartbeat, MissionItemInt
 from missions.mavlink.plan_json import plan_json_bytes
 from missions.mavlink.transfer.exchange import Download, Ending, MissionType, Route
@@ -27,6 +26,7 @@ from missions.mission.build import missions_from_plan
 from missions.mission.model import GeoPoint, HeightReference
 from missions.simulator.server import serve
 from missions.simulator.vehicle import SimulatedVehicle
+from tests.missions.mavlink.driving import drive
 from tests.missions.mavlink.transfer.test_simulated_vehicle import planned
 from tests.missions.mavlink.transfer.twins import ARDUPILOT, PX4
 from tests.missions.plans import example_plan

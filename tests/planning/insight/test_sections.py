@@ -9,12 +9,12 @@ import pytest
 from planning.coverage.model import exact_coverage
 from planning.coverage.reach_kernel import UNREACHABLE
 from planning.insight.reasons import section_reasons
-from planning.insight.sections import SectionState, plan_insight
+from planning.insight.sections import SectionState
 from planning.parameters import Constraints
 from planning.plan import Viewpoint, viewpoint_arrays
 from planning.site.bundled import SCENES
 from planning.viewpoints.prepare import prepare
-from tests.planning.insight.cases import CAMERA, NEAR, plan, prepared, reasons, scene
+from tests.planning.insight.cases import CAMERA, NEAR, plan, plan_insight, prepared, reasons, scene
 from tests.planning.plan_cases import seen_by_contract
 
 

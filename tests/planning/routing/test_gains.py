@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from planning.routing.insertion import CoverageGain, Prizes
-from tests.planning.routing_cases import cover_gain
+from planning.routing.insertion import CoverageGain
+from tests.planning.routing_cases import Prizes, cover_gain
 
 
 def counted(sees: np.ndarray, weights: np.ndarray, chosen: set[int]) -> float:

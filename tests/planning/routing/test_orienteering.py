@@ -14,9 +14,17 @@ from hypothesis import strategies as st
 
 from planning.base.errors import OperationCancelled
 from planning.base.progress import Trace
-from planning.routing.insertion import CoverageGain, Prizes
+from planning.routing.insertion import CoverageGain
 from planning.routing.orienteering import Selection, solve_orienteering
-from tests.planning.routing_cases import Cancelling, Counting, cover_gain, distances, fewest_by_force, random_distances
+from tests.planning.routing_cases import (
+    Cancelling,
+    Counting,
+    Prizes,
+    cover_gain,
+    distances,
+    fewest_by_force,
+    random_distances,
+)
 
 
 def worth(gain: CoverageGain, stops: list[int]) -> float:

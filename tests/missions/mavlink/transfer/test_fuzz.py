@@ -13,7 +13,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from missions.mavlink.drive import Machine
 from missions.mavlink.messages import (
     Message,
     MissionAck,
@@ -27,6 +26,7 @@ from missions.mavlink.transfer.exchange import Download, Ending
 from missions.mavlink.transfer.verified import Clear, NotVerified, Upload, Verified, VerifiedUpload
 from missions.mavlink.transfer.wire_items import compare
 from missions.mavlink.wire import Decoder, Encoder
+from tests.missions.mavlink.driving import Machine
 from tests.missions.mavlink.test_wire import messages_of
 from tests.missions.mavlink.transfer.twins import ARDUPILOT, OWN, PX4, ROUTE, VEHICLE, Air, TwinVehicle, waypoints
 

@@ -10,19 +10,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from missions.mavlink.autopilots import Autopilot, facts
-from missions.mavlink.drive import drive
-from missions.mavlink.fence import FenceCircle, FencePolygon, fence_items, fences_of, rally_items
+from missions.mavlink.fence import FenceCircle, FencePolygon, fence_items, rally_items
 from missions.mavlink.items import MissionItem, mission_items
 from missions.mavlink.messages import Message, MissionItemInt, Received
 from missions.mavlink.transfer.exchange import MissionType
 from missions.mavlink.transfer.verified import NotVerified, Verified, VerifiedUpload
-from missions.mavlink.transfer.wire_items import compare, from_wire, has_place, to_wire
+from missions.mavlink.transfer.wire_items import compare, has_place, to_wire
 from missions.mission.build import missions_from_plan
 from missions.mission.model import GeoPoint, HeightReference
 from missions.simulator.autopilot.mission_store import MissionStores, StoredItem, stored
 from missions.simulator.autopilot.mission_store import to_wire as stored_to_wire
 from missions.simulator.server import DirectLink
 from missions.simulator.vehicle import SimulatedVehicle
+from tests.missions.mavlink.driving import drive, fences_of, from_wire
 from tests.missions.mavlink.transfer.twins import ARDUPILOT, PX4, Air, route
 from tests.missions.plans import example_plan
 from tests.missions.simulator.ground import ORIGIN, PointMass

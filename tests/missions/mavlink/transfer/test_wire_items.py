@@ -10,10 +10,11 @@ from hypothesis import strategies as st
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.items import MissionItem, mission_items
 from missions.mavlink.transfer.exchange import MissionType
-from missions.mavlink.transfer.wire_items import HOME, from_wire, has_place, to_wire
+from missions.mavlink.transfer.wire_items import HOME, has_place, to_wire
 from missions.mission.build import missions_from_plan
 from missions.mission.model import HeightReference
 from planning.base.errors import MissionError
+from tests.missions.mavlink.driving import from_wire
 from tests.missions.plans import example_plan
 
 ARDUPILOT, PX4 = Autopilot.ARDUPILOT, Autopilot.PX4

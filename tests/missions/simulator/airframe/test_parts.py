@@ -16,7 +16,7 @@ from missions.simulator.effects.barometer import DriftingBarometer, drift_m_s
 from missions.simulator.effects.battery import SaggingPack, power_ratio
 from missions.simulator.effects.facts import effect_facts
 from missions.simulator.effects.gimbal import lagging_rad
-from missions.simulator.effects.shutter import blur_px
+from tests.missions.simulator.effects.test_two_ways import blur_px
 from tests.missions.simulator.flying import bundled
 
 FACTS = effect_facts()

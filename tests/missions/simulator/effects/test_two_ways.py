@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
@@ -15,10 +16,10 @@ from missions.simulator.airframe.state import ExactReceiver, RateGimbal, SteadyP
 from missions.simulator.build import EFFECTS, decide_effects, effects_table, make_airframe
 from missions.simulator.conditions import Conditions
 from missions.simulator.effects.link_loss import LossyLink, through_air
-from missions.simulator.effects.shutter import blur_px
 from missions.simulator.scene import flight_scene
 from planning.base.effects import EffectSetting
 from planning.base.errors import InfeasibleError, InputError
+from planning.geo.frames import Vec3
 from planning.plan import Plan
 from planning.site.records import SiteModel
 from tests.missions.simulator.flying import Shot, bundled, fly, rms
@@ -217,3 +218,14 @@ def test_a_storm_is_refused() -> None:
     model, plan = bundled("office")
     with pytest.raises(InfeasibleError, match="20 m/s carries the aircraft away"):
         make_airframe(plan, model, conditions=Conditions(wind_m_s=20.0))
+
+
+def blur_px(
+    velocity_enu_m_s: Vec3, turn_rate_rad_s: float, exposure_s: float, distance_m: float, pixel_angle_rad: float
+) -> float:
+    """Length of the trail of a point at a distance, pixels at the image centre.
+
+    exposure * (speed / distance + rate of turn) / pixel angle: the worst direction of both.
+    """
+    angle_rad = exposure_s * (math.hypot(*velocity_enu_m_s) / distance_m + abs(turn_rate_rad_s))
+    return angle_rad / pixel_angle_rad
