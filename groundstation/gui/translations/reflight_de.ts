@@ -9230,10 +9230,6 @@ Damit weiterarbeiten?</translation>
         <translation>Suche nach dem, was im Weg steht</translation>
     </message>
     <message>
-        <source>counting what each view covers</source>
-        <translation>Zählen, was jede Aufnahme abdeckt</translation>
-    </message>
-    <message>
         <source>looking for ways to viewpoints</source>
         <translation>Suche nach Wegen zu Aufnahmepunkten</translation>
     </message>
