@@ -129,6 +129,22 @@ class PhotoSet:
         return found
 
 
+def check_finished(folder: Path) -> Path:
+    """The description of a data set in its folder, which is written last.
+
+    Raises
+    ------
+    InputError
+        There is none: the folder is none of these, or was not finished.
+    """
+    path = folder / "dataset.json"
+    if not path.is_file():
+        raise InputError(
+            say("has no dataset.json; name a folder that `prepare` or `scene render` has finished", place=folder)
+        )
+    return path
+
+
 def read_photo_set(folder: Path) -> PhotoSet:
     """Read the cameras, panels and exposure of a folder that `prepare` or `scene render` wrote.
 
@@ -139,11 +155,7 @@ def read_photo_set(folder: Path) -> PhotoSet:
     InputError
         The folder is none of these, or a file in it is damaged; the message names it.
     """
-    path = folder / "dataset.json"
-    if not path.is_file():
-        raise InputError(
-            say("has no dataset.json; name a folder that `prepare` or `scene render` has finished", place=folder)
-        )
+    path = check_finished(folder)
     content = read_json(path, names_files=True)
     expect_format(content, DATASET_FORMAT, path)
     description = to_record(content, _Description, path)

@@ -193,6 +193,8 @@ def _trained(
 
 def _check_begin(dataset: Path, out: Path, checkpoint: Path) -> None:
     """See that a training can begin, and make its folder."""
+    from reconstruction.light.photo_set import check_finished
+
     if checkpoint.is_file():
         raise InputError(
             say(
@@ -201,10 +203,7 @@ def _check_begin(dataset: Path, out: Path, checkpoint: Path) -> None:
                 place=out,
             )
         )
-    if not (dataset / "dataset.json").is_file():
-        raise InputError(
-            say("has no dataset.json; name a folder that `prepare` or `scene render` has finished", place=dataset)
-        )
+    check_finished(dataset)
     make_folder(out)
     check_output(checkpoint)
 
@@ -273,6 +272,7 @@ def train_tradeoff(
     OperationCancelled
         From `monitor`.
     """
+    from reconstruction.light.photo_set import check_finished
     from reconstruction.tradeoff.scene_tradeoff import ERROR_AXIS
     from reconstruction.tradeoff.train_tradeoff import run_settings, settings_of, trial_panels, trial_rows
 
@@ -280,10 +280,7 @@ def train_tradeoff(
     if base.time_limit_s is not None:
         base = replace(base, score_every_s=min(base.score_every_s, base.time_limit_s / POINTS))
     settings = settings_of(base, knobs)
-    if not (dataset / "dataset.json").is_file():
-        raise InputError(
-            say("has no dataset.json; name a folder that `prepare` or `scene render` has finished", place=dataset)
-        )
+    check_finished(dataset)
     title = f"{dataset.name}: facades of unseen views"
     subject: Subject[tuple[Trial, ...]] = Subject("train", ERROR_AXIS, trial_rows, lambda _: title, trial_panels)
     return compare(subject, out, lambda _: run_settings(dataset, settings, monitor))
