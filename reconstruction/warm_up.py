@@ -23,8 +23,8 @@ from reconstruction.light.reflective_panels import ReflectivePanels
 from reconstruction.metrics.overlaps import index_image, pixel_overlaps
 from reconstruction.panels.search.segment import segment_rectified
 from reconstruction.photos.quality import sharpness
-from reconstruction.scenes.effect_names import NEAR_FIELD
-from reconstruction.scenes.photos.renderer import Renderer, RenderSettings
+from reconstruction.scenes.parameters import NEAR_FIELD, RenderSettings
+from reconstruction.scenes.photos.renderer import Renderer
 from reconstruction.scenes.world.bundled import bundled_scene
 from reconstruction.splats.merged_splats import FEWEST, detail_tree
 from reconstruction.splats.rasterising.rasteriser import rasterise

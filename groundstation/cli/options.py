@@ -76,7 +76,6 @@ OPTIONS = {
     "n_points": "--points",
     "max_image_size_px": "--refine-size",
     "width_px": "--width",
-    "n_square": "--square",
 }
 """Options by the name that the records' own checks give a value, but for parameters that declare theirs."""
 

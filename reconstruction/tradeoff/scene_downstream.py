@@ -21,7 +21,7 @@ from reconstruction.light.glass_rays import glass_rays
 from reconstruction.light.photo_set import held_out_names, read_photo_set
 from reconstruction.light.reflective_panels import ModelName
 from reconstruction.light.training import ReflectionScore, TrainedReflections, score_views, train_reflections
-from reconstruction.scenes.photos.renderer import RenderSettings
+from reconstruction.scenes.parameters import RenderSettings
 from reconstruction.scenes.record import Scene
 from reconstruction.scenes.runs.photo_folder import photograph
 from reconstruction.scenes.runs.photo_job import PhotoJob

@@ -29,7 +29,7 @@ from reconstruction.metrics.sets import EXTENT_MARGIN_M, ScoredPhoto
 from reconstruction.panels.rectify.fit import fit_cylinder, fit_plane
 from reconstruction.panels.rectify.surface import FacadeSurface
 from reconstruction.panels.rectify.view import SurfaceView, surface_view
-from reconstruction.scenes.effect_names import (
+from reconstruction.scenes.parameters import (
     DISTORTION,
     EFFECTS,
     EXPOSURE,
@@ -37,9 +37,10 @@ from reconstruction.scenes.effect_names import (
     MOTION_BLUR,
     NOISE,
     POSITION_ERROR,
+    RenderSettings,
 )
 from reconstruction.scenes.photos.lens_effects import developed, metered_exposure
-from reconstruction.scenes.photos.renderer import Photograph, Renderer, RenderSettings
+from reconstruction.scenes.photos.renderer import Photograph, Renderer
 from reconstruction.scenes.record import Scene
 
 # Rendered photos of scenes as photos to score: what they show of each facade is known from pose and site.

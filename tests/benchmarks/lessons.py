@@ -14,7 +14,6 @@ import numpy as np
 import torch
 
 from groundstation.services.scenes.photos import photograph_files
-from groundstation.services.scenes.views import SceneRequest
 from planning.base.jit import n_threads
 from reconstruction.light.config import GridSettings, ReflectionConfig
 from reconstruction.light.glass_rays import glass_rays
@@ -22,7 +21,7 @@ from reconstruction.light.photo_set import held_out_names, read_photo_set
 from reconstruction.light.reflection_mlp import MlpShape
 from reconstruction.light.reflective_panels import ModelName
 from reconstruction.light.training import score_views, train_reflections
-from reconstruction.scenes.photos.renderer import RenderSettings
+from reconstruction.scenes.parameters import RenderSettings, SceneRequest
 from tests.benchmarks.harness import Row
 
 QUICK_N_VIEWS, QUICK_WIDTH_PX = 12, 64

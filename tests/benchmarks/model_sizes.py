@@ -17,7 +17,6 @@ import torch
 from numpy.typing import NDArray
 
 from groundstation.services.scenes.photos import photograph_files
-from groundstation.services.scenes.views import SceneRequest
 from reconstruction.exports.component_parts import Ellipsoids, ellipsoids_of_all
 from reconstruction.exports.compression import PRESETS, Compressed, Compression
 from reconstruction.exports.mesh import ALMOST_NO_LOGIT, baked
@@ -29,6 +28,7 @@ from reconstruction.light.shading import display_from_linear
 from reconstruction.objects.gs_scene import GsGaussian, GsScene
 from reconstruction.objects.organise import organised, put_together
 from reconstruction.objects.picking import Quads, panel_map
+from reconstruction.scenes.parameters import SceneRequest
 from reconstruction.splats.harmonic_colour import display_colours, light_of_display
 from reconstruction.splats.ply import ODD, read_splats
 from reconstruction.splats.rasterising.rasteriser import rasterise

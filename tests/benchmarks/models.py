@@ -9,8 +9,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from groundstation.services.scenes.photos import photograph_files
-from groundstation.services.scenes.views import SceneRequest
 from reconstruction.light.photo_set import read_photo_set
+from reconstruction.scenes.parameters import SceneRequest
 from reconstruction.training.config import LightSetting, TrainConfig
 from reconstruction.training.model.score import mean_of, score_views
 from reconstruction.training.train import train_model

@@ -14,7 +14,6 @@ import torch
 from numpy.typing import NDArray
 
 from groundstation.services.scenes.photos import photograph_files
-from groundstation.services.scenes.views import SceneRequest
 from reconstruction.light.config import GlassLearned, ReflectionConfig
 from reconstruction.light.glass_rays import GlassRays, glass_rays
 from reconstruction.light.photo_set import PanelPlanes, PhotoSet, held_out_names, read_photo_set
@@ -22,7 +21,7 @@ from reconstruction.light.ray_table import RayTable
 from reconstruction.light.reflective_panels import ModelName
 from reconstruction.light.training import mean_square_error, train_reflections
 from reconstruction.metrics.image_metrics import psnr_db
-from reconstruction.scenes.photos.renderer import RenderSettings
+from reconstruction.scenes.parameters import RenderSettings, SceneRequest
 from tests.benchmarks.harness import Benchmark, Context, Row
 
 Array = NDArray[np.float64]

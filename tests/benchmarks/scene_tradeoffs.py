@@ -11,8 +11,8 @@ from planning.tradeoff.runner import draw
 from reconstruction.scenes.effects.registry import decide_effects
 from reconstruction.scenes.mitsuba.plugins import mitsuba
 from reconstruction.scenes.mitsuba.renderer import MitsubaRenderer
+from reconstruction.scenes.parameters import RenderSettings
 from reconstruction.scenes.photos.flight_views import lens_of, square_photos
-from reconstruction.scenes.photos.renderer import RenderSettings
 from reconstruction.scenes.world.bundled import bundled_scene
 from reconstruction.tradeoff.scene_tradeoff import (
     ERROR_AXIS,

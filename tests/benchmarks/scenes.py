@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reconstruction.base.cameras import Intrinsics, Pose, PosedPhoto
-from reconstruction.scenes.effect_names import NEAR_FIELD
 from reconstruction.scenes.effects.registry import decide_effects
+from reconstruction.scenes.parameters import NEAR_FIELD, RenderSettings
 from reconstruction.scenes.photos.lens_effects import grey_levels, metered_exposure
-from reconstruction.scenes.photos.renderer import Renderer, RenderSettings
+from reconstruction.scenes.photos.renderer import Renderer
 from reconstruction.scenes.record import Scene
 from reconstruction.scenes.world.bundled import SCENES, bundled_scene
 from tests.benchmarks.fresh_process import run_measured

@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 
 from planning.base.errors import InputError
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.scenes.effect_names import (
+from reconstruction.scenes.effects.registry import decide_effects
+from reconstruction.scenes.mitsuba.renderer import MitsubaRenderer
+from reconstruction.scenes.parameters import (
     CURVATURE,
     DOUBLING,
     FRESNEL,
@@ -23,11 +25,10 @@ from reconstruction.scenes.effect_names import (
     SKY_OCCLUSION,
     SUN_GLARE,
     TILT,
+    RenderSettings,
 )
-from reconstruction.scenes.effects.registry import decide_effects
-from reconstruction.scenes.mitsuba.renderer import MitsubaRenderer
 from reconstruction.scenes.photos.lens_effects import MIDDLE_GREY, grey_levels
-from reconstruction.scenes.photos.renderer import Photograph, Renderer, RenderSettings
+from reconstruction.scenes.photos.renderer import Photograph, Renderer
 from reconstruction.scenes.record import Scene
 from reconstruction.scenes.world.bundled import SCENES, bundled_scene
 from tests.benchmarks.harness import Benchmark, Context, Row, Skipped, stopwatch

@@ -15,8 +15,8 @@ from pathlib import Path
 from planning.aircraft.catalogue import profile
 from planning.plan import Viewpoint
 from planning.site.bundled import tower
+from reconstruction.scenes.parameters import RenderSettings
 from reconstruction.scenes.photos.flight_views import Shot, lens_of, posed_photos
-from reconstruction.scenes.photos.renderer import RenderSettings
 from reconstruction.scenes.runs.photo_folder import photograph
 from reconstruction.scenes.runs.photo_job import PhotoJob
 from reconstruction.scenes.world.build import build_scene

@@ -14,7 +14,7 @@ from planning.photos.folder import read_photos
 from planning.plan import read_plan
 from planning.site.file import read_site
 from reconstruction.photos.poses import pose_photos
-from reconstruction.scenes.effect_names import EFFECTS
+from reconstruction.scenes.parameters import EFFECTS
 from reconstruction.scenes.world.bundled import SCENES
 
 QUICK = ("--width", 32, "--jobs", 1, "--points", 500)

@@ -21,13 +21,13 @@ def generated_pages(docs: Path) -> dict[Path, str]:
     }
 
 
-FORMATS_HEAD = "| `--format` | file | what it is for | splats | panels to pick | attributes |\n" + 6 * "|---" + "|\n"
+FORMATS_HEAD = "| `--format` | file | splats | panels to pick | attributes |\n" + 5 * "|---" + "|\n"
 
 
 def with_formats(page: str) -> str:
     """The page on models for other programs, its table made from the formats that there are."""
     rows = [
-        f"| `{name}` | {', '.join(f'`{each}`' for each in of.endings) or 'folder'} | {of.about} | {of.splats} "
+        f"| `{name}` | {', '.join(f'`{each}`' for each in of.endings) or 'folder'} | {of.splats} "
         f"| {of.panels} | {of.attributes} |\n"
         for name, of in EXPORTERS.items()
     ]

@@ -49,6 +49,7 @@ def settings_files() -> Sequence[SettingsFile]:
     from planning.parameters import PlanParameters
     from planning.plan import Aircraft, Camera
     from reconstruction.panels.search.parameters import SegmentationParameters
+    from reconstruction.scenes.parameters import SceneRequest
     from reconstruction.scenes.photos.camera_model import Taking
     from reconstruction.scenes.world.look import Look
     from reconstruction.training.config import TrainConfig
@@ -62,6 +63,7 @@ def settings_files() -> Sequence[SettingsFile]:
         SettingsFile("Aircraft", "`aircraft` in a table of a profile, `plan --profile FILE`.", Aircraft),
         SettingsFile("Camera", "`camera` in a table of a profile, `plan --profile FILE`.", Camera),
         SettingsFile("Search for panels", "`segment --parameters FILE`.", SegmentationParameters),
+        SettingsFile("Rendered photos", "Options of `scene render`.", SceneRequest),
         SettingsFile("Look of a virtual scene", "`scene render --look FILE`.", Look),
         SettingsFile("Camera model of rendered photos", "`scene render --camera FILE`.", Taking),
         SettingsFile("What is asked of a training", "Options of `train`, rows in the Reconstruct tab.", TrainRequest),

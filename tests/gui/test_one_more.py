@@ -1,7 +1,7 @@
 """One more model format, training method or simulated effect, as a row and a module, is everywhere at once."""
 
 import argparse
-import importlib
+import importlib.util
 import io
 from contextlib import redirect_stdout
 from pathlib import Path
@@ -10,21 +10,22 @@ import pytest
 
 from groundstation.services.model import export as exports
 from planning.base.errors import InputError
-from reconstruction.scenes import effect_names
+from reconstruction.scenes import parameters
 from reconstruction.scenes.effects import registry
-from reconstruction.scenes.photos import renderer
 from reconstruction.training import method_registry
 
 
-def options_of(module, *words):
-    """Options of a command that is described anew, and its help."""
-    importlib.reload(module)
+def described(name, *words):
+    """The module of a command, read anew, its parser, and its help."""
+    spec = importlib.util.find_spec(f"groundstation.cli.commands.{name}")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
     parser = argparse.ArgumentParser()
     module.add_parser(parser.add_subparsers())
     told = io.StringIO()
     with redirect_stdout(told), pytest.raises(SystemExit):
         parser.parse_args([*words, "-h"])
-    return parser, " ".join(told.getvalue().split())
+    return module, parser, " ".join(told.getvalue().split())
 
 
 @pytest.fixture
@@ -43,11 +44,10 @@ def voxels(monkeypatch):
 
 
 def test_a_format_is_offered_by_command_window_and_docs_and_in_messages(voxels, application, tmp_path):
-    from groundstation.cli.commands import export
     from groundstation.gui.model.export_dialog import ExportDialog
     from tests.docs.generated import with_formats
 
-    parser, told = options_of(export, "export")
+    _, parser, told = described("export", "export")
     assert "voxels .voxels Cubes for games." in told
     assert parser.parse_args(["export", "a", "--format", "voxels", "-o", "b"]).format == "voxels"
     dialog = ExportDialog(())
@@ -55,7 +55,7 @@ def test_a_format_is_offered_by_command_window_and_docs_and_in_messages(voxels, 
     assert (dialog.format.currentText(), dialog.about.text()) == ("Voxels", "Cubes for games.")
     assert dialog.wanted() == exports.ModelExport("voxels")
     page = Path("docs/reference/exports.md").read_text("utf-8")
-    row = "| `voxels` | `.voxels` | Cubes for games. | cubes | no | no |"
+    row = "| `voxels` | `.voxels` | cubes | no | no |"
     assert row in with_formats(page)
     assert row not in page
     with pytest.raises(InputError, match=r"known are: .*, voxels"):
@@ -80,12 +80,11 @@ def glow(monkeypatch):
 
 
 def test_a_method_is_offered_by_command_window_and_settings_and_in_messages(glow, application):
-    from groundstation.cli.commands import train
     from groundstation.gui.reconstruct.choice_side import ChoiceForm
     from groundstation.services.reconstruct.training import config_of_wish
     from reconstruction.training.methods.shaders import Surroundings, shader_of
 
-    parser, told = options_of(train, "train")
+    train, parser, told = described("train", "train")
     assert " glow Glow " in told
     asked = train.wish_of(parser.parse_args(["train", "a", "-o", "b", "--method", "glow"]))
     config = config_of_wish(asked)
@@ -111,16 +110,13 @@ def haze(monkeypatch):
             """Never worth it."""
             raise AssertionError("it is switched on")
 
-    names, known = (*effect_names.EFFECTS, "haze"), registry.effects
-    monkeypatch.setattr(effect_names, "EFFECTS", names)
-    monkeypatch.setattr(renderer, "EFFECTS", names)
+    names, known = (*parameters.EFFECTS, "haze"), registry.effects
+    monkeypatch.setattr(parameters, "EFFECTS", names)
     monkeypatch.setattr(registry, "effects", lambda *given: (*known(*given), Haze()))
 
 
 def test_an_effect_is_taken_by_the_command_decided_and_named_in_messages(haze):
-    from groundstation.cli.commands import scene
-
-    parser, _ = options_of(scene, "scene", "render")
+    scene, parser, _ = described("scene", "scene", "render")
     words = ["scene", "render", "planar", "-o", "a", "--effects", "none", "--effects", "haze=on"]
     asked = scene._wish(parser.parse_args(words))
     assert asked.settings.is_on("haze")
@@ -128,4 +124,4 @@ def test_an_effect_is_taken_by_the_command_decided_and_named_in_messages(haze):
     with pytest.raises(InputError, match=r"--effects.*haze"):
         scene._wish(parser.parse_args([*words, "--effects", "absent=on"]))
     with pytest.raises(InputError, match=r"there is no effect 'absent'; expected one of .*, haze"):
-        renderer.RenderSettings(wishes={"absent": "on"})
+        parameters.RenderSettings(wishes={"absent": "on"})

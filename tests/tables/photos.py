@@ -12,7 +12,7 @@ import numpy as np
 from groundstation.services.fly.flying import FlightRequest, fly_files
 from groundstation.services.plan.planning import plan_site
 from groundstation.services.scenes.photos import photograph_files
-from groundstation.services.scenes.views import SITE_FILE, SceneRequest
+from groundstation.services.scenes.views import SITE_FILE
 from groundstation.services.scenes.views import as_written as site_as_written
 from planning.parameters import Constraints, GreedyParameters
 from planning.plan import Plan, Viewpoint, ViewpointArrays, write_plan
@@ -20,7 +20,7 @@ from planning.planner import Planned, _record, as_written
 from planning.request import PlanRequest
 from planning.viewpoints.candidates import spread_candidates
 from planning.viewpoints.problem import take
-from reconstruction.scenes.runs.photo_job import DEFAULT_POINTS
+from reconstruction.scenes.parameters import DEFAULT_POINTS, SceneRequest
 from reconstruction.scenes.world.bundled import curved_site, planar_site
 
 FARTHEST_M = 40.0

@@ -7,20 +7,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from groundstation.cli.options import (
+    add_parameter,
     add_profile_argument,
-    checked_seed,
     effect_settings,
     in_words_of_options,
     new_folder,
-    number,
+    typed_values,
 )
 from planning.base.errors import InputError
+from planning.base.parameters import declared, with_values
+from reconstruction.scenes.parameters import EFFECTS, MITSUBA_RAYS, RenderSettings, SceneRequest
 
 if TYPE_CHECKING:
     from groundstation.services.scenes.photos import RenderedScene
-    from groundstation.services.scenes.views import SceneRequest
-
-DEFAULT_RAYS = 64
 
 EPILOG = """views (without any of them 24 are planned):
   --plan PLAN      those of a plan, by its camera
@@ -66,23 +65,19 @@ def add_parser(subparsers: Any) -> None:
     add("-o", "--out", type=new_folder, required=True, metavar="DIR", help="folder for the photos")
     add("--plan", type=Path, metavar="PLAN", help="plan file")
     add("--flight", type=Path, metavar="FLIGHT", help="flight file, of 'simulate' or 'report'")
-    add("--views", type=int, metavar="N", help="number of views to plan (default 24)")
-    add("--square", type=int, metavar="N", help="number of views square to the facades instead")
     add_profile_argument(render)
+    for each in declared(SceneRequest).values():
+        if each.parameter.option:
+            add_parameter(render, each)
     add("--look", type=Path, metavar="FILE", help="TOML file with glass, frames, surroundings and light of a site")
     add("--camera", type=Path, metavar="FILE", help="TOML file with shutter, speed, exposure, lens and pose errors")
-    add("--seed", type=int, default=0, metavar="N", help="of everything random (default 0)")
-    add("--width", type=int, default=1024, metavar="PX", help="of the photos (default 1024)")
-    add("--points", type=int, default=100_000, metavar="N", help="points that reconstruction starts from")
     add("--effects", action="append", default=[], metavar="SETTING", help="auto, none, all, or NAME=on|off|auto")
-    add("--tolerance", type=number, default=1.0, metavar="X", help="times each effect's own tolerance (default 1)")
     add(
         "--renderer",
         choices=("embedded", "mitsuba"),
         default="embedded",
         help="what makes the light (default embedded)",
     )
-    add("--rays", type=int, metavar="N", help=f"through each pixel, by Mitsuba (default {DEFAULT_RAYS})")
     add("--jobs", type=int, metavar="N", help="photos rendered side by side (default: one for every four cores)")
     add("--cluster", metavar="ADDRESS", help="render on a Dask cluster, such as tcp://10.0.0.5:8786")
     add("--json", action="store_true", help="print one JSON object instead of text")
@@ -123,33 +118,17 @@ def run_render(options: argparse.Namespace) -> int:
 
 
 def _wish(options: argparse.Namespace) -> SceneRequest:
-    from groundstation.services.scenes.views import SceneRequest
-    from reconstruction.scenes.effect_names import EFFECTS
-    from reconstruction.scenes.photos.renderer import RenderSettings
-
     wishes = effect_settings(options.effects, EFFECTS)
-    if options.rays is not None and options.renderer != "mitsuba":
+    typed = typed_values(options, SceneRequest)
+    rays = ("settings", "mitsuba_rays")
+    if options.renderer == "mitsuba":
+        typed.setdefault(rays, MITSUBA_RAYS)
+    elif rays in typed:
         raise InputError("--rays is for Mitsuba; add --renderer mitsuba, or leave it out")
-    rays = DEFAULT_RAYS if options.rays is None else options.rays
-    with in_words_of_options():
-        return SceneRequest(
-            scene=options.scene,
-            plan=options.plan,
-            flight=options.flight,
-            n_views=options.views,
-            n_square=options.square,
-            profile_id=options.profile,
-            look=options.look,
-            camera=options.camera,
-            seed=checked_seed(options.seed),
-            width_px=options.width,
-            n_points=options.points,
-            settings=RenderSettings(
-                wishes=wishes,
-                tolerance=options.tolerance,
-                mitsuba_rays=rays if options.renderer == "mitsuba" else None,
-            ),
-        )
+    with in_words_of_options(SceneRequest):
+        files = {name: getattr(options, name) for name in ("scene", "plan", "flight", "look", "camera")}
+        asked = SceneRequest(**files, profile_id=options.profile, settings=RenderSettings(wishes=wishes))
+        return with_values(asked, typed)
 
 
 def _print_text(rendered: RenderedScene) -> None:

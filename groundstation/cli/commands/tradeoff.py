@@ -37,10 +37,10 @@ from reconstruction.training.parameters import PRESETS
 if TYPE_CHECKING:
     from groundstation.services.plan.tradeoff import PlanRuns
     from groundstation.services.scenes.photos import SceneTrials
-    from groundstation.services.scenes.views import SceneRequest
     from planning.tradeoff.plans import FailedRun, PlanReport, Variants
     from planning.tradeoff.runner import Answers
     from planning.tradeoff.tours import TourReport
+    from reconstruction.scenes.parameters import SceneRequest
     from reconstruction.tradeoff.scene_downstream import EffectWorth
     from reconstruction.tradeoff.scene_tradeoff import SceneVariants
     from reconstruction.tradeoff.search_tradeoff import SettingScores
@@ -144,12 +144,10 @@ def _scene_summary(found: SceneTrials) -> dict[str, Any]:
 
 
 def _scene_request(options: argparse.Namespace) -> SceneRequest:
-    from groundstation.services.scenes.views import SceneRequest
-    from reconstruction.scenes.effect_names import EFFECTS
-    from reconstruction.scenes.photos.renderer import RenderSettings
+    from reconstruction.scenes.parameters import EFFECTS, RenderSettings, SceneRequest
 
     settings = effect_settings(options.effects, EFFECTS)
-    with in_words_of_options():
+    with in_words_of_options(SceneRequest):
         return SceneRequest(
             scene=options.scene,
             plan=options.plan,

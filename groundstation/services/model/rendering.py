@@ -140,7 +140,8 @@ def render_files(model: Path, wish: RenderRequest, out: Path, monitor: Monitor =
 def _cameras(wish: RenderRequest, trained: TrainedModel) -> tuple[PosedPhoto, ...]:
     from groundstation.services.project.input_files import read_given_plan
     from reconstruction.light.photo_set import read_photo_set
-    from reconstruction.scenes.photos.flight_views import WIDTHS_PX, lens_of, planned_shots, posed_photos
+    from reconstruction.scenes.parameters import WIDTHS_PX
+    from reconstruction.scenes.photos.flight_views import lens_of, planned_shots, posed_photos
 
     if wish.width_px is not None and not WIDTHS_PX[0] <= wish.width_px <= WIDTHS_PX[1]:
         raise InputError(f"--width: expected {WIDTHS_PX[0]} to {WIDTHS_PX[1]}, got {wish.width_px}")

@@ -14,7 +14,6 @@ import numpy as np
 
 from groundstation.services.scenes.views import (
     SITE_FILE,
-    SceneRequest,
     as_written,
     given_scene,
     plan_of_site,
@@ -37,6 +36,7 @@ from planning.tradeoff.runner import Compared, Subject, compare
 from reconstruction.base.cameras import Intrinsics, PosedPhoto
 from reconstruction.scenes.effects.registry import decide_effects
 from reconstruction.scenes.mitsuba.plugins import mitsuba
+from reconstruction.scenes.parameters import SceneRequest
 from reconstruction.scenes.photos.camera_model import USUAL_TAKING, Taking, read_taking
 from reconstruction.scenes.photos.flight_views import lens_of, moments, planned_shots, posed_photos, square_photos
 from reconstruction.scenes.record import Scene

@@ -25,7 +25,7 @@ from planning.geo.solids import Solids
 from planning.plan import Camera, Viewpoint
 from planning.site.file import site_sha256
 from planning.site.records import SiteModel
-from reconstruction.scenes.effect_names import EXPOSURE, GIMBAL_ERROR, POSITION_ERROR, SKY_OCCLUSION
+from reconstruction.scenes.parameters import EXPOSURE, GIMBAL_ERROR, POSITION_ERROR, SKY_OCCLUSION
 from reconstruction.scenes.world.look import Look
 
 if TYPE_CHECKING:
@@ -162,7 +162,8 @@ class _Studio:
     """A scene, with renderers for quick and for fine pictures. What renders takes a second to import."""
 
     def __init__(self, model: SiteModel, wish: PhotoRequest) -> None:
-        from reconstruction.scenes.photos.renderer import Renderer, RenderSettings
+        from reconstruction.scenes.parameters import RenderSettings
+        from reconstruction.scenes.photos.renderer import Renderer
         from reconstruction.scenes.world.build import build_scene
 
         self.key = wish.scene_key
@@ -192,7 +193,8 @@ class _Studio:
         """A renderer of what the scene calls for in this photo, and why."""
         from reconstruction.scenes.effects.probe import Probe
         from reconstruction.scenes.effects.registry import effects
-        from reconstruction.scenes.photos.renderer import Renderer, RenderSettings
+        from reconstruction.scenes.parameters import RenderSettings
+        from reconstruction.scenes.photos.renderer import Renderer
 
         asked = [effect for effect in effects() if effect.name not in OF_FILES and effect.name not in LEFT_OUT]
         monitor.report(say("choosing what to simulate"), 0, len(asked))

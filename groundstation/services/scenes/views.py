@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -20,14 +20,14 @@ from planning.base.findings import Finding, Severity
 from planning.base.json_file import plain_values
 from planning.base.progress import QUIET, Monitor
 from planning.geo.mesh import ply_bytes
-from planning.parameters import DEFAULT_PROFILE, Constraints, GreedyParameters
+from planning.parameters import Constraints, GreedyParameters
 from planning.plan import Camera, Plan, Viewpoint, plan_to_json, read_plan
 from planning.request import PlanRequest
 from planning.site.file import is_planned_on, site_bytes, site_sha256
 from planning.site.records import SiteModel
 from reconstruction.base.cameras import PosedPhoto
+from reconstruction.scenes.parameters import DEFAULT_VIEWS, SceneRequest
 from reconstruction.scenes.photos.flight_views import (
-    WIDTHS_PX,
     Shot,
     flown_shots,
     lens_of,
@@ -35,9 +35,7 @@ from reconstruction.scenes.photos.flight_views import (
     posed_photos,
     square_shots,
 )
-from reconstruction.scenes.photos.renderer import RenderSettings
 from reconstruction.scenes.record import Scene
-from reconstruction.scenes.runs.photo_job import DEFAULT_POINTS
 from reconstruction.scenes.runs.run_record import RUN_FILE
 from reconstruction.scenes.world.build import build_scene
 from reconstruction.scenes.world.bundled import SCENES, bundled_scene
@@ -103,9 +101,6 @@ def _without_direction(n: int, n_all: int) -> Finding:
 SITE_FILE, PLAN_FILE = "site.json", "plan.json"
 """Written beside the photos: the site with what the scene adds to it, and the plan that was made for them."""
 
-DEFAULT_VIEWS, MAX_VIEWS = 24, 20_000
-DEFAULT_WIDTH_PX = 1024
-
 BUNDLED_TEXTS = {
     "planar": "plane facade of 20 x 8 panels, street, buildings opposite, trees and cars before it",
     "curved": "the same on a convex facade",
@@ -120,51 +115,6 @@ QUICK = GreedyParameters(n_candidates=2000, improve=False, certify=False)
 
 FARTHEST_M = 40.0
 """Of views that are planned here: a few of them would otherwise see all panels at once, from far away and small."""
-
-
-@dataclass(frozen=True, slots=True)
-class SceneRequest:
-    """What is to be photographed, from where, and how.
-
-    Parameters
-    ----------
-    scene
-        Name of a bundled scene where there is no file of that name; else path of a site file.
-    plan, flight
-        Views of a plan; or the poses of a flight, with the plan's camera, and with its angles where the flight knows
-        none.
-    n_views
-        To be planned where neither is given.
-    n_square
-        Photos square to the facades in place of planned ones, as a first flight takes them.
-    profile_id
-        Whose camera takes photos that no plan says the camera of.
-    look, camera
-        Files with the look of a site's scene, and with how photos are taken.
-    """
-
-    scene: str
-    plan: Path | None = None
-    flight: Path | None = None
-    n_views: int | None = None
-    n_square: int | None = None
-    profile_id: str = DEFAULT_PROFILE
-    look: Path | None = None
-    camera: Path | None = None
-    seed: int = 0
-    width_px: int | None = DEFAULT_WIDTH_PX
-    n_points: int = DEFAULT_POINTS
-    settings: RenderSettings = field(default_factory=RenderSettings)
-
-    def __post_init__(self) -> None:
-        if self.n_views is not None and not 1 <= self.n_views <= MAX_VIEWS:
-            raise ValueError(f"views: expected 1 to {MAX_VIEWS}, got {self.n_views}")
-        if self.n_square is not None and not 1 <= self.n_square <= MAX_VIEWS:
-            raise ValueError(f"n_square: expected 1 to {MAX_VIEWS}, got {self.n_square}")
-        if self.width_px is not None and not WIDTHS_PX[0] <= self.width_px <= WIDTHS_PX[1]:
-            raise ValueError(f"width_px: expected {WIDTHS_PX[0]} to {WIDTHS_PX[1]}, got {self.width_px}")
-        if self.n_points < 0:
-            raise ValueError(f"n_points: expected 0 or more, got {self.n_points}")
 
 
 @dataclass(frozen=True, slots=True)

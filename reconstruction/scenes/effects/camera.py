@@ -8,8 +8,8 @@ import numpy as np
 
 from planning.base.effects import Assessment
 from planning.base.messages import say
-from reconstruction.scenes.effect_names import DISTORTION, NOISE, VIGNETTING
 from reconstruction.scenes.effects.probe import SECONDS_PER_ANGLE, TOLERANCE_GREY, TOLERANCE_PX, Probe, cost_s
+from reconstruction.scenes.parameters import DISTORTION, NOISE, VIGNETTING
 from reconstruction.scenes.photos.lens_effects import MIDDLE_GREY, USUAL_SENSOR, Sensor, grey_levels
 
 SECONDS_PER_BEND = 3e-7

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from planning.base.effects import Assessment
 from planning.base.messages import say
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.scenes.effect_names import EXPOSURE, GIMBAL_ERROR, MOTION_BLUR, POSITION_ERROR
 from reconstruction.scenes.effects.probe import (
     N_PHOTOS,
     QUANTILE,
@@ -23,6 +22,7 @@ from reconstruction.scenes.effects.probe import (
     spread,
 )
 from reconstruction.scenes.light.pane_surfaces import mirrored
+from reconstruction.scenes.parameters import EXPOSURE, GIMBAL_ERROR, MOTION_BLUR, POSITION_ERROR
 from reconstruction.scenes.photos.camera_model import in_stops
 from reconstruction.scenes.photos.lens_effects import DARKEST, MIDDLE_GREY, grey_levels
 from reconstruction.scenes.photos.motion_blur import MOST_TIMES, NEAREST_M, PX_PER_TIME

@@ -8,10 +8,10 @@ import numpy as np
 
 from planning.base.effects import Assessment
 from planning.base.messages import say
-from reconstruction.scenes.effect_names import INTERIOR, OCCLUSION, SHADOW, SKY_OCCLUSION
 from reconstruction.scenes.effects.probe import NO_GLASS, SECONDS_PER_SHADOW, TOLERANCE_GREY, Probe, cost_s
 from reconstruction.scenes.light.pane_surfaces import pane_light
 from reconstruction.scenes.light.tracing import Switches
+from reconstruction.scenes.parameters import INTERIOR, OCCLUSION, SHADOW, SKY_OCCLUSION
 
 # Effect of what stands around on the light that reaches a place.
 

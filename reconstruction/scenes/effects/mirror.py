@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from planning.base.effects import Assessment
 from planning.base.messages import say
-from reconstruction.scenes.effect_names import CURVATURE, DOUBLING, FRESNEL, NEAR_FIELD, SECOND_BOUNCE, TILT
 from reconstruction.scenes.effects.probe import (
     NO_GLASS,
     SECONDS_PER_ANGLE,
@@ -25,8 +24,8 @@ from reconstruction.scenes.effects.probe import (
     percent,
 )
 from reconstruction.scenes.light.pane_surfaces import half_sides_m
-from reconstruction.scenes.light.shading import ROWS
 from reconstruction.scenes.light.tracing import Switches
+from reconstruction.scenes.parameters import CURVATURE, DOUBLING, FRESNEL, NEAR_FIELD, ROWS, SECOND_BOUNCE, TILT
 
 Array = NDArray[np.float64]
 

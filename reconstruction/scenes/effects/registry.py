@@ -16,9 +16,9 @@ from reconstruction.scenes.effects.light import Interior, Occlusion, Shadow, Sky
 from reconstruction.scenes.effects.mirror import Curvature, Doubling, Fresnel, NearField, SecondBounce, Tilt
 from reconstruction.scenes.effects.probe import TOLERANCE_GREY, TOLERANCE_PX, Probe
 from reconstruction.scenes.effects.sun import SunGlare
+from reconstruction.scenes.parameters import RenderSettings
 from reconstruction.scenes.photos.camera_model import USUAL_TAKING, Moment, Taking
 from reconstruction.scenes.photos.lens_effects import USUAL_SENSOR, Sensor
-from reconstruction.scenes.photos.renderer import RenderSettings
 from reconstruction.scenes.record import Scene
 
 

@@ -13,10 +13,10 @@ from planning.base.effects import Assessment
 from planning.base.jit import kernel
 from planning.base.messages import say
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.scenes.effect_names import SUN_GLARE
 from reconstruction.scenes.effects.probe import TOLERANCE_GREY, Probe
 from reconstruction.scenes.light.pane_surfaces import half_sides_m
 from reconstruction.scenes.light.tracing import RADIUS_RAD, Sun, Switches, Tracer
+from reconstruction.scenes.parameters import SUN_GLARE
 from reconstruction.scenes.photos.lens_effects import MIDDLE_GREY, bloomed, grey_levels
 
 Array = NDArray[np.float64]

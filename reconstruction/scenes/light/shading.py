@@ -497,7 +497,6 @@ def _textured(
 
 # The surroundings as one picture of all directions: what panes mirror where near and far cannot be told apart.
 
-ROWS = 1024
 """Of the picture, unless told otherwise: 0.18 degrees a pixel, as in a wide photo of 512 pixels' width; two million
 rays, once."""
 

@@ -15,13 +15,13 @@ from reconstruction.scenes.light.pane_surfaces import PaneSurfaces, mirrored, pa
 from reconstruction.scenes.light.shading import (
     AMBIENT_BEAM_RAD,
     COARSE,
-    ROWS,
     Ambient,
     Environment,
     Gather,
     MattLight,
     SkyLight,
 )
+from reconstruction.scenes.parameters import ROWS
 from reconstruction.scenes.record import Layer, Scene, Sky
 
 Array = NDArray[np.float64]

@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 
 from planning.base.effects import EffectSetting
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.scenes.effect_names import DISTORTION, INTERIOR, MOTION_BLUR, SUN_GLARE
 from reconstruction.scenes.light.geometry import PaneFrames, texture_axes
 from reconstruction.scenes.light.pane_surfaces import half_sides_m
 from reconstruction.scenes.light.shading import SkyLight, facade_middle_enu_m
 from reconstruction.scenes.light.tracing import DUST_ALBEDO, Switches
 from reconstruction.scenes.mitsuba.plugins import SheetRole, lens, mitsuba
-from reconstruction.scenes.photos.renderer import Photograph, Renderer, RenderSettings
+from reconstruction.scenes.parameters import DISTORTION, INTERIOR, MOTION_BLUR, SUN_GLARE, RenderSettings
+from reconstruction.scenes.photos.renderer import Photograph, Renderer, switches_of
 from reconstruction.scenes.record import Body, Glass, Panes, Scene, Sky
 
 Array = NDArray[np.float64]
@@ -314,7 +314,7 @@ class MitsubaRenderer:
             off: dict[str, EffectSetting] = dict.fromkeys(LACKING, "off")
             self._without = Renderer(scene, replace(settings, samples=SAMPLES, wishes={**settings.wishes, **off}))
         self._middle = middle_enu_m(scene)
-        self._scene = mitsuba_scene(mi, scene, settings.switches)
+        self._scene = mitsuba_scene(mi, scene, switches_of(settings))
 
     def render(self, photo: PosedPhoto, seed: int = 0, moved_enu_m: Array | None = None) -> Photograph:
         """Take a photograph, as `Renderer` does; `seed` is that of Mitsuba's rays, too."""

@@ -19,6 +19,7 @@ from planning.plan import Camera, Plan, Viewpoint
 from planning.site.records import Facade
 from reconstruction.base.cameras import Intrinsics, Pose, PosedPhoto
 from reconstruction.photos.write import photo_name
+from reconstruction.scenes.parameters import WIDTHS_PX
 from reconstruction.scenes.photos.camera_model import SHUTTER_S, Moment, Taking, bent_lens
 from reconstruction.scenes.record import Scene
 
@@ -30,9 +31,6 @@ FIRST_AT, BETWEEN = datetime(2024, 5, 1, 10, 0, 0), timedelta(seconds=5)
 
 BETWEEN_SORTIES = timedelta(hours=1)
 """From the start of a flown sortie's record to that of the next; records count their own time."""
-
-WIDTHS_PX = (16, 20_000)
-"""Narrower pictures show nothing, wider ones no camera takes."""
 
 SAME_PLACE_M = 0.01
 """Two places nearer to each other than this give no direction."""

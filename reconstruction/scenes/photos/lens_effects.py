@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.jit import chunks
-from reconstruction.scenes.effect_names import NOISE, SUN_GLARE, VIGNETTING
+from reconstruction.scenes.parameters import NOISE, SUN_GLARE, VIGNETTING
 from reconstruction.scenes.photos.renderer import Photograph
 
 Array = NDArray[np.float64]

@@ -8,23 +8,20 @@ its middle, at the middle of the exposure.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, replace
-from typing import Literal
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.base.effects import Decision, EffectSetting
 from planning.base.errors import InputError
 from planning.base.jit import chunks, run_chunks
 from planning.base.messages import say
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.scenes.effect_names import (
+from reconstruction.scenes.light.tracing import Light, Switches, Tracer
+from reconstruction.scenes.parameters import (
     CURVATURE,
     DISTORTION,
     DOUBLING,
-    EFFECTS,
     FRESNEL,
     INTERIOR,
     MOTION_BLUR,
@@ -37,9 +34,8 @@ from reconstruction.scenes.effect_names import (
     SUN_GLARE,
     TILT,
     VIGNETTING,
+    RenderSettings,
 )
-from reconstruction.scenes.light.shading import ROWS
-from reconstruction.scenes.light.tracing import Light, Switches, Tracer
 from reconstruction.scenes.photos.motion_blur import moved_px, n_times, times, varies, windows
 from reconstruction.scenes.record import Scene
 
@@ -54,72 +50,13 @@ DETAIL = 0.04
 
 RAYS_AT_ONCE = 1 << 15
 
-MOST_ROWS = 8192
-"""Of the picture of the surroundings: 2 GB."""
-
-MOST_RAYS = 1 << 20
-"""Through a pixel, by Mitsuba."""
-
 MOST_PANES = np.iinfo(np.uint16).max - 1
 
 
-@dataclass(frozen=True, slots=True)
-class RenderSettings:
-    """How photographs are made.
-
-    Parameters
-    ----------
-    samples
-        Rays along each side of a pixel; `auto` takes one, and several where detail calls for it.
-    wishes
-        By effect, those of `EFFECTS`: on, off, or left to scene and flight; what is not named is left to them.
-    tolerance
-        How much more than its stated tolerance an effect may change pictures and still be left out.
-    environment_rows
-        Of the picture of the surroundings that takes the near field's place where that is left out: finer or sooner
-        there.
-    mitsuba_rays
-        Through each pixel, where the light is Mitsuba's; None for that of `Renderer`.
-
-    Raises
-    ------
-    InputError
-        A wish names no effect, or the samples or the tolerance make no sense.
-    """
-
-    samples: int | Literal["auto"] = "auto"
-    wishes: Mapping[str, EffectSetting] = field(default_factory=dict)
-    tolerance: float = 1.0
-    environment_rows: int = ROWS
-    mitsuba_rays: int | None = None
-
-    def __post_init__(self) -> None:
-        unknown = [name for name in self.wishes if name not in EFFECTS]
-        if unknown:
-            raise InputError(f"there is no effect '{unknown[0]}'; expected one of {', '.join(EFFECTS)}")
-        if self.samples != "auto" and not 1 <= self.samples <= 32:
-            raise InputError(f"samples: expected 1 to 32 along a pixel's side, or auto, got {self.samples}")
-        if not (math.isfinite(self.tolerance) and self.tolerance > 0.0):
-            raise InputError(f"tolerance: expected a factor above 0, got {self.tolerance}")
-
-        if not 2 <= self.environment_rows <= MOST_ROWS:
-            raise InputError(f"environment_rows: expected 2 to {MOST_ROWS}, got {self.environment_rows}")
-        if self.mitsuba_rays is not None and not 1 <= self.mitsuba_rays <= MOST_RAYS:
-            raise InputError(f"rays: expected 1 to {MOST_RAYS} through each pixel, got {self.mitsuba_rays}")
-
-    def decided(self, decisions: Iterable[Decision]) -> RenderSettings:
-        """With decisions in place of what was left to scene and flight."""
-        return replace(self, wishes={**self.wishes, **{d.effect: "on" if d.on else "off" for d in decisions}})
-
-    def is_on(self, effect: str) -> bool:
-        """Whether an effect is simulated; what nobody has decided yet is."""
-        return self.wishes.get(effect, "auto") != "off"
-
-    @property
-    def switches(self) -> Switches:
-        """Of the effects of light."""
-        first = (NEAR_FIELD, FRESNEL, SECOND_BOUNCE, TILT, DOUBLING, SHADOW)
-        return Switches(*map(self.is_on, (*first, CURVATURE, INTERIOR, SUN_GLARE, OCCLUSION, SKY_OCCLUSION)))
+def switches_of(settings: RenderSettings) -> Switches:
+    """Of the effects of light."""
+    first = (NEAR_FIELD, FRESNEL, SECOND_BOUNCE, TILT, DOUBLING, SHADOW)
+    return Switches(*map(settings.is_on, (*first, CURVATURE, INTERIOR, SUN_GLARE, OCCLUSION, SKY_OCCLUSION)))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -171,7 +108,7 @@ class Renderer:
                 say("expected at most {} panels, got {}; render it in parts", MOST_PANES, n_panes, place=scene.name)
             )
         self._settings = settings
-        self._tracer = Tracer(scene, settings.switches, environment_rows=settings.environment_rows)
+        self._tracer = Tracer(scene, switches_of(settings), environment_rows=settings.environment_rows)
 
     def render(self, photo: PosedPhoto, seed: int = 0, moved_enu_m: Array | None = None) -> Photograph:
         """Take a photograph; the same for any number of threads.

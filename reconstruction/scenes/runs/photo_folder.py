@@ -31,8 +31,8 @@ from reconstruction.base.cameras import PosedPhoto
 from reconstruction.base.ray_casting import RayCaster
 from reconstruction.dataset.records import start_points, transforms, write_records
 from reconstruction.photos.decode import PICTURE_FILE, decoded
-from reconstruction.scenes.effect_names import DISTORTION, EXPOSURE, GIMBAL_ERROR, MOTION_BLUR, POSITION_ERROR
 from reconstruction.scenes.effects.registry import decide_effects
+from reconstruction.scenes.parameters import DISTORTION, EXPOSURE, GIMBAL_ERROR, MOTION_BLUR, POSITION_ERROR
 from reconstruction.scenes.photos.camera_model import SHUTTERS_S, Capture, Moment, in_stops
 from reconstruction.scenes.photos.lens_effects import metered_exposure
 from reconstruction.scenes.photos.photo_layers import ARRAYS, BYTES_PER_PIXEL, PICTURES, layer_file

@@ -15,15 +15,11 @@ from reconstruction.base.cameras import PosedPhoto
 from reconstruction.dataset.refined_mesh import grown_corners
 from reconstruction.photos.write import Circumstances, photo_jpeg
 from reconstruction.scenes.mitsuba.renderer import renderer_of
+from reconstruction.scenes.parameters import DEFAULT_POINTS, RenderSettings
 from reconstruction.scenes.photos.camera_model import USUAL_TAKING, Capture, Moment, Taking
 from reconstruction.scenes.photos.lens_effects import developed
 from reconstruction.scenes.photos.photo_layers import facade_mask, layer_contents, layer_file
-from reconstruction.scenes.photos.renderer import RenderSettings
 from reconstruction.scenes.record import Scene
-
-DEFAULT_POINTS = 100_000
-"""As many as `prepare` writes."""
-
 
 PATIENCE_S = 0.5
 """How often it is asked whether the user cancelled."""

@@ -9,10 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from groundstation.services.scenes.photos import photograph_files
-from groundstation.services.scenes.views import SceneRequest
 from reconstruction.base.cameras import Intrinsics, Pose, PosedPhoto
 from reconstruction.light.photo_set import read_photo_set
 from reconstruction.objects.picking import Quads, picked, rays_of
+from reconstruction.scenes.parameters import SceneRequest
 from tests.reconstruction.objects.made_scene import pane
 
 LENS = Intrinsics(64, 48, 60.0, 60.0, 32.0, 24.0)

@@ -25,15 +25,15 @@ from planning.base.errors import InputError
 from planning.geo.mesh import box_mesh
 from planning.site.bundled import single_panel
 from reconstruction.base.cameras import Intrinsics, PosedPhoto
-from reconstruction.scenes.effect_names import INTERIOR, SUN_GLARE
 from reconstruction.scenes.light.pane_surfaces import fresnel, pane_light
 from reconstruction.scenes.light.shading import GROUND_ALBEDO
 from reconstruction.scenes.mitsuba import plugins as mitsuba_plugins
 from reconstruction.scenes.mitsuba.plugins import SheetRole, mitsuba, sheet_shares, survives
 from reconstruction.scenes.mitsuba.renderer import SAMPLES, MitsubaRenderer, renderer_of
+from reconstruction.scenes.parameters import INTERIOR, SUN_GLARE, RenderSettings
 from reconstruction.scenes.photos.flight_views import square_photos
 from reconstruction.scenes.photos.lens_effects import grey_levels
-from reconstruction.scenes.photos.renderer import Renderer, RenderSettings
+from reconstruction.scenes.photos.renderer import Renderer
 from reconstruction.scenes.record import Body, Glass, Layer, Rgb, Scene, Sky, Texture
 from reconstruction.scenes.world.build import build_scene
 from reconstruction.scenes.world.look import Look

@@ -20,9 +20,8 @@ from reconstruction.colmap.georeference import Similarity, angle_between_deg
 from reconstruction.colmap.georeference import posed_photos as of_colmap
 from reconstruction.photos.lens import LensSource
 from reconstruction.photos.poses import pose_photos
-from reconstruction.scenes.effect_names import DISTORTION, EXPOSURE, GIMBAL_ERROR, MOTION_BLUR
+from reconstruction.scenes.parameters import DISTORTION, EXPOSURE, GIMBAL_ERROR, MOTION_BLUR, RenderSettings
 from reconstruction.scenes.photos.camera_model import GimbalErrors, Moment, PositionErrors, Taking, bent_lens
-from reconstruction.scenes.photos.renderer import RenderSettings
 from reconstruction.scenes.record import Scene
 from reconstruction.scenes.runs.photo_folder import ScenePhotos, photograph
 from reconstruction.scenes.runs.photo_job import PhotoJob

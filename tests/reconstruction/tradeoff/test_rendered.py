@@ -9,9 +9,10 @@ import pytest
 from planning.base.progress import QUIET
 from reconstruction.base.cameras import Intrinsics, Pose
 from reconstruction.metrics.run import own_method, score_answer
+from reconstruction.scenes.parameters import RenderSettings
 from reconstruction.scenes.photos.flight_views import square_photos
 from reconstruction.scenes.photos.lens_effects import developed
-from reconstruction.scenes.photos.renderer import Renderer, RenderSettings
+from reconstruction.scenes.photos.renderer import Renderer
 from reconstruction.scenes.world.bundled import RADIUS_M, bundled_scene, curved_site, planar_site
 from reconstruction.tradeoff.scene_tradeoff import rendered_photo, walls
 

@@ -9,10 +9,10 @@ import pytest
 
 from planning.base.errors import InputError
 from reconstruction.base.cameras import Intrinsics
-from reconstruction.scenes.effect_names import NEAR_FIELD, NOISE, SHADOW
 from reconstruction.scenes.effects.registry import decide_effects
+from reconstruction.scenes.parameters import NEAR_FIELD, NOISE, SHADOW, RenderSettings
 from reconstruction.scenes.photos.flight_views import square_photos
-from reconstruction.scenes.photos.renderer import Renderer, RenderSettings
+from reconstruction.scenes.photos.renderer import Renderer
 from reconstruction.scenes.world.bundled import bundled_scene
 from reconstruction.tradeoff.scene_tradeoff import (
     SceneVariants,

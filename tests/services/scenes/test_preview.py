@@ -24,10 +24,10 @@ from planning.plan import Viewpoint
 from planning.site.bundled import office, single_panel, tower
 from planning.site.records import SiteModel
 from reconstruction.base.cameras import Pose, PosedPhoto
-from reconstruction.scenes.effect_names import EFFECTS
+from reconstruction.scenes.parameters import EFFECTS, RenderSettings
 from reconstruction.scenes.photos.flight_views import lens_of
 from reconstruction.scenes.photos.lens_effects import developed
-from reconstruction.scenes.photos.renderer import Renderer, RenderSettings
+from reconstruction.scenes.photos.renderer import Renderer
 from reconstruction.scenes.world.build import build_scene
 from reconstruction.scenes.world.look import Look
 

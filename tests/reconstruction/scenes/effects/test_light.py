@@ -11,10 +11,19 @@ import pytest
 from planning.base.effects import Decision
 from planning.geo.mesh import box_mesh
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.scenes.effect_names import CURVATURE, INTERIOR, NOISE, OCCLUSION, SUN_GLARE, TILT, VIGNETTING
 from reconstruction.scenes.effects.registry import decide_effects
+from reconstruction.scenes.parameters import (
+    CURVATURE,
+    INTERIOR,
+    NOISE,
+    OCCLUSION,
+    SUN_GLARE,
+    TILT,
+    VIGNETTING,
+    RenderSettings,
+)
 from reconstruction.scenes.photos.lens_effects import developed, grey_levels, metered_exposure
-from reconstruction.scenes.photos.renderer import Photograph, Renderer, RenderSettings
+from reconstruction.scenes.photos.renderer import Photograph, Renderer
 from reconstruction.scenes.record import Body, Glass, Interiors, Layer, Scene, Sky
 from tests.reconstruction.scenes.small_scenes import DULL, board, facing_south, ground, photo, ramp, scene, with_panes
 

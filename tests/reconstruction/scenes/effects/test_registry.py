@@ -14,7 +14,9 @@ from planning.base.effects import Decision
 from planning.base.errors import InputError
 from planning.geo.mesh import box_mesh
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.scenes.effect_names import (
+from reconstruction.scenes.effects.registry import decide_effects
+from reconstruction.scenes.light.pane_surfaces import pane_light
+from reconstruction.scenes.parameters import (
     DISTORTION,
     DOUBLING,
     EFFECTS,
@@ -26,12 +28,11 @@ from reconstruction.scenes.effect_names import (
     SKY_OCCLUSION,
     TILT,
     VIGNETTING,
+    RenderSettings,
 )
-from reconstruction.scenes.effects.registry import decide_effects
-from reconstruction.scenes.light.pane_surfaces import pane_light
 from reconstruction.scenes.photos.camera_model import Taking
 from reconstruction.scenes.photos.lens_effects import Sensor, developed, grey_levels, metered_exposure, vignette
-from reconstruction.scenes.photos.renderer import Photograph, Renderer, RenderSettings
+from reconstruction.scenes.photos.renderer import Photograph, Renderer
 from reconstruction.scenes.record import Body, Glass, Layer, Scene, Sky, Texture
 from reconstruction.scenes.world.bundled import bundled_scene
 from tests.reconstruction.scenes.small_scenes import MIRROR, board, facing_south, ground, photo, ramp, scene, with_panes

@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from planning.geo.mesh import box_mesh
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.scenes.effect_names import SUN_GLARE
 from reconstruction.scenes.light.pane_surfaces import pane_light
 from reconstruction.scenes.light.tracing import RADIUS_RAD, Sun
+from reconstruction.scenes.parameters import SUN_GLARE, RenderSettings
 from reconstruction.scenes.photos.lens_effects import SCATTERED, bloomed, developed, metered_exposure
-from reconstruction.scenes.photos.renderer import Photograph, Renderer, RenderSettings
+from reconstruction.scenes.photos.renderer import Photograph, Renderer
 from reconstruction.scenes.record import Body, Glass, Layer, Sky
 from tests.reconstruction.scenes.small_scenes import MIRROR, facing_south, ground, photo, scene, with_panes
 

@@ -10,12 +10,12 @@ import pytest
 from planning.base import jit
 from planning.geo.mesh import box_mesh, from_corners
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.scenes.effect_names import NOISE, SKY_OCCLUSION, VIGNETTING
 from reconstruction.scenes.effects.registry import decide_effects
 from reconstruction.scenes.light.shading import GROUND_ALBEDO
 from reconstruction.scenes.light.tracing import Switches, Tracer
+from reconstruction.scenes.parameters import NOISE, SKY_OCCLUSION, VIGNETTING, RenderSettings
 from reconstruction.scenes.photos.lens_effects import grey_levels, metered_exposure
-from reconstruction.scenes.photos.renderer import Renderer, RenderSettings
+from reconstruction.scenes.photos.renderer import Renderer
 from reconstruction.scenes.record import Body, Layer, Scene, Sky
 from reconstruction.scenes.world.bundled import bundled_scene
 from tests.reconstruction.scenes.small_scenes import DULL, board, ground, photo, quad, scene

@@ -16,7 +16,8 @@ from planning.site.bundled import panel_grid
 from planning.site.records import Facade, panel_corners
 from reconstruction.scenes.light.geometry import PaneFrames
 from reconstruction.scenes.light.interiors import CEILING, FADES_M, FLANK, FLOOR, SIDE, TOP, RoomLight
-from reconstruction.scenes.photos.renderer import Renderer, RenderSettings
+from reconstruction.scenes.parameters import RenderSettings
+from reconstruction.scenes.photos.renderer import Renderer
 from reconstruction.scenes.record import Glass, Interiors, Scene
 from reconstruction.scenes.world.build import PAINT, build_scene, facade_bows_per_m
 from reconstruction.scenes.world.bundled import bundled_scene, curved_site, planar_site

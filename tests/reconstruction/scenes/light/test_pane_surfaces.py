@@ -16,7 +16,8 @@ from scipy.optimize import brentq
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.scenes.light.geometry import Geometry
 from reconstruction.scenes.light.pane_surfaces import PaneSurfaces, mirrored, pane_light
-from reconstruction.scenes.photos.renderer import Renderer, RenderSettings
+from reconstruction.scenes.parameters import RenderSettings
+from reconstruction.scenes.photos.renderer import Renderer
 from reconstruction.scenes.record import Glass, Scene, Texture
 from tests.reconstruction.scenes.small_scenes import MIRROR, board, checkerboard, facing_south, photo, scene, with_panes
 

@@ -9,11 +9,11 @@ import pytest
 from numpy.typing import NDArray
 
 from planning.base import jit
-from reconstruction.scenes.effect_names import MOTION_BLUR
 from reconstruction.scenes.effects.registry import decide_effects
+from reconstruction.scenes.parameters import MOTION_BLUR, RenderSettings
 from reconstruction.scenes.photos.camera_model import Moment, Taking
 from reconstruction.scenes.photos.motion_blur import MOST_TIMES, moved_px, n_times, times, windows
-from reconstruction.scenes.photos.renderer import Photograph, Renderer, RenderSettings
+from reconstruction.scenes.photos.renderer import Photograph, Renderer
 from reconstruction.scenes.record import Layer, Scene, Sky
 from tests.reconstruction.scenes.small_scenes import facing_south, photo, quad, scene
 

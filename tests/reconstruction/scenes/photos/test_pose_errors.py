@@ -8,11 +8,10 @@ import numpy as np
 import pytest
 
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.scenes.effect_names import GIMBAL_ERROR, POSITION_ERROR
 from reconstruction.scenes.effects.registry import decide_effects
+from reconstruction.scenes.parameters import GIMBAL_ERROR, POSITION_ERROR, RenderSettings
 from reconstruction.scenes.photos.camera_model import GimbalErrors, Moment, PositionErrors, Taking
 from reconstruction.scenes.photos.pose_errors import told_poses
-from reconstruction.scenes.photos.renderer import RenderSettings
 from tests.reconstruction.scenes.small_scenes import photo, scene
 
 N = 400

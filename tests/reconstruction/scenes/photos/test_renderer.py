@@ -14,7 +14,8 @@ from planning.base.errors import InputError
 from planning.geo.mesh import box_mesh
 from reconstruction.base.cameras import Intrinsics
 from reconstruction.scenes.light.pane_surfaces import pane_light
-from reconstruction.scenes.photos.renderer import Photograph, Renderer, RenderSettings
+from reconstruction.scenes.parameters import RenderSettings
+from reconstruction.scenes.photos.renderer import Photograph, Renderer
 from reconstruction.scenes.record import Body, Glass, Layer, Scene, Sky
 from reconstruction.scenes.world.bundled import bundled_scene
 from tests.reconstruction.scenes.small_scenes import (

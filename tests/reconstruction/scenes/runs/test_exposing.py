@@ -9,11 +9,11 @@ import pytest
 
 from planning.base.effects import EffectSetting
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.scenes.effect_names import EXPOSURE
 from reconstruction.scenes.effects.registry import decide_effects
+from reconstruction.scenes.parameters import EXPOSURE, RenderSettings
 from reconstruction.scenes.photos.camera_model import SHUTTERS_S, Moment, Taking
 from reconstruction.scenes.photos.lens_effects import grey_levels
-from reconstruction.scenes.photos.renderer import Renderer, RenderSettings
+from reconstruction.scenes.photos.renderer import Renderer
 from reconstruction.scenes.record import Layer, Scene
 from reconstruction.scenes.runs.photo_folder import captures_of, common_exposure
 from reconstruction.scenes.runs.photo_job import PhotoJob

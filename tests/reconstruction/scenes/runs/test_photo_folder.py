@@ -17,9 +17,9 @@ from reconstruction.colmap.folder import read_model
 from reconstruction.colmap.georeference import angle_between_deg
 from reconstruction.dataset.layers import normals_from_16_bit
 from reconstruction.photos.poses import pose_photos
+from reconstruction.scenes.parameters import RenderSettings
 from reconstruction.scenes.photos.flight_views import Shot, posed_photos
 from reconstruction.scenes.photos.photo_layers import BYTES_PER_PIXEL
-from reconstruction.scenes.photos.renderer import RenderSettings
 from reconstruction.scenes.runs import photo_folder
 from reconstruction.scenes.runs.photo_folder import photograph
 from reconstruction.scenes.runs.photo_job import PhotoJob
