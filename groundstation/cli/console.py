@@ -9,13 +9,13 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar, copy_context
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TextIO, TypeVar
 
 from groundstation.services.jobs.runner import JobContext, JobEvent, JobProgress, JobRunner
 from groundstation.services.messages import LANGUAGES, told, translation
 from groundstation.services.units import UnitSystem
 from planning.base.findings import Finding, Severity
-from planning.base.messages import about, say
+from planning.base.messages import Message, about, glue, say
 
 if TYPE_CHECKING:
     from missions.flight.outcome import FlightReport
@@ -48,6 +48,16 @@ def worded(text: str) -> str:
     if _LANGUAGE.get() == LANGUAGES[0]:
         return text
     return told(text, translation(_LANGUAGE.get()), UnitSystem.METRIC)
+
+
+def tell(template: str, *values: object, place: object = "", file: TextIO | None = None, end: str = "\n") -> None:
+    """Print a message, as `planning.base.messages.say` makes it, in the language of the command line."""
+    show(say(template, *values, place=place), file=file, end=end)
+
+
+def show(text: str, *, file: TextIO | None = None, end: str = "\n") -> None:
+    """Print a message that is made already, in the language of the command line."""
+    print(worded(text), file=file, end=end, flush=file is sys.stderr)
 
 
 def program_name() -> str:
@@ -91,13 +101,9 @@ class _ProgressLine:
         if not self._enabled or not isinstance(event, JobProgress):
             return
         share = f" {100 * event.done / event.total:3.0f} %" if event.total > 0 else ""
-        left = f", {event.remaining_s:.0f} s left" if event.remaining_s is not None else ""
-        print(
-            f"\r\033[K{event.elapsed_s:5.1f} s  {self._context.copy().run(worded, event.stage)}{share}{left}",
-            end="",
-            file=sys.stderr,
-            flush=True,
-        )
+        left = say(", {:.0f} s left", event.remaining_s) if event.remaining_s is not None else ""
+        stage = glue(f"\r\033[K{event.elapsed_s:5.1f} s  ", event.stage, share, left)
+        self._context.copy().run(show, stage, file=sys.stderr, end="")
         self._shown = True
 
     def clear(self) -> None:
@@ -137,6 +143,17 @@ def show_tradeoff(
     return 0
 
 
+def table_row(*cells: tuple[str, int]) -> str:
+    """A line of a table in the language of the command line: texts and widths, below 0 for what stands on the left."""
+    return "  " + "".join(f"{worded(text):{'<' if width < 0 else '>'}{abs(width)}}" for text, width in cells)
+
+
+def print_notes(notes: Iterable[str], file: TextIO | None = None) -> None:
+    """Notes, a line each."""
+    for note in notes:
+        tell("note: {}", note, file=file)
+
+
 def print_findings(findings: Iterable[Finding]) -> None:
     """Findings on stderr: equal ones once with their number, and of each kind the first few."""
     alike: dict[tuple[Severity, str], dict[str, list[Finding]]] = {}
@@ -157,19 +174,19 @@ def print_findings(findings: Iterable[Finding]) -> None:
             print(f"{worded(MARKS[severity])}: {worded(more)}", file=sys.stderr)
 
 
-def verdict_text(findings: Iterable[Finding]) -> str:
+def verdict_text(findings: Iterable[Finding]) -> Message:
     """Whether a plan is ready to fly, in words."""
     from groundstation.services.mission.readiness import Readiness, readiness_of
 
     findings = tuple(findings)
     match readiness_of(findings):
         case Readiness.READY:
-            return "ready to fly"
+            return say("ready to fly")
         case Readiness.WITH_WARNINGS:
             n_warnings = sum(finding.severity is Severity.WARNING for finding in findings)
-            return f"ready to fly, but read {counted(n_warnings, 'warning')} above"
+            return say("ready to fly, but read {} above", counted(n_warnings, "warning"))
         case Readiness.NOT_READY:
-            return "not ready to fly: see the errors above"
+            return say("not ready to fly: see the errors above")
 
 
 def flight_status(report: FlightReport) -> int:
@@ -185,7 +202,7 @@ def flight_status(report: FlightReport) -> int:
 
 def print_next(*arguments: object) -> None:
     """The command to type next, on stderr."""
-    print(f"next: {program_name()} {shlex.join(map(str, arguments))}", file=sys.stderr)
+    tell("next: {} {}", program_name(), shlex.join(map(str, arguments)), file=sys.stderr)
 
 
 def named_like(path: Path, ending: str) -> Path:
@@ -194,6 +211,18 @@ def named_like(path: Path, ending: str) -> Path:
     return path.with_name((stem or path.name) + ending)
 
 
-def counted(n: int, singular: str) -> str:
+COUNTED = (
+    *(say("{} column", 1), say("{} columns", 2), say("{} facade", 1), say("{} facades", 2), say("{} Gaussian", 1)),
+    *(say("{} Gaussians", 2), say("{} hit", 1), say("{} hits", 2), say("{} object", 1), say("{} objects", 2)),
+    *(say("{} panel", 1), say("{} panels", 2), say("{} photo", 1), say("{} picture", 1)),
+    *(say("{} pictures", 2), say("{} plan", 1), say("{} plans", 2), say("{} record", 1), say("{} records", 2)),
+    *(say("{} row", 1), say("{} rows", 2), say("{} sortie", 1), say("{} sorties", 2), say("{} splat", 1)),
+    *(say("{} splats", 2), say("{} step", 1), say("{} steps", 2), say("{} view", 1)),
+    *(say("{} warning", 1), say("{} warnings", 2)),
+)
+"""What `counted` says, for translators."""
+
+
+def counted(n: int, singular: str) -> Message:
     """A number of things: `1 sortie`, `2 sorties`."""
-    return f"{n} {singular}{'' if n == 1 else 's'}"
+    return say(f"{{}} {singular}{'' if n == 1 else 's'}", n)

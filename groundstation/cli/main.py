@@ -19,13 +19,27 @@ from typing import Any, NoReturn
 
 from groundstation import __version__
 from groundstation.cli import commands
-from groundstation.cli.console import program_name, speaking, worded
+from groundstation.cli.console import program_name, show, speaking, tell, worded
 from groundstation.cli.options import new_folder
 from groundstation.services.messages import LANGUAGES
 from planning.base.errors import GroundStationError, OperationCancelled, PluginError, shortened
+from planning.base.messages import glue, say
 from planning.base.plugins import PluginGroup, blamed, untold_problems
 
 EXIT_DONE, EXIT_FAILED, EXIT_USAGE = 0, 1, 2
+
+
+ARGPARSE = (
+    *(say("usage: "), say("argument %(argument_name)s: %(message)s"), say("unrecognized arguments: %s")),
+    *(say("the following arguments are required: %s"), say("one of the arguments %s is required")),
+    *(say("invalid choice: %(value)r (choose from %(choices)s)"), say("invalid %(type)s value: %(value)r")),
+    *(say("expected one argument"), say("expected at least one argument"), say("expected at most one argument")),
+    *(say("not allowed with argument %s"), say("ignored explicit argument %r")),
+    say("ambiguous option: %(option)s could match %(matches)s"),
+)
+"""What `argparse` says of wrong usage; it looks for translations by its function `_`, which is gettext's otherwise."""
+
+argparse._ = lambda text: worded(text) if text in ARGPARSE else text  # type: ignore[attr-defined]
 
 
 class _Parser(argparse.ArgumentParser):
@@ -38,7 +52,7 @@ class _Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         self.print_usage(sys.stderr)
-        self.exit(EXIT_USAGE, f"{self.prog}: {message}\n")
+        self.exit(EXIT_USAGE, f"{self.prog}: {worded(message)}\n")
 
 
 class _Plugins(argparse.Action):
@@ -50,10 +64,10 @@ class _Plugins(argparse.Action):
         rows = plugin_rows()
         for row in rows:
             group = row.plugin.group.removeprefix("reflight.").replace("_", " ")
-            standing = "" if row.problem is None else ", left out"
-            print(f"{group:<17} {row.plugin.name:<20} {row.plugin.package}{standing}")
+            standing = "" if row.problem is None else say(", left out")
+            show(glue(f"{group:<17} {row.plugin.name:<20} {row.plugin.package}", standing))
         if not rows:
-            print(f"no plug-ins are installed (entry points of {', '.join(PluginGroup)})")
+            tell("no plug-ins are installed (entry points of {})", ", ".join(PluginGroup))
         parser.exit()
 
 
@@ -99,7 +113,7 @@ def build_parser() -> argparse.ArgumentParser:
         "--language",
         choices=LANGUAGES,
         default=LANGUAGES[0],
-        help="language of findings, errors and the brief (default: en)",
+        help="language of what is printed and of the brief, not of --json and -h (default: en)",
     )
     parser.add_argument("--debug", action="store_true", help="show the traceback of an error")
     window = parser.add_argument_group("the window")
@@ -122,7 +136,8 @@ def main(arguments: Sequence[str], open_window: OpenWindow) -> int:
         sys.stdout.flush()
     except OSError as error:
         if not isinstance(error, BrokenPipeError):
-            print(f"error: the output cannot be written ({error.strerror or error})", file=sys.stderr)
+            said = say("the output cannot be written ({})", error.strerror or error)
+            print(f"{worded('error')}: {worded(said)}", file=sys.stderr)
         # The interpreter flushes once more when it ends, and would complain then.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return EXIT_FAILED
@@ -141,7 +156,7 @@ def _make_streams_safe() -> None:
 
 def _tell_of_plugins() -> None:
     for problem in untold_problems():
-        print(f"warning: {_in_one_line(GroundStationError(str(problem)))}", file=sys.stderr)
+        print(f"{worded('warning')}: {_in_one_line(GroundStationError(str(problem)))}", file=sys.stderr)
 
 
 def _run(arguments: Sequence[str], open_window: OpenWindow) -> int:
@@ -152,24 +167,34 @@ def _run(arguments: Sequence[str], open_window: OpenWindow) -> int:
             _tell_of_plugins()
 
 
+def _language_of(arguments: Sequence[str]) -> str:
+    """The language that is asked for, before the rest is looked at: wrong usage is told in it, too."""
+    for option, value in zip(arguments, (*arguments[1:], ""), strict=False):
+        typed = value if option == "--language" else option.partition("--language=")[2]
+        if typed in LANGUAGES:
+            return typed
+    return LANGUAGES[0]
+
+
 def _outcome(arguments: Sequence[str], open_window: OpenWindow, stack: ExitStack) -> int:
     debug = "--debug" in arguments
     try:
+        stack.enter_context(speaking(_language_of(arguments)))
         parser = build_parser()
         options = parser.parse_args(arguments)
         stack.enter_context(speaking(options.language))
         wish = WindowOptions(options.open, options.screenshots, options.pictured_site)
         if wish.site is not None and wish.screenshots is None:
-            parser.error("--site without a command is for --screenshots")
+            parser.error(say("--site without a command is for --screenshots"))
         if not hasattr(options, "run"):
             return open_window(wish)
         if wish != WindowOptions():
-            parser.error("--open and --screenshots are for the window, which opens without a command")
+            parser.error(say("--open and --screenshots are for the window, which opens without a command"))
         return int(options.run(options))
     except SystemExit as stop:
         return int(stop.code or 0)
     except (OperationCancelled, KeyboardInterrupt):
-        print("cancelled", file=sys.stderr)
+        show("cancelled", file=sys.stderr)
     except BrokenPipeError:
         pass  # whoever read the output has gone (| head)
     except (GroundStationError, OSError) as error:
@@ -186,20 +211,20 @@ def _outcome(arguments: Sequence[str], open_window: OpenWindow, stack: ExitStack
 def _report(error: BaseException) -> None:
     """Say that the program is at fault, or a plug-in, and where the traceback is."""
     if isinstance(error, PluginError):
-        print(f"error: {_in_one_line(error)}", file=sys.stderr)
+        print(f"{worded('error')}: {_in_one_line(error)}", file=sys.stderr)
         return
     with tempfile.NamedTemporaryFile("w", suffix=".txt", prefix="reflight-", delete=False) as report:
         traceback.print_exc(file=report)
-    print(
-        f"error: Reflight failed where it should not ({type(error).__name__}: {_in_one_line(error)}); "
-        f"please report it with {Path(report.name)}",
-        file=sys.stderr,
+    failed = say(
+        "Reflight failed where it should not ({}: {}); please report it with {}",
+        *(type(error).__name__, _in_one_line(error), Path(report.name)),
     )
+    print(f"{worded('error')}: {worded(failed)}", file=sys.stderr)
 
 
 def _in_one_line(error: BaseException) -> str:
     """Message without line ends, and without the control characters that a damaged file can bring into it."""
     text = worded(str(error))
     if isinstance(error, OSError) and error.strerror:
-        text = f"{error.filename}: {error.strerror}" if error.filename else error.strerror
+        text = f"{error.filename}: {worded(error.strerror)}" if error.filename else worded(error.strerror)
     return shortened("".join(c if c.isprintable() else "?" for c in " ".join(text.split())))

@@ -10,8 +10,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
+from groundstation.cli.console import tell, worded
 from planning.base.errors import InputError
 from planning.base.files import PLAIN_ENDINGS, check_ending, check_folder_name
+from planning.base.messages import about, say, without_place
 from planning.base.parameters import Declared, declared, with_values
 from planning.base.plugins import Plugin, PluginGroup, installed_plugins
 from planning.parameters import DEFAULT_PROFILE, PlanParameters
@@ -30,7 +32,7 @@ def words(text: str) -> tuple[str, ...]:
     """Words such as `a,b`, each once; at least one."""
     found = tuple(dict.fromkeys(word.strip() for word in text.split(",") if word.strip()))
     if not found:
-        raise argparse.ArgumentTypeError(f"expected a list such as a,b, got '{text}'")
+        raise argparse.ArgumentTypeError(worded(say("expected a list such as a,b, got '{}'", text)))
     return found
 
 
@@ -41,7 +43,7 @@ def above_zero(text: str) -> float:
     except ValueError:
         value = math.nan
     if not (math.isfinite(value) and value > 0.0):
-        raise argparse.ArgumentTypeError(f"expected a number above 0, got '{text}'")
+        raise argparse.ArgumentTypeError(worded(say("expected a number above 0, got '{}'", text)))
     return value
 
 
@@ -53,7 +55,7 @@ def numbers(text: str) -> tuple[float, ...]:
 def count(text: str) -> int:
     """A whole number of 1 or more."""
     if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"expected a whole number of 1 or more, got '{text}'")
+        raise argparse.ArgumentTypeError(worded(say("expected a whole number of 1 or more, got '{}'", text)))
     return int(text)
 
 
@@ -66,7 +68,7 @@ def wholes(text: str) -> tuple[int, ...]:
     """Whole numbers, such as `32,128,0`."""
     found = words(text)
     if not all(word.isdecimal() for word in found):
-        raise argparse.ArgumentTypeError(f"expected whole numbers such as 32,128,0, got '{text}'")
+        raise argparse.ArgumentTypeError(worded(say("expected whole numbers such as 32,128,0, got '{}'", text)))
     return tuple(map(int, found))
 
 
@@ -92,9 +94,11 @@ def in_words_of_options(record: type[Any] = PlanParameters) -> Iterator[None]:
     try:
         yield
     except ValueError as error:
-        name, colon, rest = str(error).partition(":")
+        refused = str(error)
+        name, colon, _ = refused.partition(": ")
         own = {each.parameter.name or each.path[-1]: each.parameter.option for each in declared(record).values()}
-        raise InputError(f"{own.get(name) or OPTIONS.get(name, name)}{colon}{rest}") from error
+        said = without_place(refused, name)
+        raise InputError(about(own.get(name) or OPTIONS.get(name, name), said) if colon else refused) from error
 
 
 def add_parameter(place: Any, each: Declared, *, unset: str = "") -> argparse.Action:
@@ -155,7 +159,7 @@ def number(text: str) -> float:
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        raise argparse.ArgumentTypeError(f"expected a number, got '{text}'")
+        raise argparse.ArgumentTypeError(worded(say("expected a number, got '{}'", text)))
     return value
 
 
@@ -251,10 +255,19 @@ def _print_profiles() -> None:
     for identifier, profile in profiles().items():
         aircraft, camera = profile.aircraft, profile.camera
         low, high = camera.gimbal_pitch_deg
-        print(
-            f"{identifier:<10} {aircraft.name}, {aircraft.endurance_s / 60:.0f} min, {aircraft.max_speed_m_s:g} m/s, "
-            f"wind up to {aircraft.max_wind_m_s:g} m/s; {camera.name}, {camera.image_width_px} x "
-            f"{camera.image_height_px}, {camera.focal_length_mm:g} mm, gimbal {low:g} to {high:g} deg"
+        tell(
+            "{:<10} {}, {:.0f} min, {:g} m/s, wind up to {:g} m/s; {}, {} x {}, {:g} mm, gimbal {:g} to {:g} deg",
+            identifier,
+            aircraft.name,
+            aircraft.endurance_s / 60,
+            aircraft.max_speed_m_s,
+            aircraft.max_wind_m_s,
+            camera.name,
+            camera.image_width_px,
+            camera.image_height_px,
+            camera.focal_length_mm,
+            low,
+            high,
         )
 
 
@@ -278,7 +291,11 @@ def effect_settings(texts: Sequence[str], effects: Sequence[str]) -> dict[str, E
             settings[names[name.lower().replace(" ", "-")]] = states[state]
         else:
             raise InputError(
-                f"--effects {text}: expected auto, none, all, or NAME=on, off or auto; names are {', '.join(names)}"
+                say(
+                    "expected auto, none, all, or NAME=on, off or auto; names are {}",
+                    ", ".join(names),
+                    place=f"--effects {text}",
+                )
             )
     return settings
 
@@ -323,11 +340,12 @@ def flight_day(options: argparse.Namespace) -> FlightDay:
         except (ValueError, OverflowError, OSError):
             at = None
         if at is None:
-            raise InputError(f"--at: expected a time such as 2026-06-21T10:30, got '{options.at}'")
+            raise InputError(say("expected a time such as 2026-06-21T10:30, got '{}'", options.at, place="--at"))
     try:
         return FlightDay(at, options.temperature)
     except ValueError as error:
-        raise InputError(f"--temperature: {str(error).partition(': ')[2]}") from error
+        said = str(error)
+        raise InputError(about("--temperature", without_place(said, said.partition(": ")[0]))) from error
 
 
 # Where poses of photos come from, as several commands take it.
@@ -368,14 +386,14 @@ def refine_wish(options: argparse.Namespace) -> RefineRequest | None:
             return RefineRequest(options.refined, options.refine_size)
     for option, value in (("--refined", options.refined), ("--refine-size", options.refine_size)):
         if value is not None:
-            raise InputError(f"{option}: belongs to --refine, which was not given")
+            raise InputError(say("belongs to --refine, which was not given", place=option))
     return None
 
 
 def print_refined(outcome: RefinedOutcome | None) -> None:
     """Say where refined poses are kept."""
     if outcome is not None:
-        print(f"{outcome.folder}: refined poses{', computed before' if outcome.was_kept else ''}")
+        tell("refined poses{}", say(", computed before") if outcome.was_kept else "", place=outcome.folder)
 
 
 # Settings of the search for panels, as several commands take them.

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from groundstation.gui.screenshots.virtual_screen import has_screen, start_virtual_screen
 from planning.base.errors import InputError
+from planning.base.messages import say
 
 
 def run_window(path: Path | None = None) -> int:
@@ -24,11 +25,13 @@ def run_window(path: Path | None = None) -> int:
     """
     if not has_screen():
         raise InputError(
-            "there is no screen for the window (DISPLAY and WAYLAND_DISPLAY are not set); run it on a desktop, or use "
-            "the commands (-h lists them)"
+            say(
+                "there is no screen for the window (DISPLAY and WAYLAND_DISPLAY are not set); run it on a "
+                "desktop, or use the commands (-h lists them)"
+            )
         )
     if path is not None and not path.exists():
-        raise InputError(f"{path}: there is no such project folder or site file")
+        raise InputError(say("there is no such project folder or site file", place=path))
     from PySide6.QtCore import QTimer
     from PySide6.QtWidgets import QApplication
 

@@ -12,6 +12,7 @@ from groundstation.services.plan.planning import plan_site
 from missions.formats.registry import FORMATS
 from planning.base.errors import InputError
 from planning.base.findings import Finding, is_flyable
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.plan import read_plan
 from planning.planner import Planned
@@ -50,7 +51,9 @@ def demonstrate(
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise InputError(f"{folder}: this folder cannot be made ({error.strerror or error}); name another") from error
+        raise InputError(
+            say("this folder cannot be made ({}); name another", error.strerror or error, place=folder)
+        ) from error
     site_path = write_scene(scene, folder)
     plan_path = folder / f"{scene}.plan.json"
     planned = plan_site(site_path, request, plan_path, monitor=monitor)

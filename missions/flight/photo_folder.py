@@ -102,8 +102,12 @@ def _usable(photos: Sequence[PhotoMetadata], label: str, findings: list[Finding]
     if not usable:
         what = joined(", ", (say("{} without {}", n, what) for what, n in missing.items()))
         raise InputError(
-            f"{label}: no photo says where and when it was taken ({what}); use the files as the camera wrote them: "
-            "programs that edit, send or share photos often take that out"
+            say(
+                "no photo says where and when it was taken ({}); use the files as the camera wrote them: "
+                "programs that edit, send or share photos often take that out",
+                what,
+                place=label,
+            )
         )
     return usable
 

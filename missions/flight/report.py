@@ -21,7 +21,7 @@ from missions.flight.record import FlightEvent, FlightRecord, TakenPhoto, Track
 from missions.flight.report_rules import DEFAULT_LIMITS, Limits, flight_findings, left_in_air_m
 from planning.base.findings import Severity
 from planning.base.json_file import plain_values
-from planning.base.messages import say
+from planning.base.messages import Message, about, glue, joined, say
 from planning.base.progress import QUIET, Monitor
 from planning.checks.case import Case, pose_of
 from planning.coverage.evaluate import Sight, section_counts, sights
@@ -39,7 +39,7 @@ def report_to_json(report: FlightReport) -> dict[str, Any]:
     return {**content.pop("summary"), **content}
 
 
-def report_text(report: FlightReport) -> str:
+def report_text(report: FlightReport) -> Message:
     """The report in some lines: photos, coverage, errors at the shutter, distance, sorties, and what breaks a limit."""
     lines = [
         _photos_line(report.summary),
@@ -47,57 +47,61 @@ def report_text(report: FlightReport) -> str:
         *_shutter_lines(report),
         *(_sortie_line(outcome) for outcome in report.sorties),
         *(
-            f"{finding.severity.value}: {f'{finding.place}: ' if finding.place else ''}{finding.message}"
+            about(finding.severity.value, about(finding.place, finding.message))
             for finding in report.findings
             if finding.severity is not Severity.OK
         ),
     ]
-    return "\n".join(lines)
+    return joined("\n", lines)
 
 
-def _photos_line(summary: Summary) -> str:
+def _photos_line(summary: Summary) -> Message:
     further = summary.n_photos - summary.n_taken
-    text = f"photos: {summary.n_taken} of {summary.n_views} views"
-    return f"{text}, {further} further" if further else text
+    text = say("photos: {} of {} views", summary.n_taken, summary.n_views)
+    return text + say(", {} further", further) if further else text
 
 
-def _coverage_line(summary: Summary) -> str:
+def _coverage_line(summary: Summary) -> Message:
     share = f" ({summary.covered / summary.covered_planned:.1%})" if summary.covered_planned else ""
-    planned = f"where {summary.covered_planned} were planned{share}"
-    text = f"coverage: {summary.covered} sections {planned}, {summary.total} in all"
-    return f"{text}; {len(summary.lost_panels)} panels lost" if summary.lost_panels else text
+    text = say(
+        "coverage: {} sections where {} were planned{}, {} in all",
+        *(summary.covered, summary.covered_planned, share, summary.total),
+    )
+    return text + say("; {} panels lost", len(summary.lost_panels)) if summary.lost_panels else text
 
 
-def _shutter_lines(report: FlightReport) -> Iterator[str]:
+def _shutter_lines(report: FlightReport) -> Iterator[Message]:
     taken = [view for view in report.views if view.reason is Reason.TAKEN]
     parts = []
     for name, field, unit in (
-        ("position", "position_error_m", "m"),
-        ("heading", "heading_error_deg", "deg"),
-        ("pitch", "gimbal_pitch_error_deg", "deg"),
-        ("speed", "speed_m_s", "m/s"),
-        ("blur", "blur_px", "px"),
+        (say("position"), "position_error_m", "m"),
+        (say("heading"), "heading_error_deg", "deg"),
+        (say("pitch"), "gimbal_pitch_error_deg", "deg"),
+        (say("speed"), "speed_m_s", "m/s"),
+        (say("blur"), "blur_px", "px"),
     ):
         values = np.abs([value for view in taken if (value := getattr(view, field)) is not None])
         if len(values):
-            parts.append(f"{name} {np.median(values):.2f} / {values.max():.2f} {unit}")
+            parts.append(glue(name, f" {np.median(values):.2f} / {values.max():.2f} {unit}"))
     if parts:
-        yield f"at the shutter (median / worst): {', '.join(parts)}"
+        yield say("at the shutter (median / worst): {}", joined(", ", parts))
 
 
-def _sortie_line(outcome: SortieOutcome) -> str:
-    name = say("sortie {}", outcome.sortie) if outcome.sortie else f"record {outcome.record + 1}, no sortie of the plan"
-    parts = [f"{outcome.n_taken} of {outcome.n_views} views"]
+def _sortie_line(outcome: SortieOutcome) -> Message:
+    record = outcome.record + 1
+    name = say("sortie {}", outcome.sortie) if outcome.sortie else say("record {}, no sortie of the plan", record)
+    parts = [say("{} of {} views", outcome.n_taken, outcome.n_views)]
     if outcome.duration_flown_s is not None:
-        parts.append(f"{outcome.duration_flown_s:.0f} s flown")
+        parts.append(say("{:.0f} s flown", outcome.duration_flown_s))
     if outcome.duration_predicted_s is not None:
-        parts.append(f"{outcome.duration_predicted_s:.0f} s predicted")
+        parts.append(say("{:.0f} s predicted", outcome.duration_predicted_s))
     if outcome.battery_used is not None:
-        predicted = "" if outcome.battery_predicted is None else f" ({outcome.battery_predicted:.0%} predicted)"
-        parts.append(f"{outcome.battery_used:.0%} of a battery{predicted}")
+        share = outcome.battery_predicted
+        predicted = "" if share is None else say(" ({:.0%} predicted)", share)
+        parts.append(say("{:.0%} of a battery{}", outcome.battery_used, predicted))
     if outcome.least_distance_m is not None:
-        parts.append(f"{outcome.least_distance_m:.2f} m kept at least")
-    return f"{name}: {', '.join(parts)}"
+        parts.append(say("{:.2f} m kept at least", outcome.least_distance_m))
+    return about(name, joined(", ", parts))
 
 
 Floats = NDArray[np.float64]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -34,7 +34,7 @@ from missions.simulator.effects.wind import GustyAir, Wind
 from missions.simulator.scene import FlightScene, flight_scene
 from planning.base.effects import Decision, Effect, EffectSetting, decide
 from planning.base.errors import InputError
-from planning.base.messages import say
+from planning.base.messages import glue, say
 from planning.geo.frames import Vec3
 from planning.motion.timing import motion_limits
 from planning.parameters import FlightRules
@@ -70,20 +70,21 @@ def decide_effects(scene: FlightScene, settings: Mapping[str, EffectSetting] | N
     return tuple(decide(effect, scene, settings.get(effect.name, "auto")) for effect in EFFECTS)
 
 
-def effects_table(decisions: tuple[Decision, ...]) -> str:
+def effects_table(decisions: tuple[Decision, ...], translate: Callable[[str], str] = str) -> str:
     """Decisions as lines of aligned columns, the costs last."""
-    rows = [
+    rows: list[tuple[str, ...]] = [
         (
             d.effect,
-            ("on" if d.on else "off") + ("" if d.decided_by == "scene" else ", asked for"),
-            f"{d.size:.3g} {d.unit}",
+            glue(say("on") if d.on else say("off"), "" if d.decided_by == "scene" else say(", asked for")),
+            say("{:.3g} {}", d.size, d.unit),
             f"{d.tolerance:.3g}",
             f"{d.cost_s:.1f} s",
             d.reason,
         )
         for d in decisions
     ]
-    rows.insert(0, ("effect", "state", "size", "tolerance", "cost", "why"))
+    rows.insert(0, (say("effect"), say("state"), say("size"), say("tolerance"), say("cost"), say("why")))
+    rows = [tuple(map(translate, row)) for row in rows]
     widths = [max(len(row[i]) for row in rows) for i in range(6)]
     return "\n".join("  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)).rstrip() for row in rows)
 

@@ -9,6 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal, Protocol, TypeVar
 
+from planning.base.messages import say
+
 EffectSetting = Literal["auto", "on", "off"]
 """What the user asked for; `auto` leaves it to the scene."""
 
@@ -48,10 +50,11 @@ class Decision:
     cost_s: float
 
     def __str__(self) -> str:
-        state, by = ("on" if self.on else "off"), ("" if self.decided_by == "scene" else ", as you asked")
-        return (
-            f"{self.effect}: {state}{by} - {self.reason} ({self.size:.3g} {self.unit}, tolerance {self.tolerance:.3g}; "
-            f"costs about {self.cost_s:.1f} s)"
+        state, by = say("on") if self.on else say("off"), "" if self.decided_by == "scene" else say(", as you asked")
+        return say(
+            "{}{} - {} ({:.3g} {}, tolerance {:.3g}; costs about {:.1f} s)",
+            *(state, by, self.reason, self.size, self.unit, self.tolerance, self.cost_s),
+            place=self.effect,
         )
 
 

@@ -17,6 +17,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from functools import lru_cache
 from string import Formatter
+from typing import Any
 
 
 class Message(str):
@@ -117,6 +118,21 @@ def joined(separator: str, parts: Iterable[object]) -> Message:
     for part in parts:
         between += [separator, part] if between else [part]
     return glue(*between)
+
+
+def packed(text: str) -> Any:
+    """A text as JSON can hold it on its way from another process, a message with its parts; see `unpacked`."""
+    if not isinstance(text, Message):
+        return text
+    return [plain(text), text.template, [packed(value) for value in text.values], packed(text.place)]
+
+
+def unpacked(content: Any) -> str:
+    """The text that was `packed`."""
+    if isinstance(content, str):
+        return content
+    text, template, values, place = content
+    return Message(text, template, tuple(map(unpacked, values)), unpacked(place))
 
 
 def plain(text: str) -> str:

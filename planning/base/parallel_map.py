@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 
 from planning.base.errors import InputError
 from planning.base.jit import n_threads
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 
 # Dask clusters: how the program gets in touch with one.
@@ -28,7 +29,7 @@ def cluster_client(address: str) -> Iterator[Any]:
     try:
         from distributed import Client
     except ImportError as error:
-        raise InputError(f"a cluster ({address}) needs Dask: pip install 'reflight[cluster]'") from error
+        raise InputError(say("a cluster ({}) needs Dask: pip install 'reflight[cluster]'", address)) from error
     client = None
     try:
         client = Client(address, timeout="10s")
@@ -38,7 +39,7 @@ def cluster_client(address: str) -> Iterator[Any]:
         # What is left of the client closes itself when it is collected, for which it takes a lock of Dask's: now, and
         # not at any time, when another client may hold that lock and both would wait forever.
         gc.collect()
-        raise InputError(f"no Dask scheduler answers at {address} ({reason})")
+        raise InputError(say("no Dask scheduler answers at {} ({})", address, reason))
     with client:
         yield client
 

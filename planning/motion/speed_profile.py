@@ -440,7 +440,7 @@ def _solve(grid: PathGrid, start: Floats) -> tuple[Floats, int]:
     found = np.zeros(len(highest))
     found[free] = np.asarray(solution["x"]).ravel() * highest[free]
     if not (statistics["success"] and _holds(grid, found)):
-        raise ArithmeticError(f"Ipopt found no speed profile: {statistics['return_status']}")
+        raise ArithmeticError(say("Ipopt found no speed profile: {}", statistics["return_status"]))
     return found, int(statistics["iter_count"])
 
 

@@ -18,6 +18,7 @@ from functools import cache
 from typing import Any, get_args
 
 from planning.base.errors import InfeasibleError, InputError
+from planning.base.messages import Message, say
 from planning.base.progress import QUIET, Monitor, QualityPoint, Trace
 from planning.coverage.evaluate import coverage_counts
 from planning.parameters import LARGEST_SEED, Constraints, GreedyParameters, Precision
@@ -70,7 +71,9 @@ class Variants:
             method_named(method)
         for precision in self.precisions:
             if precision not in get_args(Precision):
-                raise InputError(f"there is no precision '{precision}'; known are: {', '.join(get_args(Precision))}")
+                raise InputError(
+                    say("there is no precision '{}'; known are: {}", precision, ", ".join(get_args(Precision)))
+                )
         for n in self.n_candidates:
             if n < 1:
                 raise ValueError(f"candidates: expected 1 or more, got {n}")
@@ -415,13 +418,14 @@ def share_text(gap: float) -> str:
     return f"{percent:.{decimals}f} %" if gap > 0.0 else "100 %"
 
 
-def plan_title(report: PlanReport) -> str:
+def plan_title(report: PlanReport) -> Message:
     """The winner in one line."""
     curve = report.curves[report.base_step_deg][report.winner]
     runs = report.of(report.winner)
-    return (
-        f"{report.site}: '{report.winner}' wins with {share_text(curve.final_gap)} of what can be covered, "
-        f"after {seconds_text(curve.points[-1].t_s)} ({runs[0].n_views} views)"
+    return say(
+        "'{}' wins with {} of what can be covered, after {} ({} views)",
+        *(report.winner, share_text(curve.final_gap), seconds_text(curve.points[-1].t_s), runs[0].n_views),
+        place=report.site,
     )
 
 

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InputError
+from planning.base.messages import Message, say
 from planning.base.progress import QUIET, Monitor, QualityPoint, TimeLimit
 from planning.plan import Plan, viewpoint_arrays
 from planning.routing.flights import flight_times
@@ -93,7 +94,7 @@ def tour_methods(names: Sequence[str]) -> tuple[TourMethod, ...]:
     """
     unknown = next((name for name in names if name not in TOUR_METHODS), None)
     if unknown is not None:
-        raise InputError(f"there is no routing method '{unknown}'; known are: {', '.join(TOUR_METHODS)}")
+        raise InputError(say("there is no routing method '{}'; known are: {}", unknown, ", ".join(TOUR_METHODS)))
     return tuple(method for method in TOUR_METHODS if method in names)
 
 
@@ -107,7 +108,7 @@ def tsplib_case(path: Path, monitor: Monitor = QUIET) -> TourCase:
     """
     instance = read_instance(path)
     if instance.kind == "CVRP":
-        raise InputError(f"{path}: a CVRP needs several routes; expected a TSP or ATSP")
+        raise InputError(say("a CVRP needs several routes; expected a TSP or ATSP", place=path))
     tour_path = path.with_suffix(".opt.tour")
     optimum = None
     if tour_path.is_file():
@@ -126,7 +127,9 @@ def plan_case(plan: Plan, site_model: SiteModel, monitor: Monitor = QUIET) -> To
         Home cannot be used, or a viewpoint cannot be reached from it.
     """
     if len(plan.viewpoints) < 2:
-        raise InputError(f"plan of '{plan.site}': expected two viewpoints or more, got {len(plan.viewpoints)}")
+        raise InputError(
+            say("expected two viewpoints or more, got {}", len(plan.viewpoints), place=f"plan of '{plan.site}'")
+        )
     roadmap = build_roadmap(
         free_space(site_model, plan.constraints.min_distance_m, plan.constraints.min_height_above_ground_m), plan.seed
     )
@@ -159,7 +162,9 @@ def run_tours(
         importlib.import_module("planning.routing.vrp")  # so that the first run does not pay for loading it
     possible = [method for method in methods if method != "local-search" or case.is_symmetric]
     if not possible:
-        raise InputError(f"{case.name}: local-search needs the same cost in both directions; add the method pyvrp")
+        raise InputError(
+            say("local-search needs the same cost in both directions; add the method pyvrp", place=case.name)
+        )
     curves = tour_curves(case.cost, seconds, methods=possible, seed=seed, monitor=monitor)
     return tuple(TourRun(case.name, method, seed, tuple(trace.points)) for method, trace in curves.items())
 
@@ -242,17 +247,19 @@ def tour_panel(report: TourReport) -> Panel:
     return Panel(f"{case.name}, {report.n_points} points", tuple(lines), marks)
 
 
-def tour_title(report: TourReport) -> str:
+def tour_title(report: TourReport) -> Message:
     """The winner in one line."""
     case, best = report.case, report.answers.winner
     if best is None:
-        return f"{case.name}: no method found a tour"
+        return say("no method found a tour", place=case.name)
     length = report.length_of(best)
     reached = report.curves[best].points[-1].t_s
-    above = "the optimum" if case.optimum is not None else "the lower bound"
-    return (
-        f"{case.name}: '{best}' wins with {plain(length)}{' ' + case.unit if case.unit else ''}, "
-        f"{gap_text(report.curves[best].final_gap)} to {above}, after {seconds_text(reached)}"
+    above = say("the optimum") if case.optimum is not None else say("the lower bound")
+    long = f"{plain(length)} {case.unit}".rstrip()
+    return say(
+        "'{}' wins with {}, {} to {}, after {}",
+        *(best, long, gap_text(report.curves[best].final_gap), above, seconds_text(reached)),
+        place=case.name,
     )
 
 

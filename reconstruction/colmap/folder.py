@@ -68,8 +68,15 @@ class _Reader:
         left = len(self._content) - self._at
         if n * smallest > left:
             raise InputError(
-                f"{self._place}: byte {self._at - COUNT.size} says that {n} entries follow, but the {left} bytes left "
-                f"hold at most {left // smallest}; the file is damaged or cut off: write it again"
+                say(
+                    "byte {} says that {} entries follow, but the {} bytes left hold at most {}; the file is damaged "
+                    "or cut off: write it again",
+                    self._at - COUNT.size,
+                    n,
+                    left,
+                    left // smallest,
+                    place=self._place,
+                )
             )
         return n
 
@@ -84,7 +91,9 @@ class _Reader:
         """Text up to a zero byte."""
         end = self._content.find(b"\0", self._at, self._at + MAX_NAME_BYTES)
         if end < 0:
-            raise InputError(f"{self._place}: the image name at byte {self._at} has no end; the file is damaged")
+            raise InputError(
+                say("the image name at byte {} has no end; the file is damaged", self._at, place=self._place)
+            )
         text = self._content[self._at : end].decode("utf-8", "surrogateescape")
         self._at = end + 1
         return text
@@ -92,7 +101,11 @@ class _Reader:
     def _need(self, n: int) -> None:
         if self._at + n > len(self._content):
             raise InputError(
-                f"{self._place}: ends at byte {len(self._content)} in the middle of an entry; write the file again"
+                say(
+                    "ends at byte {} in the middle of an entry; write the file again",
+                    len(self._content),
+                    place=self._place,
+                )
             )
 
 
@@ -143,8 +156,13 @@ def read_points_binary(content: bytes, place: str) -> ColmapPoints:
         *head, length = reader.take(POINT_HEAD)
         if int(length) * TRACK.itemsize > len(content):
             raise InputError(
-                f"{place}: point {int(head[0])} says that {int(length)} observations follow, more than the file holds; "
-                "it is damaged or cut off: write it again"
+                say(
+                    "point {} says that {} observations follow, more than the file holds; it is damaged or cut off: "
+                    "write it again",
+                    int(head[0]),
+                    int(length),
+                    place=place,
+                )
             )
         heads.append(head)
         tracks.append(reader.array(TRACK, int(length)))
@@ -357,7 +375,9 @@ def read_model(folder: Path) -> ColmapModel:
         ("images", len(images), len({image.name for image in images})),
     ):
         if n != n_ids:
-            raise InputError(f"{folder / f'{what}.{kind}'}: holds {n - n_ids} {what} twice, by id or by name")
+            raise InputError(
+                say("holds {} {} twice, by id or by name", n - n_ids, what, place=folder / f"{what}.{kind}")
+            )
     check_model(model, str(folder))
     return model
 
@@ -368,12 +388,16 @@ def check_model(model: ColmapModel, place: str) -> None:
         check_camera(camera, place)
     for image in model.images.values():
         if image.camera_id not in model.cameras:
-            raise InputError(f"{place}: image '{image.name}' has camera {image.camera_id}, which is not in the model")
+            raise InputError(
+                say("image '{}' has camera {}, which is not in the model", image.name, image.camera_id, place=place)
+            )
         numbers = np.concatenate([image.q_wxyz, image.t, image.points_px.ravel()])
         if not np.isfinite(numbers).all() or not any(image.q_wxyz):
-            raise InputError(f"{place}: image '{image.name}' holds a number that is not finite, or no rotation")
+            raise InputError(
+                say("image '{}' holds a number that is not finite, or no rotation", image.name, place=place)
+            )
     if not np.isfinite(model.points.xyz).all():
-        raise InputError(f"{place}: a 3-D point has a coordinate that is not finite")
+        raise InputError(say("a 3-D point has a coordinate that is not finite", place=place))
 
 
 def write_model(folder: Path, model: ColmapModel, kind: FileKind = "bin") -> None:
@@ -386,7 +410,7 @@ def write_model(folder: Path, model: ColmapModel, kind: FileKind = "bin") -> Non
     """
     there = [f"{name}.{end}" for name in FILE_NAMES for end in ("bin", "txt") if (folder / f"{name}.{end}").exists()]
     if there:
-        raise InputError(f"{folder}: holds a COLMAP model already ({', '.join(there)}); name an empty folder")
+        raise InputError(say("holds a COLMAP model already ({}); name an empty folder", ", ".join(there), place=folder))
     cameras, images = list(model.cameras.values()), list(model.images.values())
     if kind == "txt":
         _check_names(images)
@@ -407,8 +431,11 @@ def _check_names(images: Sequence[ColmapImage]) -> None:
     for image in images:
         if image.name != image.name.strip() or not image.name.isprintable():
             raise InputError(
-                f"image '{image.name}': a name with spaces at its ends or control characters cannot stand in COLMAP's "
-                "text files; write the binary ones"
+                say(
+                    "image '{}': a name with spaces at its ends or control characters cannot stand in COLMAP's text "
+                    "files; write the binary ones",
+                    image.name,
+                )
             )
 
 
@@ -419,8 +446,11 @@ def _kind(folder: Path) -> FileKind:
             return kind
     found = say("a file") if folder.is_file() else "no folder" if not folder.is_dir() else "a folder without them"
     raise InputError(
-        f"{folder}: expected a COLMAP model (cameras and images as .bin or .txt), found {found}; models are often in "
-        "sparse/0"
+        say(
+            "expected a COLMAP model (cameras and images as .bin or .txt), found {}; models are often in sparse/0",
+            found,
+            place=folder,
+        )
     )
 
 

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InputError
+from planning.base.messages import say
 from reconstruction.base.cameras import Intrinsics
 
 Array = NDArray[np.float64]
@@ -201,13 +202,24 @@ def check_camera(camera: ColmapCamera, place: str) -> None:
     expected = N_PARAMETERS[camera.model]
     if len(camera.parameters) != expected or not np.isfinite(camera.parameters).all():
         raise InputError(
-            f"{place}: camera {camera.id}: expected {expected} numbers for {camera.model}, got {camera.parameters}"
+            say(
+                "expected {} numbers for {}, got {}",
+                expected,
+                camera.model,
+                camera.parameters,
+                place=f"{place}: camera {camera.id}",
+            )
         )
     n_focal = 1 if camera.model.startswith(("SIMPLE", "RADIAL")) else 2
     if camera.width_px < 1 or camera.height_px < 1 or min(camera.parameters[:n_focal]) <= 0.0:
         raise InputError(
-            f"{place}: camera {camera.id}: expected a picture and a focal length above 0, got {camera.width_px} x "
-            f"{camera.height_px} and {camera.parameters[:n_focal]}"
+            say(
+                "expected a picture and a focal length above 0, got {} x {} and {}",
+                camera.width_px,
+                camera.height_px,
+                camera.parameters[:n_focal],
+                place=f"{place}: camera {camera.id}",
+            )
         )
 
 
@@ -261,9 +273,13 @@ def _followed(start: Intrinsics, denominator: tuple[float, ...], camera_id: int)
         off_px = float(np.abs((powers @ found - wanted) * radius).max()) * max(start.fx_px, start.fy_px)
     if not off_px <= RATIONAL_TOLERANCE_PX:
         raise InputError(
-            f"COLMAP model: the rational distortion of camera {camera_id} is {off_px:.2g} px from the nearest "
-            f"polynomial; expected at most {RATIONAL_TOLERANCE_PX:g} px; undistort the images in COLMAP "
-            "(image_undistorter)"
+            say(
+                "COLMAP model: the rational distortion of camera {} is {:.2g} px from the nearest polynomial; "
+                "expected at most {:g} px; undistort the images in COLMAP (image_undistorter)",
+                camera_id,
+                off_px,
+                RATIONAL_TOLERANCE_PX,
+            )
         )
     a, b, c = (found / (scale, scale**2, scale**3)).tolist()
     return replace(start, distortion=(a, b, p1, p2, c))

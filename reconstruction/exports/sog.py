@@ -256,10 +256,10 @@ def values_of(content: bytes, name: str, path: Path, most_px: int) -> Bytes:
     """
     width, height = _size(content, name, path)
     if width * height > most_px:
-        raise InputError(f"{path}: {name} has {width} x {height} pixels; expected at most {most_px}")
+        raise InputError(say("{} has {} x {} pixels; expected at most {}", name, width, height, most_px, place=path))
     found = cv2.imdecode(np.frombuffer(content, np.uint8), cv2.IMREAD_UNCHANGED)
     if found is None or found.ndim != 3 or found.shape[:2] != (height, width):
-        raise InputError(f"{path}: {name} is damaged")
+        raise InputError(say("{} is damaged", name, place=path))
     if found.shape[2] == 3:
         found = np.dstack([found, np.full((height, width), 255, np.uint8)])
     return np.ascontiguousarray(found[:, :, [2, 1, 0, 3]], dtype=np.uint8)
@@ -278,7 +278,7 @@ def _size(content: bytes, name: str, path: Path) -> tuple[int, int]:
                 sides = (int.from_bytes(content[start + at : start + at + 3], "little") + 1 for at in (4, 7))
                 width, height = sides
                 return width, height
-    raise InputError(f"{path}: {name}: expected a lossless WebP image")
+    raise InputError(say("expected a lossless WebP image", place=f"{path}: {name}"))
 
 
 META = "meta.json"

@@ -15,6 +15,7 @@ import torch
 from torch import Tensor
 
 from planning.base.errors import InputError
+from planning.base.messages import say
 from planning.base.progress import QUIET, Clock, Monitor, QualityPoint
 from reconstruction.light.config import GlassLearned, Precision, ReflectionConfig
 from reconstruction.light.environment_map import EnvironmentMap
@@ -335,12 +336,14 @@ def score_views(
     """
     mine, theirs = trained.planes.corners_enu_m, source.panels.corners_enu_m
     if mine.shape != theirs.shape or not np.allclose(mine, theirs, rtol=0.0, atol=SAME_PANELS_M):
-        raise InputError(f"{source.folder}: shows other panels than were learned from; name photos of the same site")
+        raise InputError(
+            say("shows other panels than were learned from; name photos of the same site", place=source.folder)
+        )
     photos = source.named(names)
     if len(photos) < len(set(names)):
         missing = sorted(set(names) - {photo.name for photo in photos})
         raise InputError(
-            f"{source.folder}: has no photo '{missing[0]}', which is to be scored; name photos of its views"
+            say("has no photo '{}', which is to be scored; name photos of its views", missing[0], place=source.folder)
         )
     views = []
     for done, photo in enumerate(photos):
@@ -351,7 +354,11 @@ def score_views(
             views.append(ViewScore(photo.name, len(rays), psnr_db(error)))
     if not views:
         raise InputError(
-            f"{source.folder}: none of the {len(photos)} views to be scored has {LEAST_RAYS} pixels that lie whole on "
-            "a panel; take larger or more photos"
+            say(
+                "none of the {} views to be scored has {} pixels that lie whole on a panel; take larger or more photos",
+                len(photos),
+                LEAST_RAYS,
+                place=source.folder,
+            )
         )
     return ReflectionScore(tuple(views), len(photos) - len(views))

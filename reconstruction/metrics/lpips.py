@@ -31,6 +31,7 @@ from torch.nn.functional import avg_pool2d, conv2d, max_pool2d, relu
 from planning.base.errors import InputError
 from planning.base.files import MIB, FileLimit, read_given
 from planning.base.jit import chunks
+from planning.base.messages import say
 
 # Weights of LPIPS as users have them: read from files of torch or safetensors, and never fetched.
 #
@@ -172,7 +173,7 @@ def read_lpips_weights(paths: Sequence[Path]) -> LpipsWeights:
     heads: dict[int, Tensor] = {}
     missing = next((path for path in paths if not path.is_file()), None)
     if missing is not None:
-        raise InputError(f"{missing}: is no file; {UNAVAILABLE}")
+        raise InputError(say("is no file; {}", UNAVAILABLE, place=missing))
     contents = {path: read_given(path, WEIGHTS_FILE) for path in paths}
     for path, written in contents.items():
         for name, value in _tensors(path, written).items():
@@ -184,13 +185,17 @@ def read_lpips_weights(paths: Sequence[Path]) -> LpipsWeights:
     place = ", ".join(str(path) for path in paths)
     backbone = next((name for name, layers in BACKBONES.items() if all(_is_of(filters, each) for each in layers)), None)
     if backbone is None:
-        raise InputError(f"{place}: expected the weights of AlexNet or VGG16 as torchvision names them; {UNAVAILABLE}")
+        raise InputError(
+            say("expected the weights of AlexNet or VGG16 as torchvision names them; {}", UNAVAILABLE, place=place)
+        )
     widths = [each.shape[0] for each in BACKBONES[backbone] if each.is_layer]
     if [heads[k].numel() if k in heads else 0 for k in range(len(widths))] != widths:
-        raise InputError(f"{place}: expected heads lin0 to lin4 for {widths} features, as {backbone} has them")
+        raise InputError(
+            say("expected heads lin0 to lin4 for {} features, as {} has them", widths, backbone, place=place)
+        )
     weights = {each.index: (filters[each.index]["weight"], filters[each.index]["bias"]) for each in BACKBONES[backbone]}
     if not all(bool(torch.isfinite(value).all()) for value in (*itertools.chain(*weights.values()), *heads.values())):
-        raise InputError(f"{place}: holds numbers that are not finite; get the files again")
+        raise InputError(say("holds numbers that are not finite; get the files again", place=place))
     files = tuple(WeightsFile(path.name, hashlib.sha256(written).hexdigest()) for path, written in contents.items())
     return LpipsWeights(backbone, weights, tuple(heads[k] for k in range(len(widths))), files)
 
@@ -210,14 +215,19 @@ def _tensors(path: Path, written: bytes) -> dict[str, Tensor]:
         content = torch.load(io.BytesIO(written), map_location="cpu", weights_only=True)
     except DAMAGED as error:
         raise InputError(
-            f"{path}: cannot be read as weights (safetensors, or tensors that torch.save wrote); get the file again"
+            say(
+                "cannot be read as weights (safetensors, or tensors that torch.save wrote); get the file again",
+                place=path,
+            )
         ) from error
     if not isinstance(content, Mapping):
-        raise InputError(f"{path}: expected named tensors, found {type(content).__name__}; name a file of weights")
+        raise InputError(
+            say("expected named tensors, found {}; name a file of weights", type(content).__name__, place=path)
+        )
     found = {str(name): value for name, value in content.items() if isinstance(value, Tensor)}
     # A tensor of one number may say that it is repeated without end.
     if sum(value.numel() for value in found.values()) > len(written):
-        raise InputError(f"{path}: says that it has more numbers than it holds; get the file again")
+        raise InputError(say("says that it has more numbers than it holds; get the file again", place=path))
     return found
 
 

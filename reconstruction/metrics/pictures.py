@@ -72,10 +72,14 @@ def pictures_in(folder: Path) -> dict[str, Path]:
     for path in sorted(folder.iterdir()):
         if path.suffix.lower() in PICTURE_SUFFIXES and path.is_file():
             if path.stem in found:
-                raise InputError(f"{folder}: {found[path.stem].name} and {path.name} have one name; keep one of them")
+                raise InputError(
+                    say("{} and {} have one name; keep one of them", found[path.stem].name, path.name, place=folder)
+                )
             found[path.stem] = path
     if not found:
-        raise InputError(f"{folder}: expected pictures ({', '.join(PICTURE_SUFFIXES)}) in this folder, found none")
+        raise InputError(
+            say("expected pictures ({}) in this folder, found none", ", ".join(PICTURE_SUFFIXES), place=folder)
+        )
     return found
 
 

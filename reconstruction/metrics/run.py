@@ -71,7 +71,9 @@ class MaskFolder:
             There is no mask of that name, or it is no mask.
         """
         if name not in self.paths:
-            raise InputError(f"{self.folder}: expected a mask for the photo '{name}', found none of that name")
+            raise InputError(
+                say("expected a mask for the photo '{}', found none of that name", name, place=self.folder)
+            )
         is_glass = _is_glass(self.paths[name])
         if is_glass.shape == (height_px, width_px):
             return is_glass
@@ -91,8 +93,13 @@ class MaskFolder:
         if missing:
             more = say(" and {} more", len(missing) - NAMES_IN_MESSAGE) if len(missing) > NAMES_IN_MESSAGE else ""
             raise InputError(
-                f"{self.folder}: expected a mask for each of {len(names)} photos, named like it; missing: "
-                f"{', '.join(missing[:NAMES_IN_MESSAGE])}{more}"
+                say(
+                    "expected a mask for each of {} photos, named like it; missing: {}{}",
+                    len(names),
+                    ", ".join(missing[:NAMES_IN_MESSAGE]),
+                    more,
+                    place=self.folder,
+                )
             )
 
 
@@ -113,7 +120,7 @@ def _is_glass(path: Path) -> Mask:
     if values.ndim == 3:
         colours = values[..., :3]
         if (colours != colours[..., :1]).any():
-            raise InputError(f"{path}: expected a grey mask, found colours; write glass as white on black")
+            raise InputError(say("expected a grey mask, found colours; write glass as white on black", place=path))
         values = colours[..., 0]
     highest = int(values.max(initial=0))
     full = 1 if highest <= 1 else int(np.iinfo(values.dtype).max)

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from planning.base.errors import InputError
 from planning.base.files import MIB, FileLimit, read_given
 from planning.base.json_file import read_json
+from planning.base.messages import say
 from reconstruction.base.cameras import Intrinsics
 from reconstruction.metrics.overlaps import MOST_PANELS, index_image
 from reconstruction.metrics.pictures import pictures_in, read_labels, read_picture
@@ -90,7 +91,7 @@ def ecp_photos(folder: Path) -> Iterator[AnnotatedPhoto]:
         labels = read_labels(path)
         is_window = (labels == ECP_WINDOW_BGR).all(axis=-1) if labels.ndim == 3 else np.zeros(labels.shape, bool)
         if not is_window.any():
-            raise InputError(f"{path}: expected windows painted red (255, 0, 0), found none")
+            raise InputError(say("expected windows painted red (255, 0, 0), found none", place=path))
         _, index = cv2.connectedComponents(is_window.astype(np.uint8), connectivity=4)
         image = read_picture(folder / "image" / f"{path.stem}.jpg")
         yield AnnotatedPhoto(path.stem, image, _checked(np.asarray(index, np.uint16), image, path))
@@ -114,7 +115,7 @@ def coco_photos(folder: Path) -> Iterator[AnnotatedPhoto]:
             if annotation["category_id"] in windows:
                 polygons[annotation["image_id"]] += _coco_polygons(annotation)
     except (ValueError, KeyError, TypeError) as error:
-        raise InputError(f"{path}: expected annotations in COCO's form, found {error!r}") from error
+        raise InputError(say("expected annotations in COCO's form, found {}", repr(error), place=path)) from error
     for entry in images:
         image = read_picture(folder / entry["file_name"])
         height, width = image.shape[:2]
@@ -139,7 +140,7 @@ SHOWABLE_SETS = ("offices",)
 def _files(folder: Path, pattern: str) -> list[Path]:
     found = sorted(folder.glob(pattern))
     if not found:
-        raise InputError(f"{folder}: expected annotated photos ({pattern}) in this folder, found none")
+        raise InputError(say("expected annotated photos ({}) in this folder, found none", pattern, place=folder))
     return found
 
 
@@ -148,7 +149,9 @@ def _rectangles(path: Path) -> list[tuple[float, float, float, float]]:
         rows = list(csv.DictReader(read_given(path, TABLE_FILE).decode("utf-8").splitlines()))
         return [(float(row["x0"]), float(row["y0"]), float(row["x1"]), float(row["y1"])) for row in rows]
     except (csv.Error, ValueError, KeyError, TypeError) as error:
-        raise InputError(f"{path}: expected columns x0, y0, x1, y1 of numbers, found {error!r}") from error
+        raise InputError(
+            say("expected columns x0, y0, x1, y1 of numbers, found {}", repr(error), place=path)
+        ) from error
 
 
 def _coco_polygons(annotation: Any) -> list[NDArray[np.float64]]:
@@ -164,7 +167,7 @@ def _short(stem: str) -> str:
 def _checked(index: NDArray[np.uint16], image: NDArray[np.uint8], path: Path) -> NDArray[np.uint16]:
     if index.shape != image.shape[:2]:
         (h, w), (ih, iw) = index.shape, image.shape[:2]
-        raise InputError(f"{path}: the annotation has {w} x {h} pixels, its photo {iw} x {ih}")
+        raise InputError(say("the annotation has {} x {} pixels, its photo {} x {}", w, h, iw, ih, place=path))
     return index
 
 
@@ -344,18 +347,24 @@ def folder_set(images: Path, truth: Path, is_rectified: bool = False) -> PhotoSe
     image_paths, truth_paths = pictures_in(images), pictures_in(truth)
     missing = [name for name in image_paths if name not in truth_paths]
     if missing:
-        raise InputError(f"{truth}: expected an index image for each photo; '{missing[0]}' has none")
+        raise InputError(say("expected an index image for each photo; '{}' has none", missing[0], place=truth))
 
     def photos() -> Iterator[ScoredPhoto]:
         for name, path in image_paths.items():
             image, index = read_picture(path), read_labels(truth_paths[name])
             if index.ndim != 2:
-                raise InputError(f"{truth_paths[name]}: expected one channel with panel numbers, found a colour image")
+                raise InputError(
+                    say("expected one channel with panel numbers, found a colour image", place=truth_paths[name])
+                )
             if index.shape != image.shape[:2]:
                 (h, w), (ih, iw) = index.shape, image.shape[:2]
-                raise InputError(f"{truth_paths[name]}: {w} x {h} pixels, but its photo has {iw} x {ih}")
+                raise InputError(
+                    say("{} x {} pixels, but its photo has {} x {}", w, h, iw, ih, place=truth_paths[name])
+                )
             if index.max(initial=0) > MOST_PANELS:
-                raise InputError(f"{truth_paths[name]}: expected panel numbers up to {MOST_PANELS}, got {index.max()}")
+                raise InputError(
+                    say("expected panel numbers up to {}, got {}", MOST_PANELS, index.max(), place=truth_paths[name])
+                )
             views = whole_view(image) if is_rectified else None
             yield ScoredPhoto(name, image, np.asarray(index, np.uint16), views=views)
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from planning.base.errors import InputError
 from planning.base.json_file import encoded, expect_format, read_json, to_record, write_atomically
+from planning.base.messages import say
 from reconstruction.panels.rectify.surface import Rectification
 from reconstruction.panels.search.record import FacadeGrid, GridLine, InclinedLine, Segmentation
 
@@ -190,14 +191,16 @@ def read_panels_folder(folder: Path) -> dict[str, PanelsFile]:
     """
     paths = sorted(folder.glob("*.json")) if folder.is_dir() else []
     if not paths:
-        raise InputError(f"{folder}: expected a folder of panels files (*.json), as 'segment' writes them; found none")
+        raise InputError(
+            say("expected a folder of panels files (*.json), as 'segment' writes them; found none", place=folder)
+        )
     files: dict[str, PanelsFile] = {}
     first: dict[str, Path] = {}
     for path in paths:
         record = read_panels(path)
         if record.image in files:
             raise InputError(
-                f"{path}: photo '{record.image}' is in {first[record.image].name} already; keep one of them"
+                say("photo '{}' is in {} already; keep one of them", record.image, first[record.image].name, place=path)
             )
         files[record.image], first[record.image] = record, path
     return files

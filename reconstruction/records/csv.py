@@ -80,7 +80,7 @@ def read_number(text: str, field: str, comma: bool) -> float:
         plain = plain.replace(",", ".")
     if not _NUMBER.fullmatch(plain):
         hint = " with a point (commas in tables parted by semicolons only)" if "," in plain and not comma else ""
-        raise InputError(f"{field}: expected a number{hint}, got '{text[:40]}'")
+        raise InputError(say("expected a number{}, got '{}'", hint, text[:40], place=field))
     value = float(plain)
     check_number(value, field)
     return value
@@ -96,7 +96,7 @@ def read_whole(text: str, field: str, comma: bool) -> int:
     """
     value = read_number(text, field, comma)
     if value != int(value):
-        raise InputError(f"{field}: expected a whole number, got '{text[:40]}'")
+        raise InputError(say("expected a whole number, got '{}'", text[:40], place=field))
     return int(value)
 
 
@@ -113,7 +113,7 @@ def read_truth(text: str, field: str) -> bool:
         return True
     if word in (NO, "false", "0"):
         return False
-    raise InputError(f"{field}: expected yes or no, got '{text[:40]}'")
+    raise InputError(say("expected yes or no, got '{}'", text[:40], place=field))
 
 
 def read_outline(text: str, field: str) -> tuple[tuple[float, float], ...]:
@@ -128,7 +128,7 @@ def read_outline(text: str, field: str) -> tuple[tuple[float, float], ...]:
         found: Any = json.loads(text)
         return tuple((float(u), float(v)) for u, v in found)
     except (ValueError, TypeError, RecursionError) as error:
-        raise InputError(f"{field}: expected places such as [[0.1, 0.2], ...], got '{text[:40]}'") from error
+        raise InputError(say("expected places such as [[0.1, 0.2], ...], got '{}'", text[:40], place=field)) from error
 
 
 _READERS: dict[str, Callable[[str, str, bool], Any]] = {
@@ -224,8 +224,11 @@ def column_of_head(head: str) -> Column:
     kind = next((kind for kind in TYPES if found and kind == (found["type"] or "text")), None)
     if found is None or kind is None:
         raise InputError(
-            f"expected heads such as 'maker' or 'thickness [mm] (number)', found '{head[:60]}'; types are "
-            f"{', '.join(TYPES)}"
+            say(
+                "expected heads such as 'maker' or 'thickness [mm] (number)', found '{}'; types are {}",
+                head[:60],
+                ", ".join(TYPES),
+            )
         )
     standard = STANDARD.get(found["name"])
     if standard is not None and found["type"] is None and found["unit"] in (None, standard[1]):
@@ -346,7 +349,7 @@ def kind_of_table(path: Path) -> Kind:
         if path.stem.lower() == kind.table:
             return kind
     names = ", ".join(f"{kind.table}.csv" for kind in KINDS)
-    raise InputError(f"{path}: expected a name of {names}, or name the kind with --kind")
+    raise InputError(say("expected a name of {}, or name the kind with --kind", names, place=path))
 
 
 def read_tables(book: RecordBook, tables: Sequence[tuple[Path, Kind]]) -> tuple[Taken, ...]:
@@ -407,14 +410,16 @@ class _Objects:
         """GlobalId of the object that a line is about; its GlobalId goes before its name."""
         if global_id:
             if global_id not in self._by_id:
-                raise InputError(f"global_id: expected an object of the model, got '{global_id[:40]}'")
+                raise InputError(say("expected an object of the model, got '{}'", global_id[:40], place="global_id"))
             return global_id
         if not name:
-            raise InputError("global_id: expected a GlobalId, or a name in the column 'name', found neither")
+            raise InputError(
+                say("expected a GlobalId, or a name in the column 'name', found neither", place="global_id")
+            )
         if name in self._ambiguous:
-            raise InputError(f"name: several objects have the name '{name[:40]}'; give the GlobalId")
+            raise InputError(say("name: several objects have the name '{}'; give the GlobalId", name[:40]))
         if name not in self._by_name:
-            raise InputError(f"name: expected the name of an object of the model, got '{name[:40]}'")
+            raise InputError(say("name: expected the name of an object of the model, got '{}'", name[:40]))
         return self._by_name[name]
 
 
@@ -425,7 +430,9 @@ def _read(path: Path) -> _Table:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = content[: error.start].count(b"\n") + 1
-        raise InputError(f"{path}: line {line}: expected UTF-8, found other bytes; save it as CSV UTF-8") from error
+        raise InputError(
+            say("expected UTF-8, found other bytes; save it as CSV UTF-8", place=f"{path}: line {line}")
+        ) from error
     delimiter = ";" if _is_headed(text, ";") and not _is_headed(text, ",") else ","
     reader = csv.reader(io.StringIO(text, newline=""), delimiter=delimiter, strict=True)
     lines: list[tuple[int, list[str]]] = []
@@ -435,21 +442,26 @@ def _read(path: Path) -> _Table:
             if any(cell.strip() for cell in cells):
                 if lines and len(cells) != len(lines[0][1]):
                     raise InputError(
-                        f"{path}: line {start}: expected {len(lines[0][1])} cells parted by '{delimiter}', found "
-                        f"{len(cells)}"
+                        say(
+                            "expected {} cells parted by '{}', found {}",
+                            len(lines[0][1]),
+                            delimiter,
+                            len(cells),
+                            place=f"{path}: line {start}",
+                        )
                     )
                 lines.append((start, cells))
             start = reader.line_num + 1
     except csv.Error as error:
-        raise InputError(f"{path}: line {start}: is no CSV ({error})") from error
+        raise InputError(say("is no CSV ({})", error, place=f"{path}: line {start}")) from error
     if not lines:
-        raise InputError(f"{path}: the table is empty; expected a line with the names of its columns")
+        raise InputError(say("the table is empty; expected a line with the names of its columns", place=path))
     head = tuple(unguarded(cell).strip() for cell in lines[0][1])
     repeated = next((name for name in head if head.count(name) > 1), None) if len(set(head)) < len(head) else None
     if repeated is not None:
-        raise InputError(f"{path}: line 1: the column '{repeated[:60]}' occurs twice")
+        raise InputError(say("line 1: the column '{}' occurs twice", repeated[:60], place=path))
     if not any(name in head for name in OBJECT):
-        raise InputError(f"{path}: line 1: expected a column 'global_id' or 'name', found {_listed(head)}")
+        raise InputError(say("line 1: expected a column 'global_id' or 'name', found {}", _listed(head), place=path))
     return _Table(path, delimiter == ";", head, tuple(lines[1:]))
 
 
@@ -483,11 +495,13 @@ def _entries(table: _Table, kind: Kind, objects: _Objects, problems: _Problems) 
     known = (*OBJECT, *kind.columns)
     unknown = next((name for name in table.head if name not in known), None)
     if unknown is not None:
-        raise InputError(f"{table.path}: line 1: there is no column '{unknown[:60]}'; known are {', '.join(known)}")
+        raise InputError(
+            say("line 1: there is no column '{}'; known are {}", unknown[:60], ", ".join(known), place=table.path)
+        )
     required = [f.name for f in fields(kind.record) if f.default is MISSING and f.name != "global_id"]
     missing = next((name for name in required if name not in table.head), None)
     if missing is not None:
-        raise InputError(f"{table.path}: line 1: the column '{missing}' is missing")
+        raise InputError(say("line 1: the column '{}' is missing", missing, place=table.path))
     for line, texts in table.lines:
         cells, n_before = _cells(table, texts), len(problems.texts)
         values: dict[str, Any] = {"global_id": _object(objects, cells, line, problems)}
@@ -498,7 +512,7 @@ def _entries(table: _Table, kind: Kind, objects: _Objects, problems: _Problems) 
                 if value != "":
                     values[column] = value
                 elif column in required:
-                    raise InputError(f"{column}: expected a value, found none")
+                    raise InputError(say("expected a value, found none", place=column))
             except InputError as error:
                 problems.add(line, column, error)
         if len(problems.texts) == n_before:
@@ -528,4 +542,4 @@ def _columns(table: _Table) -> dict[str, Column]:
     try:
         return {head: column_of_head(head) for head in table.head if head not in OBJECT}
     except InputError as error:
-        raise InputError(f"{table.path}: line 1: {error}") from error
+        raise InputError(say("line 1: {}", error, place=table.path)) from error

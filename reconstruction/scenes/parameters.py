@@ -104,11 +104,13 @@ class RenderSettings:
     def __post_init__(self) -> None:
         unknown = [name for name in self.wishes if name not in EFFECTS]
         if unknown:
-            raise InputError(f"there is no effect '{unknown[0]}'; expected one of {', '.join(EFFECTS)}")
+            raise InputError(say("there is no effect '{}'; expected one of {}", unknown[0], ", ".join(EFFECTS)))
         if self.samples != "auto" and not 1 <= self.samples <= 32:
-            raise InputError(f"samples: expected 1 to 32 along a pixel's side, or auto, got {self.samples}")
+            raise InputError(say("samples: expected 1 to 32 along a pixel's side, or auto, got {}", self.samples))
         if not 2 <= self.environment_rows <= MOST_ROWS:
-            raise InputError(f"environment_rows: expected 2 to {MOST_ROWS}, got {self.environment_rows}")
+            raise InputError(
+                say("expected 2 to {}, got {}", MOST_ROWS, self.environment_rows, place="environment_rows")
+            )
         check(self)
 
     def decided(self, decisions: Iterable[Decision]) -> RenderSettings:

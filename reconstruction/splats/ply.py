@@ -123,7 +123,7 @@ def read_blocks(path: Path, header: PlyHeader, at_once: int = AT_ONCE) -> Iterat
         for first in range(0, header.n_rows, at_once):
             block = np.fromfile(stream, row, min(at_once, header.n_rows - first))
             if len(block) < min(at_once, header.n_rows - first):
-                raise InputError(f"{path}: ends after {first + len(block)} of its {header.n_rows} points")
+                raise InputError(say("ends after {} of its {} points", first + len(block), header.n_rows, place=path))
             yield block
 
 
@@ -161,7 +161,7 @@ def write_blocks(path: Path, n_rows: int, row: np.dtype[Any], comments: Sequence
 
 def _header_lines(stream: BinaryIO, path: Path) -> list[str]:
     if stream.readline(16).strip() != b"ply":
-        raise InputError(f"{path}: is no PLY file (it does not start with 'ply')")
+        raise InputError(say("is no PLY file (it does not start with 'ply')", place=path))
     lines: list[str] = []
     while stream.tell() < MAX_HEADER_BYTES:
         line = stream.readline(MAX_HEADER_BYTES)
@@ -171,7 +171,7 @@ def _header_lines(stream: BinaryIO, path: Path) -> list[str]:
         if text == "end_header":
             return lines
         lines.append(text)
-    raise InputError(f"{path}: its header does not end within {MAX_HEADER_BYTES} bytes; the file is damaged")
+    raise InputError(say("its header does not end within {} bytes; the file is damaged", MAX_HEADER_BYTES, place=path))
 
 
 def _parsed(lines: list[str], start: int, size: int, path: Path) -> PlyHeader:
@@ -196,30 +196,39 @@ def _parsed(lines: list[str], start: int, size: int, path: Path) -> PlyHeader:
             case ["property", "list", _, _, _] if len(elements) > 1:
                 pass  # of faces, which come after the vertices and are not read
             case _:
-                raise InputError(f"{path}: line {number} of its header is not understood: '{line[:80]}'")
+                raise InputError(say("line {} of its header is not understood: '{}'", number, line[:80], place=path))
     if kind != BINARY:
-        raise InputError(f"{path}: expected a PLY file of format {BINARY}, found '{kind or 'none'}'; save it as that")
+        raise InputError(
+            say("expected a PLY file of format {}, found '{}'; save it as that", BINARY, kind or "none", place=path)
+        )
     if not elements or elements[0][0] != "vertex":
-        raise InputError(f"{path}: its first element is '{elements[0][0] if elements else 'none'}', not 'vertex'")
+        raise InputError(
+            say("its first element is '{}', not 'vertex'", elements[0][0] if elements else "none", place=path)
+        )
     _check_columns([name for name, _ in columns], path)
     header = PlyHeader(elements[0][1], tuple(columns), tuple(comments), start)
     needed = header.n_rows * header.row_type.itemsize
     if header.n_rows > MAX_ROWS:
-        raise InputError(f"{path}: says that it has {header.n_rows} points; at most {MAX_ROWS} are read")
+        raise InputError(say("says that it has {} points; at most {} are read", header.n_rows, MAX_ROWS, place=path))
     if size - start < needed:
         raise InputError(
-            f"{path}: says that it has {header.n_rows} points, {needed} bytes, and {size - start} bytes follow its "
-            "header; the file is cut off or damaged"
+            say(
+                "says that it has {} points, {} bytes, and {} bytes follow its header; the file is cut off or damaged",
+                header.n_rows,
+                needed,
+                size - start,
+                place=path,
+            )
         )
     return header
 
 
 def _check_columns(names: list[str], path: Path) -> None:
     if not names or len(names) > MAX_COLUMNS:
-        raise InputError(f"{path}: its points have {len(names)} properties; expected 1 to {MAX_COLUMNS}")
+        raise InputError(say("its points have {} properties; expected 1 to {}", len(names), MAX_COLUMNS, place=path))
     double = next((name for name in names if names.count(name) > 1), None)
     if double is not None:
-        raise InputError(f"{path}: its points have the property '{double[:40]}' twice")
+        raise InputError(say("its points have the property '{}' twice", double[:40], place=path))
 
 
 Kind = Literal["2dgs", "3dgs"]
@@ -378,17 +387,17 @@ def _checked(header: PlyHeader, path: Path) -> int:
     needed = (*PLACE, *MEAN_COLOUR, "opacity", *SIZES[:FLAT], *ROTATION)
     missing = [name for name in needed if name not in header.names]
     if missing:
-        raise InputError(f"{path}: has no '{missing[0]}', so these are points and not splats")
+        raise InputError(say("has no '{}', so these are points and not splats", missing[0], place=path))
     n_rest = sum(name.startswith("f_rest_") for name in header.names)
     if n_rest not in REST_OF_DEGREE or not header.names.issuperset(f"f_rest_{i}" for i in range(n_rest)):
-        raise InputError(f"{path}: expected 0, 9, 24 or 45 columns f_rest_0 and so on, found {n_rest}")
+        raise InputError(say("expected 0, 9, 24 or 45 columns f_rest_0 and so on, found {}", n_rest, place=path))
     types = dict(header.columns)
     used = (*needed, *SIZES)
     wrong = [name for name in types if name in used or name.startswith("f_rest_") if types[name] != "<f4"]
     if wrong:
-        raise InputError(f"{path}: '{wrong[0]}': expected float, found another type")
+        raise InputError(say("'{}': expected float, found another type", wrong[0], place=path))
     if not header.n_rows:
-        raise InputError(f"{path}: holds no splats")
+        raise InputError(say("holds no splats", place=path))
     return REST_OF_DEGREE[n_rest]
 
 
@@ -420,9 +429,9 @@ def _take(
         panels[rows] = block[PANEL]
     for name, value in values.items():
         if not np.isfinite(value[rows]).all():
-            raise InputError(f"{path}: holds numbers that are not finite, among them {name} of splats")
+            raise InputError(say("holds numbers that are not finite, among them {} of splats", name, place=path))
     if (values["log_scales"][rows] > LARGEST_LOG).any() or (panels[rows] < NO_PANEL).any():
-        raise InputError(f"{path}: holds sizes or panels that cannot be; the file is damaged")
+        raise InputError(say("holds sizes or panels that cannot be; the file is damaged", place=path))
 
 
 def _are_discs(log_scales: NDArray[np.float32]) -> bool:
@@ -440,9 +449,11 @@ def _origin(header: PlyHeader, path: Path) -> tuple[float, float, float]:
     try:
         x, y, z = (float(word) for word in line.removeprefix(f"{ORIGIN}:").split())
     except ValueError as error:
-        raise InputError(f"{path}: expected three numbers after '{ORIGIN}:', found '{line[:80]}'") from error
+        raise InputError(
+            say("expected three numbers after '{}:', found '{}'", ORIGIN, line[:80], place=path)
+        ) from error
     if not all(map(math.isfinite, (x, y, z))):
-        raise InputError(f"{path}: {ORIGIN}: expected finite numbers, found '{line[:80]}'")
+        raise InputError(say("expected finite numbers, found '{}'", line[:80], place=f"{path}: {ORIGIN}"))
     return x, y, z
 
 

@@ -14,6 +14,7 @@ from typing import Any
 
 from planning.base.effects import Decision, EffectSetting
 from planning.base.errors import InputError
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.light.config import ReflectionConfig
@@ -75,12 +76,17 @@ def downstream_psnr(
     held_out = held_out_names([photo.name for photo in test.photos], settings.held_out, settings.seed)
     learned = tuple(photo for photo in source.photos if photo.name not in held_out)
     if not learned:
-        raise InputError(f"{train_folder}: has only views that are held out for scoring; name photos with more views")
+        raise InputError(
+            say("has only views that are held out for scoring; name photos with more views", place=train_folder)
+        )
     rays = glass_rays(source, learned, settings.memory_bytes, settings.seed, monitor)
     if not len(rays):
         raise InputError(
-            f"{train_folder}: none of {len(learned)} photos has a pixel that lies whole on a panel; take larger photos "
-            "(--width) or come closer"
+            say(
+                "none of {} photos has a pixel that lies whole on a panel; take larger photos (--width) or come closer",
+                len(learned),
+                place=train_folder,
+            )
         )
     # Of the same folder, so that the history shows the model and not what the folders differ by.
     shown = source.named(held_out[:: -(-len(held_out) // HISTORY_VIEWS)])

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from planning.base.effects import Decision
 from planning.base.errors import InfeasibleError, InputError
+from planning.base.messages import say
 from planning.base.progress import QUIET, Clock, Monitor
 from planning.site.records import Facade
 from planning.tradeoff.runner import GapAxis, Panel, knob_lines
@@ -156,7 +157,7 @@ class SceneVariants:
         unknown = [name for name in self.effects if name not in OF_A_PHOTO]
         if unknown:
             raise InputError(
-                f"there is no effect '{unknown[0]}' of single photos; expected one of {', '.join(OF_A_PHOTO)}"
+                say("there is no effect '{}' of single photos; expected one of {}", unknown[0], ", ".join(OF_A_PHOTO))
             )
         for option, least, values in (
             ("--samples", 1, self.samples),
@@ -164,7 +165,7 @@ class SceneVariants:
             ("--rays", 1, self.rays),
         ):
             if any(value < least for value in values):
-                raise InputError(f"{option}: expected {least} or more, got {min(values)}")
+                raise InputError(say("expected {} or more, got {}", least, min(values), place=option))
 
 
 Knob = Literal["", "samples", "width", "rays", "effect", "all effects"]

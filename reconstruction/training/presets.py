@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from planning.base.errors import InputError
+from planning.base.messages import say
 from reconstruction.light.config import LEAST_STEPS, GridSettings, ReflectionConfig
 from reconstruction.light.reflection_mlp import MlpShape
 from reconstruction.training.config import TrainConfig
@@ -61,7 +62,7 @@ def preset(name: str) -> TrainConfig:
         There is none of that name.
     """
     if name not in _CONFIGS:
-        raise InputError(f"--preset: expected {', '.join(PRESETS)}, got '{name}'")
+        raise InputError(say("expected {}, got '{}'", ", ".join(PRESETS), name, place="--preset"))
     minutes = PRESETS[name].minutes
     return replace(_CONFIGS[name], time_limit_s=None if minutes is None else minutes * MINUTE_S)
 

@@ -17,6 +17,7 @@ import torch.distributed as dist
 from torch import Tensor
 
 from planning.base.errors import InputError
+from planning.base.messages import say
 
 # What torch finds to compute on besides the processor.
 
@@ -113,7 +114,9 @@ def ranks_of_environment() -> Iterator[Ranks]:
     try:
         n, rank = int(text), int(os.environ["RANK"])
     except (ValueError, KeyError) as error:
-        raise InputError(f"WORLD_SIZE is '{text}', but RANK is no number; start the processes with torchrun") from error
+        raise InputError(
+            say("WORLD_SIZE is '{}', but RANK is no number; start the processes with torchrun", text)
+        ) from error
     dist.init_process_group("gloo", rank=rank, world_size=n)
     try:
         yield Ranks(rank, n)

@@ -239,14 +239,24 @@ def given_splats(
     splats, n_panels = found.splats, len(source.panels.corners_enu_m)
     if int(splats.panels.max()) >= n_panels:
         raise InputError(
-            f"{path}: has splats on panel {int(splats.panels.max()) + 1}, and {source.folder} has {n_panels} panels; "
-            "name a file of the same site"
+            say(
+                "has splats on panel {}, and {} has {} panels; name a file of the same site",
+                int(splats.panels.max()) + 1,
+                source.folder,
+                n_panels,
+                place=path,
+            )
         )
     means = splats.means.detach().double() + torch.from_numpy(np.array(found.origin_enu_m) - origin_enu_m)
     kept = means.norm(dim=1) <= REACH_M
     if not bool(kept.any()):
         raise InputError(
-            f"{path}: has no splat within {REACH_M:g} m of the panels of {source.folder}; are both in one frame?"
+            say(
+                "has no splat within {:g} m of the panels of {}; are both in one frame?",
+                REACH_M,
+                source.folder,
+                place=path,
+            )
         )
     values = {name: value.detach()[kept] for name, value in splats.named_parameters()}
     splats = Splats(values | {"means": means[kept].float()}, splats.panels[kept])

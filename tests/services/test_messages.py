@@ -1,5 +1,6 @@
 """Messages hold their parts whatever they are made of, and are told in any language and unit without failing."""
 
+import json
 import pickle
 
 import pytest
@@ -9,7 +10,7 @@ from hypothesis import strategies as st
 from groundstation.services.messages import LANGUAGES, told, translation
 from groundstation.services.settings import Language
 from groundstation.services.units import UnitSystem
-from planning.base.messages import Message, about, glue, joined, say, without_place
+from planning.base.messages import Message, about, glue, joined, packed, say, unpacked, without_place
 
 TEXTS = st.one_of(
     st.text(max_size=12),
@@ -71,3 +72,12 @@ def test_a_template_takes_as_many_values_as_it_has_fields():
 
 def test_the_command_line_speaks_the_languages_of_the_window():
     assert set(LANGUAGES) == set(Language) - {Language.SYSTEM}
+
+
+def test_a_message_comes_back_from_json_with_its_parts():
+    inner = say("found {:.1f} m", 3.0, place="a.ifc")
+    for text in ("plain", inner, about("b.json", inner), glue("x: ", inner), say("not read ({})", inner)):
+        back = unpacked(json.loads(json.dumps(packed(text))))
+        assert (back, type(back)) == (text, type(text))
+        if isinstance(text, Message):
+            assert (back.template, back.values, back.place) == (text.template, text.values, text.place)

@@ -7,7 +7,9 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from groundstation.cli.console import print_json, run_job, tell
 from groundstation.cli.options import add_day, flight_day
+from planning.base.messages import say
 
 SUFFIXES = (".html", ".htm")
 
@@ -37,7 +39,6 @@ def run(options: argparse.Namespace) -> int:
     from dataclasses import replace
     from datetime import date
 
-    from groundstation.cli.console import print_json, run_job
     from groundstation.services.jobs.runner import JobContext
     from groundstation.services.messages import told, translation
     from groundstation.services.mission.brief import flight_brief
@@ -50,8 +51,11 @@ def run(options: argparse.Namespace) -> int:
 
     if options.out.suffix.lower() not in SUFFIXES:
         raise InputError(
-            f"{options.out}: expected a name that ends in .html; a PDF is made from the window (Mission, Flight brief) "
-            "or by printing the page in a browser"
+            say(
+                "expected a name that ends in .html; a PDF is made from the window (Mission, Flight brief) or by "
+                "printing the page in a browser",
+                place=options.out,
+            )
         )
     check_output(options.out, [options.plan, options.site])
     plan, site_model = read_given_plan(options.plan), read_given_site(options.site)
@@ -79,5 +83,5 @@ def run(options: argparse.Namespace) -> int:
     else:
         print(options.out)
         if not is_flyable:
-            print("the plan is NOT ready to fly: the brief lists why", file=sys.stderr)
+            tell("the plan is NOT ready to fly: the brief lists why", file=sys.stderr)
     return 0

@@ -6,7 +6,9 @@ import argparse
 from pathlib import Path
 from typing import Any
 
+from groundstation.cli.console import MARKS, named_like, print_json, print_next, run_job, show, verdict_text, worded
 from groundstation.cli.options import add_day, flight_day
+from planning.base.messages import glue
 
 
 def add_parser(subparsers: Any) -> None:
@@ -25,7 +27,6 @@ def add_parser(subparsers: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Check and print; returns the exit status."""
-    from groundstation.cli.console import MARKS, named_like, print_json, print_next, run_job, verdict_text
     from groundstation.services.mission.readiness import readiness_of
     from groundstation.services.plan.planning import check_files, finding_summary
     from planning.base.findings import is_flyable
@@ -38,9 +39,9 @@ def run(options: argparse.Namespace) -> int:
         print_json({"flyable": flyable, "readiness": verdict, "findings": summaries})
     else:
         for finding in findings:
-            place = f" [{finding.place}]" if finding.place else ""
-            print(f"{MARKS[finding.severity]:>7}  {finding.code}{place}: {finding.message}")
-        print(verdict_text(findings))
+            place = glue(" [", finding.place, "]") if finding.place else ""
+            show(glue(f"{worded(MARKS[finding.severity]):>7}  {finding.code}", place, ": ", finding.message))
+        show(verdict_text(findings))
         if flyable:
             print_next("export", options.plan, "--format", "dji-kmz", "-o", named_like(options.plan, ".kmz"))
     return 0 if flyable else 1

@@ -6,6 +6,8 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from groundstation.cli.console import print_json, print_notes, run_job, tell, worded
+
 if TYPE_CHECKING:
     from planning.insight.comparison import Comparison
 
@@ -37,7 +39,6 @@ def add_parser(subparsers: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Compare and print; returns the exit status."""
-    from groundstation.cli.console import print_json, run_job
     from groundstation.services.plan.comparison import compare_files, comparison_summary
 
     paths = [options.first, *options.others]
@@ -45,12 +46,12 @@ def run(options: argparse.Namespace) -> int:
     if options.json:
         print_json(comparison_summary(comparison))
     else:
-        print("\n".join(table_lines(comparison)))
+        _print_table(comparison)
     return 0
 
 
-def table_lines(comparison: Comparison) -> list[str]:
-    """The table as text, a column a plan."""
+def _print_table(comparison: Comparison) -> None:
+    """A column a plan."""
     from groundstation.services.plan.comparison import marked_as_best
 
     constraints = comparison.constraints
@@ -58,17 +59,18 @@ def table_lines(comparison: Comparison) -> list[str]:
     for row in comparison.rows:
         texts = [_cell(value, row.unit) for value in row.values]
         stars = ("*" if is_best else " " for is_best in marked_as_best(texts, row.best))
-        lines.append([row.label, *(text + star for text, star in zip(texts, stars, strict=True))])
+        lines.append([worded(row.label), *(text + star for text, star in zip(texts, stars, strict=True))])
     widths = [max(len(line[column]) for line in lines) for column in range(len(lines[0]))]
-    text = [
-        "  ".join([line[0].ljust(widths[0]), *(c.rjust(w) for c, w in zip(line[1:], widths[1:], strict=True))]).rstrip()
-        for line in lines
-    ]
-    measured = (
-        f"coverage of all plans: {constraints.section_step_deg:g} degree sections, {constraints.min_distance_m:g} m "
-        f"minimum distance, occlusion {constraints.occlusion}"
+    for line in lines:
+        cells = (cell.rjust(width) for cell, width in zip(line[1:], widths[1:], strict=True))
+        print("  ".join([line[0].ljust(widths[0]), *cells]).rstrip())
+    tell(
+        "coverage of all plans: {:g} degree sections, {:g} m minimum distance, occlusion {}",
+        constraints.section_step_deg,
+        constraints.min_distance_m,
+        constraints.occlusion,
     )
-    return [*text, measured, *(f"note: {note}" for note in comparison.notes)]
+    print_notes(comparison.notes)
 
 
 def _cell(value: float | None, unit: str) -> str:

@@ -7,6 +7,7 @@ import time
 from pathlib import Path
 from typing import Any
 
+from groundstation.cli.console import print_findings, print_json, run_job, show, tell, verdict_text
 from groundstation.cli.options import new_folder
 
 SCENES = ("office", "library", "court", "canyon", "roof", "tower", "single-panel")
@@ -28,7 +29,6 @@ def add_parser(subparsers: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Demonstrate; returns the exit status."""
     from groundstation.cli.commands.plan import print_summary
-    from groundstation.cli.console import print_findings, print_json, run_job, verdict_text
     from groundstation.services.demo import demonstrate
     from groundstation.services.plan.planning import planned_summary
     from missions.flight.report import report_text
@@ -50,14 +50,19 @@ def run(options: argparse.Namespace) -> int:
             content["flown"] = plain_values(made.flown.flight.report.summary)
         print_json(content)
     else:
-        print(f"site:     {made.site_path}")
+        tell("site:     {}", made.site_path)
         print_summary(made.planned, made.plan_path, seconds)
         kept = sum(finding.severity is Severity.OK for finding in made.findings)
         of = sum(finding.severity is not Severity.NOTE for finding in made.findings)
-        print(f"check:    {kept} of {of} rules kept, {verdict_text(made.findings)}")
-        print("missions: " + ", ".join(str(path) for path in made.mission_paths))
+        tell("check:    {} of {} rules kept, {}", kept, of, verdict_text(made.findings))
+        tell("missions: {}", ", ".join(map(str, made.mission_paths)))
         if made.flown is not None and made.flown.flight.report is not None:
-            print(f"flight:   {made.flight_path} ({made.flown.flight.sorties[0].vehicle}, {made.flown.seconds:.1f} s)")
-            print(report_text(made.flown.flight.report))
+            tell(
+                "flight:   {} ({}, {:.1f} s)",
+                made.flight_path,
+                made.flown.flight.sorties[0].vehicle,
+                made.flown.seconds,
+            )
+            show(report_text(made.flown.flight.report))
         print_findings(f for f in (*made.findings, *made.export_findings) if f.severity is not Severity.OK)
     return 0 if flyable else 1

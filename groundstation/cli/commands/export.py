@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
+from groundstation.cli.console import print_findings, print_json, print_notes, run_job, tell
 from groundstation.cli.options import PluginNames, add_parameter, in_words_of_options, number, typed_values, words
 from groundstation.services.model.export import EXPORTERS, GROUP, ModelExport, ModelExporter, export_model
 from planning.base.parameters import declared, with_values
@@ -81,7 +82,6 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _export_model(options: argparse.Namespace) -> int:
-    from groundstation.cli.console import print_json, run_job
 
     with in_words_of_options(ModelExport):
         typed = typed_values(options, ModelExport)
@@ -91,14 +91,12 @@ def _export_model(options: argparse.Namespace) -> int:
         content = {"file": str(done.path), "format": options.format, "bytes": done.n_bytes, "notes": list(done.notes)}
         print_json(content)
         return 0
-    print(f"{done.path}: {done.n_bytes / 1e6:.3g} MB")
-    for note in done.notes:
-        print(f"note: {note}")
+    tell("{:.3g} MB", done.n_bytes / 1e6, place=done.path)
+    print_notes(done.notes)
     return 0
 
 
 def _export_plan(options: argparse.Namespace) -> int:
-    from groundstation.cli.console import print_findings, print_json
     from groundstation.services.mission.export import export_plan
     from groundstation.services.plan.planning import finding_summary
     from missions.dji.write import LinkLoss

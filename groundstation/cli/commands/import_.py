@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
+from groundstation.cli.console import counted, print_findings, print_json, print_next, run_job, tell
 from groundstation.cli.options import add_profile_argument, in_words_of_options, json_file, number
 from planning.base.messages import say
 
@@ -39,7 +40,6 @@ def add_parser(subparsers: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Import and print; returns the exit status."""
-    from groundstation.cli.console import counted, print_findings, print_json, print_next, run_job
     from groundstation.services.mission.export import import_missions
     from groundstation.services.plan.planning import finding_summary
     from planning.parameters import Constraints
@@ -81,14 +81,18 @@ def run(options: argparse.Namespace) -> int:
     else:
         views = say("{} in {}", counted(len(plan.viewpoints), "view"), counted(len(plan.sorties), "sortie"))
         if coverage.total:
-            print(
-                f"{options.out}: {views} cover {coverage.covered} of {coverage.total} sections; no flight can cover "
-                f"more than {coverage.reachable_upper_bound}"
+            tell(
+                "{} cover {} of {} sections; no flight can cover more than {}",
+                views,
+                coverage.covered,
+                coverage.total,
+                coverage.reachable_upper_bound,
+                place=options.out,
             )
         else:
-            print(f"{options.out}: {views}; the site has no panels that they could cover")
+            tell("{}; the site has no panels that they could cover", views, place=options.out)
         if options.site is None:
-            print(f"{site}: a bare site around them, without building and panels")
+            tell("a bare site around them, without building and panels", place=site)
         print_findings(findings)
         if coverage.total:
             print_next("check", options.out, site)

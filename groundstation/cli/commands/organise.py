@@ -6,7 +6,9 @@ import argparse
 from pathlib import Path
 from typing import Any
 
+from groundstation.cli.console import counted, print_json, run_job, show, tell
 from groundstation.cli.options import new_folder
+from planning.base.messages import about, joined
 
 EPILOG = """examples:
   organise tower.model -o tower.gsscene
@@ -34,18 +36,17 @@ def add_parser(subparsers: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Organise and print; returns the exit status."""
-    from groundstation.cli.console import counted, print_json, run_job
     from groundstation.services.model.objects import organise_files
 
     done = run_job("organise", lambda context: organise_files(options.model, options.out, options.site, context))
     if options.json:
         print_json(done.summary())
         return 0
-    facades = counted(done.n_components - 1, "facade")
-    print(f"{done.folder}: {facades}, {counted(done.n_elements, 'panel')}, {counted(done.n_gaussians, 'Gaussian')}")
+    parts = (done.n_components - 1, "facade"), (done.n_elements, "panel"), (done.n_gaussians, "Gaussian")
+    show(about(done.folder, joined(", ", (counted(n, name) for n, name in parts))))
     if done.n_given_ids:
-        print(f"{counted(done.n_given_ids, 'panel')} with the GlobalId of the building model")
+        tell("{} with the GlobalId of the building model", counted(done.n_given_ids, "panel"))
     if done.n_empty:
         empty = counted(done.n_empty, "panel")
-        print(f"{empty} without Gaussians of their own: no photo showed them, or the method knows no panels")
+        tell("{} without Gaussians of their own: no photo showed them, or the method knows no panels", empty)
     return 0

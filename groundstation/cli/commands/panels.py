@@ -9,7 +9,16 @@ from typing import TYPE_CHECKING, Any
 
 from groundstation.cli.commands.segment import add_parameter_arguments
 from groundstation.cli.commands.site import add_flight, add_place_and_content, import_options
-from groundstation.cli.options import add_pose_arguments, json_file, print_refined, refine_wish
+from groundstation.cli.console import counted, print_findings, print_json, print_next, print_notes, run_job, show, tell
+from groundstation.cli.options import (
+    add_pose_arguments,
+    in_words_of_options,
+    json_file,
+    parameters_of,
+    print_refined,
+    refine_wish,
+)
+from planning.base.messages import glue
 
 if TYPE_CHECKING:
     from groundstation.services.photos.panels import PanelSearch
@@ -67,8 +76,6 @@ def add_parser(subparsers: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Find, write, print; returns the exit status."""
-    from groundstation.cli.console import print_findings, print_json, print_next, run_job
-    from groundstation.cli.options import in_words_of_options, parameters_of
     from groundstation.services.photos.panels import find_panel_files, panel_search_summary
     from reconstruction.panels.solving.find import FindParameters
 
@@ -107,18 +114,21 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _print_search(search: PanelSearch, out: Path) -> None:
-    from groundstation.cli.console import counted
     from groundstation.services.photos.panels import panel_search_summary
 
     summary = panel_search_summary(search)
-    print(f"{out}: {counted(summary['panels'], 'panel')} on {counted(len(summary['facades']), 'facade')}")
+    tell("{} on {}", counted(summary["panels"], "panel"), counted(len(summary["facades"]), "facade"), place=out)
     for facade in summary["facades"]:
         rows, columns = counted(facade["rows"], "row"), counted(facade["columns"], "column")
-        print(
-            f"  facade {facade['id']}: {counted(facade['panels'], 'panel')} in {rows} and {columns}, from "
-            f"{counted(facade['photos'], 'photo')}; corners good to {facade['corner_sigma_m']:.2f} m"
+        tell(
+            "  facade {}: {} in {} and {}, from {}; corners good to {:.2f} m",
+            facade["id"],
+            counted(facade["panels"], "panel"),
+            rows,
+            columns,
+            counted(facade["photos"], "photo"),
+            facade["corner_sigma_m"],
         )
         for effect in summary["effects"][facade["id"]]:
-            print(f"    {effect}")
-    for note in search.notes:
-        print(f"note: {note}")
+            show(glue("    ", effect))
+    print_notes(search.notes)

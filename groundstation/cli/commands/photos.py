@@ -6,7 +6,9 @@ import argparse
 from pathlib import Path
 from typing import Any
 
+from groundstation.cli.console import counted, named_like, print_findings, print_json, print_next, run_job, show, tell
 from groundstation.cli.options import add_pose_arguments, print_refined, refine_wish
+from planning.base.messages import say
 
 EPILOG = """examples:
   photos /media/card/DCIM tower.site.json --plan tower.plan.json
@@ -43,7 +45,6 @@ def add_parser(subparsers: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Read, check, print; returns the exit status."""
-    from groundstation.cli.console import counted, named_like, print_findings, print_json, print_next, run_job
     from groundstation.services.photos.intake import intake_summary, take_in
     from groundstation.services.units import per_cent
     from reconstruction.photos.quality import QualityLimits
@@ -68,18 +69,18 @@ def run(options: argparse.Namespace) -> int:
         return 0
     print_refined(intake.better.refined)
     blur = summary["blur_px_median"]
-    sharpness = "" if blur is None else f", blur {blur:.2f} px in the middle"
-    print(f"{counted(summary['photos'], 'photo')} with a pose, {summary['usable']} usable{sharpness}")
+    sharpness = "" if blur is None else say(", blur {:.2f} px in the middle", blur)
+    tell("{} with a pose, {} usable{}", counted(summary["photos"], "photo"), summary["usable"], sharpness)
     if intake.coverage is None:
         print_findings(intake.findings)
         print_next("panels", options.photos, options.site, "-o", named_like(options.site, ".panels.site.json"))
         return 0
     share = per_cent(summary["covered"], summary["total"], 1)
-    print(f"they show {summary['covered']} of {summary['total']} sections ({share:.1f} %)")
+    tell("they show {} of {} sections ({:.1f} %)", summary["covered"], summary["total"], share)
     if "planned" in summary:
-        print(f"the plan promised {summary['planned']} sections; {summary['missed']} of them are missing")
+        tell("the plan promised {} sections; {} of them are missing", summary["planned"], summary["missed"])
     if summary["unseen_panels"]:
-        print(f"{counted(summary['unseen_panels'], 'panel')} in no photo at all")
-    print(intake.occlusion)
+        tell("{} in no photo at all", counted(summary["unseen_panels"], "panel"))
+    show(str(intake.occlusion))
     print_findings(intake.findings)
     return 0

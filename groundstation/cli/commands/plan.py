@@ -10,6 +10,7 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from groundstation.cli.console import counted, print_findings, print_json, print_next, run_job, show, tell
 from groundstation.cli.options import (
     add_parameter,
     add_profile_argument,
@@ -19,6 +20,7 @@ from groundstation.cli.options import (
     typed_values,
 )
 from planning.base.errors import InputError
+from planning.base.messages import glue, joined, say
 from planning.base.parameters import declared, with_values
 from planning.parameters import FLIGHT, GOAL, HOW, WHICH, PlanParameters
 
@@ -37,6 +39,14 @@ examples:
   plan tower.site.json -o tower.plan.json --batteries 2 --profile m4e --wind 6
   plan office.site.json -o new.plan.json --views 560 --keep office.plan.json
 """
+
+STAGES = {
+    "reachability": say("reachability"),
+    "views": "views",
+    "routing": say("routing"),
+    "certificate": say("certificate"),
+}
+"""Of planning, by the names of their times in JSON."""
 
 GOALS = ("n_views", "share", "n_batteries")
 """At most one of them is asked for."""
@@ -111,13 +121,19 @@ def _max_distance_m(wanted: PlanParameters, max_gsd_mm: float) -> float:
     from planning.aircraft.catalogue import profile
 
     if not max_gsd_mm > 0.0:
-        raise InputError(f"--max-gsd: expected a positive number of millimetres, got {max_gsd_mm:g}")
+        raise InputError(say("expected a positive number of millimetres, got {:g}", max_gsd_mm, place="--max-gsd"))
     by_gsd_m = profile(wanted.profile_id).camera.distance_for_gsd_m(max_gsd_mm / 1000.0)
     min_m, max_m = wanted.constraints.min_distance_m, wanted.constraints.max_distance_m
     if not by_gsd_m > min_m:
         raise InputError(
-            f"--max-gsd: this camera has pixels of {max_gsd_mm:g} mm at {by_gsd_m:.2f} m, but the minimum "
-            f"distance is {min_m:g} m; allow larger pixels or lower --min-distance"
+            say(
+                "this camera has pixels of {:g} mm at {:.2f} m, but the minimum distance is {:g} m; allow larger "
+                "pixels or lower --min-distance",
+                max_gsd_mm,
+                by_gsd_m,
+                min_m,
+                place="--max-gsd",
+            )
         )
     return by_gsd_m if max_m is None else min(max_m, by_gsd_m)
 
@@ -125,7 +141,6 @@ def _max_distance_m(wanted: PlanParameters, max_gsd_mm: float) -> float:
 def run(options: argparse.Namespace) -> int:
     """Plan and write; returns the exit status."""
     started = time.perf_counter()  # Loading what planning needs is part of the time budget.
-    from groundstation.cli.console import print_findings, print_json, print_next, run_job
     from groundstation.services.plan.planning import locked_viewpoints, plan_site, planned_summary
 
     request = request_of(options)
@@ -156,7 +171,6 @@ def run(options: argparse.Namespace) -> int:
 
 def print_summary(planned: Planned, out: Path, seconds: float) -> None:
     """What a pilot wants to know, in a few lines on stdout."""
-    from groundstation.cli.console import counted
     from groundstation.services.units import per_cent
     from planning.coverage.sections import SectionGrid
     from planning.insight.flight_profile import LOW_M, lowest_flight
@@ -164,40 +178,55 @@ def print_summary(planned: Planned, out: Path, seconds: float) -> None:
     plan, coverage = planned.plan, planned.plan.coverage
     n_directions = SectionGrid(plan.constraints.section_step_deg).n_sections
     share = per_cent(coverage.covered, coverage.reachable_upper_bound, 2)
-    print(
-        f"{out}: {counted(len(plan.viewpoints), 'view')} in {counted(len(plan.sorties), 'sortie')}, "
-        f"{plan.duration_s / 60:.1f} min in the air"
+    tell(
+        "{} in {}, {:.1f} min in the air",
+        counted(len(plan.viewpoints), "view"),
+        counted(len(plan.sorties), "sortie"),
+        plan.duration_s / 60,
+        place=out,
     )
-    print(
-        f"covered {coverage.covered} of {coverage.total} sections ({n_directions} directions of view for each of "
-        f"{counted(coverage.total // n_directions, 'panel')})"
+    tell(
+        "covered {} of {} sections ({} directions of view for each of {})",
+        coverage.covered,
+        coverage.total,
+        n_directions,
+        counted(coverage.total // n_directions, "panel"),
     )
-    print(
-        f"no flight can cover more than {coverage.reachable_upper_bound}, so this is {share:.2f} % of what is possible"
+    tell(
+        "no flight can cover more than {}, so this is {:.2f} % of what is possible",
+        coverage.reachable_upper_bound,
+        share,
     )
     wanted_mm = plan.constraints.wanted_gsd_mm
     if coverage.sharp is not None and wanted_mm:
-        print(
-            f"{coverage.sharp} of these with pixels up to {wanted_mm:.1f} mm on the panel, the coarsest with "
-            f"{coverage.coarsest_gsd_mm:.1f} mm"
+        tell(
+            "{} of these with pixels up to {:.1f} mm on the panel, the coarsest with {:.1f} mm",
+            coverage.sharp,
+            wanted_mm,
+            coverage.coarsest_gsd_mm,
         )
     bound = planned.bound_for_views
     if bound is not None and coverage.covered < bound < coverage.reachable_upper_bound:
-        print(f"no choice of as many viewpoints from those compared covers more than {math.floor(bound)}")
+        tell("no choice of as many viewpoints from those compared covers more than {}", math.floor(bound))
     twice = next((count for count in planned.depth if count.n_views == 2), None)
     if twice is not None:
-        print(f"seen at least twice: {twice.covered} sections")
+        tell("seen at least twice: {} sections", twice.covered)
     for position, sortie in enumerate(plan.sorties, 1):
-        print(
-            f"  sortie {position}: {counted(len(sortie.viewpoint_ids), 'view')}, {sortie.length_m:.0f} m, "
-            f"{sortie.duration_s / 60:.1f} min"
+        tell(
+            "  sortie {}: {}, {:.0f} m, {:.1f} min",
+            position,
+            counted(len(sortie.viewpoint_ids), "view"),
+            sortie.length_m,
+            sortie.duration_s / 60,
         )
     site = planned.prepared.site_model.site
     low = lowest_flight(plan, site.home_enu_m, site.airspace.ground_z_m)
     if low is not None:
-        below = "" if low.below_s is None else f", {low.below_s / 60:.1f} min below {LOW_M:g} m"
-        print(f"lowest flight {low.lowest_m:.1f} m above the ground{below} (take-off and landing apart)")
+        below = "" if low.below_s is None else say(", {:.1f} min below {:g} m", low.below_s / 60, LOW_M)
+        tell("lowest flight {:.1f} m above the ground{} (take-off and landing apart)", low.lowest_m, below)
     for decision in plan.effects:
-        print(decision)
-    stages = ", ".join(f"{stage} {value:.1f} s" for stage, value in planned.seconds.items())
-    print(f"planned in {seconds:.1f} s ({stages})", file=sys.stderr)
+        show(str(decision))
+    stages = joined(
+        ", ", (glue(STAGES.get(stage, stage), f" {value:.1f} s") for stage, value in planned.seconds.items())
+    )
+    tell("planned in {:.1f} s ({})", seconds, stages, file=sys.stderr)

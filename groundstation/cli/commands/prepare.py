@@ -6,7 +6,9 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from groundstation.cli.options import add_pose_arguments, new_folder, refine_wish
+from groundstation.cli.console import counted, print_findings, print_json, run_job, show, tell
+from groundstation.cli.options import add_pose_arguments, in_words_of_options, new_folder, refine_wish
+from planning.base.messages import glue
 
 EPILOG = """Writes images/, sparse/0 and points.ply as COLMAP and splatting programs read them, transforms.json for
 nerfstudio, and panels/, masks/ and normals/ (docs/reference/file-formats.md, reflight-dataset/1).
@@ -41,8 +43,6 @@ def add_parser(subparsers: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Prepare, write, print; returns the exit status."""
-    from groundstation.cli.console import counted, print_findings, print_json, run_job
-    from groundstation.cli.options import in_words_of_options
     from groundstation.services.photos.dataset import prepare_files, prepared_summary
     from reconstruction.dataset.prepare import PrepareParameters
 
@@ -67,8 +67,8 @@ def run(options: argparse.Namespace) -> int:
     if options.json:
         print_json(prepared_summary(prepared))
         return 0
-    print(f"{options.out}: {counted(len(prepared.data.photos), 'photo')} prepared")
+    tell("{} prepared", counted(len(prepared.data.photos), "photo"), place=options.out)
     for decision in prepared.data.decisions:
-        print(f"  {decision}")
+        show(glue("  ", decision))
     print_findings(prepared.findings)
     return 0

@@ -6,6 +6,9 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from groundstation.cli.console import counted, print_findings, print_json, print_next, tell
+from planning.base.messages import joined, say
+
 if TYPE_CHECKING:
     from groundstation.services.project.folder import OpenedProject
 
@@ -46,7 +49,6 @@ def _add_action(actions: Any, name: str, run: Any, text: str) -> argparse.Argume
 
 def run_new(options: argparse.Namespace) -> int:
     """Make a project; returns the exit status."""
-    from groundstation.cli.console import print_next
     from groundstation.services.project.document import Document
     from groundstation.services.project.folder import create_project, facades_beside, open_project
     from groundstation.services.project.input_files import read_given_site
@@ -61,7 +63,6 @@ def run_new(options: argparse.Namespace) -> int:
 
 def run_show(options: argparse.Namespace) -> int:
     """Show a project; returns the exit status."""
-    from groundstation.cli.console import print_findings, print_json, print_next
     from groundstation.services.plan.planning import finding_summary
     from groundstation.services.project.folder import open_project
     from groundstation.services.project.migration import VERSION
@@ -77,7 +78,8 @@ def run_show(options: argparse.Namespace) -> int:
         return 0
     _print(project)
     if recovery is not None:
-        print("unsaved: " + (recovery.problem or f"{', '.join(recovery.changes)}; open the project in the window"))
+        unsaved = recovery.problem or say("{}; open the project in the window", joined(", ", recovery.changes))
+        tell("unsaved: {}", unsaved)
     print_findings(project.notes)
     if project.version < VERSION:
         print_next("project", "migrate", options.folder)
@@ -86,7 +88,6 @@ def run_show(options: argparse.Namespace) -> int:
 
 def run_add(options: argparse.Namespace) -> int:
     """Add plans to a project; returns the exit status."""
-    from groundstation.cli.console import counted, print_findings, print_next
     from groundstation.services.project.folder import add_plans, open_project, save_project
     from groundstation.services.project.lock import lock_project
 
@@ -95,14 +96,13 @@ def run_add(options: argparse.Namespace) -> int:
         document, notes = add_plans(project.document, options.plans)
         save_project(lock.folder, document)
     print_findings((*project.notes, *notes))
-    print(f"{options.folder}: {counted(len(options.plans), 'plan')} added, {len(document.plans)} in the project")
+    tell("{} added, {} in the project", counted(len(options.plans), "plan"), len(document.plans), place=options.folder)
     print_next("project", "show", options.folder)
     return 0
 
 
 def run_migrate(options: argparse.Namespace) -> int:
     """Save a project in the present format; returns the exit status."""
-    from groundstation.cli.console import print_findings
     from groundstation.services.project.folder import open_project, save_project
     from groundstation.services.project.lock import lock_project
     from groundstation.services.project.migration import FORMAT, VERSION
@@ -113,9 +113,9 @@ def run_migrate(options: argparse.Namespace) -> int:
             save_project(lock.folder, project.document)
     print_findings(note for note in project.notes if note.code not in ("loose-files", "old-format"))
     if project.version == VERSION:
-        print(f"{options.folder}: in format '{FORMAT}{VERSION}' already, nothing to do")
+        tell("in format '{}{}' already, nothing to do", FORMAT, VERSION, place=options.folder)
     else:
-        print(f"{options.folder}: now in format '{FORMAT}{VERSION}' (see project.json)")
+        tell("now in format '{}{}' (see project.json)", FORMAT, VERSION, place=options.folder)
     return 0
 
 
@@ -160,21 +160,26 @@ def _summary(project: OpenedProject) -> dict[str, Any]:
 
 
 def _print(project: OpenedProject) -> None:
-    from groundstation.cli.console import counted
     from groundstation.services.units import minutes_text, per_cent
 
     content = _summary(project)
-    print(f"project: {content['name']}")
+    tell("project: {}", content["name"])
     site = content["site"]
     if site is None:
-        print("site:    none yet")
+        tell("site:    none yet")
     else:
-        print(f"site:    {site['name']}, {counted(site['panels'], 'panel')} ({site['file']})")
-    print(f"plans:   {len(content['plans'])}")
+        tell("site:    {}, {} ({})", site["name"], counted(site["panels"], "panel"), site["file"])
+    tell("plans:   {}", len(content["plans"]))
     for plan in content["plans"]:
         bound = plan["reachable_upper_bound"]
-        share = f", {per_cent(plan['covered'], bound):.1f} % of what is possible" if bound else ""
-        print(
-            f"  {plan['title']}: {counted(plan['views'], 'view')}{share}, {counted(plan['sorties'], 'sortie')} in "
-            f"{minutes_text(plan['duration_s'])} ({plan['method']}, {plan['file']})"
+        share = say(", {:.1f} % of what is possible", per_cent(plan["covered"], bound)) if bound else ""
+        tell(
+            "  {}: {}{}, {} in {} ({}, {})",
+            plan["title"],
+            counted(plan["views"], "view"),
+            share,
+            counted(plan["sorties"], "sortie"),
+            minutes_text(plan["duration_s"]),
+            plan["method"],
+            plan["file"],
         )

@@ -7,9 +7,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from groundstation.cli.console import counted, print_json, print_next, print_notes, run_job, show, tell
 from groundstation.cli.options import count
 from planning.base.errors import InputError
 from planning.base.files import FILE_ENDING
+from planning.base.messages import glue, say
 
 EPILOG = """examples:
   records tower.gsscene make
@@ -106,7 +108,6 @@ def _add_files(actions: Any) -> None:
 
 def run_make(options: argparse.Namespace) -> int:
     """Make the records of a site; returns the exit status."""
-    from groundstation.cli.console import print_json, print_next
     from groundstation.services.model.facility_records import make_records, records_path
 
     done = make_records(options.folder, options.objects, options.who)
@@ -114,9 +115,13 @@ def run_make(options: argparse.Namespace) -> int:
         counts = {"new": done.n_new, "changed": done.n_changed, "absent": done.n_absent, "present": done.n_present}
         print_json({"records": str(records_path(options.folder)), "objects": counts})
         return 0
-    print(
-        f"{records_path(options.folder)}: {done.n_present} objects, {done.n_new} new, {done.n_changed} changed, "
-        f"{done.n_absent} no longer in the model"
+    tell(
+        "{} objects, {} new, {} changed, {} no longer in the model",
+        done.n_present,
+        done.n_new,
+        done.n_changed,
+        done.n_absent,
+        place=records_path(options.folder),
     )
     print_next("records", options.folder, "list")
     return 0
@@ -124,7 +129,6 @@ def run_make(options: argparse.Namespace) -> int:
 
 def run_list(options: argparse.Namespace) -> int:
     """List objects; returns the exit status."""
-    from groundstation.cli.console import counted, print_json
     from groundstation.services.model.facility_records import filter_value, object_lines, open_records
     from reconstruction.records.queries import ObjectFilter
 
@@ -144,16 +148,16 @@ def run_list(options: argparse.Namespace) -> int:
         print_json({"objects": lines})
         return 0
     for line in lines:
-        inspected = f"inspected {line['last_inspection']}" if line["last_inspection"] else "never inspected"
-        defect = f", open: {line['worst_open_defect']} ({line['severity']})" if line["severity"] else ""
-        print(f"{line['name']:<12} {line['global_id']}  {line['layer']}, {inspected}{defect}")
-    print(counted(len(lines), "object"))
+        inspected, worst = line["last_inspection"], line["worst_open_defect"]
+        seen = say("inspected {}", inspected) if inspected else say("never inspected")
+        defect = say(", open: {} ({})", worst, line["severity"]) if line["severity"] else ""
+        show(glue(f"{line['name']:<12} {line['global_id']}  {line['layer']}, ", seen, defect))
+    show(counted(len(lines), "object"))
     return 0
 
 
 def run_show(options: argparse.Namespace) -> int:
     """Show one object; returns the exit status."""
-    from groundstation.cli.console import print_json
     from groundstation.services.model.facility_records import object_content, open_records
 
     with open_records(options.folder) as book:
@@ -173,7 +177,6 @@ def run_show(options: argparse.Namespace) -> int:
 
 def run_search(options: argparse.Namespace) -> int:
     """Search texts; returns the exit status."""
-    from groundstation.cli.console import counted, print_json
     from groundstation.services.model.facility_records import open_records
     from reconstruction.records.queries import search
 
@@ -185,7 +188,7 @@ def run_search(options: argparse.Namespace) -> int:
         return 0
     for hit in hits:
         print(f"{hit.name:<12} {hit.kind} {hit.field}: {' '.join(hit.text.split())[:100]}")
-    print(counted(len(hits), "hit"))
+    show(counted(len(hits), "hit"))
     return 0
 
 
@@ -193,7 +196,6 @@ def run_history(options: argparse.Namespace) -> int:
     """List changes; returns the exit status."""
     from dataclasses import asdict
 
-    from groundstation.cli.console import print_json
     from groundstation.services.model.facility_records import open_records
     from reconstruction.records.queries import history
 
@@ -204,8 +206,13 @@ def run_history(options: argparse.Namespace) -> int:
         print_json({"changes": [asdict(change) for change in changes]})
         return 0
     for change in changes:
-        done = "added" if change.old is None else "removed" if change.new is None else "changed"
-        print(f"{change.at_utc}  {change.who}: {change.kind} of {change.name} {done} ({change.what})")
+        of = change.at_utc, change.who, change.kind, change.name, change.what
+        if change.old is None:
+            tell("{}  {}: {} of {} added ({})", *of)
+        elif change.new is None:
+            tell("{}  {}: {} of {} removed ({})", *of)
+        else:
+            tell("{}  {}: {} of {} changed ({})", *of)
     return 0
 
 
@@ -215,7 +222,7 @@ def run_check(options: argparse.Namespace) -> int:
 
     with open_records(options.folder) as book:
         book.check()
-    return _say(options, f"{records_path(options.folder)}: sound", sound=True)
+    return _say(options, say("sound", place=records_path(options.folder)), sound=True)
 
 
 def run_set(options: argparse.Namespace) -> int:
@@ -224,7 +231,7 @@ def run_set(options: argparse.Namespace) -> int:
 
     with open_records(options.folder, True, options.who) as book:
         n_changed = put_attributes(book, options.object, _fields(options.values))
-    return _say(options, f"{options.object}: {n_changed} changed", changed=n_changed)
+    return _say(options, say("{} changed", n_changed, place=options.object), changed=n_changed)
 
 
 def run_add(options: argparse.Namespace) -> int:
@@ -233,7 +240,7 @@ def run_add(options: argparse.Namespace) -> int:
 
     with open_records(options.folder, True, options.who) as book:
         entry = put_fields(book, options.object, options.kind, _fields(options.values))
-    return _say(options, f"{options.object}: {options.kind} {entry.key}", key=entry.key)
+    return _say(options, say("{} {}", options.kind, entry.key, place=options.object), key=entry.key)
 
 
 def run_remove(options: argparse.Namespace) -> int:
@@ -242,10 +249,10 @@ def run_remove(options: argparse.Namespace) -> int:
     from reconstruction.records.entries import KIND_NAMED
 
     if options.kind not in KIND_NAMED:
-        raise InputError(f"'{options.kind}': expected one of {', '.join(KIND_NAMED)}")
+        raise InputError(say("'{}': expected one of {}", options.kind, ", ".join(KIND_NAMED)))
     with open_records(options.folder, True, options.who) as book:
         book.remove(book.entry(KIND_NAMED[options.kind].record, options.key))
-    return _say(options, f"{options.kind} {options.key}: taken out", removed=options.key)
+    return _say(options, say("taken out", place=f"{options.kind} {options.key}"), removed=options.key)
 
 
 def run_undo(options: argparse.Namespace) -> int:
@@ -254,30 +261,28 @@ def run_undo(options: argparse.Namespace) -> int:
 
     with open_records(options.folder, True, options.who) as book:
         what = book.undo()
-    return _say(options, "nothing to take back" if what is None else f"taken back: {what}", undone=what)
+    return _say(options, say("nothing to take back") if what is None else say("taken back: {}", what), undone=what)
 
 
 def run_import(options: argparse.Namespace) -> int:
     """Take records over; returns the exit status."""
-    from groundstation.cli.console import run_job
     from groundstation.services.model.facility_records import import_records, open_records
 
     with open_records(options.folder, True, options.who) as book:
         done = run_job("import", lambda job: import_records(book, options.path, options.kind, options.all_sets, job))
     changed = ", ".join(f"{name} {n_changed}" for name, n_changed in done.n_changed.items())
-    return _say(options, f"added or changed: {changed}", done.notes, changed=done.n_changed)
+    return _say(options, say("added or changed: {}", changed), done.notes, changed=done.n_changed)
 
 
 def run_export(options: argparse.Namespace) -> int:
     """Write files; returns the exit status."""
-    from groundstation.cli.console import run_job
     from groundstation.services.model.facility_records import export_ifc, export_tables, open_records
 
     is_ifc = options.out.suffix.lower() == ".ifc"
     if not is_ifc:
         check_tables_name(options.out)
     if not is_ifc and (options.into is not None or options.site is not None):
-        raise InputError(f"{options.out}: --into and --site are for IFC; expected a name ending in .ifc")
+        raise InputError(say("--into and --site are for IFC; expected a name ending in .ifc", place=options.out))
     with open_records(options.folder) as book:
         if is_ifc:
             done = run_job("export", lambda job: export_ifc(book, options.out, options.into, options.site, job))
@@ -297,8 +302,11 @@ def check_tables_name(out: Path) -> None:
     """
     if FILE_ENDING.fullmatch(out.suffix.lower()) and not out.is_dir():
         raise InputError(
-            f"{out}: not written: there is no export into a file of this ending; name a folder, which gets a CSV table "
-            "for each kind of records (any spreadsheet opens them), or a name ending in .ifc"
+            say(
+                "not written: there is no export into a file of this ending; name a folder, which gets a CSV "
+                "table for each kind of records (any spreadsheet opens them), or a name ending in .ifc",
+                place=out,
+            )
         )
 
 
@@ -308,9 +316,9 @@ def _fields(texts: list[str]) -> dict[str, str]:
     for text in texts:
         name, equals, value = text.partition("=")
         if not equals or not name.strip():
-            raise InputError(f"'{text[:60]}': expected NAME=VALUE")
+            raise InputError(say("'{}': expected NAME=VALUE", text[:60]))
         if name in found:
-            raise InputError(f"'{name[:60]}' is given twice")
+            raise InputError(say("'{}' is given twice", name[:60]))
         found[name] = value
     return found
 
@@ -319,12 +327,9 @@ def _say(options: argparse.Namespace, text: str, notes: tuple[str, ...] = (), **
     """Print what was done, or its JSON object; returns the exit status."""
     import sys
 
-    from groundstation.cli.console import print_json
-
     if options.json:
         print_json({**content, **({"notes": notes} if notes else {})})
         return 0
-    print(text)
-    for note in notes:
-        print(f"note: {note}", file=sys.stderr)
+    show(text)
+    print_notes(notes, sys.stderr)
     return 0

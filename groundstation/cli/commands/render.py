@@ -6,8 +6,10 @@ import argparse
 from pathlib import Path
 from typing import Any
 
+from groundstation.cli.console import counted, print_json, run_job, show
 from groundstation.cli.options import count, new_folder, words
 from planning.base.errors import InputError
+from planning.base.messages import about, say
 from reconstruction.training.layers import LAYERS
 
 LAYER_LINES = "\n".join(f"  {name:<13} {text}" for name, text in LAYERS.items())
@@ -46,18 +48,17 @@ def add_parser(subparsers: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Render and print; returns the exit status."""
-    from groundstation.cli.console import counted, print_json, run_job
     from groundstation.services.model.rendering import RenderRequest, render_files
 
     unknown = next((name for name in options.layers if name not in LAYERS), None)
     if unknown is not None:
-        raise InputError(f"--layers: there is no layer '{unknown}'; known are {', '.join(LAYERS)}")
+        raise InputError(say("there is no layer '{}'; known are {}", unknown, ", ".join(LAYERS), place="--layers"))
     if options.frames == 1:
-        raise InputError("--frames: expected 2 or more, got 1")
+        raise InputError(say("expected 2 or more, got 1", place="--frames"))
     wish = RenderRequest(options.views, options.layers, options.width, options.frames, options.held_out)
     pictures = run_job("render", lambda context: render_files(options.model, wish, options.out, context))
     if options.json:
         print_json({"folder": str(options.out), "pictures": [str(path) for path in pictures]})
     else:
-        print(f"{options.out}: {counted(len(pictures), 'picture')}")
+        show(about(options.out, counted(len(pictures), "picture")))
     return 0

@@ -6,7 +6,18 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from groundstation.cli.console import (
+    counted,
+    flight_status,
+    print_findings,
+    print_json,
+    print_next,
+    run_job,
+    show,
+    tell,
+)
 from groundstation.cli.options import json_file
+from planning.base.messages import say
 
 if TYPE_CHECKING:
     from groundstation.services.fly.flying import ReportedFlight
@@ -57,7 +68,6 @@ def add_parser(subparsers: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Read, compare and print; returns the exit status."""
-    from groundstation.cli.console import flight_status, print_json, run_job
     from groundstation.services.fly.flying import report_files
 
     reported = run_job(
@@ -90,14 +100,13 @@ def _summary(reported: ReportedFlight, out: Path | None) -> dict[str, Any]:
 
 
 def _print_text(reported: ReportedFlight, options: argparse.Namespace) -> None:
-    from groundstation.cli.console import counted, print_findings, print_next
     from missions.flight.report import report_text
 
     flight = reported.flight
     assert flight.report is not None
     vehicles = ", ".join(dict.fromkeys(record.vehicle for record in flight.sorties))
-    print(f"flight:   {options.out or 'not written'} ({counted(len(flight.sorties), 'record')}, {vehicles})")
-    print(report_text(flight.report))
+    tell("flight:   {} ({}, {})", options.out or say("not written"), counted(len(flight.sorties), "record"), vehicles)
+    show(report_text(flight.report))
     print_findings(reported.findings)
     if options.out is not None and flight.report.summary.covered < flight.report.summary.covered_planned:
         print_next("topup", options.out, options.plan, options.site, "-o", options.out.with_name("topup.plan.json"))

@@ -9,7 +9,9 @@ import time
 from pathlib import Path
 from typing import Any
 
+from groundstation.cli.console import tell
 from groundstation.cli.options import checked_seed, number
+from planning.base.messages import say
 
 METHODS = ("local-search", "pyvrp", "nearest-neighbour")
 DEFAULT_BUDGET_S = 10.0
@@ -57,13 +59,15 @@ def run(options: argparse.Namespace) -> int:
 
     seed = checked_seed(options.seed)
     if options.time_budget <= 0.0:
-        raise InputError(f"--time-budget: expected a positive number of seconds, got {options.time_budget:g}")
+        raise InputError(
+            say("expected a positive number of seconds, got {:g}", options.time_budget, place="--time-budget")
+        )
     with expecting(FileKind.TSPLIB, options.file):
         instance = read_instance(options.file)
     if instance.kind == "CVRP":
-        raise InputError(f"{options.file}: a CVRP needs several routes; expected a TSP or ATSP")
+        raise InputError(say("a CVRP needs several routes; expected a TSP or ATSP", place=options.file))
     if instance.kind == "ATSP" and options.method == "local-search":
-        raise InputError(f"{options.file}: local-search needs a symmetric instance; add --method pyvrp")
+        raise InputError(say("local-search needs a symmetric instance; add --method pyvrp", place=options.file))
     left_s = options.time_budget - (time.perf_counter() - begin) - START_AND_END_S
     trace = Trace()
     result = solve_tour(instance.cost, options.method, TimeLimit(left_s), seed=seed, trace=trace)
@@ -84,11 +88,21 @@ def run(options: argparse.Namespace) -> int:
     if options.json:
         print(json.dumps(answer, allow_nan=False))
         return 0
-    proof = "the shortest there is" if result.gap == 0.0 else f"at most {result.gap:.2%} longer than the shortest"
-    print(
-        f"{instance.name}: {answer['length']} through {answer['points']} points, proven to be {proof}\n"
-        f"{answer['method']}, {answer['seconds']:.1f} s; the nearest neighbour gives "
-        f"{answer['nearest_neighbour_length']} ({greedy / result.length - 1.0:+.1%})"
+    proof = (
+        say("the shortest there is")
+        if result.gap == 0.0
+        else say("at most {:.2%} longer than the shortest", result.gap)
+    )
+    tell(
+        "{} through {} points, proven to be {}\n{}, {:.1f} s; the nearest neighbour gives {} ({:+.1%})",
+        answer["length"],
+        answer["points"],
+        proof,
+        answer["method"],
+        answer["seconds"],
+        answer["nearest_neighbour_length"],
+        greedy / result.length - 1.0,
+        place=instance.name,
     )
     return 0
 

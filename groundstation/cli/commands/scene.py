@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from groundstation.cli.console import counted, print_findings, print_json, run_job, show, tell, worded
 from groundstation.cli.options import (
     add_parameter,
     add_profile_argument,
@@ -15,6 +16,7 @@ from groundstation.cli.options import (
     typed_values,
 )
 from planning.base.errors import InputError
+from planning.base.messages import glue, say
 from planning.base.parameters import declared, with_values
 from reconstruction.scenes.parameters import EFFECTS, MITSUBA_RAYS, RenderSettings, SceneRequest
 
@@ -85,27 +87,25 @@ def add_parser(subparsers: Any) -> None:
 
 def run_list(options: argparse.Namespace) -> int:
     """Print the bundled scenes; returns the exit status."""
-    from groundstation.cli.console import print_json
     from groundstation.services.scenes.views import BUNDLED_TEXTS
 
     if options.json:
         print_json({"scenes": BUNDLED_TEXTS})
     else:
         for name, text in BUNDLED_TEXTS.items():
-            print(f"{name:<12} {text}")
+            show(glue(f"{name:<12} ", text))
     return 0
 
 
 def run_render(options: argparse.Namespace) -> int:
     """Render, write and print; returns the exit status."""
-    from groundstation.cli.console import print_json, run_job
     from groundstation.services.scenes.photos import photograph_files, rendered_summary
 
     wish = _wish(options)
     if options.jobs is not None and options.jobs < 1:
-        raise InputError(f"--jobs: expected 1 or more, got {options.jobs}")
+        raise InputError(say("expected 1 or more, got {}", options.jobs, place="--jobs"))
     if options.jobs is not None and options.cluster is not None:
-        raise InputError("--jobs is for this machine; leave it out, or --cluster")
+        raise InputError(say("--jobs is for this machine; leave it out, or --cluster"))
     rendered = run_job(
         "scene",
         lambda context: photograph_files(wish, options.out, options.jobs, context, address=options.cluster),
@@ -124,7 +124,7 @@ def _wish(options: argparse.Namespace) -> SceneRequest:
     if options.renderer == "mitsuba":
         typed.setdefault(rays, MITSUBA_RAYS)
     elif rays in typed:
-        raise InputError("--rays is for Mitsuba; add --renderer mitsuba, or leave it out")
+        raise InputError(say("--rays is for Mitsuba; add --renderer mitsuba, or leave it out"))
     with in_words_of_options(SceneRequest):
         files = {name: getattr(options, name) for name in ("scene", "plan", "flight", "look", "camera")}
         asked = SceneRequest(**files, profile_id=options.profile, settings=RenderSettings(wishes=wishes))
@@ -132,12 +132,11 @@ def _wish(options: argparse.Namespace) -> SceneRequest:
 
 
 def _print_text(rendered: RenderedScene) -> None:
-    from groundstation.cli.console import counted, print_findings
     from missions.simulator.build import effects_table
 
     written = rendered.written
-    kept = f", {written.n_kept} of them kept" if written.n_kept else ""
-    print(f"{written.folder}: {counted(len(written.photos), 'photo')} of '{rendered.scene}'{kept}")
-    print(f"effects:\n{effects_table(written.decisions)}")
-    print(f"rendered in {rendered.seconds:.1f} s")
+    kept = say(", {} of them kept", written.n_kept) if written.n_kept else ""
+    tell("{} of '{}'{}", counted(len(written.photos), "photo"), rendered.scene, kept, place=written.folder)
+    tell("effects:\n{}", effects_table(written.decisions, worded))
+    tell("rendered in {:.1f} s", rendered.seconds)
     print_findings(rendered.findings)

@@ -9,7 +9,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from groundstation.cli.commands.segment import add_parameter_arguments
-from groundstation.cli.options import new_folder
+from groundstation.cli.console import counted, print_json, run_job, show, table_row, tell
+from groundstation.cli.options import new_folder, parameters_of
+from planning.base.messages import about, glue, say
 
 if TYPE_CHECKING:
     from groundstation.services.photos.segmentation import ScoreRequest
@@ -27,6 +29,10 @@ examples:
 """
 
 
+PARTS = {"facade": "facade", "whole": say("whole")}
+"""Of a picture, by their names in the summary."""
+
+
 def _add_model_arguments(parser: Any) -> None:
     """Describe what is scored."""
     add = parser.add_argument
@@ -40,7 +46,6 @@ def _add_model_arguments(parser: Any) -> None:
 
 def run_model(options: argparse.Namespace) -> int:
     """Score and print; returns the exit status."""
-    from groundstation.cli.console import counted, print_json, run_job
     from groundstation.services.model.rendering import score_files, score_summary
 
     scored = run_job(
@@ -58,14 +63,14 @@ def run_model(options: argparse.Namespace) -> int:
     if options.json:
         print_json({"model": str(options.model), "dataset": str(options.dataset), **summary})
         return 0
-    print(f"{options.model}: {counted(len(scored.views), 'view')}")
-    print(f"  {'':<10}{'PSNR':>10}{'worst':>10}{'SSIM':>9}{'LPIPS':>9}")
-    for part in ("facade", "whole"):
+    show(about(options.model, counted(len(scored.views), "view")))
+    print(table_row(("", -10), ("PSNR", 10), (say("worst"), 10), ("SSIM", 9), ("LPIPS", 9)))
+    for part, name in PARTS.items():
         row = summary[part]
         cells = (_cell(row["psnr_db"], 2, " dB"), _cell(row["worst_psnr_db"], 2, " dB"))
         rest = (_cell(row["ssim"], 4), _cell(row["lpips"], 4))
-        print(f"  {part:<10}{cells[0]:>10}{cells[1]:>10}{rest[0]:>9}{rest[1]:>9}")
-    print(f"  {scored.lpips}" if scored.lpips else "  LPIPS unavailable: give weights with --lpips")
+        print(table_row((name, -10), (cells[0], 10), (cells[1], 10), (rest[0], 9), (rest[1], 9)))
+    show(glue("  ", scored.lpips or say("LPIPS unavailable: give weights with --lpips")))
     return 0
 
 
@@ -166,16 +171,17 @@ def request_of(options: argparse.Namespace) -> ScoreRequest:
     InputError
         A value is out of range, or a settings file cannot be read.
     """
-    from groundstation.cli.options import parameters_of
     from groundstation.services.photos.segmentation import ScoreRequest
     from planning.base.errors import InputError
 
     if options.seeds < 1:
-        raise InputError(f"--seeds: expected 1 or more, got {options.seeds}")
+        raise InputError(say("expected 1 or more, got {}", options.seeds, place="--seeds"))
     if options.first_seed < 0:
-        raise InputError(f"--first-seed: expected 0 or more, got {options.first_seed}")
+        raise InputError(say("expected 0 or more, got {}", options.first_seed, place="--first-seed"))
     if not MIN_WIDTH_PX <= options.width <= MAX_WIDTH_PX:
-        raise InputError(f"--width: expected {MIN_WIDTH_PX} to {MAX_WIDTH_PX} pixels, got {options.width}")
+        raise InputError(
+            say("expected {} to {} pixels, got {}", MIN_WIDTH_PX, MAX_WIDTH_PX, options.width, place="--width")
+        )
     return ScoreRequest(
         options.set_name,
         options.seeds,
@@ -192,7 +198,6 @@ def request_of(options: argparse.Namespace) -> ScoreRequest:
 
 def run_segmentation(options: argparse.Namespace) -> int:
     """Score and print; returns the exit status."""
-    from groundstation.cli.console import print_json, run_job
     from groundstation.services.photos.segmentation import save_photos, score_segmentation
     from reconstruction.metrics.run import summary
 
@@ -204,26 +209,25 @@ def run_segmentation(options: argparse.Namespace) -> int:
         files = {"table": str(report.table_path), "pictures": [str(path) for path in report.picture_paths]}
         print_json({"set": request.set_name, **summary(report.scores), **files})
         return 0
-    print("\n".join(score_lines(report.scores)))
+    _print_scores(report.scores)
     for path in (report.table_path, *report.picture_paths):
         print(path)
     return 0
 
 
-def score_lines(scores: SetScores) -> list[str]:
-    """The scores of a set as text."""
-    lines = [f"{len(scores.photos)} photos, {scores.n_panels} panels", f"  {'':<28}{'mean':>8}{'worst':>8}"]
-    lines.append(_line("overall IoU of glass", scores.overall_iou))
-    lines.append(_line("overall mIoU", scores.overall_miou))
+def _print_scores(scores: SetScores) -> None:
+    tell("{} photos, {} panels", len(scores.photos), scores.n_panels)
+    print(table_row(("", -28), (say("mean"), 8), (say("worst"), 8)))
+    _print_spread(say("overall IoU of glass"), scores.overall_iou)
+    _print_spread(say("overall mIoU"), scores.overall_miou)
     for percent, share in scores.coverage.items():
-        lines.append(f"  {f'coverage, {percent} % percentile':<28}{share:>8.4f}")
+        print(table_row((say("coverage, {} % percentile", percent), -28), (f"{share:.4f}", 8)))
     if scores.individual_miou is not None and scores.one_to_one_miou is not None:
-        lines.append(_line("individual mIoU", scores.individual_miou))
-        lines.append(_line("individual mIoU, one to one", scores.one_to_one_miou))
-        lines.append(f"  {scores.n_missed} panels missed, {scores.n_false} false ones found")
-        lines.append(f"  {scores.seconds.mean:.2f} s a photo, {scores.seconds.worst:.2f} s at most")
-    return lines
+        _print_spread(say("individual mIoU"), scores.individual_miou)
+        _print_spread(say("individual mIoU, one to one"), scores.one_to_one_miou)
+        tell("  {} panels missed, {} false ones found", scores.n_missed, scores.n_false)
+        tell("  {:.2f} s a photo, {:.2f} s at most", scores.seconds.mean, scores.seconds.worst)
 
 
-def _line(name: str, spread: Spread) -> str:
-    return f"  {name:<28}{spread.mean:>8.4f}{spread.worst:>8.4f}  {spread.worst_photo}"
+def _print_spread(name: str, spread: Spread) -> None:
+    print(table_row((name, -28), (f"{spread.mean:.4f}", 8), (f"{spread.worst:.4f}", 8)), f" {spread.worst_photo}")

@@ -6,7 +6,8 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from groundstation.cli.options import add_parameter, json_file
+from groundstation.cli.console import counted, print_json, run_job, tell
+from groundstation.cli.options import add_parameter, json_file, parameters_of
 from planning.base.parameters import declared
 from reconstruction.panels.search.parameters import SegmentationParameters
 
@@ -52,8 +53,6 @@ def add_parameter_arguments(parser: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Find, write, print; returns the exit status."""
-    from groundstation.cli.console import counted, print_json, run_job
-    from groundstation.cli.options import parameters_of
     from groundstation.services.photos.segmentation import segment_file, segmented_summary
 
     parameters = parameters_of(options)
@@ -71,8 +70,10 @@ def run(options: argparse.Namespace) -> int:
             rows, columns = counted(len(facade.rows) - 1, "row"), counted(len(facade.columns) - 1, "column")
             least = min(panel.confidence for panel in facade.panels)
             panels = counted(len(facade.panels), "panel")
-            print(f"facade {facade.id}: {panels} in {rows} and {columns}, confidence {least:.2f} or more")
+            tell(
+                "{} in {} and {}, confidence {:.2f} or more", panels, rows, columns, least, place=f"facade {facade.id}"
+            )
     if not done.found.panels:
-        print("no panels found: is the facade seen from its front, and are its frames visible?")
+        tell("no panels found: is the facade seen from its front, and are its frames visible?")
     print(f"{options.out} ({done.seconds:.1f} s)")
     return 0

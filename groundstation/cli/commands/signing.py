@@ -6,7 +6,9 @@ import argparse
 import sys
 from typing import Any
 
+from groundstation.cli.console import show, tell, worded
 from planning.base.errors import InputError
+from planning.base.messages import say
 
 EPILOG = """A vehicle with a key takes orders from whoever knows it, and from nobody else. The key lies in the system's
 key store where the package keyring is installed, else in a file that only you may read; never in a project.
@@ -39,22 +41,22 @@ def run(options: argparse.Namespace) -> int:
     from groundstation.services.fly import signing
 
     if (options.url is None) == (options.action in ("give", "withdraw")):
-        raise InputError("give and withdraw want the url of a link; set, status and forget want none")
+        raise InputError(say("give and withdraw want the url of a link; set, status and forget want none"))
     match options.action:
         case "set":
             signing.set_passphrase(_passphrase())
-            print("key kept; give it to a vehicle with 'signing give URL', over a cable")
+            tell("key kept; give it to a vehicle with 'signing give URL', over a cable")
         case "status":
-            print("there is a key" if signing.has_key() else "there is no key")
+            show(say("there is a key") if signing.has_key() else say("there is no key"))
         case "forget":
             signing.forget_passphrase()
-            print("there is no key any more; vehicles that know it keep it")
+            tell("there is no key any more; vehicles that know it keep it")
         case "give":
             vehicle = signing.give_key(options.url)
-            print(f"vehicle {vehicle.system} has the key and signs with it")
+            tell("vehicle {} has the key and signs with it", vehicle.system)
         case _:
             vehicle = signing.withdraw_key(options.url)
-            print(f"vehicle {vehicle.system} was told to sign no more")
+            tell("vehicle {} was told to sign no more", vehicle.system)
     return 0
 
 
@@ -64,7 +66,7 @@ def _passphrase() -> str:
         return sys.stdin.readline().rstrip("\r\n")
     from getpass import getpass
 
-    first = getpass("passphrase: ")
-    if getpass("once more: ") != first:
-        raise InputError("the two passphrases differ; nothing was changed")
+    first = getpass(worded(say("passphrase: ")))
+    if getpass(worded(say("once more: "))) != first:
+        raise InputError(say("the two passphrases differ; nothing was changed"))
     return first

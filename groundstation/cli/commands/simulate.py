@@ -8,10 +8,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from groundstation.cli.console import flight_status, print_findings, print_json, run_job, show, tell, worded
 from groundstation.cli.options import add_parameter, checked_seed, in_words_of_options, json_file, number, typed_values
 from groundstation.cli.options import effect_settings as settings_of_effects
 from missions.simulator.conditions import Conditions
 from planning.base.errors import InputError
+from planning.base.messages import about, say
 from planning.base.parameters import declared, with_values
 
 if TYPE_CHECKING:
@@ -39,8 +41,8 @@ examples:
 SITL_SPEEDUP = 10.0
 """Ten times is flown the same as real time, and leaves the link's time-outs room."""
 
-MAY_BE_REAL = "this could be a real aircraft, and 'simulate' takes off by itself; add --take-off if it may"
-NO_SIMULATION = f"the vehicle does not say that it is a simulation: {MAY_BE_REAL}; nothing was changed on it"
+MAY_BE_REAL = say("this could be a real aircraft, and 'simulate' takes off by itself; add --take-off if it may")
+NO_SIMULATION = say("the vehicle does not say that it is a simulation: {}; nothing was changed on it", MAY_BE_REAL)
 
 
 def add_parser(subparsers: Any) -> None:
@@ -84,8 +86,6 @@ def add_parser(subparsers: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Fly and print; returns the exit status."""
-    from groundstation.cli.console import flight_status, print_json, run_job
-
     flown = run_job("simulate", lambda context: _fly(options, context))
     if options.json:
         print_json(_summary(flown, options))
@@ -115,7 +115,7 @@ def _fly(options: argparse.Namespace, monitor: Monitor) -> Flown:
 
 def _battery_change(number: int) -> None:
     """Let the pilot change the battery; whoever is not at a terminal is told by the list before take-off."""
-    print(f"\nsortie {number} comes next: put in a full battery, then press Enter", file=sys.stderr, flush=True)
+    tell("\nsortie {} comes next: put in a full battery, then press Enter", number, file=sys.stderr)
     sys.stdin.readline()
 
 
@@ -125,16 +125,18 @@ def _wish(options: argparse.Namespace) -> FlightRequest:
     from missions.mavlink.autopilots import Autopilot
 
     if options.speedup is not None and not options.speedup > 0.0:
-        raise InputError(f"--speedup: expected more than 0, got {options.speedup:g}")
+        raise InputError(say("expected more than 0, got {:g}", options.speedup, place="--speedup"))
     is_simulated = options.link == SIMULATED
     if not is_simulated:
         _check_link(options)
     elif options.set_parameters or options.take_off or options.overrule or options.raised is not None:
         raise InputError(
-            "--take-off, --set-parameters, --raise and --overrule are for --link URL; nothing real moves here"
+            say("--take-off, --set-parameters, --raise and --overrule are for --link URL; nothing real moves here")
         )
     elif options.signed:
-        raise InputError("--signed: is for --link URL; the simulation in this program has no link to listen to")
+        raise InputError(
+            say("is for --link URL; the simulation in this program has no link to listen to", place="--signed")
+        )
     with in_words_of_options(Conditions):
         conditions = with_values(Conditions(), typed_values(options, Conditions))
     if not hasattr(options, "wind"):
@@ -162,7 +164,9 @@ def _overrules(codes: list[str]) -> frozenset[str]:
 
     for code in codes:
         if code not in OVERRULABLE:
-            raise InputError(f"--overrule: expected one of {', '.join(sorted(OVERRULABLE))}, got '{code}'")
+            raise InputError(
+                say("expected one of {}, got '{}'", ", ".join(sorted(OVERRULABLE)), code, place="--overrule")
+            )
     return frozenset(codes)
 
 
@@ -172,9 +176,9 @@ def _check_link(options: argparse.Namespace) -> None:
 
     kind, _, _ = parsed_url(options.link)
     if options.effects or hasattr(options, "wind") or options.speedup is not None:
-        raise InputError("--effects, --wind and --speedup are for --link sim; the vehicle at a link has its own")
+        raise InputError(say("--effects, --wind and --speedup are for --link sim; the vehicle at a link has its own"))
     if kind == "serial" and not options.take_off:
-        raise InputError(f"--link {options.link}: {MAY_BE_REAL}")
+        raise InputError(about(f"--link {options.link}", MAY_BE_REAL))
 
 
 def effect_settings(texts: list[str]) -> dict[str, EffectSetting]:
@@ -209,20 +213,19 @@ def _summary(flown: Flown, options: argparse.Namespace) -> dict[str, Any]:
 
 
 def _print_text(flown: Flown, options: argparse.Namespace) -> None:
-    from groundstation.cli.console import print_findings
     from missions.flight.report import report_text
     from missions.simulator.build import effects_table
 
     report = flown.flight.report
     assert report is not None
-    print(f"flight:   {options.out} ({flown.flight.sorties[0].vehicle}, {flown.seconds:.1f} s)")
-    print(report_text(report))
+    tell("flight:   {} ({}, {:.1f} s)", options.out, flown.flight.sorties[0].vehicle, flown.seconds)
+    show(report_text(report))
     for sortie in flown.sorties:
         if sortie.log is not None:
-            print(f"log:      {sortie.log}")
+            tell("log:      {}", sortie.log)
         for note in sortie.notes:
             if note.code == "log" or note.code.startswith("warning-"):
-                print(f"warning: sortie {sortie.number}, {note.time_s:.0f} s: {note.text}", file=sys.stderr)
+                tell("warning: sortie {}, {:.0f} s: {}", sortie.number, note.time_s, note.text, file=sys.stderr)
     print_findings(flown.findings)
     if flown.sorties and flown.sorties[0].effects:
-        print(f"effects:\n{effects_table(flown.sorties[0].effects)}")
+        tell("effects:\n{}", effects_table(flown.sorties[0].effects, worded))

@@ -10,9 +10,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from groundstation.cli.console import counted, named_like, print_json, print_next, run_job, tell, worded
 from groundstation.cli.options import json_file, number
 from planning.base.errors import InputError
-from planning.base.messages import about
+from planning.base.messages import about, say
 
 if TYPE_CHECKING:
     from planning.site.importing.options import ImportOptions, PanelGrid
@@ -116,20 +117,19 @@ def add_flight(command: argparse.ArgumentParser) -> None:
 def _point(text: str) -> Number3:
     parts = text.split(",")
     if len(parts) != 3:
-        raise argparse.ArgumentTypeError(f"expected three numbers with commas between them, got '{text}'")
+        raise argparse.ArgumentTypeError(worded(say("expected three numbers with commas between them, got '{}'", text)))
     return number(parts[0]), number(parts[1]), number(parts[2])
 
 
 def _triple(text: str) -> tuple[Number3, Number3, Number3]:
     points = text.split()
     if len(points) != 3:
-        raise argparse.ArgumentTypeError(f"expected three points with blanks between them, got '{text}'")
+        raise argparse.ArgumentTypeError(worded(say("expected three points with blanks between them, got '{}'", text)))
     return _point(points[0]), _point(points[1]), _point(points[2])
 
 
 def run(options: argparse.Namespace) -> int:
     """Import a site; returns the exit status."""
-    from groundstation.cli.console import print_json, run_job
     from groundstation.services.project.input_files import FileKind, expecting
     from groundstation.services.project.project_file import check_not_index
     from planning.base.json_file import check_output
@@ -171,24 +171,24 @@ def run(options: argparse.Namespace) -> int:
         return 0
     _print_site(site, options.out)
     for note in imported.notes:
-        print(f"note: {note}", file=sys.stderr)
+        tell("note: {}", note, file=sys.stderr)
     _print_next_step(site, options.out)
     return 0
 
 
 def _print_site(site: Site, out: Path) -> None:
-    from groundstation.cli.console import counted
 
     origin, n_facades = site.origin, len(site.facades)
     listed = ", ".join(f"{facade.id} {len(facade.panels)}" for facade in site.facades[:MAX_LISTED])
-    more = f", {n_facades - MAX_LISTED} smaller ones" if n_facades > MAX_LISTED else ""
-    on_facades = f"{counted(site.n_panels, 'panel')} on {counted(n_facades, 'facade')}: {listed}{more}"
-    print(f"{out}: site '{site.name}', {on_facades if site.n_panels else 'the building without panels'}")
-    print(f"origin {origin.lat_deg:.7f}, {origin.lon_deg:.7f}, {origin.ellipsoid_height_m:.2f} m above the ellipsoid")
+    more = say(", {} smaller ones", n_facades - MAX_LISTED) if n_facades > MAX_LISTED else ""
+    on_facades = say("{} on {}: {}{}", counted(site.n_panels, "panel"), counted(n_facades, "facade"), listed, more)
+    tell("site '{}', {}", site.name, on_facades if site.n_panels else say("the building without panels"), place=out)
+    tell(
+        "origin {:.7f}, {:.7f}, {:.2f} m above the ellipsoid", origin.lat_deg, origin.lon_deg, origin.ellipsoid_height_m
+    )
 
 
 def _print_next_step(site: Site, out: Path) -> None:
-    from groundstation.cli.console import named_like, print_next
 
     if site.n_panels:
         print_next("plan", out, "-o", named_like(out, ".plan.json"))
@@ -239,9 +239,14 @@ def _grids(options: argparse.Namespace) -> tuple[PanelGrid, ...]:
     for name, values in (("--rows", options.rows or []), ("--columns", options.columns or [])):
         if corners and len(values) not in (1, len(corners)):
             raise InputError(
-                f"{name}: expected it once, or once for each of {len(corners)} --panel-grid, got {len(values)}"
+                say(
+                    "expected it once, or once for each of {} --panel-grid, got {}",
+                    len(corners),
+                    len(values),
+                    place=name,
+                )
             )
         if values and not corners:
-            raise InputError(f"{name} goes with --panel-grid, which is missing")
+            raise InputError(say("{} goes with --panel-grid, which is missing", name))
         counts.append(values * len(corners) if len(values) == 1 else values)
     return tuple(PanelGrid(c, rows, columns, options.gap) for c, rows, columns in zip(corners, *counts, strict=True))

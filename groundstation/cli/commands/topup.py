@@ -6,8 +6,10 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from groundstation.cli.console import counted, print_findings, print_json, print_next, run_job, tell
 from groundstation.cli.options import checked_seed, in_words_of_options, json_file, number
 from planning.base.errors import InputError
+from planning.base.messages import say
 
 if TYPE_CHECKING:
     from planning.revision.top_up import TopUp
@@ -57,16 +59,15 @@ def add_parser(subparsers: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Plan and write; returns the exit status."""
     if options.battery is not None and not 0.0 <= options.battery <= 1.0:
-        raise InputError(f"--battery: expected a charge from 0 to 1, got {options.battery:g}")
+        raise InputError(say("expected a charge from 0 to 1, got {:g}", options.battery, place="--battery"))
     if options.resume:
         return _resume(options)
     if options.sortie is not None:
-        raise InputError("--sortie: is for --resume; a top-up closes what all sorties left open")
+        raise InputError(say("is for --resume; a top-up closes what all sorties left open", place="--sortie"))
     return _top_up(options)
 
 
 def _top_up(options: argparse.Namespace) -> int:
-    from groundstation.cli.console import print_findings, print_json, print_next, run_job
     from groundstation.services.plan.top_up import top_up_files, top_up_summary
     from planning.revision.top_up import Target, TopUpRequest
 
@@ -97,42 +98,54 @@ def _top_up(options: argparse.Namespace) -> int:
 
 
 def _print_top_up(found: TopUp, out: Path, is_left: bool) -> None:
-    from groundstation.cli.console import counted
     from groundstation.services.units import per_cent
 
     share = per_cent(found.delivered, found.promised, 2)
-    print(f"the photos show {found.delivered} of the {found.promised} sections that the plan promised ({share:.2f} %)")
+    tell(
+        "the photos show {} of the {} sections that the plan promised ({:.2f} %)",
+        found.delivered,
+        found.promised,
+        share,
+    )
     plan = found.plan
     if plan is None:
-        missing = "nothing is missing" if found.wanted == 0 else "what is missing cannot be shown"
-        print(f"{missing}; no top-up is needed, and none was written")
+        missing = say("nothing is missing") if found.wanted == 0 else say("what is missing cannot be shown")
+        tell("{}; no top-up is needed, and none was written", missing)
         return
     if is_left:
-        print("no top-up was written; --all writes it all the same")
+        tell("no top-up was written; --all writes it all the same")
         return
-    print(
-        f"{out}: {counted(len(plan.viewpoints), 'view')} in {counted(len(plan.sorties), 'sortie')}, "
-        f"{plan.duration_s / 60:.1f} min in the air, close {found.closed} of {found.wanted} missing sections"
+    tell(
+        "{} in {}, {:.1f} min in the air, close {} of {} missing sections",
+        counted(len(plan.viewpoints), "view"),
+        counted(len(plan.sorties), "sortie"),
+        plan.duration_s / 60,
+        found.closed,
+        found.wanted,
+        place=out,
     )
     for position, sortie in enumerate(plan.sorties, 1):
-        battery = "the battery on board" if found.on_board and position == 1 else "a full battery"
-        print(
-            f"  sortie {position}, on {battery}: {counted(len(sortie.viewpoint_ids), 'view')}, "
-            f"{sortie.length_m:.0f} m, {sortie.duration_s / 60:.1f} min"
+        battery = say("the battery on board") if found.on_board and position == 1 else say("a full battery")
+        tell(
+            "  sortie {}, on {}: {}, {:.0f} m, {:.1f} min",
+            position,
+            battery,
+            counted(len(sortie.viewpoint_ids), "view"),
+            sortie.length_m,
+            sortie.duration_s / 60,
         )
-    print(f"covered before {found.seen}, together {found.together} sections")
+    tell("covered before {}, together {} sections", found.seen, found.together)
     if found.shortest_s is not None:
-        print(f"no single flight over the views that were compared takes less than {found.shortest_s / 60:.1f} min")
+        tell("no single flight over the views that were compared takes less than {:.1f} min", found.shortest_s / 60)
     elif found.closed < found.bound:
-        print(f"no choice from the views that were compared closes more than {found.bound} on these batteries")
+        tell("no choice from the views that were compared closes more than {} on these batteries", found.bound)
 
 
 def _resume(options: argparse.Namespace) -> int:
-    from groundstation.cli.console import counted, print_findings, print_json, print_next, run_job
     from groundstation.services.plan.top_up import resume_files, resumed_summary
 
     if options.batteries is not None:
-        raise InputError("--batteries: is not for --resume, which fits one battery")
+        raise InputError(say("is not for --resume, which fits one battery", place="--batteries"))
     files = options.flight, options.plan, options.site, options.out
     rest, findings = run_job(
         "resume", lambda context: resume_files(*files, options.sortie, options.battery, monitor=context)
@@ -141,9 +154,14 @@ def _resume(options: argparse.Namespace) -> int:
         print_json(resumed_summary(rest, findings))
         return 0
     sortie = rest.plan.sorties[0]
-    print(
-        f"{options.out}: rest of sortie {rest.mission.number} from {sortie.viewpoint_ids[0]} on, "
-        f"{counted(len(sortie.viewpoint_ids), 'view')}, {sortie.length_m:.0f} m, {sortie.duration_s / 60:.1f} min"
+    tell(
+        "rest of sortie {} from {} on, {}, {:.0f} m, {:.1f} min",
+        rest.mission.number,
+        sortie.viewpoint_ids[0],
+        counted(len(sortie.viewpoint_ids), "view"),
+        sortie.length_m,
+        sortie.duration_s / 60,
+        place=options.out,
     )
     print_findings(findings)
     print_next("check", options.out, options.site)

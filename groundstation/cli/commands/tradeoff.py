@@ -13,6 +13,7 @@ from groundstation.cli.commands.plan import add_request_arguments, request_of
 from groundstation.cli.commands.score import add_set_arguments
 from groundstation.cli.commands.score import request_of as score_request_of
 from groundstation.cli.commands.segment import add_parameter_arguments
+from groundstation.cli.console import show, show_tradeoff, table_row, tell, worded
 from groundstation.cli.options import (
     PluginNames,
     above_zero,
@@ -29,7 +30,7 @@ from groundstation.cli.options import (
     words,
 )
 from planning.base.errors import InputError
-from planning.base.messages import say
+from planning.base.messages import glue, say
 from planning.base.plugins import PluginGroup
 from reconstruction.training.method_registry import DEFAULT_METHOD, METHODS
 from reconstruction.training.parameters import PRESETS
@@ -110,14 +111,15 @@ def _add_scene_arguments(parser: Any) -> None:
 
 def run_scene(options: argparse.Namespace) -> int:
     """Compare and print; returns the exit status."""
-    from groundstation.cli.console import show_tradeoff
     from groundstation.services.scenes.photos import scene_tradeoff
 
     request, variants = _scene_request(options), _scene_variants(options)
     if options.truth_rays < 0:
-        raise InputError(f"--truth-rays: expected 0 or more, got {options.truth_rays}")
+        raise InputError(say("expected 0 or more, got {}", options.truth_rays, place="--truth-rays"))
     if options.reflections != 0 and not options.reflections >= LEAST_VIEWS:
-        raise InputError(f"--reflections: expected {LEAST_VIEWS} or more photos, or 0, got {options.reflections}")
+        raise InputError(
+            say("expected {} or more photos, or 0, got {}", LEAST_VIEWS, options.reflections, place="--reflections")
+        )
     return show_tradeoff(
         "scene",
         options.json,
@@ -179,17 +181,18 @@ def _print_scene(made: SceneTrials) -> None:
     from reconstruction.tradeoff.scene_tradeoff import scene_rows, truth_error
 
     own = truth_error(made.truth)
-    accuracy = f", itself good to {255.0 * own:.2f} grey levels" if own else ""
-    print(f"truth: {made.truth.name}, {made.truth.seconds:.1f} s a photo{accuracy}")
-    print(f"effects:\n{effects_table(made.decisions)}")
-    print(f"  {'setting':<36}{'ready in':>10}{'s a photo':>10}{'PSNR':>10}{'':>8}{'mIoU':>9}{'':>9}{'missed':>8}")
+    accuracy = say(", itself good to {:.2f} grey levels", 255.0 * own) if own else ""
+    tell("truth: {}, {:.1f} s a photo{}", made.truth.name, made.truth.seconds, accuracy)
+    tell("effects:\n{}", effects_table(made.decisions, worded))
+    heads = (say("setting"), -36), (say("ready in"), 10), (say("s a photo"), 10), ("PSNR", 10), ("mIoU", 17)
+    print(table_row(*heads, (say("missed"), 17)))
     for row in scene_rows(made.truth, made.trials):
         ready, error = " " * 10, " " * 18
         if "psnr_db" in row:
             ready, error = f"{row['prepare_s']:>8.2f} s", f"{row['psnr_db']:>7.1f} dB{row['psnr_change_db']:>+8.2f}"
         single, change = row["individual_miou"], row["individual_miou_change"]
         found = f"{'-':>9}" if single is None else f"{single:>9.4f}{change:>+9.4f}{row['missed']:>8}"
-        print(f"  {row['setting']:<36}{ready}{row['seconds']:>10.3f}{error}{found}")
+        print(f"  {worded(row['setting']):<36}{ready}{row['seconds']:>10.3f}{error}{found}")
     if made.worths:
         _print_worths(made.worths)
 
@@ -197,12 +200,13 @@ def _print_scene(made: SceneTrials) -> None:
 def _print_worths(worths: Sequence[EffectWorth]) -> None:
     from reconstruction.tradeoff.scene_downstream import worth_rows
 
-    print("  reflections learned from photos, scored on glass of unseen views that have all that the scene calls for:")
-    print(f"  {'photos':<36}{'rendered in':>12}{'PSNR':>10}{'lost':>9}{'worst':>10}{'on their own kind':>20}")
+    tell("  reflections learned from photos, scored on glass of unseen views that have all that the scene calls for:")
+    heads = (say("photos"), -36), (say("rendered in"), 12), ("PSNR", 10), (say("lost"), 9), (say("worst"), 10)
+    print(table_row(*heads, (say("on their own kind"), 20)))
     for row in worth_rows(worths):
         print(
-            f"  {row['photos']:<36}{row['photos_s']:>10.1f} s{row['psnr_db']:>7.2f} dB{row['lost_db']:>+6.2f} dB"
-            f"{row['worst_db']:>7.2f} dB{row['own_db']:>17.2f} dB"
+            f"  {worded(row['photos']):<36}{row['photos_s']:>10.1f} s{row['psnr_db']:>7.2f} dB"
+            f"{row['lost_db']:>+6.2f} dB{row['worst_db']:>7.2f} dB{row['own_db']:>17.2f} dB"
         )
 
 
@@ -250,8 +254,6 @@ def _add_train_arguments(parser: Any) -> None:
 
 def run_train(options: argparse.Namespace) -> int:
     """Compare and print; returns the exit status."""
-    from groundstation.cli.console import show_tradeoff
-    from groundstation.cli.options import checked_seed
     from groundstation.services.reconstruct.training import TrainRequest, train_tradeoff
     from reconstruction.tradeoff.train_tradeoff import trial_rows
 
@@ -276,10 +278,11 @@ def run_train(options: argparse.Namespace) -> int:
 
 
 def _print_trainings(rows: Sequence[Mapping[str, Any]]) -> None:
-    print(f"  {'setting':<38}{'time':>9}{'facade':>11}{'':>9}{'whole':>11}{'steps':>8}{'splats':>8}")
+    heads = (say("setting"), -38), (say("time"), 9), ("facade", 11), (say("whole"), 20)
+    print(table_row(*heads, (say("steps"), 8), (say("splats"), 8)))
     for row in rows:
         print(
-            f"  {row['setting']:<38}{row['seconds']:>7.1f} s{row['facade_psnr_db']:>8.2f} dB"
+            f"  {worded(row['setting']):<38}{row['seconds']:>7.1f} s{row['facade_psnr_db']:>8.2f} dB"
             f"{row['change_db']:>+9.2f}{row['whole_psnr_db']:>8.2f} dB{row['steps']:>8}{row['splats']:>8}"
         )
 
@@ -295,7 +298,7 @@ def knob_of(text: str) -> tuple[str, list[Any]]:
     name, equals, values = text.partition("=")
     words = [word.strip() for word in values.split(",") if word.strip()]
     if not (name.strip() and equals and words):
-        raise InputError(f"--vary {text}: expected a setting and its values, such as n_splats=4000,8000")
+        raise InputError(say("expected a setting and its values, such as n_splats=4000,8000", place=f"--vary {text}"))
     return name.strip(), [_value(word) for word in words]
 
 
@@ -474,7 +477,6 @@ def _add_output(parser: argparse.ArgumentParser) -> None:
 
 def run_plan(options: argparse.Namespace) -> int:
     """Compare planning settings and print; returns the exit status."""
-    from groundstation.cli.console import show_tradeoff
     from groundstation.services.plan.tradeoff import plan_tradeoff
     from planning.tradeoff.plans import plan_summary
 
@@ -505,11 +507,11 @@ def run_plan(options: argparse.Namespace) -> int:
 
 def _print_plans(found: PlanRuns, is_timed: bool) -> None:
     if not is_timed:
-        print("note: the runs shared the machine, so their times cannot be compared", file=sys.stderr)
+        tell("note: the runs shared the machine, so their times cannot be compared", file=sys.stderr)
     for report in found.reports:
         _print_plan(report)
     for run in found.failed:
-        print(f"warning: {run.site}, {_failed_name(run)}: {run.message}", file=sys.stderr)
+        tell("warning: {}, {}: {}", run.site, _failed_name(run), run.message, file=sys.stderr)
 
 
 def _variants(options: argparse.Namespace) -> Variants:
@@ -526,7 +528,8 @@ def _variants(options: argparse.Namespace) -> Variants:
 
 def _failed_name(run: FailedRun) -> str:
     request = run.request
-    return f"{request.method} {request.precision} {request.constraints.section_step_deg:g}° seed {request.seed}"
+    step_deg = request.constraints.section_step_deg
+    return say("{} {} {:g}° seed {}", request.method, request.precision, step_deg, request.seed)
 
 
 def _print_plan(report: PlanReport) -> None:
@@ -534,29 +537,34 @@ def _print_plan(report: PlanReport) -> None:
     from planning.tradeoff.runner import seconds_text
 
     step = report.base_step_deg
-    print(plan_title(report))
-    print(f"  at most {report.bounds[step]} of {report.runs[0].total} sections of {step:g}° can be covered")
+    show(plan_title(report))
+    tell("  at most {} of {} sections of {:g}° can be covered", report.bounds[step], report.runs[0].total, step)
     finest = report.steps_deg[-1]
-    in_finest = "" if finest == step else f"in {finest:g}°"
-    print(f"  {'run':<24}{'views':>6}{'covered':>10}{in_finest:>9}{'first':>9}{'best':>9}{'plan ready':>12}")
+    in_finest = "" if finest == step else say("in {:g}°", finest)
+    heads = (say("run"), -24), ("views", 6), (say("covered"), 10), (in_finest, 9), (say("first"), 9)
+    print(table_row(*heads, (say("best"), 9), (say("plan ready"), 12)))
     for name in report.names:
         curve, run = report.curves[step][name], report.of(name)[0]
         in_finest = "" if finest == step else share_text(report.curves[finest][name].final_gap)
         first_s, best_s = curve.points[0].t_s, curve.points[-1].t_s
         print(
-            f"  {name:<24}{run.n_views:>6}{share_text(curve.final_gap):>10}{in_finest:>9}"
+            f"  {worded(name):<24}{run.n_views:>6}{share_text(curve.final_gap):>10}{in_finest:>9}"
             f"{first_s:>7.2f} s{best_s:>7.2f} s{curve.end_s:>10.1f} s"
         )
     last_s = max(curve.end_s for curve in report.curves[step].values())
-    goal = f"of what can be covered in sections of {step:g}°"
-    _print_answers(report.answers[step], share_text, lambda gap: f"{100.0 * (1.0 - gap):g} % {goal}", last_s)
+    _print_answers(
+        report.answers[step],
+        share_text,
+        lambda gap: say("{:g} % of what can be covered in sections of {:g}°", 100.0 * (1.0 - gap), step),
+        last_s,
+    )
     gaps = [answer.gap for answer in report.answers[step].by_gap]
     parts = " / ".join(f"{100.0 * (1.0 - gap):g}" for gap in gaps)
     winner = report.curves[step][report.winner]
     times = " / ".join(seconds_text(time_to_part_s(winner, 1.0 - gap)) for gap in gaps)
-    print(f"  '{report.winner}' had {parts} % of its own final coverage after {times}")
+    tell("  '{}' had {} % of its own final coverage after {}", report.winner, parts, times)
     if finest != step:
-        print(f"  best in sections of {finest:g}°: '{report.answers[finest].winner}'")
+        tell("  best in sections of {:g}°: '{}'", finest, report.answers[finest].winner)
 
 
 def _print_answers(found: Answers, text: Callable[[float], str], goal: Callable[[float], str], last_s: float) -> None:
@@ -564,18 +572,18 @@ def _print_answers(found: Answers, text: Callable[[float], str], goal: Callable[
     from planning.tradeoff.runner import seconds_text
 
     for budget in found.by_budget:
-        reached = "nothing yet" if budget.gap is None else f"{text(budget.gap)} with '{budget.run}'"
-        print(f"  after {budget.budget_s:>2g} s: {reached}")
+        reached = say("nothing yet") if budget.gap is None else say("{} with '{}'", text(budget.gap), budget.run)
+        tell("  after {:>2g} s: {}", budget.budget_s, reached)
         if budget.budget_s >= last_s:
             break
     for wanted in found.by_gap:
-        reached = say("not reached") if wanted.t_s is None else f"after {seconds_text(wanted.t_s)} with '{wanted.run}'"
-        print(f"  {goal(wanted.gap)}: {reached}")
+        t_s = wanted.t_s
+        reached = say("not reached") if t_s is None else say("after {} with '{}'", seconds_text(t_s), wanted.run)
+        show(glue("  ", goal(wanted.gap), ": ", reached))
 
 
 def run_route(options: argparse.Namespace) -> int:
     """Compare routing methods and print; returns the exit status."""
-    from groundstation.cli.console import show_tradeoff
     from groundstation.services.plan.tradeoff import route_tradeoff
     from planning.tradeoff.tours import tour_methods, tour_summary
 
@@ -601,23 +609,22 @@ def _print_tour(report: TourReport) -> None:
     from planning.tradeoff.tours import gap_text, plain, tour_title
 
     case = report.case
-    optimum = "" if case.optimum is None else f", known optimum {plain(case.optimum)}"
-    print(tour_title(report))
-    print(f"  {report.n_points} points, nothing is shorter than {plain(case.lower_bound)}{optimum}")
+    optimum = "" if case.optimum is None else say(", known optimum {}", plain(case.optimum))
+    show(tour_title(report))
+    tell("  {} points, nothing is shorter than {}{}", report.n_points, plain(case.lower_bound), optimum)
     for method, curve in report.curves.items():
         if curve.points:
             length, best_s = plain(report.length_of(method)), curve.points[-1].t_s
-            print(f"  {method:<18}{length:>12}{gap_text(curve.final_gap):>10}  best after {seconds_text(best_s)}")
+            tell("  {:<18}{:>12}{:>10}  best after {}", method, length, gap_text(curve.final_gap), seconds_text(best_s))
         else:
-            print(f"  {method:<18}  found no tour")
-    reference = say("lower bound") if case.optimum is None else "optimum"
+            tell("  {:<18}  found no tour", method)
+    reference = say("lower bound") if case.optimum is None else say("optimum")
     last_s = max(curve.end_s for curve in report.curves.values())
-    _print_answers(report.answers, gap_text, lambda gap: f"within {100.0 * gap:g} % of the {reference}", last_s)
+    _print_answers(report.answers, gap_text, lambda gap: say("within {:g} % of the {}", 100.0 * gap, reference), last_s)
 
 
 def run_segment(options: argparse.Namespace) -> int:
     """Compare settings of the search for panels and print; returns the exit status."""
-    from groundstation.cli.console import show_tradeoff
     from groundstation.services.photos.segmentation import segment_tradeoff
     from reconstruction.tradeoff.search_tradeoff import SegmentVariants, variant_rows
 
@@ -643,9 +650,12 @@ def _print_searches(runs: Sequence[SettingScores]) -> None:
     from reconstruction.tradeoff.search_tradeoff import variant_rows
 
     rows = variant_rows(runs)
-    print(f"{runs[0].scores.n_panels} panels in {rows[0]['photos']} photos")
-    print(f"  {'setting':<24}{'s a photo':>10}{'mIoU':>9}{'worst':>9}{'missed':>8}")
+    tell("{} panels in {} photos", runs[0].scores.n_panels, rows[0]["photos"])
+    heads = (say("setting"), -24), (say("s a photo"), 10), ("mIoU", 9), (say("worst"), 9), (say("missed"), 8)
+    print(table_row(*heads))
     for row in rows:
         single, worst = row["individual_miou"], row["individual_miou_worst"]
-        off = "" if row["view_error_px"] is None else f"  off by up to {row['view_error_px']:.2f} px in the photo"
-        print(f"  {row['setting']:<24}{row['seconds']:>10.3f}{single:>9.4f}{worst:>9.4f}{row['missed']:>8}{off}")
+        off_px = row["view_error_px"]
+        off = "" if off_px is None else say("  off by up to {:.2f} px in the photo", off_px)
+        numbers = f"{row['seconds']:>10.3f}{single:>9.4f}{worst:>9.4f}{row['missed']:>8}"
+        show(glue(table_row((row["setting"], -24)), numbers, off))

@@ -8,8 +8,10 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from groundstation.cli.console import counted, print_json, print_next, print_notes, run_job, show, tell
 from groundstation.cli.options import PluginNames, add_parameter, in_words_of_options, new_folder, typed_values
 from planning.base.errors import InputError, OperationCancelled
+from planning.base.messages import glue, say
 from planning.base.parameters import declared, with_values
 from planning.base.plugins import PluginGroup
 from reconstruction.training.method_registry import METHODS
@@ -80,7 +82,6 @@ def add_parser(subparsers: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Train and print; returns the exit status."""
     begun_s = time.perf_counter()
-    from groundstation.cli.console import print_json, run_job
     from groundstation.services.reconstruct.training import preview_to, train_files, train_summary
 
     wish = wish_of(options)
@@ -89,7 +90,9 @@ def run(options: argparse.Namespace) -> int:
     given += [f"--{name}" for name in ("settings", "start") if getattr(options, name) is not None]
     if options.resume and set(given) - {"--method"}:
         option = next(option for option in given if option != "--method")
-        raise InputError(f"--resume goes on with the settings that the training was begun with; leave {option} out")
+        raise InputError(
+            say("--resume goes on with the settings that the training was begun with; leave {} out", option)
+        )
     preview = None if options.preview is None else preview_to(options.preview)
     try:
         made = run_job(
@@ -108,7 +111,7 @@ def run(options: argparse.Namespace) -> int:
         )
     except (KeyboardInterrupt, OperationCancelled):
         if (options.out / "checkpoint.safetensors").is_file():
-            print(f"note: the state is kept in {options.out}; --resume goes on with it", file=sys.stderr)
+            tell("note: the state is kept in {}; --resume goes on with it", options.out, file=sys.stderr)
         raise
     if not made.is_written:
         return 0
@@ -127,18 +130,16 @@ def wish_of(options: argparse.Namespace) -> TrainRequest:
 
 
 def _print(made: TrainedFiles, options: argparse.Namespace) -> None:
-    from groundstation.cli.console import counted, print_next
 
     trained = made.trained
     record = trained.record
-    print(f"{made.folder}: {counted(trained.n_splats, 'splat')} of {counted(len(record.learned), 'photo')}")
+    tell("{} of {}", counted(trained.n_splats, "splat"), counted(len(record.learned), "photo"), place=made.folder)
     if record.config.trained_by.knows_panels:
         name = "harmonics" if record.light is None else record.light.name
-        print(f"  mirrored light: {name}{'' if record.config.light == 'auto' else ', as you asked'}")
+        tell("  mirrored light: {}{}", name, "" if record.config.light == "auto" else say(", as you asked"))
     for decision in record.decisions:
-        print(f"  {decision}")
-    print(f"  {counted(trained.n_steps, 'step')} in {trained.seconds:.0f} s", end="")
-    print(f", {trained.history[-1].value:.2f} dB on facades of unseen views" if trained.history else "")
-    for note in trained.notes:
-        print(f"note: {note}", file=sys.stderr)
+        show(glue("  ", decision))
+    quality = say(", {:.2f} dB on facades of unseen views", trained.history[-1].value) if trained.history else ""
+    tell("  {} in {:.0f} s{}", counted(trained.n_steps, "step"), trained.seconds, quality)
+    print_notes(trained.notes, sys.stderr)
     print_next("score", made.folder, options.dataset)

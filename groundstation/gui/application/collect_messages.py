@@ -1,6 +1,6 @@
 """Templates of all messages, for Qt Linguist: `python -m groundstation.gui.application.collect_messages FILE.py`.
 
-`lupdate` reads calls of Qt's own functions only. This writes the templates of every `say(...)` of the program into a
+`lupdate` reads calls of Qt's own functions only. This writes the templates of every `say(...)` and `tell(...)` into a
 Python file as calls that it does read; `make translations` throws the file away afterwards.
 """
 
@@ -27,10 +27,11 @@ def templates(root: Path = ROOT) -> set[str]:
 def templates_of(path: Path) -> Iterator[str]:
     """The templates of one module."""
     nodes = list(ast.walk(ast.parse(path.read_text("utf-8"))))
-    if not any(isinstance(node, ast.ImportFrom) and node.module == "planning.base.messages" for node in nodes):
+    modules = {"planning.base.messages", "groundstation.cli.console"}
+    if not any(isinstance(node, ast.ImportFrom) and node.module in modules for node in nodes):
         return
     for node in nodes:
-        if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "say" and node.args:
+        if isinstance(node, ast.Call) and getattr(node.func, "id", "") in ("say", "tell") and node.args:
             first = node.args[0]
             if isinstance(first, ast.Constant) and isinstance(first.value, str):
                 yield key_of(first.value)

@@ -26,6 +26,15 @@ from planning.base.findings import Finding
 # that are no messages themselves, such as names of things, stages in one word, and what the system and libraries say.
 
 IN_WINDOW = {
+    "the picture is distorted, and splats are rendered without distortion; make it straight with `prepare`": (
+        QT_TRANSLATE_NOOP(
+            "Sentences",
+            "the picture is distorted, and splats are rendered without distortion; make a data set of it (Photos tab)",
+        )
+    ),
+    "expected a folder of panels files (*.json), as 'segment' writes them; found none": QT_TRANSLATE_NOOP(
+        "Sentences", "expected a folder of panels files (*.json); found none"
+    ),
     "{0} of the {1} sections that flights can cover are covered ({2}): plan with more --views, or a --coverage": (
         QT_TRANSLATE_NOOP(
             "Sentences",

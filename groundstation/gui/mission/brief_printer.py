@@ -47,6 +47,7 @@ from groundstation.services.mission.readiness import Preflight
 from groundstation.services.units import UnitSystem
 from planning.base.errors import InputError
 from planning.base.findings import Severity
+from planning.base.messages import say
 from planning.plan import Plan
 from planning.site.records import SiteModel
 
@@ -200,7 +201,9 @@ def print_pages(document: QTextDocument, device: QPagedPaintDevice, name: str) -
     device.setPageMargins(QMarginsF(MARGIN_MM, MARGIN_MM, MARGIN_MM, MARGIN_MM), QPageLayout.Unit.Millimeter)
     painter = QPainter()
     if not painter.begin(device):
-        raise InputError(f"{name}: cannot be written; check the folder, or that no other program holds the file")
+        raise InputError(
+            say("cannot be written; check the folder, or that no other program holds the file", place=name)
+        )
     n_pages = lay_out(document, painter, float(device.width()), float(device.height()))
     for page in range(n_pages):
         if page:

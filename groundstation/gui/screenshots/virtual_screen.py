@@ -8,6 +8,7 @@ import subprocess
 import sys
 
 from planning.base.errors import InputError
+from planning.base.messages import say
 
 WIDTH_PX, HEIGHT_PX = 1920, 1080
 
@@ -30,7 +31,7 @@ def start_virtual_screen() -> None:
         Xvfb is not installed, or does not start.
     """
     if shutil.which("Xvfb") is None:
-        raise InputError("there is no screen, and no Xvfb to stand in for one: install the package xvfb")
+        raise InputError(say("there is no screen, and no Xvfb to stand in for one: install the package xvfb"))
     read_end, write_end = os.pipe()
     size = f"{WIDTH_PX}x{HEIGHT_PX}x24"
     screen = subprocess.Popen(
@@ -43,5 +44,5 @@ def start_virtual_screen() -> None:
     with os.fdopen(read_end) as numbers:
         number = numbers.readline().strip()
     if not number:
-        raise InputError("the virtual screen Xvfb did not start; run it by hand to see why")
+        raise InputError(say("the virtual screen Xvfb did not start; run it by hand to see why"))
     os.environ.update(DISPLAY=f":{number}", QT_QPA_PLATFORM="xcb", LIBGL_ALWAYS_SOFTWARE="1")

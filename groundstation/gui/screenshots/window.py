@@ -26,6 +26,7 @@ from groundstation.services.settings import CONFIG_VARIABLE, Language, Theme
 from groundstation.services.site.sources import open_site
 from groundstation.services.units import UnitSystem
 from planning.base.errors import InputError
+from planning.base.messages import say
 from planning.request import PlanRequest
 from planning.site.bundled import write_scene
 from planning.site.records import require_panels
@@ -79,7 +80,9 @@ def take_screenshots(folder: Path, site: Path | None = None, sizes_px: tuple[tup
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise InputError(f"{folder}: this folder cannot be made ({error.strerror or error}); name another") from error
+        raise InputError(
+            say("this folder cannot be made ({}); name another", error.strerror or error, place=folder)
+        ) from error
     if site is not None:
         require_panels(open_site(site).site)
     application = QApplication.instance() or QApplication(["reflight"])
@@ -336,7 +339,7 @@ class _Photographer(QObject):
         self._rest(rest_ms)
         path = self._folder / f"{name}.png"
         if not (self._controller.window if widget is None else widget).grab().save(str(path)):
-            raise InputError(f"{path}: the picture cannot be written")
+            raise InputError(say("the picture cannot be written", place=path))
         self._n_pictures += 1
 
     def _rest(self, duration_ms: int) -> None:

@@ -111,7 +111,7 @@ def sitl(
         It ended at once, or opened no link in time; the message holds its last words.
     """
     if defaults is not None and not defaults.is_file():
-        raise InputError(f"{defaults}: there is no such file; expected ArduPilot's copter.parm")
+        raise InputError(say("there is no such file; expected ArduPilot's copter.parm", place=defaults))
     with tempfile.TemporaryDirectory(prefix="reflight-sitl-") as folder:
         own = Path(folder, "reflight.parm")
         values = {**DEFAULTS, "BATT_CAPACITY": round(CURRENT_A * endurance_s / 3.6)}
@@ -142,7 +142,9 @@ def _started(command: list[str], folder: Path, monitor: Monitor) -> subprocess.P
                 command, cwd=folder, stdout=output, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL
             )
         except OSError as error:
-            raise InputError(f"{binary}: cannot be run ({error.strerror or error}); name an arducopter") from error
+            raise InputError(
+                say("cannot be run ({}); name an arducopter", error.strerror or error, place=binary)
+            ) from error
     try:
         _wait_for_link(process, binary, said, monitor)
     except BaseException:
@@ -158,12 +160,12 @@ def _wait_for_link(process: subprocess.Popen[bytes], binary: Path, output: Path,
         monitor.report("starting the simulation", 0, 0)
         if process.poll() is not None:
             said = output.read_text(errors="replace").strip().splitlines()[-1:] or ["it said nothing"]
-            raise LinkError(f"{binary}: ended at once with status {process.returncode} ({said[0]})")
+            raise LinkError(say("ended at once with status {} ({})", process.returncode, said[0], place=binary))
         try:
             open_link(SITL_LINK).close()
         except LinkError as error:
             if time.monotonic() > deadline_s:
-                raise LinkError(f"{binary}: opened no link at {SITL_LINK} within {START_S:g} s") from error
+                raise LinkError(say("opened no link at {} within {:g} s", SITL_LINK, START_S, place=binary)) from error
             time.sleep(0.1)
         else:
             return
@@ -226,8 +228,13 @@ def report_files(
     plan, site_model = read_given_plan(plan_path), read_given_site(site_path)
     if plan.origin is not None and plan.origin != site_model.site.origin:
         raise InputError(
-            f"{site_path}: the origin of '{site_model.site.name}' is not the one of the plan, which is for "
-            f"'{plan.site}'; name the site file that the plan was made for"
+            say(
+                "the origin of '{}' is not the one of the plan, which is for '{}'; name the site file that the "
+                "plan was made for",
+                site_model.site.name,
+                plan.site,
+                place=site_path,
+            )
         )
     if photos is not None:
         found = read_photo_flights(photos, site_model.site, heights, monitor)
@@ -533,7 +540,7 @@ class _Case:
                 raise error from outcome.error
             return record, sortie, error
         if record is None:
-            raise MissionError(f"{place}nothing was recorded: the vehicle sent no positions in flight")
+            raise MissionError(say("{}nothing was recorded: the vehicle sent no positions in flight", place))
         return record, sortie, None
 
     def _simulate(self, orders: SortieOrders) -> tuple[RunOutcome, FlightRecord | None, FlownSortie]:
@@ -570,7 +577,7 @@ class _Case:
         outcome = conduct(run, link, direct.clock, show=look, monitor=self.monitor)
         record = None if run.recorder is None else truth.record(run.recorder, orders)
         if record is not None:
-            record = replace(record, vehicle=f"simulated {self.autopilot.product}", effects=effects)
+            record = replace(record, vehicle=say("simulated {}", self.autopilot.product), effects=effects)
         expected_s = items_duration_s(orders, self.autopilot)
         return outcome, record, FlownSortie(orders.number, expected_s, effects, outcome.notes, None)
 

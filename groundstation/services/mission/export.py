@@ -45,8 +45,13 @@ def find_site(plan: Plan, plan_path: Path, site_path: Path | None = None) -> Sit
         site_model = read_given_site(site_path)
         if plan.origin is not None and plan.origin != site_model.site.origin:
             raise InputError(
-                f"{site_path}: the origin of '{site_model.site.name}' is not the one of the plan, which is for "
-                f"'{plan.site}'; name the site file that the plan was made for"
+                say(
+                    "the origin of '{}' is not the one of the plan, which is for '{}'; name the site file that the "
+                    "plan was made for",
+                    site_model.site.name,
+                    plan.site,
+                    place=site_path,
+                )
             )
         return site_model
     beside = _site_beside(plan, plan_path)
@@ -154,8 +159,11 @@ def import_missions(
     check_output(beside, [*paths, out])
     if beside.exists() and not _is_bare(beside):
         raise InputError(
-            f"{beside}: this is a site of its own, which the mission's bare one would replace; name it with --site, or "
-            "the plan otherwise"
+            say(
+                "this is a site of its own, which the mission's bare one would replace; name it with --site, or "
+                "the plan otherwise",
+                place=beside,
+            )
         )
     monitor.report(say("reading the mission"), 0, 1)
     read = read_mission_files(paths, strict=strict)

@@ -203,8 +203,10 @@ def open_records(folder: Path, writing: bool = False, who: str | None = None) ->
 
     if not folder.is_dir():
         raise InputError(
-            f"{folder}: expected the folder of a model; 'records FOLDER make --objects SITE' makes one for "
-            "records alone"
+            say(
+                "expected the folder of a model; 'records FOLDER make --objects SITE' makes one for records alone",
+                place=folder,
+            )
         )
     return RecordBook(records_path(folder), writing, user_name() if who is None else who)
 
@@ -329,10 +331,10 @@ def put_fields(book: RecordBook, name: str, kind_name: str, texts: Mapping[str, 
     kind = KIND_NAMED.get(kind_name)
     if kind is None or kind.record is Attribute:
         known = ", ".join(name for name in KIND_NAMED if name != "attribute")
-        raise InputError(f"'{kind_name}': expected one of {known}")
+        raise InputError(say("'{}': expected one of {}", kind_name, known))
     unknown = next((field for field in texts if field not in kind.columns), None)
     if unknown is not None:
-        raise InputError(f"a {kind_name} has no field '{unknown}'; known are {', '.join(kind.columns)}")
+        raise InputError(say("a {} has no field '{}'; known are {}", kind_name, unknown, ", ".join(kind.columns)))
     values = {field: read_field(field, text) for field, text in texts.items()}
     values = {field: value for field, value in values.items() if value != ""}
     row = book.object(name)
@@ -354,7 +356,7 @@ def _check_required(record: type[Any], values: Mapping[str, Any]) -> None:
 
     for field in fields(record):
         if field.default is MISSING and field.name not in values and field.name != "global_id":
-            raise InputError(f"{field.name}: expected a value, found none")
+            raise InputError(say("expected a value, found none", place=field.name))
 
 
 def _with_files(book: RecordBook, values: Mapping[str, Any]) -> dict[str, Any]:
@@ -433,10 +435,10 @@ def import_records(
     if path.is_dir():
         tables = [(path / table_name(kind), kind) for kind in KINDS if (path / table_name(kind)).is_file()]
         if not tables:
-            raise InputError(f"{path}: holds none of {', '.join(map(table_name, KINDS))}")
+            raise InputError(say("holds none of {}", ", ".join(map(table_name, KINDS)), place=path))
     elif kind_name is not None:
         if kind_name not in KIND_NAMED:
-            raise InputError(f"--kind: expected one of {', '.join(KIND_NAMED)}, got '{kind_name}'")
+            raise InputError(say("expected one of {}, got '{}'", ", ".join(KIND_NAMED), kind_name, place="--kind"))
         tables = [(path, KIND_NAMED[kind_name])]
     else:
         tables = [(path, kind_of_table(path))]
@@ -474,7 +476,7 @@ def export_ifc(
         mesh = None if site is None else read_given_site(site).building
         return Exported((out,), write_new_ifc(book, out, mesh))
     if site is not None:
-        raise InputError("--site goes with a new IFC file; leave out --into or --site")
+        raise InputError(say("--site goes with a new IFC file; leave out --into or --site"))
     from reconstruction.records.ifc.extract import property_sets
     from reconstruction.records.ifc.importing import extend_copy
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from planning.base.errors import InputError
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 
 if TYPE_CHECKING:
@@ -144,7 +145,7 @@ def _cameras(wish: RenderRequest, trained: TrainedModel) -> tuple[PosedPhoto, ..
     from reconstruction.scenes.photos.flight_views import lens_of, planned_shots, posed_photos
 
     if wish.width_px is not None and not WIDTHS_PX[0] <= wish.width_px <= WIDTHS_PX[1]:
-        raise InputError(f"--width: expected {WIDTHS_PX[0]} to {WIDTHS_PX[1]}, got {wish.width_px}")
+        raise InputError(say("expected {} to {}, got {}", WIDTHS_PX[0], WIDTHS_PX[1], wish.width_px, place="--width"))
     if not wish.views.is_dir():
         plan = read_given_plan(wish.views)
         return posed_photos(planned_shots(plan), lens_of(plan.camera, wish.width_px), Path())
@@ -152,7 +153,9 @@ def _cameras(wish: RenderRequest, trained: TrainedModel) -> tuple[PosedPhoto, ..
     held_out = trained.record.held_out
     photos = source.named(held_out) if wish.held_out_only else source.photos
     if not photos:
-        raise InputError(f"{wish.views}: has none of the views that the model did not learn from; leave --held-out out")
+        raise InputError(
+            say("has none of the views that the model did not learn from; leave --held-out out", place=wish.views)
+        )
     return photos if wish.width_px is None else tuple(_resized(photo, wish.width_px) for photo in photos)
 
 

@@ -18,6 +18,7 @@ from groundstation.services.project.project_file import check_not_index
 from planning.base.errors import InputError
 from planning.base.findings import Finding
 from planning.base.json_file import check_output, write_together
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.geo.frames import Origin, Vec3
 from planning.geo.mesh import TriangleMesh
@@ -220,7 +221,9 @@ def _place(
         return CoarsePlace(name, source.placement.origin, (0.0, 0.0, ground_m)), source.building
     assert site_model is not None
     if not len(site_model.building.triangles):
-        raise InputError(f"{path}: the site has no building mesh, and panels are found on one; name a mesh instead")
+        raise InputError(
+            say("the site has no building mesh, and panels are found on one; name a mesh instead", place=path)
+        )
     return site_model.site, site_model.building
 
 

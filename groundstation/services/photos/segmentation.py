@@ -10,6 +10,7 @@ from typing import Any
 from groundstation.services.project.input_files import FileKind, expecting
 from planning.base.errors import InputError
 from planning.base.json_file import check_output
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.tradeoff.runner import Compared, Subject, compare, output_folder
 from reconstruction.metrics.metrics import SetScores
@@ -195,11 +196,13 @@ def photo_set(request: ScoreRequest, n_beside: int = 0) -> PhotoSet:
         return made_set(name, request.n_seeds, camera, margin_m, n_beside, request.first_seed)
     if name in READERS:
         if request.data is None:
-            raise InputError(f"--set {name}: needs the folder of its annotated photos; name it with --data")
+            raise InputError(
+                say("needs the folder of its annotated photos; name it with --data", place=f"--set {name}")
+            )
         return annotated_set(name, request.data)
     if name == "folder":
         if request.images is None or request.truth is None:
-            raise InputError("--set folder: needs photos and index images; name both with --images and --truth")
+            raise InputError(say("--set folder: needs photos and index images; name both with --images and --truth"))
         return folder_set(request.images, request.truth, request.is_rectified)
     raise ValueError(f"expected a known set, got {name}")
 
@@ -216,8 +219,11 @@ def segment_tradeoff(
     """
     if request.set_name not in MADE_SETS and (variants.n_views or variants.view_kinds):
         raise InputError(
-            f"--views, --rectified-by: the photos of '{request.set_name}' have no poses, which both need; take a made "
-            f"set: {', '.join(MADE_SETS)}"
+            say(
+                "--views, --rectified-by: the photos of '{}' have no poses, which both need; take a made set: {}",
+                request.set_name,
+                ", ".join(MADE_SETS),
+            )
         )
     photos = photo_set(request, max(variants.n_views, default=1) - 1)
     base = request.parameters or SegmentationParameters()

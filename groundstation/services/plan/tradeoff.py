@@ -18,6 +18,7 @@ from groundstation.services.project.input_files import (
     read_given_site,
 )
 from planning.base.errors import InfeasibleError, InputError
+from planning.base.messages import say
 from planning.base.parallel_map import sweep
 from planning.base.progress import QUIET, Monitor
 from planning.parameters import DEFAULT_VIEWS
@@ -177,7 +178,9 @@ def _tsplib_case(path: Path, monitor: Monitor) -> TourCase:
 def _check_names(names: Sequence[str]) -> None:
     twice = next((name for name in names if names.count(name) > 1), None)
     if twice is not None:
-        raise InputError(f"two of the files are called '{twice}'; their names must differ to tell the results apart")
+        raise InputError(
+            say("two of the files are called '{}'; their names must differ to tell the results apart", twice)
+        )
 
 
 def _plans_with_sites(paths: Sequence[Path]) -> list[tuple[Plan, SiteModel]]:
@@ -189,7 +192,7 @@ def _plans_with_sites(paths: Sequence[Path]) -> list[tuple[Plan, SiteModel]]:
         else:
             plans.append((path, read_given_plan(path)))
     if sites and not plans:
-        raise InputError(f"{paths[0]}: a site alone has no viewpoints to fly to; name a plan as well")
+        raise InputError(say("a site alone has no viewpoints to fly to; name a plan as well", place=paths[0]))
     return [(plan, _site_for(plan, path, sites)) for path, plan in plans]
 
 
@@ -200,5 +203,5 @@ def _site_for(plan: Plan, plan_path: Path, sites: Sequence[SiteModel]) -> SiteMo
                 return model
     beside = None if sites else find_site(plan, plan_path)
     if beside is None:
-        raise InputError(f"{plan_path}: the plan is for the site '{plan.site}'; name its site file as well")
+        raise InputError(say("the plan is for the site '{}'; name its site file as well", plan.site, place=plan_path))
     return beside

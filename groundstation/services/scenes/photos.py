@@ -228,9 +228,9 @@ def photograph_files(
     """
     n_given = sum(given is not None for given in (wish.n_views, wish.n_square))
     if n_given and (wish.plan is not None or wish.flight is not None):
-        raise InputError("a number of views is for scenes without a plan or flight; leave it out, or them")
+        raise InputError(say("a number of views is for scenes without a plan or flight; leave it out, or them"))
     if n_given > 1:
-        raise InputError("views are planned or square to the facades; give one number, not both")
+        raise InputError(say("views are planned or square to the facades; give one number, not both"))
     check_folder(folder)
     if wish.settings.mitsuba_rays is not None:
         mitsuba()

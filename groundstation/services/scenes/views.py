@@ -18,6 +18,7 @@ from planning.aircraft.catalogue import profile
 from planning.base.errors import InputError
 from planning.base.findings import Finding, Severity
 from planning.base.json_file import plain_values
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.geo.mesh import ply_bytes
 from planning.parameters import Constraints, GreedyParameters
@@ -60,15 +61,22 @@ def shots_of_flight(path: Path, plan: Plan | None, model: SiteModel) -> tuple[tu
     flight, site = read_flight(path), model.site
     if flight.site != site.name or flight.origin != site.origin:
         raise InputError(
-            f"{path}: this is a flight over '{flight.site}', and not over '{site.name}' at its origin; name the "
-            "site that was flown over"
+            say(
+                "this is a flight over '{}', and not over '{}' at its origin; name the site that was flown over",
+                flight.site,
+                site.name,
+                place=path,
+            )
         )
     poses = _poses(flight, plan, model)
     n_photos = sum(len(record.photos) for record in flight.sorties)
     if not poses:
         raise InputError(
-            f"{path}: none of its {n_photos} photos says where the camera looked; name the plan that was flown "
-            "as well (--plan)"
+            say(
+                "none of its {} photos says where the camera looked; name the plan that was flown as well (--plan)",
+                n_photos,
+                place=path,
+            )
         )
     sorties, motions = [], []
     for number, record in enumerate(flight.sorties):
@@ -140,13 +148,19 @@ def given_scene(wish: SceneRequest) -> tuple[Scene, dict[str, Any]]:
     if wish.scene in SCENES and not path.is_file():  # a folder of photos is easily named after its scene
         if wish.look is not None:
             raise InputError(
-                f"{wish.look}: bundled scenes have a look of their own; name a site file to give one, or leave it out"
+                say(
+                    "bundled scenes have a look of their own; name a site file to give one, or leave it out",
+                    place=wish.look,
+                )
             )
         return bundled_scene(wish.scene, wish.seed), {"bundled": wish.scene}
     if not path.exists():
         raise InputError(
-            f"{wish.scene}: there is neither a site file nor a bundled scene of that name; bundled are: "
-            f"{', '.join(SCENES)}"
+            say(
+                "there is neither a site file nor a bundled scene of that name; bundled are: {}",
+                ", ".join(SCENES),
+                place=wish.scene,
+            )
         )
     model = read_given_site(path)
     look = None if wish.look is None else read_look(wish.look)
@@ -206,7 +220,9 @@ def scene_views(wish: SceneRequest, scene: Scene, written: SiteModel, folder: Pa
 
 
 SITE_CHANGED = Finding(
-    Severity.WARNING, "site-changed", "the site file has changed since the plan was made; photos show it as it is now"
+    Severity.WARNING,
+    "site-changed",
+    say("the site file has changed since the plan was made; photos show it as it is now"),
 )
 
 
@@ -221,8 +237,13 @@ def plan_of_site(path: Path, model: SiteModel) -> Plan:
     plan, site = read_given_plan(path), model.site
     if plan.site != site.name or (plan.origin is not None and plan.origin != site.origin):
         raise InputError(
-            f"{path}: this is a plan of '{plan.site}', and not of '{site.name}' at its origin; name the site that it "
-            "was made for, or another plan"
+            say(
+                "this is a plan of '{}', and not of '{}' at its origin; name the site that it was made for, or "
+                "another plan",
+                plan.site,
+                site.name,
+                place=path,
+            )
         )
     return plan
 

@@ -78,7 +78,9 @@ def flights_of(log: RawLog, site: Site, label: str, heights: HeightSource = "tak
         if record is not None:
             records.append(record)
     if not records:
-        raise InputError(f"{label}: the aircraft did not fly while this log was written; take the log of the flight")
+        raise InputError(
+            say("the aircraft did not fly while this log was written; take the log of the flight", place=label)
+        )
     return LogFlights(tuple(records), tuple(findings), log.autopilot)
 
 
@@ -110,11 +112,16 @@ class _Place:
         values = values[_is_on_globe(values[:, 1:4])]
         if len(values) == 0:
             raise InputError(
-                f"{label}: holds no position of the aircraft; a log of the whole flight with GNSS reception is needed"
+                say(
+                    "holds no position of the aircraft; a log of the whole flight with GNSS reception is needed",
+                    place=label,
+                )
             )
         if len(values) < len(rows):
             n = len(rows) - len(values)
-            findings.append(Finding(Severity.NOTE, "positions-dropped", f"{n} positions are none and were left out"))
+            findings.append(
+                Finding(Severity.NOTE, "positions-dropped", say("{} positions are none and were left out", n))
+            )
         if heights == "takeoff" and not np.isfinite(values[:, 4]).any():
             text = "the log has no heights above take-off; those above sea level are taken"
             findings.append(Finding(Severity.WARNING, "height-reference", text))
@@ -125,8 +132,14 @@ class _Place:
         if nearest_m > MAX_DISTANCE_M:
             away_km = float(np.min(np.linalg.norm(np.nan_to_num(points), axis=1))) / 1000.0
             raise InputError(
-                f"{label}: the flight is {away_km:.1f} km from the site '{site.name}'; expected at most "
-                f"{MAX_DISTANCE_M / 1000.0:g} km; is it the right log, and the right site?"
+                say(
+                    "the flight is {:.1f} km from the site '{}'; expected at most {:g} km; is it the right log, and "
+                    "the right site?",
+                    away_km,
+                    site.name,
+                    MAX_DISTANCE_M / 1000.0,
+                    place=label,
+                )
             )
         findings += _height_findings(values[is_near, 1:], site, points[is_near], heights)
         return cls(site, heights, values[is_near, 0], points[is_near], tuple(findings))

@@ -85,7 +85,9 @@ def read_ulog(content: bytes, label: str, monitor: Monitor = QUIET) -> RawLog:
             _check_formats(core.ULog(_BoundedFile(content, label), parse_header_only=True))
             source = core.ULog(_BoundedFile(content, label), list(WANTED))
     except (core.ULogException, struct.error, ValueError, KeyError, IndexError, TypeError, OverflowError) as error:
-        raise InputError(f"{label}: the ULog cannot be read ({error}); copy it from the vehicle again") from error
+        raise InputError(
+            say("the ULog cannot be read ({}); copy it from the vehicle again", error, place=label)
+        ) from error
     topics = _topics(source)
     if source.file_corruption:
         log.note("log-damaged", "parts of the log are damaged and were skipped")
@@ -121,7 +123,9 @@ class _BoundedFile(io.BytesIO):
         """
         self._n_left -= 1
         if self._n_left < 0:
-            raise InputError(f"{self._label}: the ULog is damaged beyond reading; copy it from the vehicle again")
+            raise InputError(
+                say("the ULog is damaged beyond reading; copy it from the vehicle again", place=self._label)
+            )
         return super().read(size)
 
 

@@ -140,7 +140,7 @@ def city_source(
     if not solid:
         raise InputError(say("there is no building with surfaces in this file", place=path))
     if options.panels_required and not options.panel_grids and not any(building.windows for building in solid):
-        raise InputError(f"{path}: no building in this file has windows; {HOW_TO_GET_PANELS}")
+        raise InputError(say("no building in this file has windows; {}", HOW_TO_GET_PANELS, place=path))
     chosen, choice = _choose(path, solid, crs, options)
     wanted = merged(chosen)
     corners = wanted.triangles()

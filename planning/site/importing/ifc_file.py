@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from planning.base.errors import InputError
 from planning.base.json_file import encoded
-from planning.base.messages import say
+from planning.base.messages import packed, say, unpacked
 from planning.base.progress import Monitor
 from planning.base.step_physical_file import check_ends
 from planning.geo.crs import CrsConversion, HeightReference, crs_conversion, horizontal_part, parse_crs
@@ -228,7 +228,8 @@ def read_in_worker(path: Path, deflection_m: float, monitor: Monitor) -> tuple[I
                 )
             )
         content = msgspec.json.decode((Path(folder) / "content.json").read_bytes(), type=IfcContent)
-        return content, np.load(Path(folder) / "triangles.npy")
+        notes = tuple(unpacked(json.loads(note)) for note in content.notes)
+        return replace(content, notes=notes), np.load(Path(folder) / "triangles.npy")
 
 
 class _Run(NamedTuple):
@@ -277,7 +278,7 @@ def _follow(process: subprocess.Popen[bytes], monitor: Monitor) -> tuple[str | N
             reader.join()
             return refusal, element
         message = json.loads(line)
-        done, refusal = message.get("done", done), message.get("refused", refusal)
+        done, refusal = message.get("done", done), unpacked(message["refused"]) if "refused" in message else refusal
         element = message.get("element", element)
         monitor.report(say("building geometry"), done, 100)
 
@@ -304,9 +305,10 @@ def main(arguments: list[str]) -> int:
         announce = None if threads else lambda guid: say({"element": guid})
         content, triangles = extract(path, deflection_m, threads, lambda done: say({"done": done}), fatal, announce)
     except InputError as error:
-        say({"refused": str(error)})
+        say({"refused": packed(str(error))})
         return EXIT_REFUSED
-    (folder / "content.json").write_bytes(encoded(content))
+    notes = tuple(json.dumps(packed(note)) for note in content.notes)
+    (folder / "content.json").write_bytes(encoded(replace(content, notes=notes)))
     np.save(folder / "triangles.npy", triangles)
     return 0
 
@@ -340,7 +342,9 @@ def ifc_source(path: Path, content: IfcContent, triangles: Array, options: Impor
     if len(triangles) == 0:
         raise InputError(say("no building element in this file has geometry", place=path))
     if options.panels_required and not content.pane_ids and not options.panel_grids:
-        raise InputError(f"{path}: there is neither a window nor a glazed plate with geometry; {HOW_TO_GET_PANELS}")
+        raise InputError(
+            say("there is neither a window nor a glazed plate with geometry; {}", HOW_TO_GET_PANELS, place=path)
+        )
     points = triangles.reshape(-1, 3)
     georeference = ifc_georeference(content, options)
     # Where there is a map conversion, --crs has served to name its map.

@@ -492,7 +492,9 @@ def write_imported_site(
         The folder is missing or cannot be written, or the site would replace the file it was imported from.
     """
     if path.exists() and path.samefile(source):
-        raise InputError(f"{path}: the site would be written over the file it is imported from; name another file")
+        raise InputError(
+            say("the site would be written over the file it is imported from; name another file", place=path)
+        )
     model = imported.model
     site = model.site
     meshes: dict[Path, bytes] = {}

@@ -370,10 +370,13 @@ def read_mesh_source(path: Path, options: ImportOptions, monitor: Monitor) -> So
     """
     if options.panels_required and not options.panel_grids:
         raise InputError(
-            f"{path}: a mesh does not tell windows from walls; state where the panels are, for example "
-            "--panel-grid '0,0,0 36,0,0 0,0,42' --rows 14 --columns 20 (lower left, lower right and upper left corner "
-            "of a facade, seen from outside), or import the building alone with --without-panels and find them in "
-            "photos with 'panels'"
+            say(
+                "a mesh does not tell windows from walls; state where the panels are, for example --panel-grid "
+                "'0,0,0 36,0,0 0,0,42' --rows 14 --columns 20 (lower left, lower right and upper left corner of "
+                "a facade, seen from outside), or import the building alone with --without-panels and find them "
+                "in photos with 'panels'",
+                place=path,
+            )
         )
     monitor.report(say("reading the mesh"), 0, 1)
     mesh, left_out = read_mesh_parts(path, MAX_SOURCE_COORDINATE)

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InfeasibleError
+from planning.base.messages import say
 
 Array = NDArray[np.float64]
 
@@ -109,12 +110,14 @@ def fit_polynomial(from_px: Array, to_px: Array, degree: int = DEGREE) -> Polyno
         raise ValueError(f"expected two arrays of shape (n, 2), got {from_px.shape} and {to_px.shape}")
     n = len(exponents(degree))
     if len(from_px) < n:
-        raise InfeasibleError(f"a polynomial of degree {degree} needs at least {n} points, found {len(from_px)}")
+        raise InfeasibleError(
+            say("a polynomial of degree {} needs at least {} points, found {}", degree, n, len(from_px))
+        )
     (from_middle, from_half), (to_middle, to_half) = _range(from_px), _range(to_px)
     basis = _powers((from_px - from_middle) / from_half, degree)
     coefficients, _, rank, _ = np.linalg.lstsq(basis, (to_px - to_middle) / to_half, rcond=1e-12)
     if rank < n:
-        raise InfeasibleError(f"the points do not determine a polynomial of degree {degree}: they are in line")
+        raise InfeasibleError(say("the points do not determine a polynomial of degree {}: they are in line", degree))
     off = (basis @ coefficients * to_half + to_middle) - to_px
     residual = float(np.hypot(off[:, 0], off[:, 1]).max())
     return PolynomialMap(degree, np.asarray(coefficients, float), from_middle, from_half, to_middle, to_half, residual)

@@ -137,7 +137,9 @@ def _directions(h: Array, v: Array, focal: float) -> tuple[Array, Array]:
     right = right if right[0] >= 0.0 else -right
     down = down if down[1] >= 0.0 else -down
     if np.linalg.norm(np.cross(right, down)) < 0.1:
-        raise InfeasibleError("the two vanishing points are nearly the same: this is not a plane seen from its front")
+        raise InfeasibleError(
+            say("the two vanishing points are nearly the same: this is not a plane seen from its front")
+        )
     plus, minus = right + down, right - down
     plus, minus = plus / np.linalg.norm(plus), minus / np.linalg.norm(minus)
     return (plus + minus) / math.sqrt(2.0), (plus - minus) / math.sqrt(2.0)
@@ -156,7 +158,7 @@ def _windowed(homography: Array, region: Array, focal_px: float, is_metric: bool
     depth = float(middle @ homography[2, :2] + homography[2, 2])
     if depth <= EDGE_ON * float(np.abs(depths).max()):
         raise InfeasibleError(
-            "the facade's horizon runs through its middle: it is seen edge-on, or the lines are wrong"
+            say("the facade's horizon runs through its middle: it is seen edge-on, or the lines are wrong")
         )
     usable = _clipped(homography, region, depth / MOST_STRETCHED)
     points = _mapped(homography, usable)

@@ -80,12 +80,15 @@ def fused(pictures: Sequence[Grey], valid: Sequence[Mask], parameters: Segmentat
         No views, or views of different sizes.
     """
     if not pictures:
-        raise InputError("fusing views: expected at least one rectified view, found none")
+        raise InputError(say("fusing views: expected at least one rectified view, found none"))
     shapes = {picture.shape for picture in pictures} | {mask.shape for mask in valid}
     if len(shapes) > 1 or len(valid) != len(pictures):
         raise InputError(
-            f"fusing views: expected rectified views of one size with a mask each, found sizes {sorted(shapes)}; "
-            "rectify them all onto the same window of the facade"
+            say(
+                "fusing views: expected rectified views of one size with a mask each, found sizes {}; rectify "
+                "them all onto the same window of the facade",
+                sorted(shapes),
+            )
         )
     first, first_mask = pictures[0], valid[0]
     views = [

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InputError
+from planning.base.messages import say
 from reconstruction.panels.rectify.surface import Rectification
 
 # Pictures as the search for lines wants them.
@@ -31,8 +32,12 @@ def checked_image(image: NDArray[Any]) -> NDArray[np.uint8]:
     fits = image.ndim == 2 or (image.ndim == 3 and image.shape[2] == 3)
     if not fits or image.dtype != np.uint8 or image.size == 0:
         raise InputError(
-            f"expected a grey or colour picture of 8 bit, found {image.dtype} of shape {image.shape}; "
-            "convert it (for example to an 8-bit PNG or JPEG) first"
+            say(
+                "expected a grey or colour picture of 8 bit, found {} of shape {}; convert it (for example to an "
+                "8-bit PNG or JPEG) first",
+                image.dtype,
+                image.shape,
+            )
         )
     return np.asarray(image, np.uint8)
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from planning.base.effects import Decision, EffectSetting, decide
 from planning.base.errors import InputError
+from planning.base.messages import say
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.panels.panels_file import OPEN_SIDES, FileFacade, FileInclined, FileLine, FilePanel, PanelsFile
 from reconstruction.panels.rectify.fit import (
@@ -170,14 +171,25 @@ def files_by_photo(photos: Sequence[PosedPhoto], files: Mapping[str, PanelsFile]
         number = numbers.get(PurePath(image).name)
         if number is None:
             raise InputError(
-                f"panels of photo '{image}' are given, which is none of the {len(photos)} photos that have a pose; "
-                "name the photo's file in its field 'image', or take the panels file out of the folder"
+                say(
+                    "panels of photo '{}' are given, which is none of the {} photos that have a pose; name the "
+                    "photo's file in its field 'image', or take the panels file out of the folder",
+                    image,
+                    len(photos),
+                )
             )
         lens = photos[number].intrinsics
         if (record.width_px, record.height_px) != (lens.width_px, lens.height_px):
             raise InputError(
-                f"panels of photo '{image}' are given for {record.width_px} x {record.height_px} pixels, but it has "
-                f"{lens.width_px} x {lens.height_px}; find and correct them in the photo itself"
+                say(
+                    "panels of photo '{}' are given for {} x {} pixels, but it has {} x {}; find and correct them in "
+                    "the photo itself",
+                    image,
+                    record.width_px,
+                    record.height_px,
+                    lens.width_px,
+                    lens.height_px,
+                )
             )
         found[number] = record
     return found
@@ -222,7 +234,9 @@ def _inclined(line: FileInclined, index: int, view: Rectification) -> InclinedLi
     left, right = (view.to_rectified(np.array(points)) for points in (line.left_px, line.right_px))
     middle = 0.5 * (left + right)
     if not np.isfinite(middle).all():
-        raise InputError(f"inclined_lines[{index}] of a panels file leaves the facade; shorten it, or take it out")
+        raise InputError(
+            say("inclined_lines[{}] of a panels file leaves the facade; shorten it, or take it out", index)
+        )
     first, last = middle[0], middle[-1]
     along = (last - first) / np.hypot(*(last - first))
     width = float(np.median((right - left) @ np.array([-along[1], along[0]])))
@@ -251,7 +265,11 @@ def _lines(
         if not len(places):
             kind = "vertical_lines" if across == 0 else "horizontal_lines"
             raise InputError(
-                f"{kind}[{index}] of a panels file has no point on the facade; give it points_px, or take the line out"
+                say(
+                    "{}[{}] of a panels file has no point on the facade; give it points_px, or take the line out",
+                    kind,
+                    index,
+                )
             )
         width = widths.get(index, usual)
         lines.append(GridLine(float(np.median(places)), width, GIVEN_SIGMA_PX, line.confidence, line.inferred))

@@ -100,7 +100,7 @@ def entry_of_property(found: Property, record: type[Entry], global_id: str) -> E
             content["value"] = found.value  # it may have been changed in a BIM program
         return msgspec.convert(content, record)
     except (msgspec.MsgspecError, RecursionError) as error:
-        raise InputError(f"{found.name}: its description is not as it was written ({error})") from error
+        raise InputError(say("its description is not as it was written ({})", error, place=found.name)) from error
 
 
 def latest_inspection(properties: Mapping[str, Property], global_id: str, key: str) -> Inspection | None:

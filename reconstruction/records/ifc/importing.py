@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import subprocess
@@ -17,7 +18,7 @@ import msgspec
 from planning.base.errors import InputError
 from planning.base.files import read_given
 from planning.base.json_file import check_output, encoded, write_atomically
-from planning.base.messages import about
+from planning.base.messages import about, packed, say, unpacked
 from planning.base.progress import QUIET, Monitor
 from planning.base.step_physical_file import END, IFC_FILE, check_ends, real_name
 from reconstruction.records.book import RecordBook
@@ -42,7 +43,7 @@ from reconstruction.records.ifc.new import Extension, extension
 # IfcOpenShell in a process of its own: a hostile file may crash it, but not the program.
 #
 # `python -m reconstruction.records.ifc.importing TASK FILE FOLDER` reads `wanted.json` in the folder and leaves
-# `result.json` and a copy of the file, or `refused.txt` there. What IfcOpenShell prints stays in that process.
+# `result.json` and a copy of the file, or `refused.json` there. What IfcOpenShell prints stays in that process.
 
 # The text of a STEP file (ISO 10303-21): instances taken out, exchanged and added; all other bytes stay.
 
@@ -68,7 +69,7 @@ def edited(content: bytes, lines: Sequence[str], replaced: Mapping[int, str]) ->
     """
     end = content.rfind(b"ENDSEC", 0, content.rfind(END))
     if end < 0:
-        raise InputError("the data of the file do not end (ENDSEC is missing)")
+        raise InputError(say("the data of the file do not end (ENDSEC is missing)"))
     line_end = b"\r\n" if b"\r\n" in content[:2000] else b"\n"
     parts, position = [], 0
     for start, stop, number in _statements(content, end) if replaced else ():
@@ -77,7 +78,9 @@ def edited(content: bytes, lines: Sequence[str], replaced: Mapping[int, str]) ->
             parts += [content[position:start], text]
             position = stop if text else _after_line(content, stop)
     if len(parts) != 2 * len(replaced):
-        raise InputError("instances of the file that are to be replaced stand in it in a way that is not understood")
+        raise InputError(
+            say("instances of the file that are to be replaced stand in it in a way that is not understood")
+        )
     added = b"".join(line.encode("ascii") + line_end for line in lines)
     return b"".join((*parts, content[position:end], added, content[end:]))
 
@@ -175,11 +178,15 @@ def _run(task: str, path: Path, folder: Path, wanted: bytes, kind: type[Result],
         process.wait()
         raise
     if process.returncode == EXIT_REFUSED:
-        raise InputError((folder / "refused.txt").read_text("utf-8"))
+        raise InputError(unpacked(json.loads((folder / "refused.json").read_bytes())))
     if process.returncode != 0:
         raise InputError(
-            f"{path}: the reader of IFC files crashed on this one (status {process.returncode}), so something in "
-            "it goes in circles or beyond all bounds; open and export it again in a BIM program"
+            say(
+                "the reader of IFC files crashed on this one (status {}), so something in it goes in circles or "
+                "beyond all bounds; open and export it again in a BIM program",
+                process.returncode,
+                place=path,
+            )
         )
     return msgspec.json.decode((folder / "result.json").read_bytes(), type=kind)
 
@@ -195,7 +202,7 @@ def main(arguments: list[str]) -> int:
         else:
             result = _extend(path, folder / COPY, msgspec.json.decode(wanted, type=_Sets))
     except InputError as error:
-        (folder / "refused.txt").write_text(str(error), "utf-8")
+        (folder / "refused.json").write_text(json.dumps(packed(str(error))), "utf-8")
         return EXIT_REFUSED
     (folder / "result.json").write_bytes(encoded(result))
     return 0
@@ -211,8 +218,13 @@ def _extend(path: Path, copy: Path, wanted: _Sets) -> Extension:
     n_instances = len(list(open_model(copy)))
     if n_instances != found.n_instances:
         raise InputError(
-            f"{path}: with the records the file would have {n_instances} instances, {found.n_instances} were expected; "
-            "it is written in a way that is not understood; save it anew in a BIM program"
+            say(
+                "with the records the file would have {} instances, {} were expected; it is written in a way "
+                "that is not understood; save it anew in a BIM program",
+                n_instances,
+                found.n_instances,
+                place=path,
+            )
         )
     return found
 

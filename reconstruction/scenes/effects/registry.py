@@ -9,6 +9,7 @@ from collections.abc import Sequence
 
 from planning.base.effects import Decision, Effect, decide
 from planning.base.errors import InputError
+from planning.base.messages import say
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.scenes.effects.camera import Distortion, Noise, Vignetting
 from reconstruction.scenes.effects.flight import ExposureChanges, GimbalError, MotionBlur, PositionError
@@ -48,7 +49,7 @@ def decide_effects(
         There are no photos.
     """
     if not photos:
-        raise InputError("effects are decided by the photos of a flight; expected at least one, got none")
+        raise InputError(say("effects are decided by the photos of a flight; expected at least one, got none"))
     probe = Probe(scene, photos, taking, moments)
     chosen, wishes = effects(settings.tolerance, taking.sensor), settings.wishes
     return {effect.name: decide(effect, probe, wishes.get(effect.name, "auto")) for effect in chosen}

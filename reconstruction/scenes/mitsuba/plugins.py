@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from planning.base.errors import InputError
 from planning.base.jit import n_threads
+from planning.base.messages import say
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.scenes.record import Glass
 
@@ -86,12 +87,12 @@ def mitsuba(variant: str | None = None) -> Any:
         import mitsuba as mi
     except ImportError as error:
         raise InputError(
-            "Mitsuba is not installed; install it (pip install 'reflight[mitsuba]'), or use the embedded renderer"
+            say("Mitsuba is not installed; install it (pip install 'reflight[mitsuba]'), or use the embedded renderer")
         ) from error
     name = next(filter(_works, VARIANTS if variant is None else (variant,)), None)
     if name is None:
         wanted = " and ".join(VARIANTS) if variant is None else variant
-        raise InputError(f"Mitsuba is installed but does not work here ({wanted}); use the embedded renderer")
+        raise InputError(say("Mitsuba is installed but does not work here ({}); use the embedded renderer", wanted))
     mi.set_variant(name)
     # Plain C++ calls our plugins, which are Python, from one thread at a time: two waited for each other and took twice
     # as long as one.

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from planning.base.errors import InputError
 from planning.base.json_file import check_settings, read_toml, to_record
+from planning.base.messages import say
 from planning.geo.frames import Vec3
 from reconstruction.base.cameras import STRAIGHT, Intrinsics, Pose, PosedPhoto
 from reconstruction.scenes.photos.lens_effects import Sensor
@@ -258,9 +259,12 @@ def bent_lens(lens: Intrinsics, distortion: tuple[float, float, float, float, fl
         is_bad = not (np.abs(back - edge) <= THERE_AND_BACK_PX).all() or not _keeps_order(bent, rays)
     if is_bad:
         raise InputError(
-            f"distortion: {list(distortion)} folds the picture or bends it too far: a place in it belongs to no one "
-            "direction; expected a lens that can be undistorted up to its corners (k1, k2, p1, p2, k3 for lengths in "
-            "units of the focal length)"
+            say(
+                "distortion: {} folds the picture or bends it too far: a place in it belongs to no one "
+                "direction; expected a lens that can be undistorted up to its corners (k1, k2, p1, p2, k3 for "
+                "lengths in units of the focal length)",
+                list(distortion),
+            )
         )
     return bent
 

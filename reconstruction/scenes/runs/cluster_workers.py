@@ -26,7 +26,7 @@ import planning
 import reconstruction
 from planning.base.errors import GroundStationError, InputError, ReconstructionError
 from planning.base.json_file import write_atomically
-from planning.base.messages import about
+from planning.base.messages import about, say
 from planning.base.progress import Monitor
 from reconstruction.scenes.runs.photo_job import PATIENCE_S, PhotoJob, RenderWorker, written
 
@@ -98,7 +98,7 @@ def _take(run: str, number: int) -> Taken:
     worker = get_worker()
     studio = worker.plugins.get(run)
     if not isinstance(studio, Studio):
-        raise ReconstructionError(f"the worker {worker.address} could not take the scene; see its own log")
+        raise ReconstructionError(say("the worker {} could not take the scene; see its own log", worker.address))
     return studio.take(number)
 
 
@@ -186,5 +186,9 @@ def _in_words(folder: Path) -> Iterator[None]:
         yield
     except (OSError, CancelledError) as error:
         raise ReconstructionError(
-            f"the cluster does not answer any more ({error}); complete photos stay in {folder}: run it again to go on"
+            say(
+                "the cluster does not answer any more ({}); complete photos stay in {}: run it again to go on",
+                error,
+                folder,
+            )
         ) from error

@@ -136,7 +136,7 @@ def photograph(
         From `monitor`; photos that are complete stay, and the same call goes on with the others.
     """
     if not job.photos:
-        raise InputError("there are no views to photograph; name a plan or flight that has some")
+        raise InputError(say("there are no views to photograph; name a plan or flight that has some"))
     monitor.report("deciding on effects", 0, 1)
     job = replace(job, moments=job.moments or (Moment(),) * len(job.photos))
     found = decide_effects(job.scene, job.photos, job.settings, job.taking, job.moments)
@@ -191,8 +191,14 @@ def _check_room(folder: Path, photos: Sequence[PosedPhoto], n_missing: int) -> N
     free = shutil.disk_usage(there).free
     if needed > free:
         raise InputError(
-            f"{folder}: {n_missing} photos with their truth take about {_size_text(needed)}, and {_size_text(free)} "
-            "are free there; make room, name a folder on another disk, or ask for smaller pictures (--width)"
+            say(
+                "{} photos with their truth take about {}, and {} are free there; make room, name a folder on "
+                "another disk, or ask for smaller pictures (--width)",
+                n_missing,
+                _size_text(needed),
+                _size_text(free),
+                place=folder,
+            )
         )
 
 

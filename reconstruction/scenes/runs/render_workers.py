@@ -14,6 +14,7 @@ from typing import Any
 
 from planning.base.errors import ReconstructionError
 from planning.base.jit import n_threads
+from planning.base.messages import say
 from planning.base.progress import Monitor
 from reconstruction.scenes.runs.photo_job import PATIENCE_S, PhotoJob, RenderWorker, written
 
@@ -98,8 +99,11 @@ def _pool(photographer: Callable[[], RenderWorker], folder: Path, n_processes: i
         yield pool
     except BrokenProcessPool as error:
         raise ReconstructionError(
-            f"a process that rendered ended by itself, perhaps for want of memory; complete photos stay in {folder}: "
-            "run it again with fewer processes (--jobs 1) or smaller pictures (--width)"
+            say(
+                "a process that rendered ended by itself, perhaps for want of memory; complete photos stay in "
+                "{}: run it again with fewer processes (--jobs 1) or smaller pictures (--width)",
+                folder,
+            )
         ) from error
     finally:
         pool.shutdown(wait=False, cancel_futures=True)

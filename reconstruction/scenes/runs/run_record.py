@@ -15,6 +15,7 @@ from planning.base.effects import Decision
 from planning.base.errors import InputError
 from planning.base.files import is_empty, sha256_given
 from planning.base.json_file import expect_format, read_json, write_atomically
+from planning.base.messages import say
 from reconstruction.scenes.record import Scene
 from reconstruction.scenes.runs.photo_job import PhotoJob
 
@@ -110,9 +111,11 @@ def check_folder(folder: Path) -> None:
         It is a file, or holds something else.
     """
     if folder.exists() and not folder.is_dir():
-        raise InputError(f"{folder}: expected a folder, found a file; name a folder for the photos")
+        raise InputError(say("expected a folder, found a file; name a folder for the photos", place=folder))
     if folder.exists() and not (folder / RUN_FILE).is_file() and not is_empty(folder):
-        raise InputError(f"{folder}: is not empty, and has no {RUN_FILE} of photos to go on with; name a new folder")
+        raise InputError(
+            say("is not empty, and has no {} of photos to go on with; name a new folder", RUN_FILE, place=folder)
+        )
 
 
 def kept_photos(folder: Path, run: RunRecord) -> Files:
@@ -130,14 +133,20 @@ def kept_photos(folder: Path, run: RunRecord) -> Files:
     found = read_json(path, names_files=True)
     expect_format(found, SCENE_PHOTOS_FORMAT, path)
     if not isinstance(found, dict) or not isinstance(found.get("files"), dict):
-        raise InputError(f"{path}: expected an object with files, found something else; name a new folder")
+        raise InputError(say("expected an object with files, found something else; name a new folder", place=path))
     for key in SAME:
         difference = next(_differences(found.get(key), run[key], key), None)
         if difference is not None:
             place, old, new = difference
             raise InputError(
-                f"{folder}: holds photos of another run: {place} is {_short(old)} there, and {_short(new)} was asked "
-                "for; ask for the same again to go on with it, or name a new folder"
+                say(
+                    "holds photos of another run: {} is {} there, and {} was asked for; ask for the same again to go "
+                    "on with it, or name a new folder",
+                    place,
+                    _short(old),
+                    _short(new),
+                    place=folder,
+                )
             )
     names = {photo["name"] for photo in run["photos"]}
     return {name: sums for name, sums in found["files"].items() if name in names and _is_complete(folder, sums)}

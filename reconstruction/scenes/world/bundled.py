@@ -8,6 +8,7 @@ from collections.abc import Callable
 import numpy as np
 
 from planning.base.errors import InputError
+from planning.base.messages import say
 from planning.geo.mesh import TriangleMesh, box_mesh, extrude, join
 from planning.site.bundled import ORIGIN, arc_grid, court, panel_grid
 from planning.site.records import Airspace, Facade, Panel, Site, SiteModel
@@ -123,5 +124,5 @@ def bundled_scene(name: str, seed: int = 0) -> Scene:
         There is no such scene.
     """
     if name not in SCENES:
-        raise InputError(f"there is no bundled scene '{name}'; known are: {', '.join(SCENES)}")
+        raise InputError(say("there is no bundled scene '{}'; known are: {}", name, ", ".join(SCENES)))
     return SCENES[name](seed)

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from planning.base.errors import InputError
+from planning.base.messages import say
 from reconstruction.base.cameras import PosedPhoto
 
 
@@ -70,8 +71,11 @@ class View:
         lens = photo.intrinsics
         if not lens.is_straight:
             raise InputError(
-                f"{photo.name}: the picture is distorted, and splats are rendered without distortion; make it straight "
-                "with `prepare`"
+                say(
+                    "the picture is distorted, and splats are rendered without distortion; make it straight with "
+                    "`prepare`",
+                    place=photo.name,
+                )
             )
         rotation = photo.pose.cam_from_enu
         matrix = np.eye(4)

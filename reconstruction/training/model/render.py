@@ -20,6 +20,7 @@ from torch import Tensor
 from planning.base.errors import InputError
 from planning.base.files import make_folder
 from planning.base.json_file import write_atomically
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from reconstruction.base.cameras import Pose, PosedPhoto
 from reconstruction.dataset.layers import normals_to_16_bit
@@ -59,7 +60,7 @@ def cameras_between(photos: Sequence[PosedPhoto], n_frames: int) -> tuple[PosedP
     if n_frames < 2:
         raise ValueError(f"n_frames: expected 2 or more, got {n_frames}")
     if len(photos) < 2:
-        raise InputError("a path needs two views or more to go through; leave --frames out")
+        raise InputError(say("a path needs two views or more to go through; leave --frames out"))
     places = np.array([photo.pose.position_enu_m for photo in photos])
     steps = np.maximum(np.linalg.norm(np.diff(places, axis=0), axis=1), SAME_PLACE_M)
     way_m: Array = np.concatenate([[0.0], np.cumsum(steps)])

@@ -11,6 +11,7 @@ import torch
 from numpy.typing import NDArray
 
 from planning.base.errors import InputError
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from reconstruction.light.photo_set import PhotoSet
 from reconstruction.light.shading import linear_from_display
@@ -74,10 +75,12 @@ def score_views(
     """
     mine, theirs = trained.record.site.planes.corners_enu_m, site_record(source.folder).planes.corners_enu_m
     if mine.shape != theirs.shape or not np.allclose(mine, theirs, rtol=0.0, atol=SAME_PANELS_M):
-        raise InputError(f"{source.folder}: shows other panels than the model; name photos of the same site")
+        raise InputError(say("shows other panels than the model; name photos of the same site", place=source.folder))
     missing = sorted(set(names) - {photo.name for photo in source.photos})
     if missing:
-        raise InputError(f"{source.folder}: has no photo '{missing[0]}', which is to be scored; score --views all")
+        raise InputError(
+            say("has no photo '{}', which is to be scored; score --views all", missing[0], place=source.folder)
+        )
     model, learned = trained.model, set(trained.record.learned)
     settings = replace(trained.record.config.raster, threads=threads)
     exposure = source.exposure / trained.record.exposure
