@@ -5738,12 +5738,222 @@ Damit weiterarbeiten?</translation>
         <translation>die Wayline dauert länger, als das Fluggerät mit einem Akku fliegt; sie teilen</translation>
     </message>
     <message>
+        <source>
+sortie {0} comes next: put in a full battery, then press Enter</source>
+        <translation>
+Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</translation>
+    </message>
+    <message>
+        <source>  &apos;{0}&apos; had {1} % of its own final coverage after {2}</source>
+        <translation>  &apos;{0}&apos; hatte {1} % der eigenen endgültigen Abdeckung nach {2}</translation>
+    </message>
+    <message>
+        <source>  after {0} s: {1}</source>
+        <translation>  nach {0} s: {1}</translation>
+    </message>
+    <message>
+        <source>  at most {0} of {1} sections of {2}° can be covered</source>
+        <translation>  höchstens {0} von {1} Sektoren zu {2}° sind abzudecken</translation>
+    </message>
+    <message>
+        <source>  best in sections of {0}°: &apos;{1}&apos;</source>
+        <translation>  am besten in Sektoren zu {0}°: &apos;{1}&apos;</translation>
+    </message>
+    <message>
+        <source>  facade {0}: {1} in {2} and {3}, from {4}; corners good to {5} m</source>
+        <translation>  Fassade {0}: {1} in {2} und {3}, aus {4}; Ecken auf {5} m genau</translation>
+    </message>
+    <message>
+        <source>  mirrored light: {0}{1}</source>
+        <translation>  Spiegellicht: {0}{1}</translation>
+    </message>
+    <message>
+        <source>  off by up to {0} px in the photo</source>
+        <translation>  daneben um bis zu {0} px im Foto</translation>
+    </message>
+    <message>
+        <source>  reflections learned from photos, scored on glass of unseen views that have all that the scene calls for:</source>
+        <translation>  Spiegelungen, aus Fotos gelernt, bewertet auf Glas neuer Ansichten, die alles haben, was die Szene verlangt:</translation>
+    </message>
+    <message>
+        <source>  sortie {0}, on {1}: {2}, {3} m, {4} min</source>
+        <translation>  Einsatz {0}, mit {1}: {2}, {3} m, {4} min</translation>
+    </message>
+    <message>
+        <source>  sortie {0}: {1}, {2} m, {3} min</source>
+        <translation>  Einsatz {0}: {1}, {2} m, {3} min</translation>
+    </message>
+    <message>
+        <source>  {0}  found no tour</source>
+        <translation>  {0}  fand keine Rundtour</translation>
+    </message>
+    <message>
+        <source>  {0} in {1} s{2}</source>
+        <translation>  {0} in {1} s{2}</translation>
+    </message>
+    <message>
+        <source>  {0} panels missed, {1} false ones found</source>
+        <translation>  {0} Scheiben übersehen, {1} falsche gefunden</translation>
+    </message>
+    <message>
+        <source>  {0} points, nothing is shorter than {1}{2}</source>
+        <translation>  {0} Punkte, nichts ist kürzer als {1}{2}</translation>
+    </message>
+    <message>
+        <source>  {0} s a photo, {1} s at most</source>
+        <translation>  {0} s je Foto, höchstens {1} s</translation>
+    </message>
+    <message>
+        <source>  {0}: {1}{2}, {3} in {4} ({5}, {6})</source>
+        <translation>  {0}: {1}{2}, {3} in {4} ({5}, {6})</translation>
+    </message>
+    <message>
+        <source>  {0}{1}{2}  best after {3}</source>
+        <translation>  {0}{1}{2}  am besten nach {3}</translation>
+    </message>
+    <message>
+        <source> ({0} predicted)</source>
+        <translation> (vorhergesagt {0})</translation>
+    </message>
+    <message>
         <source> ({0} times, the first: {1})</source>
         <translation> ({0}-mal, zuerst: {1})</translation>
     </message>
     <message>
+        <source>&apos;{0}&apos; is given twice</source>
+        <translation>&apos;{0}&apos; ist zweimal angegeben</translation>
+    </message>
+    <message>
+        <source>&apos;{0}&apos; wins with {1} of what can be covered, after {2} ({3} views)</source>
+        <translation>&apos;{0}&apos; gewinnt mit {1} des Möglichen, nach {2} ({3} Aufnahmen)</translation>
+    </message>
+    <message>
+        <source>&apos;{0}&apos; wins with {1}, {2} to {3}, after {4}</source>
+        <translation>&apos;{0}&apos; gewinnt mit {1}, {2} gegen {3}, nach {4}</translation>
+    </message>
+    <message>
+        <source>&apos;{0}&apos;: expected NAME=VALUE</source>
+        <translation>&apos;{0}&apos;: erwartet wird NAME=WERT</translation>
+    </message>
+    <message>
+        <source>&apos;{0}&apos;: expected float, found another type</source>
+        <translation>&apos;{0}&apos;: erwartet wird float, gefunden wurde ein anderer Typ</translation>
+    </message>
+    <message>
+        <source>&apos;{0}&apos;: expected one of {1}</source>
+        <translation>&apos;{0}&apos;: erwartet wird eines von {1}</translation>
+    </message>
+    <message>
+        <source>, as you asked</source>
+        <translation>, wie verlangt</translation>
+    </message>
+    <message>
+        <source>, asked for</source>
+        <translation>, verlangt</translation>
+    </message>
+    <message>
+        <source>, blur {0} px in the middle</source>
+        <translation>, Unschärfe {0} px in der Mitte</translation>
+    </message>
+    <message>
+        <source>, computed before</source>
+        <translation>, früher berechnet</translation>
+    </message>
+    <message>
+        <source>, itself good to {0} grey levels</source>
+        <translation>, selbst auf {0} Graustufen genau</translation>
+    </message>
+    <message>
+        <source>, known optimum {0}</source>
+        <translation>, bekanntes Optimum {0}</translation>
+    </message>
+    <message>
+        <source>, left out</source>
+        <translation>, weggelassen</translation>
+    </message>
+    <message>
+        <source>, open: {0} ({1})</source>
+        <translation>, offen: {0} ({1})</translation>
+    </message>
+    <message>
+        <source>, {0} % of what is possible</source>
+        <translation>, {0} % des Möglichen</translation>
+    </message>
+    <message>
+        <source>, {0} dB on facades of unseen views</source>
+        <translation>, {0} dB auf Fassaden neuer Ansichten</translation>
+    </message>
+    <message>
+        <source>, {0} further</source>
+        <translation>, {0} weitere</translation>
+    </message>
+    <message>
         <source>, {0} m</source>
         <translation>, {0} m</translation>
+    </message>
+    <message>
+        <source>, {0} min below {1} m</source>
+        <translation>, {0} min unter {1} m</translation>
+    </message>
+    <message>
+        <source>, {0} of them kept</source>
+        <translation>, {0} davon behalten</translation>
+    </message>
+    <message>
+        <source>, {0} s left</source>
+        <translation>, noch {0} s</translation>
+    </message>
+    <message>
+        <source>, {0} smaller ones</source>
+        <translation>, {0} kleinere</translation>
+    </message>
+    <message>
+        <source>--effects, --wind and --speedup are for --link sim; the vehicle at a link has its own</source>
+        <translation>--effects, --wind und --speedup sind für --link sim; das Fluggerät an einem Link hat eigene</translation>
+    </message>
+    <message>
+        <source>--into and --site are for IFC; expected a name ending in .ifc</source>
+        <translation>--into und --site sind für IFC; erwartet wird ein Name mit der Endung .ifc</translation>
+    </message>
+    <message>
+        <source>--jobs is for this machine; leave it out, or --cluster</source>
+        <translation>--jobs ist für diesen Rechner; dieses oder --cluster weglassen</translation>
+    </message>
+    <message>
+        <source>--open and --screenshots are for the window, which opens without a command</source>
+        <translation>--open und --screenshots sind für das Fenster, das ohne Befehl aufgeht</translation>
+    </message>
+    <message>
+        <source>--rays is for Mitsuba; add --renderer mitsuba, or leave it out</source>
+        <translation>--rays ist für Mitsuba; --renderer mitsuba dazunehmen oder --rays weglassen</translation>
+    </message>
+    <message>
+        <source>--resume goes on with the settings that the training was begun with; leave {0} out</source>
+        <translation>--resume macht mit den Einstellungen weiter, mit denen das Training begonnen wurde; {0} weglassen</translation>
+    </message>
+    <message>
+        <source>--set folder: needs photos and index images; name both with --images and --truth</source>
+        <translation>--set folder: braucht Fotos und Indexbilder; beide mit --images und --truth nennen</translation>
+    </message>
+    <message>
+        <source>--site goes with a new IFC file; leave out --into or --site</source>
+        <translation>--site gehört zu einer neuen IFC-Datei; --into oder --site weglassen</translation>
+    </message>
+    <message>
+        <source>--site without a command is for --screenshots</source>
+        <translation>--site ohne Befehl ist für --screenshots</translation>
+    </message>
+    <message>
+        <source>--take-off, --set-parameters, --raise and --overrule are for --link URL; nothing real moves here</source>
+        <translation>--take-off, --set-parameters, --raise und --overrule sind für --link URL; hier bewegt sich nichts Echtes</translation>
+    </message>
+    <message>
+        <source>--views, --rectified-by: the photos of &apos;{0}&apos; have no poses, which both need; take a made set: {1}</source>
+        <translation>--views, --rectified-by: die Fotos von &apos;{0}&apos; haben keine Posen, die beide brauchen; einen erzeugten Satz nehmen: {1}</translation>
+    </message>
+    <message>
+        <source>; {0} panels lost</source>
+        <translation>; {0} Scheiben verloren</translation>
     </message>
     <message>
         <source>A folder with one page that shows the model and all records in any browser, without a network.</source>
@@ -5754,12 +5964,40 @@ Damit weiterarbeiten?</translation>
         <translation>Ein Ordner mit Splats und Scheiben in Kacheln, auf der Erde verortet, wie CesiumJS sie zeigt.</translation>
     </message>
     <message>
+        <source>COLMAP model: the rational distortion of camera {0} is {1} px from the nearest polynomial; expected at most {2} px; undistort the images in COLMAP (image_undistorter)</source>
+        <translation>COLMAP-Modell: die rationale Verzeichnung der Kamera {0} ist {1} px vom nächsten Polynom entfernt; erwartet werden höchstens {2} px; die Bilder in COLMAP entzerren (image_undistorter)</translation>
+    </message>
+    <message>
+        <source>Ipopt found no speed profile: {0}</source>
+        <translation>Ipopt fand kein Geschwindigkeitsprofil: {0}</translation>
+    </message>
+    <message>
+        <source>LPIPS unavailable: give weights with --lpips</source>
+        <translation>LPIPS fehlt: Gewichte mit --lpips angeben</translation>
+    </message>
+    <message>
         <source>Mesh (glTF)</source>
         <translation>Netz (glTF)</translation>
     </message>
     <message>
+        <source>Mitsuba is installed but does not work here ({0}); use the embedded renderer</source>
+        <translation>Mitsuba ist installiert, läuft hier aber nicht ({0}); den eingebauten Renderer benutzen</translation>
+    </message>
+    <message>
+        <source>Mitsuba is not installed; install it (pip install &apos;reflight[mitsuba]&apos;), or use the embedded renderer</source>
+        <translation>Mitsuba ist nicht installiert; installieren (pip install &apos;reflight[mitsuba]&apos;) oder den eingebauten Renderer benutzen</translation>
+    </message>
+    <message>
         <source>Panels with pictures of their fronts, for programs that know no splats.</source>
         <translation>Scheiben mit Bildern ihrer Vorderseite, für Programme ohne Splats.</translation>
+    </message>
+    <message>
+        <source>PyVRP found no tour of all {0} points by existing legs; more time may help</source>
+        <translation>PyVRP fand keine Rundtour durch alle {0} Punkte über vorhandene Strecken; mehr Zeit kann helfen</translation>
+    </message>
+    <message>
+        <source>Reflight failed where it should not ({0}: {1}); please report it with {2}</source>
+        <translation>Reflight versagte, wo es nicht sollte ({0}: {1}); bitte mit {2} melden</translation>
     </message>
     <message>
         <source>Splats and panels for film and simulation programs.</source>
@@ -5798,12 +6036,84 @@ Damit weiterarbeiten?</translation>
         <translation>Nur die Scheiben, als Fenster des Gebäudes, mit ihren Merkmalen.</translation>
     </message>
     <message>
+        <source>WORLD_SIZE is &apos;{0}&apos;, but RANK is no number; start the processes with torchrun</source>
+        <translation>WORLD_SIZE ist &apos;{0}&apos;, aber RANK ist keine Zahl; die Prozesse mit torchrun starten</translation>
+    </message>
+    <message>
         <source>Web page</source>
         <translation>Webseite</translation>
     </message>
     <message>
+        <source>a 3-D point has a coordinate that is not finite</source>
+        <translation>ein 3-D-Punkt hat eine Koordinate, die nicht endlich ist</translation>
+    </message>
+    <message>
+        <source>a CVRP needs several routes; expected a TSP or ATSP</source>
+        <translation>ein CVRP braucht mehrere Routen; erwartet wird ein TSP oder ATSP</translation>
+    </message>
+    <message>
+        <source>a bare site around them, without building and panels</source>
+        <translation>ein leerer Standort darum herum, ohne Gebäude und Scheiben</translation>
+    </message>
+    <message>
+        <source>a cluster ({0}) needs Dask: pip install &apos;reflight[cluster]&apos;</source>
+        <translation>ein Cluster ({0}) braucht Dask: pip install &apos;reflight[cluster]&apos;</translation>
+    </message>
+    <message>
+        <source>a fence has a radius of {0} m; expected more than 0</source>
+        <translation>ein Geofence hat einen Radius von {0} m; erwartet wird mehr als 0</translation>
+    </message>
+    <message>
+        <source>a fence has {0} corners; expected at least {1}</source>
+        <translation>ein Geofence hat {0} Ecken; erwartet werden mindestens {1}</translation>
+    </message>
+    <message>
+        <source>a full battery</source>
+        <translation>einem vollen Akku</translation>
+    </message>
+    <message>
+        <source>a mesh does not tell windows from walls; state where the panels are, for example --panel-grid &apos;0,0,0 36,0,0 0,0,42&apos; --rows 14 --columns 20 (lower left, lower right and upper left corner of a facade, seen from outside), or import the building alone with --without-panels and find them in photos with &apos;panels&apos;</source>
+        <translation>ein Netz unterscheidet Fenster nicht von Wänden; angeben, wo die Scheiben sind, zum Beispiel --panel-grid &apos;0,0,0 36,0,0 0,0,42&apos; --rows 14 --columns 20 (Ecken einer Fassade unten links, unten rechts und oben links, von außen gesehen), oder das Gebäude allein mit --without-panels importieren und sie mit &apos;panels&apos; in Fotos finden</translation>
+    </message>
+    <message>
+        <source>a number of views is for scenes without a plan or flight; leave it out, or them</source>
+        <translation>eine Zahl von Aufnahmen ist für Szenen ohne Plan oder Flug; sie oder diese weglassen</translation>
+    </message>
+    <message>
+        <source>a path needs two views or more to go through; leave --frames out</source>
+        <translation>ein Weg braucht zwei oder mehr Ansichten; --frames weglassen</translation>
+    </message>
+    <message>
+        <source>a polynomial of degree {0} needs at least {1} points, found {2}</source>
+        <translation>ein Polynom vom Grad {0} braucht mindestens {1} Punkte, gefunden wurden {2}</translation>
+    </message>
+    <message>
+        <source>a process that rendered ended by itself, perhaps for want of memory; complete photos stay in {0}: run it again with fewer processes (--jobs 1) or smaller pictures (--width)</source>
+        <translation>ein Prozess beim Rendern endete von selbst, vielleicht aus Mangel an Speicher; fertige Fotos bleiben in {0}: noch einmal mit weniger Prozessen (--jobs 1) oder kleineren Bildern (--width) starten</translation>
+    </message>
+    <message>
+        <source>a site alone has no viewpoints to fly to; name a plan as well</source>
+        <translation>ein Standort allein hat keine Aufnahmepunkte zum Anfliegen; auch einen Plan nennen</translation>
+    </message>
+    <message>
+        <source>a {0} has no field &apos;{1}&apos;; known are {2}</source>
+        <translation>{0} hat kein Feld &apos;{1}&apos;; bekannt sind {2}</translation>
+    </message>
+    <message>
         <source>above {0} and below {1}</source>
         <translation>über {0} und unter {1}</translation>
+    </message>
+    <message>
+        <source>added or changed: {0}</source>
+        <translation>dazugekommen oder geändert: {0}</translation>
+    </message>
+    <message>
+        <source>after {0} with &apos;{1}&apos;</source>
+        <translation>nach {0} mit &apos;{1}&apos;</translation>
+    </message>
+    <message>
+        <source>ambiguous option: %(option)s could match %(matches)s</source>
+        <translation>mehrdeutige Option: %(option)s kann %(matches)s sein</translation>
     </message>
     <message>
         <source>an aircraft that leaves its mission returns {0} m above take-off, though the airspace ends at {1} m: DJI&apos;s remote controllers take no less</source>
@@ -5814,6 +6124,648 @@ Damit weiterarbeiten?</translation>
         <translation>ein Fluggerät, das seine Mission verlässt, kehrt {0} m über dem Startplatz zurück, wo {1} m genügen würden: weniger nehmen DJIs Fernsteuerungen nicht an</translation>
     </message>
     <message>
+        <source>argument %(argument_name)s: %(message)s</source>
+        <translation>Argument %(argument_name)s: %(message)s</translation>
+    </message>
+    <message>
+        <source>at most {0} longer than the shortest</source>
+        <translation>höchstens {0} länger als die kürzeste</translation>
+    </message>
+    <message>
+        <source>at the shutter (median / worst): {0}</source>
+        <translation>beim Auslösen (Median / schlechteste): {0}</translation>
+    </message>
+    <message>
+        <source>belongs to --refine, which was not given</source>
+        <translation>gehört zu --refine, das nicht angegeben wurde</translation>
+    </message>
+    <message>
+        <source>best</source>
+        <translation>beste</translation>
+    </message>
+    <message>
+        <source>blur</source>
+        <translation>Unschärfe</translation>
+    </message>
+    <message>
+        <source>bundled scenes have a look of their own; name a site file to give one, or leave it out</source>
+        <translation>mitgelieferte Szenen haben ein eigenes Aussehen; dafür eine Standortdatei nennen oder es weglassen</translation>
+    </message>
+    <message>
+        <source>byte {0} says that {1} entries follow, but the {2} bytes left hold at most {3}; the file is damaged or cut off: write it again</source>
+        <translation>Byte {0} sagt, dass {1} Einträge folgen, aber die restlichen {2} Bytes fassen höchstens {3}; die Datei ist beschädigt oder abgeschnitten: neu schreiben</translation>
+    </message>
+    <message>
+        <source>cannot be read as weights (safetensors, or tensors that torch.save wrote); get the file again</source>
+        <translation>nicht als Gewichte lesbar (safetensors, oder Tensoren von torch.save); die Datei neu holen</translation>
+    </message>
+    <message>
+        <source>cannot be run ({0}); name an arducopter</source>
+        <translation>nicht ausführbar ({0}); ein arducopter nennen</translation>
+    </message>
+    <message>
+        <source>cannot be written; check the folder, or that no other program holds the file</source>
+        <translation>nicht zu schreiben; den Ordner prüfen, und ob ein anderes Programm die Datei offen hält</translation>
+    </message>
+    <message>
+        <source>certificate</source>
+        <translation>Nachweis</translation>
+    </message>
+    <message>
+        <source>check:    {0} of {1} rules kept, {2}</source>
+        <translation>Prüfung:  {0} von {1} Regeln eingehalten, {2}</translation>
+    </message>
+    <message>
+        <source>cost</source>
+        <translation>Kosten</translation>
+    </message>
+    <message>
+        <source>coverage of all plans: {0} degree sections, {1} m minimum distance, occlusion {2}</source>
+        <translation>Abdeckung aller Pläne: Sektoren zu {0} Grad, {1} m Mindestabstand, Verdeckung {2}</translation>
+    </message>
+    <message>
+        <source>coverage, {0} % percentile</source>
+        <translation>Abdeckung, {0}-%-Perzentil</translation>
+    </message>
+    <message>
+        <source>coverage: {0} sections where {1} were planned{2}, {3} in all</source>
+        <translation>Abdeckung: {0} Sektoren, wo {1} geplant waren{2}, {3} insgesamt</translation>
+    </message>
+    <message>
+        <source>covered</source>
+        <translation>gedeckt</translation>
+    </message>
+    <message>
+        <source>covered before {0}, together {1} sections</source>
+        <translation>vorher abgedeckt {0}, zusammen {1} Sektoren</translation>
+    </message>
+    <message>
+        <source>covered {0} of {1} sections ({2} directions of view for each of {3})</source>
+        <translation>abgedeckt {0} von {1} Sektoren ({2} Blickrichtungen für jede von {3})</translation>
+    </message>
+    <message>
+        <source>distortion: {0} folds the picture or bends it too far: a place in it belongs to no one direction; expected a lens that can be undistorted up to its corners (k1, k2, p1, p2, k3 for lengths in units of the focal length)</source>
+        <translation>distortion: {0} faltet das Bild oder biegt es zu weit: eine Stelle darin gehört zu keiner eindeutigen Richtung; erwartet wird ein Objektiv, das bis in die Ecken zu entzerren ist (k1, k2, p1, p2, k3 für Längen in Einheiten der Brennweite)</translation>
+    </message>
+    <message>
+        <source>effect</source>
+        <translation>Effekt</translation>
+    </message>
+    <message>
+        <source>effects are decided by the photos of a flight; expected at least one, got none</source>
+        <translation>Effekte werden nach den Fotos eines Fluges entschieden; erwartet wird mindestens eines, gefunden keines</translation>
+    </message>
+    <message>
+        <source>effects:
+{0}</source>
+        <translation>Effekte:
+{0}</translation>
+    </message>
+    <message>
+        <source>ended at once with status {0} ({1})</source>
+        <translation>endete sofort mit Status {0} ({1})</translation>
+    </message>
+    <message>
+        <source>ends after {0} of its {1} points</source>
+        <translation>endet nach {0} seiner {1} Punkte</translation>
+    </message>
+    <message>
+        <source>ends at byte {0} in the middle of an entry; write the file again</source>
+        <translation>endet bei Byte {0} mitten in einem Eintrag; die Datei neu schreiben</translation>
+    </message>
+    <message>
+        <source>expected 0, 9, 24 or 45 columns f_rest_0 and so on, found {0}</source>
+        <translation>erwartet werden 0, 9, 24 oder 45 Spalten f_rest_0 und so weiter, gefunden {0}</translation>
+    </message>
+    <message>
+        <source>expected 1 or more, got {0}</source>
+        <translation>erwartet wird 1 oder mehr, angegeben {0}</translation>
+    </message>
+    <message>
+        <source>expected 2 or more, got 1</source>
+        <translation>erwartet wird 2 oder mehr, angegeben 1</translation>
+    </message>
+    <message>
+        <source>expected 2 to {0}, got {1}</source>
+        <translation>erwartet wird 2 bis {0}, angegeben {1}</translation>
+    </message>
+    <message>
+        <source>expected UTF-8, found other bytes; save it as CSV UTF-8</source>
+        <translation>erwartet wird UTF-8, gefunden wurden andere Bytes; als CSV UTF-8 speichern</translation>
+    </message>
+    <message>
+        <source>expected a COLMAP model (cameras and images as .bin or .txt), found {0}; models are often in sparse/0</source>
+        <translation>erwartet wird ein COLMAP-Modell (Kameras und Bilder als .bin oder .txt), gefunden {0}; Modelle liegen oft in sparse/0</translation>
+    </message>
+    <message>
+        <source>expected a GlobalId, or a name in the column &apos;name&apos;, found neither</source>
+        <translation>erwartet wird eine GlobalId oder ein Name in der Spalte &apos;name&apos;, gefunden keines</translation>
+    </message>
+    <message>
+        <source>expected a PLY file of format {0}, found &apos;{1}&apos;; save it as that</source>
+        <translation>erwartet wird eine PLY-Datei vom Format {0}, gefunden &apos;{1}&apos;; so speichern</translation>
+    </message>
+    <message>
+        <source>expected a charge from 0 to 1, got {0}</source>
+        <translation>erwartet wird eine Ladung von 0 bis 1, angegeben {0}</translation>
+    </message>
+    <message>
+        <source>expected a finite time and position</source>
+        <translation>erwartet werden Zeit und Ort in endlichen Zahlen</translation>
+    </message>
+    <message>
+        <source>expected a folder of panels files (*.json), as &apos;segment&apos; writes them; found none</source>
+        <translation>erwartet wird ein Ordner mit Scheibendateien (*.json), wie &apos;segment&apos; sie schreibt; gefunden keine</translation>
+    </message>
+    <message>
+        <source>expected a folder, found a file; name a folder for the photos</source>
+        <translation>erwartet wird ein Ordner, gefunden eine Datei; einen Ordner für die Fotos nennen</translation>
+    </message>
+    <message>
+        <source>expected a grey mask, found colours; write glass as white on black</source>
+        <translation>erwartet wird eine graue Maske, gefunden wurden Farben; Glas weiß auf schwarz schreiben</translation>
+    </message>
+    <message>
+        <source>expected a grey or colour picture of 8 bit, found {0} of shape {1}; convert it (for example to an 8-bit PNG or JPEG) first</source>
+        <translation>erwartet wird ein graues oder farbiges Bild mit 8 Bit, gefunden {0} der Form {1}; es zuerst umwandeln (etwa in PNG oder JPEG mit 8 Bit)</translation>
+    </message>
+    <message>
+        <source>expected a list such as a,b, got &apos;{0}&apos;</source>
+        <translation>erwartet wird eine Liste wie a,b, angegeben &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>expected a lossless WebP image</source>
+        <translation>erwartet wird ein verlustloses WebP-Bild</translation>
+    </message>
+    <message>
+        <source>expected a mask for each of {0} photos, named like it; missing: {1}{2}</source>
+        <translation>erwartet wird eine Maske für jedes von {0} Fotos, mit dessen Namen; es fehlen: {1}{2}</translation>
+    </message>
+    <message>
+        <source>expected a mask for the photo &apos;{0}&apos;, found none of that name</source>
+        <translation>erwartet wird eine Maske für das Foto &apos;{0}&apos;, gefunden keine dieses Namens</translation>
+    </message>
+    <message>
+        <source>expected a name of {0}, or name the kind with --kind</source>
+        <translation>erwartet wird ein Name aus {0}, oder die Art mit --kind nennen</translation>
+    </message>
+    <message>
+        <source>expected a name that ends in .html; a PDF is made from the window (Mission, Flight brief) or by printing the page in a browser</source>
+        <translation>erwartet wird ein Name mit der Endung .html; ein PDF macht das Fenster (Mission, Flugblatt), oder der Druck der Seite im Browser</translation>
+    </message>
+    <message>
+        <source>expected a number above 0, got &apos;{0}&apos;</source>
+        <translation>erwartet wird eine Zahl über 0, angegeben &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>expected a number, got &apos;{0}&apos;</source>
+        <translation>erwartet wird eine Zahl, angegeben &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>expected a number{0}, got &apos;{1}&apos;</source>
+        <translation>erwartet wird eine Zahl{0}, gefunden &apos;{1}&apos;</translation>
+    </message>
+    <message>
+        <source>expected a picture and a focal length above 0, got {0} x {1} and {2}</source>
+        <translation>erwartet werden ein Bild und eine Brennweite über 0, gefunden {0} x {1} und {2}</translation>
+    </message>
+    <message>
+        <source>expected a positive number of millimetres, got {0}</source>
+        <translation>erwartet wird eine positive Zahl von Millimetern, angegeben {0}</translation>
+    </message>
+    <message>
+        <source>expected a positive number of seconds, got {0}</source>
+        <translation>erwartet wird eine positive Zahl von Sekunden, angegeben {0}</translation>
+    </message>
+    <message>
+        <source>expected a setting and its values, such as n_splats=4000,8000</source>
+        <translation>erwartet wird eine Einstellung mit ihren Werten, etwa n_splats=4000,8000</translation>
+    </message>
+    <message>
+        <source>expected a time such as 2026-06-21T10:30, got &apos;{0}&apos;</source>
+        <translation>erwartet wird eine Zeit wie 2026-06-21T10:30, angegeben &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>expected a value, found none</source>
+        <translation>erwartet wird ein Wert, gefunden keiner</translation>
+    </message>
+    <message>
+        <source>expected a whole number of 1 or more, got &apos;{0}&apos;</source>
+        <translation>erwartet wird eine ganze Zahl ab 1, angegeben &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>expected a whole number, got &apos;{0}&apos;</source>
+        <translation>erwartet wird eine ganze Zahl, gefunden &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>expected an index image for each photo; &apos;{0}&apos; has none</source>
+        <translation>erwartet wird ein Indexbild für jedes Foto; &apos;{0}&apos; hat keines</translation>
+    </message>
+    <message>
+        <source>expected an object of the model, got &apos;{0}&apos;</source>
+        <translation>erwartet wird ein Objekt des Modells, gefunden &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>expected an object with files, found something else; name a new folder</source>
+        <translation>erwartet wird ein Objekt mit Dateien, gefunden etwas anderes; einen neuen Ordner nennen</translation>
+    </message>
+    <message>
+        <source>expected annotated photos ({0}) in this folder, found none</source>
+        <translation>erwartet werden annotierte Fotos ({0}) in diesem Ordner, gefunden keine</translation>
+    </message>
+    <message>
+        <source>expected annotations in COCO&apos;s form, found {0}</source>
+        <translation>erwartet werden Annotationen in der Form von COCO, gefunden {0}</translation>
+    </message>
+    <message>
+        <source>expected at least one argument</source>
+        <translation>erwartet wird mindestens ein Wert</translation>
+    </message>
+    <message>
+        <source>expected at most one argument</source>
+        <translation>erwartet wird höchstens ein Wert</translation>
+    </message>
+    <message>
+        <source>expected auto, none, all, or NAME=on, off or auto; names are {0}</source>
+        <translation>erwartet wird auto, none, all oder NAME=on, off oder auto; Namen sind {0}</translation>
+    </message>
+    <message>
+        <source>expected columns x0, y0, x1, y1 of numbers, found {0}</source>
+        <translation>erwartet werden Spalten x0, y0, x1, y1 mit Zahlen, gefunden {0}</translation>
+    </message>
+    <message>
+        <source>expected finite numbers, found &apos;{0}&apos;</source>
+        <translation>erwartet werden endliche Zahlen, gefunden &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>expected heads lin0 to lin4 for {0} features, as {1} has them</source>
+        <translation>erwartet werden Köpfe lin0 bis lin4 für {0} Merkmale, wie {1} sie hat</translation>
+    </message>
+    <message>
+        <source>expected heads such as &apos;maker&apos; or &apos;thickness [mm] (number)&apos;, found &apos;{0}&apos;; types are {1}</source>
+        <translation>erwartet werden Spaltenköpfe wie &apos;maker&apos; oder &apos;thickness [mm] (number)&apos;, gefunden &apos;{0}&apos;; Typen sind {1}</translation>
+    </message>
+    <message>
+        <source>expected it once, or once for each of {0} --panel-grid, got {1}</source>
+        <translation>erwartet wird es einmal, oder einmal für jedes von {0} --panel-grid, angegeben {1}</translation>
+    </message>
+    <message>
+        <source>expected more than 0, got {0}</source>
+        <translation>erwartet wird mehr als 0, angegeben {0}</translation>
+    </message>
+    <message>
+        <source>expected named tensors, found {0}; name a file of weights</source>
+        <translation>erwartet werden benannte Tensoren, gefunden {0}; eine Datei mit Gewichten nennen</translation>
+    </message>
+    <message>
+        <source>expected once, found again</source>
+        <translation>einmal erwartet, noch einmal gefunden</translation>
+    </message>
+    <message>
+        <source>expected one argument</source>
+        <translation>erwartet wird ein Wert</translation>
+    </message>
+    <message>
+        <source>expected one channel with panel numbers, found a colour image</source>
+        <translation>erwartet wird ein Kanal mit Scheibennummern, gefunden ein farbiges Bild</translation>
+    </message>
+    <message>
+        <source>expected one of {0}, got &apos;{1}&apos;</source>
+        <translation>erwartet wird eines von {0}, angegeben &apos;{1}&apos;</translation>
+    </message>
+    <message>
+        <source>expected panel numbers up to {0}, got {1}</source>
+        <translation>erwartet werden Scheibennummern bis {0}, gefunden {1}</translation>
+    </message>
+    <message>
+        <source>expected pictures ({0}) in this folder, found none</source>
+        <translation>erwartet werden Bilder ({0}) in diesem Ordner, gefunden keine</translation>
+    </message>
+    <message>
+        <source>expected places such as [[0.1, 0.2], ...], got &apos;{0}&apos;</source>
+        <translation>erwartet werden Stellen wie [[0.1, 0.2], ...], gefunden &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>expected the folder of a model; &apos;records FOLDER make --objects SITE&apos; makes one for records alone</source>
+        <translation>erwartet wird der Ordner eines Modells; &apos;records FOLDER make --objects SITE&apos; legt einen für Einträge allein an</translation>
+    </message>
+    <message>
+        <source>expected the weights of AlexNet or VGG16 as torchvision names them; {0}</source>
+        <translation>erwartet werden die Gewichte von AlexNet oder VGG16, wie torchvision sie nennt; {0}</translation>
+    </message>
+    <message>
+        <source>expected three numbers after &apos;{0}:&apos;, found &apos;{1}&apos;</source>
+        <translation>erwartet werden drei Zahlen nach &apos;{0}:&apos;, gefunden &apos;{1}&apos;</translation>
+    </message>
+    <message>
+        <source>expected three numbers with commas between them, got &apos;{0}&apos;</source>
+        <translation>erwartet werden drei Zahlen mit Kommas dazwischen, angegeben &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>expected three points with blanks between them, got &apos;{0}&apos;</source>
+        <translation>erwartet werden drei Punkte mit Leerzeichen dazwischen, angegeben &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>expected two viewpoints or more, got {0}</source>
+        <translation>erwartet werden zwei oder mehr Aufnahmepunkte, gefunden {0}</translation>
+    </message>
+    <message>
+        <source>expected whole numbers such as 32,128,0, got &apos;{0}&apos;</source>
+        <translation>erwartet werden ganze Zahlen wie 32,128,0, angegeben &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>expected windows painted red (255, 0, 0), found none</source>
+        <translation>erwartet werden rot gemalte Fenster (255, 0, 0), gefunden keine</translation>
+    </message>
+    <message>
+        <source>expected yes or no, got &apos;{0}&apos;</source>
+        <translation>erwartet wird ja oder nein (yes, no), gefunden &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>expected {0} cells parted by &apos;{1}&apos;, found {2}</source>
+        <translation>erwartet werden {0} Zellen mit &apos;{1}&apos; dazwischen, gefunden {2}</translation>
+    </message>
+    <message>
+        <source>expected {0} numbers for {1}, got {2}</source>
+        <translation>erwartet werden {0} Zahlen für {1}, gefunden {2}</translation>
+    </message>
+    <message>
+        <source>expected {0} or more photos, or 0, got {1}</source>
+        <translation>erwartet werden {0} oder mehr Fotos, oder 0, angegeben {1}</translation>
+    </message>
+    <message>
+        <source>expected {0} or more, got {1}</source>
+        <translation>erwartet wird {0} oder mehr, angegeben {1}</translation>
+    </message>
+    <message>
+        <source>expected {0} to {1} pixels, got {2}</source>
+        <translation>erwartet werden {0} bis {1} Pixel, angegeben {2}</translation>
+    </message>
+    <message>
+        <source>expected {0} to {1}, got {2}</source>
+        <translation>erwartet wird {0} bis {1}, angegeben {2}</translation>
+    </message>
+    <message>
+        <source>expected {0}, got &apos;{1}&apos;</source>
+        <translation>erwartet wird {0}, gefunden &apos;{1}&apos;</translation>
+    </message>
+    <message>
+        <source>first</source>
+        <translation>erste</translation>
+    </message>
+    <message>
+        <source>flight:   {0} ({1}, {2} s)</source>
+        <translation>Flug:     {0} ({1}, {2} s)</translation>
+    </message>
+    <message>
+        <source>flight:   {0} ({1}, {2})</source>
+        <translation>Flug:     {0} ({1}, {2})</translation>
+    </message>
+    <message>
+        <source>fusing views: expected at least one rectified view, found none</source>
+        <translation>Ansichten verbinden: erwartet wird mindestens eine entzerrte Ansicht, gefunden keine</translation>
+    </message>
+    <message>
+        <source>fusing views: expected rectified views of one size with a mask each, found sizes {0}; rectify them all onto the same window of the facade</source>
+        <translation>Ansichten verbinden: erwartet werden entzerrte Ansichten einer Größe mit je einer Maske, gefunden Größen {0}; alle auf denselben Ausschnitt der Fassade entzerren</translation>
+    </message>
+    <message>
+        <source>give and withdraw want the url of a link; set, status and forget want none</source>
+        <translation>give und withdraw brauchen die URL eines Links; set, status und forget keine</translation>
+    </message>
+    <message>
+        <source>has no &apos;{0}&apos;, so these are points and not splats</source>
+        <translation>hat kein &apos;{0}&apos;, das sind also Punkte und keine Splats</translation>
+    </message>
+    <message>
+        <source>has no photo &apos;{0}&apos;, which is to be scored; name photos of its views</source>
+        <translation>hat kein Foto &apos;{0}&apos;, das bewertet werden soll; Fotos seiner Ansichten nennen</translation>
+    </message>
+    <message>
+        <source>has no photo &apos;{0}&apos;, which is to be scored; score --views all</source>
+        <translation>hat kein Foto &apos;{0}&apos;, das bewertet werden soll; mit score --views all bewerten</translation>
+    </message>
+    <message>
+        <source>has no splat within {0} m of the panels of {1}; are both in one frame?</source>
+        <translation>hat keinen Splat bis {0} m vor den Scheiben von {1}; sind beide in einem Bezugssystem?</translation>
+    </message>
+    <message>
+        <source>has none of the views that the model did not learn from; leave --held-out out</source>
+        <translation>hat keine der Ansichten, aus denen das Modell nicht lernte; --held-out weglassen</translation>
+    </message>
+    <message>
+        <source>has only views that are held out for scoring; name photos with more views</source>
+        <translation>hat nur Ansichten, die zum Bewerten zurückgehalten sind; Fotos mit mehr Ansichten nennen</translation>
+    </message>
+    <message>
+        <source>has splats on panel {0}, and {1} has {2} panels; name a file of the same site</source>
+        <translation>hat Splats auf Scheibe {0}, und {1} hat {2} Scheiben; eine Datei desselben Standorts nennen</translation>
+    </message>
+    <message>
+        <source>heading</source>
+        <translation>Richtung</translation>
+    </message>
+    <message>
+        <source>holds a COLMAP model already ({0}); name an empty folder</source>
+        <translation>enthält schon ein COLMAP-Modell ({0}); einen leeren Ordner nennen</translation>
+    </message>
+    <message>
+        <source>holds no position of the aircraft; a log of the whole flight with GNSS reception is needed</source>
+        <translation>enthält keinen Ort des Fluggeräts; nötig ist ein Log des ganzen Fluges mit GNSS-Empfang</translation>
+    </message>
+    <message>
+        <source>holds no splats</source>
+        <translation>enthält keine Splats</translation>
+    </message>
+    <message>
+        <source>holds none of {0}</source>
+        <translation>enthält keine von {0}</translation>
+    </message>
+    <message>
+        <source>holds numbers that are not finite, among them {0} of splats</source>
+        <translation>enthält Zahlen, die nicht endlich sind, darunter {0} von Splats</translation>
+    </message>
+    <message>
+        <source>holds numbers that are not finite; get the files again</source>
+        <translation>enthält Zahlen, die nicht endlich sind; die Dateien neu holen</translation>
+    </message>
+    <message>
+        <source>holds photos of another run: {0} is {1} there, and {2} was asked for; ask for the same again to go on with it, or name a new folder</source>
+        <translation>enthält Fotos eines anderen Laufs: {0} ist dort {1}, und verlangt wurde {2}; dasselbe noch einmal verlangen, um weiterzumachen, oder einen neuen Ordner nennen</translation>
+    </message>
+    <message>
+        <source>holds sizes or panels that cannot be; the file is damaged</source>
+        <translation>enthält Größen oder Scheiben, die nicht sein können; die Datei ist beschädigt</translation>
+    </message>
+    <message>
+        <source>holds {0} {1} twice, by id or by name</source>
+        <translation>enthält {0} {1} zweimal, nach Nummer oder Name</translation>
+    </message>
+    <message>
+        <source>ignored explicit argument %r</source>
+        <translation>übergangener Wert %r</translation>
+    </message>
+    <message>
+        <source>image &apos;{0}&apos; has camera {1}, which is not in the model</source>
+        <translation>Bild &apos;{0}&apos; hat die Kamera {1}, die nicht im Modell ist</translation>
+    </message>
+    <message>
+        <source>image &apos;{0}&apos; holds a number that is not finite, or no rotation</source>
+        <translation>Bild &apos;{0}&apos; enthält eine Zahl, die nicht endlich ist, oder keine Drehung</translation>
+    </message>
+    <message>
+        <source>image &apos;{0}&apos;: a name with spaces at its ends or control characters cannot stand in COLMAP&apos;s text files; write the binary ones</source>
+        <translation>Bild &apos;{0}&apos;: ein Name mit Leerzeichen am Rand oder Steuerzeichen kann nicht in COLMAPs Textdateien stehen; die binären schreiben</translation>
+    </message>
+    <message>
+        <source>in format &apos;{0}{1}&apos; already, nothing to do</source>
+        <translation>schon im Format &apos;{0}{1}&apos;, nichts zu tun</translation>
+    </message>
+    <message>
+        <source>in {0}°</source>
+        <translation>in {0}°</translation>
+    </message>
+    <message>
+        <source>inclined_lines[{0}] of a panels file leaves the facade; shorten it, or take it out</source>
+        <translation>inclined_lines[{0}] einer Scheibendatei verlässt die Fassade; sie kürzen oder herausnehmen</translation>
+    </message>
+    <message>
+        <source>individual mIoU</source>
+        <translation>einzelne mIoU</translation>
+    </message>
+    <message>
+        <source>individual mIoU, one to one</source>
+        <translation>einzelne mIoU, eins zu eins</translation>
+    </message>
+    <message>
+        <source>inspected {0}</source>
+        <translation>geprüft {0}</translation>
+    </message>
+    <message>
+        <source>instances of the file that are to be replaced stand in it in a way that is not understood</source>
+        <translation>Instanzen der Datei, die zu ersetzen sind, stehen darin auf eine Weise, die nicht verstanden wird</translation>
+    </message>
+    <message>
+        <source>invalid %(type)s value: %(value)r</source>
+        <translation>ungültiger Wert (%(type)s): %(value)r</translation>
+    </message>
+    <message>
+        <source>invalid choice: %(value)r (choose from %(choices)s)</source>
+        <translation>ungültige Wahl: %(value)r (möglich sind %(choices)s)</translation>
+    </message>
+    <message>
+        <source>is for --link URL; the simulation in this program has no link to listen to</source>
+        <translation>ist für --link URL; die Simulation in diesem Programm hat keinen Link zum Abhören</translation>
+    </message>
+    <message>
+        <source>is for --resume; a top-up closes what all sorties left open</source>
+        <translation>ist für --resume; ein Ergänzungsflug schließt, was alle Einsätze offen ließen</translation>
+    </message>
+    <message>
+        <source>is no CSV ({0})</source>
+        <translation>ist kein CSV ({0})</translation>
+    </message>
+    <message>
+        <source>is no PLY file (it does not start with &apos;ply&apos;)</source>
+        <translation>ist keine PLY-Datei (sie beginnt nicht mit &apos;ply&apos;)</translation>
+    </message>
+    <message>
+        <source>is no file; {0}</source>
+        <translation>ist keine Datei; {0}</translation>
+    </message>
+    <message>
+        <source>is not empty, and has no {0} of photos to go on with; name a new folder</source>
+        <translation>ist nicht leer und hat kein {0} von Fotos, mit denen es weitergeht; einen neuen Ordner nennen</translation>
+    </message>
+    <message>
+        <source>is not for --resume, which fits one battery</source>
+        <translation>ist nicht für --resume, das in einen Akku passt</translation>
+    </message>
+    <message>
+        <source>its content is no flight log; expected telemetry (.tlog), ArduPilot (.BIN, .log) or PX4 (.ulg)</source>
+        <translation>sein Inhalt ist kein Fluglog; erwartet wird Telemetrie (.tlog), ArduPilot (.BIN, .log) oder PX4 (.ulg)</translation>
+    </message>
+    <message>
+        <source>its description is not as it was written ({0})</source>
+        <translation>seine Beschreibung ist nicht, wie sie geschrieben wurde ({0})</translation>
+    </message>
+    <message>
+        <source>its first element is &apos;{0}&apos;, not &apos;vertex&apos;</source>
+        <translation>sein erstes Element ist &apos;{0}&apos;, nicht &apos;vertex&apos;</translation>
+    </message>
+    <message>
+        <source>its header does not end within {0} bytes; the file is damaged</source>
+        <translation>sein Kopf endet nicht innerhalb von {0} Bytes; die Datei ist beschädigt</translation>
+    </message>
+    <message>
+        <source>its points have the property &apos;{0}&apos; twice</source>
+        <translation>seine Punkte haben die Eigenschaft &apos;{0}&apos; zweimal</translation>
+    </message>
+    <message>
+        <source>its points have {0} properties; expected 1 to {1}</source>
+        <translation>seine Punkte haben {0} Eigenschaften; erwartet werden 1 bis {1}</translation>
+    </message>
+    <message>
+        <source>key kept; give it to a vehicle with &apos;signing give URL&apos;, over a cable</source>
+        <translation>Schlüssel gespeichert; einem Fluggerät mit &apos;signing give URL&apos; geben, über ein Kabel</translation>
+    </message>
+    <message>
+        <source>line 1: expected a column &apos;global_id&apos; or &apos;name&apos;, found {0}</source>
+        <translation>Zeile 1: erwartet wird eine Spalte &apos;global_id&apos; oder &apos;name&apos;, gefunden {0}</translation>
+    </message>
+    <message>
+        <source>line 1: the column &apos;{0}&apos; is missing</source>
+        <translation>Zeile 1: die Spalte &apos;{0}&apos; fehlt</translation>
+    </message>
+    <message>
+        <source>line 1: the column &apos;{0}&apos; occurs twice</source>
+        <translation>Zeile 1: die Spalte &apos;{0}&apos; kommt zweimal vor</translation>
+    </message>
+    <message>
+        <source>line 1: there is no column &apos;{0}&apos;; known are {1}</source>
+        <translation>Zeile 1: eine Spalte &apos;{0}&apos; gibt es nicht; bekannt sind {1}</translation>
+    </message>
+    <message>
+        <source>line 1: {0}</source>
+        <translation>Zeile 1: {0}</translation>
+    </message>
+    <message>
+        <source>line {0} of its header is not understood: &apos;{1}&apos;</source>
+        <translation>Zeile {0} des Kopfes wird nicht verstanden: &apos;{1}&apos;</translation>
+    </message>
+    <message>
+        <source>local-search needs a symmetric instance; add --method pyvrp</source>
+        <translation>local-search braucht eine symmetrische Instanz; --method pyvrp dazunehmen</translation>
+    </message>
+    <message>
+        <source>local-search needs the same cost in both directions; add the method pyvrp</source>
+        <translation>local-search braucht dieselben Kosten in beide Richtungen; das Verfahren pyvrp dazunehmen</translation>
+    </message>
+    <message>
+        <source>log:      {0}</source>
+        <translation>Log:      {0}</translation>
+    </message>
+    <message>
+        <source>lost</source>
+        <translation>verloren</translation>
+    </message>
+    <message>
+        <source>lowest flight {0} m above the ground{1} (take-off and landing apart)</source>
+        <translation>niedrigster Flug {0} m über dem Boden{1} (ohne Start und Landung)</translation>
+    </message>
+    <message>
+        <source>mean</source>
+        <translation>Mittel</translation>
+    </message>
+    <message>
+        <source>missed</source>
+        <translation>übersehen</translation>
+    </message>
+    <message>
+        <source>missions: {0}</source>
+        <translation>Missionen: {0}</translation>
+    </message>
+    <message>
         <source>more than {0}</source>
         <translation>mehr als {0}</translation>
     </message>
@@ -5822,8 +6774,352 @@ Damit weiterarbeiten?</translation>
         <translation>mehr als {0} und höchstens {1}</translation>
     </message>
     <message>
+        <source>name: expected the name of an object of the model, got &apos;{0}&apos;</source>
+        <translation>name: erwartet wird der Name eines Objekts des Modells, gefunden &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>name: several objects have the name &apos;{0}&apos;; give the GlobalId</source>
+        <translation>name: mehrere Objekte haben den Namen &apos;{0}&apos;; die GlobalId nennen</translation>
+    </message>
+    <message>
+        <source>needs the folder of its annotated photos; name it with --data</source>
+        <translation>braucht den Ordner seiner annotierten Fotos; mit --data nennen</translation>
+    </message>
+    <message>
+        <source>never inspected</source>
+        <translation>nie geprüft</translation>
+    </message>
+    <message>
+        <source>next: {0} {1}</source>
+        <translation>weiter: {0} {1}</translation>
+    </message>
+    <message>
+        <source>no Dask scheduler answers at {0} ({1})</source>
+        <translation>kein Dask-Scheduler antwortet unter {0} ({1})</translation>
+    </message>
+    <message>
+        <source>no building in this file has windows; {0}</source>
+        <translation>kein Gebäude in dieser Datei hat Fenster; {0}</translation>
+    </message>
+    <message>
+        <source>no choice from the views that were compared closes more than {0} on these batteries</source>
+        <translation>keine Auswahl aus den verglichenen Aufnahmen schließt mit diesen Akkus mehr als {0}</translation>
+    </message>
+    <message>
+        <source>no choice of as many viewpoints from those compared covers more than {0}</source>
+        <translation>keine Auswahl ebenso vieler Aufnahmepunkte aus den verglichenen deckt mehr als {0} ab</translation>
+    </message>
+    <message>
+        <source>no flight can cover more than {0}, so this is {1} % of what is possible</source>
+        <translation>kein Flug kann mehr als {0} abdecken, das sind also {1} % des Möglichen</translation>
+    </message>
+    <message>
+        <source>no method found a tour</source>
+        <translation>kein Verfahren fand eine Rundtour</translation>
+    </message>
+    <message>
+        <source>no panels found: is the facade seen from its front, and are its frames visible?</source>
+        <translation>keine Scheiben gefunden: Ist die Fassade von vorn zu sehen, und sind ihre Rahmen sichtbar?</translation>
+    </message>
+    <message>
+        <source>no photo says where and when it was taken ({0}); use the files as the camera wrote them: programs that edit, send or share photos often take that out</source>
+        <translation>kein Foto sagt, wo und wann es gemacht wurde ({0}); die Dateien benutzen, wie die Kamera sie schrieb: Programme zum Bearbeiten, Senden oder Teilen nehmen das oft heraus</translation>
+    </message>
+    <message>
+        <source>no plug-ins are installed (entry points of {0})</source>
+        <translation>keine Plug-ins sind installiert (Entry Points von {0})</translation>
+    </message>
+    <message>
+        <source>no single flight over the views that were compared takes less than {0} min</source>
+        <translation>kein einzelner Flug über die verglichenen Aufnahmen dauert weniger als {0} min</translation>
+    </message>
+    <message>
+        <source>no top-up was written; --all writes it all the same</source>
+        <translation>kein Ergänzungsflug wurde geschrieben; --all schreibt ihn trotzdem</translation>
+    </message>
+    <message>
+        <source>none of its {0} photos says where the camera looked; name the plan that was flown as well (--plan)</source>
+        <translation>keines seiner {0} Fotos sagt, wohin die Kamera blickte; auch den geflogenen Plan nennen (--plan)</translation>
+    </message>
+    <message>
+        <source>none of the {0} views to be scored has {1} pixels that lie whole on a panel; take larger or more photos</source>
+        <translation>keine der {0} zu bewertenden Ansichten hat {1} Pixel, die ganz auf einer Scheibe liegen; größere oder mehr Fotos nehmen</translation>
+    </message>
+    <message>
+        <source>none of {0} photos has a pixel that lies whole on a panel; take larger photos (--width) or come closer</source>
+        <translation>keines von {0} Fotos hat ein Pixel, das ganz auf einer Scheibe liegt; größere Fotos nehmen (--width) oder näher herangehen</translation>
+    </message>
+    <message>
+        <source>not allowed with argument %s</source>
+        <translation>nicht zusammen mit Argument %s erlaubt</translation>
+    </message>
+    <message>
+        <source>not ready to fly: see the errors above</source>
+        <translation>nicht flugbereit: siehe die Fehler oben</translation>
+    </message>
+    <message>
+        <source>not written</source>
+        <translation>nicht geschrieben</translation>
+    </message>
+    <message>
+        <source>not written: there is no export into a file of this ending; name a folder, which gets a CSV table for each kind of records (any spreadsheet opens them), or a name ending in .ifc</source>
+        <translation>nicht geschrieben: Es gibt keinen Export in eine Datei dieser Endung; einen Ordner nennen, der eine CSV-Tabelle für jede Art von Einträgen bekommt (jede Tabellenkalkulation öffnet sie), oder einen Namen mit der Endung .ifc</translation>
+    </message>
+    <message>
+        <source>note: the runs shared the machine, so their times cannot be compared</source>
+        <translation>Hinweis: die Läufe teilten sich den Rechner, ihre Zeiten sind also nicht vergleichbar</translation>
+    </message>
+    <message>
+        <source>note: the state is kept in {0}; --resume goes on with it</source>
+        <translation>Hinweis: der Stand bleibt in {0}; --resume macht damit weiter</translation>
+    </message>
+    <message>
+        <source>note: {0}</source>
+        <translation>Hinweis: {0}</translation>
+    </message>
+    <message>
+        <source>nothing is missing</source>
+        <translation>nichts fehlt</translation>
+    </message>
+    <message>
+        <source>nothing to take back</source>
+        <translation>nichts zurückzunehmen</translation>
+    </message>
+    <message>
+        <source>nothing yet</source>
+        <translation>noch nichts</translation>
+    </message>
+    <message>
+        <source>now in format &apos;{0}{1}&apos; (see project.json)</source>
+        <translation>jetzt im Format &apos;{0}{1}&apos; (siehe project.json)</translation>
+    </message>
+    <message>
+        <source>off</source>
+        <translation>aus</translation>
+    </message>
+    <message>
+        <source>on</source>
+        <translation>an</translation>
+    </message>
+    <message>
+        <source>on their own kind</source>
+        <translation>auf der eigenen Art</translation>
+    </message>
+    <message>
+        <source>once more: </source>
+        <translation>noch einmal: </translation>
+    </message>
+    <message>
+        <source>one of the arguments %s is required</source>
+        <translation>eines der Argumente %s ist nötig</translation>
+    </message>
+    <message>
+        <source>opened no link at {0} within {1} s</source>
+        <translation>öffnete innerhalb von {1} s keinen Link unter {0}</translation>
+    </message>
+    <message>
+        <source>optimum</source>
+        <translation>Optimum</translation>
+    </message>
+    <message>
+        <source>origin {0}, {1}, {2} m above the ellipsoid</source>
+        <translation>Ursprung {0}, {1}, {2} m über dem Ellipsoid</translation>
+    </message>
+    <message>
+        <source>overall IoU of glass</source>
+        <translation>gesamte IoU des Glases</translation>
+    </message>
+    <message>
+        <source>overall mIoU</source>
+        <translation>gesamte mIoU</translation>
+    </message>
+    <message>
+        <source>panels of photo &apos;{0}&apos; are given for {1} x {2} pixels, but it has {3} x {4}; find and correct them in the photo itself</source>
+        <translation>Scheiben des Fotos &apos;{0}&apos; sind für {1} x {2} Pixel gegeben, es hat aber {3} x {4}; sie im Foto selbst suchen und verbessern</translation>
+    </message>
+    <message>
+        <source>panels of photo &apos;{0}&apos; are given, which is none of the {1} photos that have a pose; name the photo&apos;s file in its field &apos;image&apos;, or take the panels file out of the folder</source>
+        <translation>Scheiben des Fotos &apos;{0}&apos; sind gegeben, das keines der {1} Fotos mit einer Pose ist; die Datei des Fotos im Feld &apos;image&apos; nennen oder die Scheibendatei aus dem Ordner nehmen</translation>
+    </message>
+    <message>
+        <source>passphrase: </source>
+        <translation>Passphrase: </translation>
+    </message>
+    <message>
+        <source>photo &apos;{0}&apos; is in {1} already; keep one of them</source>
+        <translation>Foto &apos;{0}&apos; ist schon in {1}; eines davon behalten</translation>
+    </message>
+    <message>
+        <source>photos</source>
+        <translation>Fotos</translation>
+    </message>
+    <message>
+        <source>photos: {0} of {1} views</source>
+        <translation>Fotos: {0} von {1} Aufnahmen</translation>
+    </message>
+    <message>
+        <source>pitch</source>
+        <translation>Neigung</translation>
+    </message>
+    <message>
+        <source>plan ready</source>
+        <translation>Plan fertig</translation>
+    </message>
+    <message>
+        <source>planned in {0} s ({1})</source>
+        <translation>geplant in {0} s ({1})</translation>
+    </message>
+    <message>
+        <source>plans:   {0}</source>
+        <translation>Pläne:    {0}</translation>
+    </message>
+    <message>
+        <source>point {0} says that {1} observations follow, more than the file holds; it is damaged or cut off: write it again</source>
+        <translation>Punkt {0} sagt, dass {1} Beobachtungen folgen, mehr als die Datei enthält; sie ist beschädigt oder abgeschnitten: neu schreiben</translation>
+    </message>
+    <message>
+        <source>position</source>
+        <translation>Position</translation>
+    </message>
+    <message>
+        <source>project: {0}</source>
+        <translation>Projekt: {0}</translation>
+    </message>
+    <message>
+        <source>reachability</source>
+        <translation>Erreichbarkeit</translation>
+    </message>
+    <message>
+        <source>ready in</source>
+        <translation>bereit in</translation>
+    </message>
+    <message>
+        <source>ready to fly</source>
+        <translation>flugbereit</translation>
+    </message>
+    <message>
+        <source>ready to fly, but read {0} above</source>
+        <translation>flugbereit, aber {0} oben lesen</translation>
+    </message>
+    <message>
+        <source>record {0}, no sortie of the plan</source>
+        <translation>Aufzeichnung {0}, kein Einsatz des Plans</translation>
+    </message>
+    <message>
+        <source>refined poses{0}</source>
+        <translation>verfeinerte Posen{0}</translation>
+    </message>
+    <message>
+        <source>rendered in</source>
+        <translation>gerendert in</translation>
+    </message>
+    <message>
+        <source>rendered in {0} s</source>
+        <translation>gerendert in {0} s</translation>
+    </message>
+    <message>
+        <source>rest of sortie {0} from {1} on, {2}, {3} m, {4} min</source>
+        <translation>Rest von Einsatz {0} ab {1}, {2}, {3} m, {4} min</translation>
+    </message>
+    <message>
+        <source>routing</source>
+        <translation>Route</translation>
+    </message>
+    <message>
+        <source>run</source>
+        <translation>Lauf</translation>
+    </message>
+    <message>
+        <source>s a photo</source>
+        <translation>s je Foto</translation>
+    </message>
+    <message>
+        <source>samples: expected 1 to 32 along a pixel&apos;s side, or auto, got {0}</source>
+        <translation>samples: erwartet werden 1 bis 32 entlang einer Pixelseite oder auto, angegeben {0}</translation>
+    </message>
+    <message>
+        <source>says that it has more numbers than it holds; get the file again</source>
+        <translation>gibt mehr Zahlen an, als es enthält; neu holen</translation>
+    </message>
+    <message>
+        <source>says that it has {0} points, {1} bytes, and {2} bytes follow its header; the file is cut off or damaged</source>
+        <translation>gibt {0} Punkte mit {1} Bytes an, und {2} Bytes folgen seinem Kopf; die Datei ist abgeschnitten oder beschädigt</translation>
+    </message>
+    <message>
+        <source>says that it has {0} points; at most {1} are read</source>
+        <translation>gibt {0} Punkte an; höchstens {1} werden gelesen</translation>
+    </message>
+    <message>
+        <source>seen at least twice: {0} sections</source>
+        <translation>mindestens zweimal gesehen: {0} Sektoren</translation>
+    </message>
+    <message>
+        <source>setting</source>
+        <translation>Einstellung</translation>
+    </message>
+    <message>
+        <source>shows other panels than the model; name photos of the same site</source>
+        <translation>zeigt andere Scheiben als das Modell; Fotos desselben Standorts nennen</translation>
+    </message>
+    <message>
+        <source>shows other panels than were learned from; name photos of the same site</source>
+        <translation>zeigt andere Scheiben als die gelernten; Fotos desselben Standorts nennen</translation>
+    </message>
+    <message>
+        <source>simulated {0}</source>
+        <translation>simuliertes {0}</translation>
+    </message>
+    <message>
+        <source>site &apos;{0}&apos;, {1}</source>
+        <translation>Standort &apos;{0}&apos;, {1}</translation>
+    </message>
+    <message>
+        <source>site:     {0}</source>
+        <translation>Standort: {0}</translation>
+    </message>
+    <message>
+        <source>site:    none yet</source>
+        <translation>Standort: noch keiner</translation>
+    </message>
+    <message>
+        <source>site:    {0}, {1} ({2})</source>
+        <translation>Standort: {0}, {1} ({2})</translation>
+    </message>
+    <message>
+        <source>size</source>
+        <translation>Größe</translation>
+    </message>
+    <message>
+        <source>sound</source>
+        <translation>unbeschädigt</translation>
+    </message>
+    <message>
+        <source>speed</source>
+        <translation>Tempo</translation>
+    </message>
+    <message>
+        <source>splats</source>
+        <translation>Splats</translation>
+    </message>
+    <message>
+        <source>state</source>
+        <translation>Zustand</translation>
+    </message>
+    <message>
+        <source>steps</source>
+        <translation>Schritte</translation>
+    </message>
+    <message>
         <source>takeOffRefPoint {0},{1} is not on the globe and is not used</source>
         <translation>takeOffRefPoint {0},{1} liegt nicht auf der Erde und wird nicht benutzt</translation>
+    </message>
+    <message>
+        <source>taken back: {0}</source>
+        <translation>zurückgenommen: {0}</translation>
+    </message>
+    <message>
+        <source>taken out</source>
+        <translation>herausgenommen</translation>
     </message>
     <message>
         <source>template and waylines name different aircraft: {0}, {1}</source>
@@ -5834,12 +7130,140 @@ Damit weiterarbeiten?</translation>
         <translation>template und waylines nennen verschiedene Kameras</translation>
     </message>
     <message>
+        <source>the ULog cannot be read ({0}); copy it from the vehicle again</source>
+        <translation>das ULog ist nicht lesbar ({0}); noch einmal vom Fluggerät kopieren</translation>
+    </message>
+    <message>
+        <source>the ULog is damaged beyond reading; copy it from the vehicle again</source>
+        <translation>das ULog ist unlesbar beschädigt; noch einmal vom Fluggerät kopieren</translation>
+    </message>
+    <message>
+        <source>the aircraft did not fly while this log was written; take the log of the flight</source>
+        <translation>das Fluggerät flog nicht, während dieses Log geschrieben wurde; das Log des Fluges nehmen</translation>
+    </message>
+    <message>
+        <source>the annotation has {0} x {1} pixels, its photo {2} x {3}</source>
+        <translation>die Annotation hat {0} x {1} Pixel, ihr Foto {2} x {3}</translation>
+    </message>
+    <message>
+        <source>the battery on board</source>
+        <translation>dem eingesetzten Akku</translation>
+    </message>
+    <message>
+        <source>the building without panels</source>
+        <translation>das Gebäude ohne Scheiben</translation>
+    </message>
+    <message>
+        <source>the cluster does not answer any more ({0}); complete photos stay in {1}: run it again to go on</source>
+        <translation>der Cluster antwortet nicht mehr ({0}); fertige Fotos bleiben in {1}: noch einmal starten, um weiterzumachen</translation>
+    </message>
+    <message>
+        <source>the data of the file do not end (ENDSEC is missing)</source>
+        <translation>die Daten der Datei enden nicht (ENDSEC fehlt)</translation>
+    </message>
+    <message>
+        <source>the facade&apos;s horizon runs through its middle: it is seen edge-on, or the lines are wrong</source>
+        <translation>der Horizont der Fassade geht durch ihre Mitte: sie ist von der Kante zu sehen, oder die Linien sind falsch</translation>
+    </message>
+    <message>
+        <source>the flight is {0} km from the site &apos;{1}&apos;; expected at most {2} km; is it the right log, and the right site?</source>
+        <translation>der Flug ist {0} km vom Standort &apos;{1}&apos; entfernt; erwartet werden höchstens {2} km; ist es das richtige Log und der richtige Standort?</translation>
+    </message>
+    <message>
+        <source>the following arguments are required: %s</source>
+        <translation>folgende Argumente fehlen: %s</translation>
+    </message>
+    <message>
+        <source>the image name at byte {0} has no end; the file is damaged</source>
+        <translation>der Bildname bei Byte {0} hat kein Ende; die Datei ist beschädigt</translation>
+    </message>
+    <message>
+        <source>the link to the simulated vehicle is closed</source>
+        <translation>der Link zum simulierten Fluggerät ist geschlossen</translation>
+    </message>
+    <message>
+        <source>the log is empty; copy it from the vehicle again</source>
+        <translation>das Log ist leer; noch einmal vom Fluggerät kopieren</translation>
+    </message>
+    <message>
+        <source>the lower bound</source>
+        <translation>die untere Schranke</translation>
+    </message>
+    <message>
+        <source>the nearest neighbour ends where there is no leg back; take another method</source>
+        <translation>der nächste Nachbar endet, wo keine Strecke zurückführt; ein anderes Verfahren nehmen</translation>
+    </message>
+    <message>
+        <source>the optimum</source>
+        <translation>das Optimum</translation>
+    </message>
+    <message>
+        <source>the origin of &apos;{0}&apos; is not the one of the plan, which is for &apos;{1}&apos;; name the site file that the plan was made for</source>
+        <translation>der Ursprung von &apos;{0}&apos; ist nicht der des Plans, der für &apos;{1}&apos; ist; die Standortdatei nennen, für die der Plan gemacht wurde</translation>
+    </message>
+    <message>
+        <source>the output cannot be written ({0})</source>
+        <translation>die Ausgabe ist nicht zu schreiben ({0})</translation>
+    </message>
+    <message>
+        <source>the photos show {0} of the {1} sections that the plan promised ({2} %)</source>
+        <translation>die Fotos zeigen {0} der {1} Sektoren, die der Plan versprach ({2} %)</translation>
+    </message>
+    <message>
+        <source>the picture cannot be written</source>
+        <translation>das Bild ist nicht zu schreiben</translation>
+    </message>
+    <message>
+        <source>the picture is distorted, and splats are rendered without distortion; make it straight with `prepare`</source>
+        <translation>das Bild ist verzeichnet, und Splats werden ohne Verzeichnung gerendert; mit `prepare` entzerren</translation>
+    </message>
+    <message>
+        <source>the plan is NOT ready to fly: the brief lists why</source>
+        <translation>der Plan ist NICHT flugbereit: das Flugblatt sagt, warum</translation>
+    </message>
+    <message>
+        <source>the plan is for the site &apos;{0}&apos;; name its site file as well</source>
+        <translation>der Plan ist für den Standort &apos;{0}&apos;; auch dessen Standortdatei nennen</translation>
+    </message>
+    <message>
+        <source>the plan promised {0} sections; {1} of them are missing</source>
+        <translation>der Plan versprach {0} Sektoren; {1} davon fehlen</translation>
+    </message>
+    <message>
+        <source>the points do not determine a polynomial of degree {0}: they are in line</source>
+        <translation>die Punkte bestimmen kein Polynom vom Grad {0}: sie liegen auf einer Linie</translation>
+    </message>
+    <message>
+        <source>the reader of IFC files crashed on this one (status {0}), so something in it goes in circles or beyond all bounds; open and export it again in a BIM program</source>
+        <translation>der Leser von IFC-Dateien stürzte bei dieser ab (Status {0}), etwas darin geht also im Kreis oder über alle Grenzen; sie in einem BIM-Programm öffnen und neu exportieren</translation>
+    </message>
+    <message>
         <source>the return height is none that DJI&apos;s remote controllers take: expected {0} to {1} m above take-off, got {2} m</source>
         <translation>diese Rückkehrhöhe nehmen DJIs Fernsteuerungen nicht an: erwartet {0} bis {1} m über dem Startplatz, angegeben sind {2} m</translation>
     </message>
     <message>
         <source>the return height would have to be {0} m above take-off: DJI&apos;s remote controllers take no more than {1} m</source>
         <translation>die Rückkehrhöhe müsste {0} m über dem Startplatz sein: DJIs Fernsteuerungen nehmen höchstens {1} m an</translation>
+    </message>
+    <message>
+        <source>the shortest there is</source>
+        <translation>die kürzeste überhaupt</translation>
+    </message>
+    <message>
+        <source>the site file has changed since the plan was made; photos show it as it is now</source>
+        <translation>die Standortdatei hat sich geändert, seit der Plan gemacht wurde; Fotos zeigen sie, wie sie jetzt ist</translation>
+    </message>
+    <message>
+        <source>the site has no building mesh, and panels are found on one; name a mesh instead</source>
+        <translation>der Standort hat kein Gebäudenetz, und Scheiben werden auf einem gefunden; stattdessen ein Netz nennen</translation>
+    </message>
+    <message>
+        <source>the site would be written over the file it is imported from; name another file</source>
+        <translation>der Standort würde über die Datei geschrieben, aus der er importiert wird; eine andere Datei nennen</translation>
+    </message>
+    <message>
+        <source>the table is empty; expected a line with the names of its columns</source>
+        <translation>die Tabelle ist leer; erwartet wird eine Zeile mit den Namen ihrer Spalten</translation>
     </message>
     <message>
         <source>the template has {0} waypoints, the wayline {1}</source>
@@ -5850,8 +7274,16 @@ Damit weiterarbeiten?</translation>
         <translation>die Höhen des Templates sind {0}, die Wayline wird aber in {1} geflogen; hier zählt die Wayline, ein Programm, das vom Template ausgeht, flöge woanders</translation>
     </message>
     <message>
+        <source>{0}{1} - {2} ({3} {4}, tolerance {5}; costs about {6} s)</source>
+        <translation>{0}{1} - {2} ({3} {4}, Toleranz {5}; kostet etwa {6} s)</translation>
+    </message>
+    <message>
         <source>template and wayline put the waypoint in different places</source>
         <translation>Template und Wayline setzen den Wegpunkt an verschiedene Orte</translation>
+    </message>
+    <message>
+        <source>{0}nothing was recorded: the vehicle sent no positions in flight</source>
+        <translation>{0}nichts wurde aufgezeichnet: das Fluggerät sandte im Flug keine Positionen</translation>
     </message>
     <message>
         <source>{0}start actions</source>
@@ -6490,8 +7922,24 @@ Damit weiterarbeiten?</translation>
         <translation>Sprüngen wird nicht gefolgt: Jedes Element zählt einmal</translation>
     </message>
     <message>
+        <source>{0}; no top-up is needed, and none was written</source>
+        <translation>{0}; kein Ergänzungsflug ist nötig, und keiner wurde geschrieben</translation>
+    </message>
+    <message>
+        <source>{0}; open the project in the window</source>
+        <translation>{0}; das Projekt im Fenster öffnen</translation>
+    </message>
+    <message>
         <source>{0}; or let the embedded renderer be the truth (--truth-rays 0, no --rays)</source>
         <translation>{0}; oder den eingebauten Renderer die Wahrheit sein lassen (--truth-rays 0, kein --rays)</translation>
+    </message>
+    <message>
+        <source>{0}; the site has no panels that they could cover</source>
+        <translation>{0}; der Standort hat keine Scheiben, die sie abdecken könnten</translation>
+    </message>
+    <message>
+        <source>{0}[{1}] of a panels file has no point on the facade; give it points_px, or take the line out</source>
+        <translation>{0}[{1}] einer Scheibendatei hat keinen Punkt auf der Fassade; ihr points_px geben oder die Linie herausnehmen</translation>
     </message>
     <message>
         <source>{0}item {1}</source>
@@ -7046,6 +8494,14 @@ Damit weiterarbeiten?</translation>
         <translation>ganze Zahl</translation>
     </message>
     <message>
+        <source>the picture is distorted, and splats are rendered without distortion; make a data set of it (Photos tab)</source>
+        <translation>das Bild ist verzeichnet, und Splats werden ohne Verzeichnung gerendert; daraus einen Datensatz anlegen (Fotos)</translation>
+    </message>
+    <message>
+        <source>expected a folder of panels files (*.json); found none</source>
+        <translation>erwartet wird ein Ordner mit Scheibendateien (*.json); gefunden keine</translation>
+    </message>
+    <message>
         <source>text</source>
         <translation>Text</translation>
     </message>
@@ -7370,12 +8826,352 @@ Damit weiterarbeiten?</translation>
         <translation>Sektoren, nur mit Pixeln über {0} mm gesehen: {1} von {2} abgedeckten</translation>
     </message>
     <message>
+        <source>the tour does not fit {0}: expected each of its {1} points once, found {2}, missing {3}, unknown {4}</source>
+        <translation>die Rundtour passt nicht zu {0}: erwartet wird jeder der {1} Punkte einmal, gefunden {2}, es fehlen {3}, unbekannt sind {4}</translation>
+    </message>
+    <message>
+        <source>the two passphrases differ; nothing was changed</source>
+        <translation>die beiden Passphrasen sind verschieden; nichts wurde geändert</translation>
+    </message>
+    <message>
+        <source>the two vanishing points are nearly the same: this is not a plane seen from its front</source>
+        <translation>die beiden Fluchtpunkte sind fast dieselben: das ist keine Ebene, die von vorn zu sehen ist</translation>
+    </message>
+    <message>
+        <source>the vehicle does not say that it is a simulation: {0}; nothing was changed on it</source>
+        <translation>das Fluggerät sagt nicht, dass es eine Simulation ist: {0}; nichts wurde daran geändert</translation>
+    </message>
+    <message>
+        <source>the virtual screen Xvfb did not start; run it by hand to see why</source>
+        <translation>der virtuelle Bildschirm Xvfb startete nicht; ihn von Hand starten, um zu sehen, warum</translation>
+    </message>
+    <message>
+        <source>the worker {0} could not take the scene; see its own log</source>
+        <translation>der Worker {0} konnte die Szene nicht übernehmen; siehe dessen Log</translation>
+    </message>
+    <message>
+        <source>there are no views to photograph; name a plan or flight that has some</source>
+        <translation>es gibt keine Ansichten zu fotografieren; einen Plan oder Flug nennen, der welche hat</translation>
+    </message>
+    <message>
+        <source>there is a key</source>
+        <translation>es gibt einen Schlüssel</translation>
+    </message>
+    <message>
+        <source>there is neither a site file nor a bundled scene of that name; bundled are: {0}</source>
+        <translation>es gibt weder eine Standortdatei noch eine mitgelieferte Szene dieses Namens; mitgeliefert sind: {0}</translation>
+    </message>
+    <message>
+        <source>there is neither a window nor a glazed plate with geometry; {0}</source>
+        <translation>es gibt weder ein Fenster noch eine verglaste Platte mit Geometrie; {0}</translation>
+    </message>
+    <message>
+        <source>there is no bundled scene &apos;{0}&apos;; known are: {1}</source>
+        <translation>es gibt keine mitgelieferte Szene &apos;{0}&apos;; bekannt sind: {1}</translation>
+    </message>
+    <message>
+        <source>there is no effect &apos;{0}&apos; of single photos; expected one of {1}</source>
+        <translation>es gibt keinen Effekt &apos;{0}&apos; einzelner Fotos; erwartet wird einer von {1}</translation>
+    </message>
+    <message>
+        <source>there is no effect &apos;{0}&apos;; expected one of {1}</source>
+        <translation>es gibt keinen Effekt &apos;{0}&apos;; erwartet wird einer von {1}</translation>
+    </message>
+    <message>
+        <source>there is no key</source>
+        <translation>es gibt keinen Schlüssel</translation>
+    </message>
+    <message>
+        <source>there is no key any more; vehicles that know it keep it</source>
+        <translation>es gibt keinen Schlüssel mehr; Fluggeräte, die ihn kennen, behalten ihn</translation>
+    </message>
+    <message>
+        <source>there is no layer &apos;{0}&apos;; known are {1}</source>
+        <translation>es gibt keine Ebene &apos;{0}&apos;; bekannt sind {1}</translation>
+    </message>
+    <message>
+        <source>there is no precision &apos;{0}&apos;; known are: {1}</source>
+        <translation>es gibt keine Genauigkeit &apos;{0}&apos;; bekannt sind: {1}</translation>
+    </message>
+    <message>
+        <source>there is no routing method &apos;{0}&apos;; known are: {1}</source>
+        <translation>es gibt kein Routenverfahren &apos;{0}&apos;; bekannt sind: {1}</translation>
+    </message>
+    <message>
+        <source>there is no screen for the window (DISPLAY and WAYLAND_DISPLAY are not set); run it on a desktop, or use the commands (-h lists them)</source>
+        <translation>es gibt keinen Bildschirm für das Fenster (DISPLAY und WAYLAND_DISPLAY sind nicht gesetzt); auf einem Desktop starten oder die Befehle benutzen (-h nennt sie)</translation>
+    </message>
+    <message>
+        <source>there is no screen, and no Xvfb to stand in for one: install the package xvfb</source>
+        <translation>es gibt keinen Bildschirm und kein Xvfb an dessen Stelle: das Paket xvfb installieren</translation>
+    </message>
+    <message>
+        <source>there is no such file; expected ArduPilot&apos;s copter.parm</source>
+        <translation>es gibt keine solche Datei; erwartet wird copter.parm von ArduPilot</translation>
+    </message>
+    <message>
+        <source>there is no such project folder or site file</source>
+        <translation>es gibt keinen solchen Projektordner und keine solche Standortdatei</translation>
+    </message>
+    <message>
+        <source>they show {0} of {1} sections ({2} %)</source>
+        <translation>sie zeigen {0} von {1} Sektoren ({2} %)</translation>
+    </message>
+    <message>
+        <source>this camera has pixels of {0} mm at {1} m, but the minimum distance is {2} m; allow larger pixels or lower --min-distance</source>
+        <translation>diese Kamera hat Pixel von {0} mm bei {1} m, aber der Mindestabstand ist {2} m; größere Pixel erlauben oder --min-distance senken</translation>
+    </message>
+    <message>
+        <source>this could be a real aircraft, and &apos;simulate&apos; takes off by itself; add --take-off if it may</source>
+        <translation>das könnte ein echtes Fluggerät sein, und &apos;simulate&apos; startet von selbst; --take-off dazunehmen, wenn es darf</translation>
+    </message>
+    <message>
+        <source>this folder cannot be made ({0}); name another</source>
+        <translation>dieser Ordner ist nicht anzulegen ({0}); einen anderen nennen</translation>
+    </message>
+    <message>
+        <source>this is a flight over &apos;{0}&apos;, and not over &apos;{1}&apos; at its origin; name the site that was flown over</source>
+        <translation>das ist ein Flug über &apos;{0}&apos; und nicht über &apos;{1}&apos; an dessen Ursprung; den überflogenen Standort nennen</translation>
+    </message>
+    <message>
+        <source>this is a plan of &apos;{0}&apos;, and not of &apos;{1}&apos; at its origin; name the site that it was made for, or another plan</source>
+        <translation>das ist ein Plan von &apos;{0}&apos; und nicht von &apos;{1}&apos; an dessen Ursprung; den Standort nennen, für den er gemacht wurde, oder einen anderen Plan</translation>
+    </message>
+    <message>
+        <source>this is a site of its own, which the mission&apos;s bare one would replace; name it with --site, or the plan otherwise</source>
+        <translation>das ist ein eigener Standort, den der leere der Mission ersetzen würde; ihn mit --site nennen oder den Plan anders</translation>
+    </message>
+    <message>
+        <source>time</source>
+        <translation>Zeit</translation>
+    </message>
+    <message>
+        <source>tolerance</source>
+        <translation>Toleranz</translation>
+    </message>
+    <message>
+        <source>truth: {0}, {1} s a photo{2}</source>
+        <translation>Wahrheit: {0}, {1} s je Foto{2}</translation>
+    </message>
+    <message>
+        <source>two of the files are called &apos;{0}&apos;; their names must differ to tell the results apart</source>
+        <translation>zwei der Dateien heißen &apos;{0}&apos;; ihre Namen müssen verschieden sein, um die Ergebnisse zu unterscheiden</translation>
+    </message>
+    <message>
+        <source>unrecognized arguments: %s</source>
+        <translation>unbekannte Argumente: %s</translation>
+    </message>
+    <message>
+        <source>unsaved: {0}</source>
+        <translation>ungesichert: {0}</translation>
+    </message>
+    <message>
+        <source>usage: </source>
+        <translation>Aufruf: </translation>
+    </message>
+    <message>
+        <source>vehicle {0} has the key and signs with it</source>
+        <translation>Fluggerät {0} hat den Schlüssel und signiert damit</translation>
+    </message>
+    <message>
+        <source>vehicle {0} was told to sign no more</source>
+        <translation>Fluggerät {0} wurde angewiesen, nicht mehr zu signieren</translation>
+    </message>
+    <message>
+        <source>views are planned or square to the facades; give one number, not both</source>
+        <translation>Aufnahmen sind geplant oder rechtwinklig zu den Fassaden; eine Zahl angeben, nicht beide</translation>
+    </message>
+    <message>
+        <source>warning: sortie {0}, {1} s: {2}</source>
+        <translation>Warnung: Einsatz {0}, {1} s: {2}</translation>
+    </message>
+    <message>
+        <source>warning: {0}, {1}: {2}</source>
+        <translation>Warnung: {0}, {1}: {2}</translation>
+    </message>
+    <message>
+        <source>what is missing cannot be shown</source>
+        <translation>was fehlt, ist nicht zu zeigen</translation>
+    </message>
+    <message>
+        <source>whole</source>
+        <translation>ganz</translation>
+    </message>
+    <message>
+        <source>why</source>
+        <translation>warum</translation>
+    </message>
+    <message>
+        <source>with the records the file would have {0} instances, {1} were expected; it is written in a way that is not understood; save it anew in a BIM program</source>
+        <translation>mit den Einträgen hätte die Datei {0} Instanzen, erwartet wurden {1}; sie ist auf eine Weise geschrieben, die nicht verstanden wird; in einem BIM-Programm neu speichern</translation>
+    </message>
+    <message>
+        <source>within {0} % of the {1}</source>
+        <translation>innerhalb von {0} % vom Wert: {1}</translation>
+    </message>
+    <message>
+        <source>worst</source>
+        <translation>schlechteste</translation>
+    </message>
+    <message>
+        <source>{0}  {1}: {2} of {3} added ({4})</source>
+        <translation>{0}  {1}: {2} von {3} dazugekommen ({4})</translation>
+    </message>
+    <message>
+        <source>{0}  {1}: {2} of {3} changed ({4})</source>
+        <translation>{0}  {1}: {2} von {3} geändert ({4})</translation>
+    </message>
+    <message>
+        <source>{0}  {1}: {2} of {3} removed ({4})</source>
+        <translation>{0}  {1}: {2} von {3} entfernt ({4})</translation>
+    </message>
+    <message>
+        <source>{0} % of what can be covered in sections of {1}°</source>
+        <translation>{0} % dessen, was in Sektoren zu {1}° abzudecken ist</translation>
+    </message>
+    <message>
+        <source>{0} Gaussian</source>
+        <translation>{0} Gauß-Splat</translation>
+    </message>
+    <message>
+        <source>{0} Gaussians</source>
+        <translation>{0} Gauß-Splats</translation>
+    </message>
+    <message>
+        <source>{0} MB</source>
+        <translation>{0} MB</translation>
+    </message>
+    <message>
+        <source>{0} added, {1} in the project</source>
+        <translation>{0} dazugekommen, {1} im Projekt</translation>
+    </message>
+    <message>
+        <source>{0} and {1} have one name; keep one of them</source>
+        <translation>{0} und {1} haben einen Namen; eines davon behalten</translation>
+    </message>
+    <message>
         <source>{0} at most</source>
         <translation>höchstens {0}</translation>
     </message>
     <message>
+        <source>{0} changed</source>
+        <translation>{0} geändert</translation>
+    </message>
+    <message>
+        <source>{0} column</source>
+        <translation>{0} Spalte</translation>
+    </message>
+    <message>
+        <source>{0} columns</source>
+        <translation>{0} Spalten</translation>
+    </message>
+    <message>
+        <source>{0} cover {1} of {2} sections; no flight can cover more than {3}</source>
+        <translation>{0} decken {1} von {2} Sektoren ab; kein Flug kann mehr als {3} abdecken</translation>
+    </message>
+    <message>
+        <source>{0} facade</source>
+        <translation>{0} Fassade</translation>
+    </message>
+    <message>
+        <source>{0} facades</source>
+        <translation>{0} Fassaden</translation>
+    </message>
+    <message>
+        <source>{0} goes with --panel-grid, which is missing</source>
+        <translation>{0} gehört zu --panel-grid, das fehlt</translation>
+    </message>
+    <message>
+        <source>{0} has {1} x {2} pixels; expected at most {3}</source>
+        <translation>{0} hat {1} x {2} Pixel; erwartet werden höchstens {3}</translation>
+    </message>
+    <message>
+        <source>{0} hit</source>
+        <translation>{0} Treffer</translation>
+    </message>
+    <message>
+        <source>{0} hits</source>
+        <translation>{0} Treffer</translation>
+    </message>
+    <message>
+        <source>{0} in no photo at all</source>
+        <translation>{0} auf keinem Foto</translation>
+    </message>
+    <message>
+        <source>{0} in {1} and {2}, confidence {3} or more</source>
+        <translation>{0} in {1} und {2}, Sicherheit {3} oder mehr</translation>
+    </message>
+    <message>
+        <source>{0} in {1}, {2} min in the air</source>
+        <translation>{0} in {1}, {2} min in der Luft</translation>
+    </message>
+    <message>
+        <source>{0} in {1}, {2} min in the air, close {3} of {4} missing sections</source>
+        <translation>{0} in {1}, {2} min in der Luft, schließen {3} von {4} fehlenden Sektoren</translation>
+    </message>
+    <message>
+        <source>{0} is damaged</source>
+        <translation>{0} ist beschädigt</translation>
+    </message>
+    <message>
+        <source>{0} is missing</source>
+        <translation>{0} fehlt</translation>
+    </message>
+    <message>
+        <source>{0} is missing; expected {1}</source>
+        <translation>{0} fehlt; erwartet wird {1}</translation>
+    </message>
+    <message>
+        <source>{0} is {1}, which has no place in MISSION_ITEM_INT; expected {2}</source>
+        <translation>{0} ist {1}, wofür MISSION_ITEM_INT keinen Platz hat; erwartet wird {2}</translation>
+    </message>
+    <message>
+        <source>{0} m kept at least</source>
+        <translation>{0} m mindestens eingehalten</translation>
+    </message>
+    <message>
         <source>{0} more like this (--json lists all)</source>
         <translation>{0} weitere dieser Art (--json nennt alle)</translation>
+    </message>
+    <message>
+        <source>{0} object</source>
+        <translation>{0} Objekt</translation>
+    </message>
+    <message>
+        <source>{0} objects</source>
+        <translation>{0} Objekte</translation>
+    </message>
+    <message>
+        <source>{0} objects, {1} new, {2} changed, {3} no longer in the model</source>
+        <translation>{0} Objekte, {1} neu, {2} geändert, {3} nicht mehr im Modell</translation>
+    </message>
+    <message>
+        <source>{0} of &apos;{1}&apos;{2}</source>
+        <translation>{0} von &apos;{1}&apos;{2}</translation>
+    </message>
+    <message>
+        <source>{0} of a battery{1}</source>
+        <translation>{0} eines Akkus{1}</translation>
+    </message>
+    <message>
+        <source>{0} of these with pixels up to {1} mm on the panel, the coarsest with {2} mm</source>
+        <translation>{0} davon mit Pixeln bis {1} mm auf der Scheibe, die gröbsten mit {2} mm</translation>
+    </message>
+    <message>
+        <source>{0} of {1}</source>
+        <translation>{0} aus {1}</translation>
+    </message>
+    <message>
+        <source>{0} of {1} views</source>
+        <translation>{0} von {1} Aufnahmen</translation>
+    </message>
+    <message>
+        <source>{0} on {1}</source>
+        <translation>{0} auf {1}</translation>
+    </message>
+    <message>
+        <source>{0} on {1}: {2}{3}</source>
+        <translation>{0} auf {1}: {2}{3}</translation>
     </message>
     <message>
         <source>{0} or more</source>
@@ -7386,12 +9182,158 @@ Damit weiterarbeiten?</translation>
         <translation>{0} oder {1}</translation>
     </message>
     <message>
+        <source>{0} panel</source>
+        <translation>{0} Scheibe</translation>
+    </message>
+    <message>
+        <source>{0} panels</source>
+        <translation>{0} Scheiben</translation>
+    </message>
+    <message>
+        <source>{0} panels in {1} photos</source>
+        <translation>{0} Scheiben in {1} Fotos</translation>
+    </message>
+    <message>
+        <source>{0} photo</source>
+        <translation>{0} Foto</translation>
+    </message>
+    <message>
+        <source>{0} photos with their truth take about {1}, and {2} are free there; make room, name a folder on another disk, or ask for smaller pictures (--width)</source>
+        <translation>{0} Fotos mit ihrer Wahrheit brauchen etwa {1}, und dort sind {2} frei; Platz schaffen, einen Ordner auf einem anderen Datenträger nennen oder kleinere Bilder verlangen (--width)</translation>
+    </message>
+    <message>
+        <source>{0} photos, {1} panels</source>
+        <translation>{0} Fotos, {1} Scheiben</translation>
+    </message>
+    <message>
+        <source>{0} picture</source>
+        <translation>{0} Bild</translation>
+    </message>
+    <message>
+        <source>{0} pictures</source>
+        <translation>{0} Bilder</translation>
+    </message>
+    <message>
+        <source>{0} plan</source>
+        <translation>{0} Plan</translation>
+    </message>
+    <message>
+        <source>{0} plans</source>
+        <translation>{0} Pläne</translation>
+    </message>
+    <message>
+        <source>{0} positions are none and were left out</source>
+        <translation>{0} Positionen sind keine und wurden weggelassen</translation>
+    </message>
+    <message>
+        <source>{0} prepared</source>
+        <translation>{0} vorbereitet</translation>
+    </message>
+    <message>
+        <source>{0} record</source>
+        <translation>{0} Aufzeichnung</translation>
+    </message>
+    <message>
+        <source>{0} records</source>
+        <translation>{0} Aufzeichnungen</translation>
+    </message>
+    <message>
+        <source>{0} row</source>
+        <translation>{0} Reihe</translation>
+    </message>
+    <message>
+        <source>{0} rows</source>
+        <translation>{0} Reihen</translation>
+    </message>
+    <message>
+        <source>{0} s flown</source>
+        <translation>{0} s geflogen</translation>
+    </message>
+    <message>
+        <source>{0} s predicted</source>
+        <translation>{0} s vorhergesagt</translation>
+    </message>
+    <message>
+        <source>{0} sortie</source>
+        <translation>{0} Einsatz</translation>
+    </message>
+    <message>
+        <source>{0} sorties</source>
+        <translation>{0} Einsätze</translation>
+    </message>
+    <message>
+        <source>{0} splat</source>
+        <translation>{0} Splat</translation>
+    </message>
+    <message>
+        <source>{0} splats</source>
+        <translation>{0} Splats</translation>
+    </message>
+    <message>
+        <source>{0} step</source>
+        <translation>{0} Schritt</translation>
+    </message>
+    <message>
+        <source>{0} steps</source>
+        <translation>{0} Schritte</translation>
+    </message>
+    <message>
+        <source>{0} through {1} points, proven to be {2}
+{3}, {4} s; the nearest neighbour gives {5} ({6})</source>
+        <translation>{0} durch {1} Punkte, bewiesen: {2}
+{3}, {4} s; der nächste Nachbar ergibt {5} ({6})</translation>
+    </message>
+    <message>
         <source>{0} to below {1}</source>
         <translation>{0} bis unter {1}</translation>
     </message>
     <message>
         <source>{0} to {1}</source>
         <translation>{0} bis {1}</translation>
+    </message>
+    <message>
+        <source>{0} view</source>
+        <translation>{0} Aufnahme</translation>
+    </message>
+    <message>
+        <source>{0} warning</source>
+        <translation>{0} Warnung</translation>
+    </message>
+    <message>
+        <source>{0} warnings</source>
+        <translation>{0} Warnungen</translation>
+    </message>
+    <message>
+        <source>{0} with &apos;{1}&apos;</source>
+        <translation>{0} mit &apos;{1}&apos;</translation>
+    </message>
+    <message>
+        <source>{0} with a pose, {1} usable{2}</source>
+        <translation>{0} mit Pose, {1} brauchbar{2}</translation>
+    </message>
+    <message>
+        <source>{0} with the GlobalId of the building model</source>
+        <translation>{0} mit der GlobalId des Gebäudemodells</translation>
+    </message>
+    <message>
+        <source>{0} without Gaussians of their own: no photo showed them, or the method knows no panels</source>
+        <translation>{0} ohne eigene Gauß-Splats: kein Foto zeigte sie, oder das Verfahren kennt keine Scheiben</translation>
+    </message>
+    <message>
+        <source>{0} x {1} pixels, but its photo has {2} x {3}</source>
+        <translation>{0} x {1} Pixel, aber sein Foto hat {2} x {3}</translation>
+    </message>
+    <message>
+        <source>{0} {1}</source>
+        <translation>{0} {1}</translation>
+    </message>
+    <message>
+        <source>{0} {1} {2}° seed {3}</source>
+        <translation>{0} {1} {2}° Seed {3}</translation>
+    </message>
+    <message>
+        <source>{0} {1}, {2} min, {3} m/s, wind up to {4} m/s; {5}, {6} x {7}, {8} mm, gimbal {9} to {10} deg</source>
+        <translation>{0} {1}, {2} min, {3} m/s, Wind bis {4} m/s; {5}, {6} x {7}, {8} mm, Gimbal {9} bis {10} Grad</translation>
     </message>
     <message>
         <source>{0}, the coarsest with {1} mm</source>
