@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import itertools
 from dataclasses import replace
 
@@ -72,4 +73,5 @@ def _count_coverage(frames: PanelFrames) -> None:
 
 
 if __name__ == "__main__":
+    gc.disable()  # a compiler leaves little garbage, and looking for it takes a twentieth of the time
     compile_kernels()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 from pathlib import Path
 
 import numpy as np
@@ -117,4 +118,5 @@ def _shade_by_cubes() -> None:
 
 
 if __name__ == "__main__":
+    gc.disable()  # a compiler leaves little garbage, and looking for it takes a twentieth of the time
     compile_kernels()

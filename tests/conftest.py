@@ -24,8 +24,8 @@ THOROUGH = hypothesis.settings(
     max_examples=100, deadline=None, derandomize=True, suppress_health_check=[hypothesis.HealthCheck.too_slow]
 )
 hypothesis.settings.register_profile("thorough", THOROUGH)
-# Most failures that a hundred examples find, the first thirty find; `make test-all` tries all.
-hypothesis.settings.register_profile("reflight", THOROUGH, max_examples=30)
+# Most failures that a hundred examples find, the first twenty find; `make test-all` tries all.
+hypothesis.settings.register_profile("reflight", THOROUGH, max_examples=20)
 hypothesis.settings.load_profile("reflight")
 
 _STATUS = pytest.StashKey[int]()

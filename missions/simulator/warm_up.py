@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gc
+
 from missions.simulator.airframe.trajectory import plan_trajectory
 
 
@@ -12,4 +14,5 @@ def compile_kernels() -> None:
 
 
 if __name__ == "__main__":
+    gc.disable()  # a compiler leaves little garbage, and looking for it takes a twentieth of the time
     compile_kernels()

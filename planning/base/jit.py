@@ -23,13 +23,16 @@ Result = TypeVar("Result")
 LAYOUT = 3
 """Raised when a module moves from which kernels take types: what was compiled names it, and could not be read."""
 
+OPTIONS = {"cache": True, "nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
+"""Of all kernels. None is called from C, and what would let it be takes its share of the compiling."""
+
 
 def kernel(function: F) -> F:
     """Compile a numeric function; NaN and signed zeros behave as IEEE 754 says.
 
     A kernel that others call with constants is compiled once; Numba by itself would compile it once for each constant.
     """
-    compiled = _kept_for_this_layout(numba.njit(cache=True, nogil=True, error_model="numpy")(function))
+    compiled = _kept_for_this_layout(numba.njit(**OPTIONS)(function))
     template_of = compiled.get_call_template
 
     def get_call_template(arguments: Sequence[Type], named: Mapping[str, Type]) -> Any:
@@ -41,9 +44,7 @@ def kernel(function: F) -> F:
 
 def inline(function: F) -> F:
     """Compile a small helper into whatever kernel calls it."""
-    return cast(
-        "F", _kept_for_this_layout(numba.njit(cache=True, nogil=True, error_model="numpy", inline="always")(function))
-    )
+    return cast("F", _kept_for_this_layout(numba.njit(**OPTIONS, inline="always")(function)))
 
 
 def _kept_for_this_layout(compiled: Any) -> Any:

@@ -20,6 +20,7 @@ from planning.site.bundled import write_scene
 from planning.site.file import read_site
 from tests.cli.conftest import ROOT
 from tests.reconstruction.training.made_data_set import write_data_set
+from tests.slow import slow
 
 
 def test_version_is_told(reflight):
@@ -185,7 +186,7 @@ def test_output_that_cannot_be_written_is_one_line_and_status_1(pane):
     assert "Exception ignored" not in done.stderr
 
 
-@pytest.mark.parametrize("unbuffered", ["", "1"])
+@pytest.mark.parametrize("unbuffered", ["", slow("1")])
 def test_a_reader_that_leaves_early_is_no_error_message(pane, unbuffered):
     read_end, write_end = os.pipe()
     os.close(read_end)
@@ -295,7 +296,7 @@ def seed_data(tmp_path_factory):
     return folder / "data"
 
 
-@pytest.mark.parametrize("seed", [0, LARGEST_SEED])
+@pytest.mark.parametrize("seed", [slow(0), LARGEST_SEED])
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=pytest.mark.slow) if name in RENDERS else name for name in SEEDED]
 )

@@ -19,7 +19,7 @@ from tests.hostile.conftest import Forks
 from tests.hostile.inputs import Input, real, written
 from tests.hostile.mutations import BY_KIND, no_file
 
-N_QUICK, N_LONG = 3, int(os.environ.get("REFLIGHT_MUTATIONS", "24"))
+N_QUICK, N_LONG = 2, int(os.environ.get("REFLIGHT_MUTATIONS", "24"))
 """Damaged files of each kind."""
 
 LONGEST_LINE = 1200

@@ -1,6 +1,7 @@
 """The window says what planning, missions and services say in the user's language and units."""
 
 import ast
+import functools
 import json
 import math
 import pickle
@@ -30,6 +31,9 @@ from planning.site.file import read_site
 from planning.site.importing.options import ImportOptions
 from planning.site.records import Airspace
 from tests.planning.plan_cases import kiosk
+
+all_templates = functools.cache(templates)
+templates_in = functools.cache(lambda path: tuple(templates_of(path)))
 
 METRIC, IMPERIAL = UnitSystem.METRIC, UnitSystem.IMPERIAL
 
@@ -72,18 +76,18 @@ def example(template, value="Xy"):
 
 
 def test_fields_of_every_template_are_counted_from_0_in_order():
-    for template in templates():
+    for template in all_templates():
         assert [int(field[1]) for field in FIELD.finditer(template)] == list(range(len(FIELD.findall(template))))
 
 
 def test_what_the_window_says_instead_is_said_somewhere_and_has_the_same_fields():
-    assert set(IN_WINDOW) <= templates()
+    assert set(IN_WINDOW) <= all_templates()
     for template, instead in IN_WINDOW.items():
         assert re.findall(r"\{[^}]*\}", template) == re.findall(r"\{[^}]*\}", instead)
 
 
 def test_no_word_is_a_message_as_well():
-    assert not set(WORDS) & templates()
+    assert not set(WORDS) & all_templates()
 
 
 @pytest.mark.parametrize("language", ["en", "de"])
@@ -94,8 +98,8 @@ def test_the_window_speaks_no_command_line(application, request, language):
     only_typed = {template for template in IN_WINDOW if IN_WINDOW[template] == "only the command line works with it"}
     paths = [path for house in HOUSES for path in (ROOT / house).rglob("*.py")]
     is_typed = {path: path.relative_to(ROOT).as_posix().startswith(ONLY_TYPED) for path in paths}
-    shown = {template for path in paths if not is_typed[path] for template in templates_of(path)}
-    assert shown < templates()
+    shown = {template for path in paths if not is_typed[path] for template in templates_in(path)}
+    assert shown < all_templates()
     found = []
     for template in sorted({*shown, *WORDS} - only_typed - TYPED):
         told = translated(example(template), METRIC)

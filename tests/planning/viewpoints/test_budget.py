@@ -33,6 +33,7 @@ from planning.viewpoints.candidates import Pool, candidate_pool, keep
 from planning.viewpoints.greedy import element_weights
 from planning.viewpoints.problem import ViewProblem, take
 from tests.planning.plan_cases import kiosk
+from tests.slow import slow
 
 M3E = profile("m3e").aircraft
 FEW = GreedyParameters(n_candidates=400, improve=False)
@@ -100,7 +101,9 @@ def best_by_force(pool: Pool, usable_s: float, n_batteries: int) -> int:
     return max(len({e for view in union for e in pool.elements.of(view)}) for union in unions)
 
 
-@pytest.mark.parametrize(("usable_s", "n_batteries", "seed"), [(45.0, 1, 0), (60.0, 1, 1), (40.0, 2, 2), (55.0, 2, 3)])
+@pytest.mark.parametrize(
+    ("usable_s", "n_batteries", "seed"), [slow(45.0, 1, 0), (60.0, 1, 1), (40.0, 2, 2), slow(55.0, 2, 3)]
+)
 def test_a_few_candidates_give_what_brute_force_finds(
     usable_s: float, n_batteries: int, seed: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
