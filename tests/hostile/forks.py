@@ -21,7 +21,11 @@ from typing import Any
 MEMORY_BYTES = 3 * 2**30
 """Beyond what the program takes when it is loaded."""
 
-LONGEST_S = 60.0
+LONGEST_S = 60
+"""Of processor time: how long that takes hangs on what else the machine does."""
+
+PATIENCE_S = 400.0
+"""For what waits and does not work."""
 
 
 def _run(job: dict[str, Any]) -> int:
@@ -75,6 +79,7 @@ def _child(job: dict[str, Any]) -> None:
     limit = 1024 * int(data_kb[1]) + MEMORY_BYTES
     resource.setrlimit(resource.RLIMIT_DATA, (limit, limit))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    resource.setrlimit(resource.RLIMIT_CPU, (LONGEST_S, LONGEST_S + 5))
     if "file_limit" in job:
         # Python ignores the signal, so that a write beyond fails as on a disk that is full; else it ends the process.
         signal.signal(signal.SIGXFSZ, signal.SIG_DFL if job.get("is_killed") else signal.SIG_IGN)
@@ -103,7 +108,6 @@ def main() -> None:
     """Answer jobs until there are no more.
 
     A job has `folder` to be in, `out` and `err` for what is said, and `command` (arguments) or `reader` (module:name)
-    with `path`. With `kill_after_s`, `kill_at` (a number of writes), or
     with `path`. With `kill_after_s`, `kill_at` (a number of writes), or `file_limit` (bytes) and `is_killed`, it is
     killed on the way; with `file_limit` alone, writing fails. An answer has `status` (negative for a signal),
     `seconds`, and whether it took too long.
@@ -121,11 +125,12 @@ def main() -> None:
         if pid == 0:
             _child(job)
         handle = os.pidfd_open(pid)
-        in_time = bool(select.select([handle], [], [], job.get("kill_after_s", LONGEST_S))[0])
+        in_time = bool(select.select([handle], [], [], job.get("kill_after_s", PATIENCE_S))[0])
         if not in_time:
             os.kill(pid, signal.SIGKILL)
         status = os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1])
         os.close(handle)
+        in_time = in_time and status != -signal.SIGXCPU
         answer = {"status": status, "seconds": time.monotonic() - started, "in_time": in_time}
         _say(json.dumps(answer))
 
