@@ -161,33 +161,33 @@ def compare_plans(
 def _effort_rows(plans: Sequence[Plan]) -> Iterator[Row]:
     yield Row("views", "views", "", Better.LOWER, tuple(float(len(plan.viewpoints)) for plan in plans))
     yield Row("sorties", "sorties", "", Better.LOWER, tuple(float(len(plan.sorties)) for plan in plans))
-    yield Row("duration", "time in the air", "s", Better.LOWER, tuple(plan.duration_s for plan in plans))
+    yield Row("duration", say("time in the air"), "s", Better.LOWER, tuple(plan.duration_s for plan in plans))
     lengths = tuple(sum(sortie.length_m for sortie in plan.sorties) for plan in plans)
-    yield Row("length", "way flown", "m", Better.LOWER, lengths)
+    yield Row("length", say("way flown"), "m", Better.LOWER, lengths)
     found = tuple(plan.history[-1].t_s if plan.history else None for plan in plans)
-    yield Row("found-after", "views found after", "s", Better.LOWER, found)
+    yield Row("found-after", say("views found after"), "s", Better.LOWER, found)
 
 
 def _coverage_rows(site_model: SiteModel, counts: NDArray[np.int32], is_possible: NDArray[np.bool_]) -> Iterator[Row]:
     covered = counts > 0
     totals = covered.sum(axis=(1, 2))
-    yield Row("covered", "sections covered", "", Better.HIGHER, _floats(totals))
-    yield Row("covered-share", "of all sections", "share", Better.HIGHER, _floats(totals / is_possible.size))
+    yield Row("covered", say("sections covered"), "", Better.HIGHER, _floats(totals))
+    yield Row("covered-share", say("of all sections"), "share", Better.HIGHER, _floats(totals / is_possible.size))
     possible = max(int(is_possible.sum()), 1)
-    yield Row("possible-share", "of what can be covered", "share", Better.HIGHER, _floats(totals / possible))
+    yield Row("possible-share", say("of what can be covered"), "share", Better.HIGHER, _floats(totals / possible))
     facades = site_model.site.facades
     last = np.cumsum([len(facade.panels) for facade in facades])
     for facade, stop in zip(facades, last, strict=True):
         part = slice(stop - len(facade.panels), stop)
         possible = max(int(is_possible[part].sum()), 1)
         shares = covered[:, part].sum(axis=(1, 2)) / possible
-        label = f"facade {facade.id}, of what can be covered"
+        label = say("facade {}, of what can be covered", facade.id)
         yield Row("facade-share", label, "share", Better.HIGHER, _floats(shares), facade.id)
     alone = covered & (covered.sum(axis=0) == 1)
-    yield Row("only-here", "sections no other plan covers", "", Better.HIGHER, _floats(alone.sum(axis=(1, 2))))
+    yield Row("only-here", say("sections no other plan covers"), "", Better.HIGHER, _floats(alone.sum(axis=(1, 2))))
     for times in range(2, MAX_DEPTH + 1):
         deep = (counts >= times).sum(axis=(1, 2))
-        yield Row("depth", f"covered at least {times} times", "", Better.HIGHER, _floats(deep), str(times))
+        yield Row("depth", say("covered at least {} times", times), "", Better.HIGHER, _floats(deep), str(times))
 
 
 def _quality_rows(
@@ -197,23 +197,23 @@ def _quality_rows(
     worst = tuple(_extreme(found.worst_m, np.fmax) for found in sampling)
     # The finest pixel on the panel that fares worst tells how sharp the model can become everywhere.
     coarsest = tuple(_extreme(found.best_m, np.fmax) for found in sampling)
-    yield Row("gsd-best", "finest pixel", "m/px", Better.LOWER, best)
-    yield Row("gsd-worst", "coarsest pixel", "m/px", Better.LOWER, worst)
-    yield Row("gsd-worst-panel", "finest pixel on the worst panel", "m/px", Better.LOWER, coarsest)
+    yield Row("gsd-best", say("finest pixel"), "m/px", Better.LOWER, best)
+    yield Row("gsd-worst", say("coarsest pixel"), "m/px", Better.LOWER, worst)
+    yield Row("gsd-worst-panel", say("finest pixel on the worst panel"), "m/px", Better.LOWER, coarsest)
     space = prepared.problem.space
     things = things_of(site_model, space)
     smallest: list[float | None] = []
     for plan in plans:
         on_way = [route_clearance(sortie, space, things).solids.clearance_m for sortie in plan.sorties]
         smallest.append(_extreme(np.concatenate([*on_way, np.zeros(0)]), np.fmin))
-    yield Row("clearance", "smallest clearance", "m", Better.HIGHER, tuple(smallest))
+    yield Row("clearance", say("smallest clearance"), "m", Better.HIGHER, tuple(smallest))
 
 
 def _finding_rows(findings: Sequence[tuple[Finding, ...]]) -> Iterator[Row]:
     tallies = [Counter(finding.severity for finding in found) for found in findings]
     for severity in (Severity.ERROR, Severity.WARNING, Severity.NOTE):
         counts = tuple(float(tally[severity]) for tally in tallies)
-        yield Row("findings", f"findings: {severity}", "", Better.LOWER, counts, str(severity))
+        yield Row("findings", say("findings: {}", str(severity)), "", Better.LOWER, counts, str(severity))
 
 
 def _floats(values: NDArray[np.generic]) -> tuple[float, ...]:
