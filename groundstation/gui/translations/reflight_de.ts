@@ -6176,6 +6176,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Prüfung:  {0} von {1} Regeln eingehalten, {2}</translation>
     </message>
     <message>
+        <source>coarsest pixel</source>
+        <translation>gröbstes Pixel</translation>
+    </message>
+    <message>
         <source>cost</source>
         <translation>Kosten</translation>
     </message>
@@ -6194,6 +6198,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>covered</source>
         <translation>gedeckt</translation>
+    </message>
+    <message>
+        <source>covered at least {0} times</source>
+        <translation>mindestens {0}-mal abgedeckt</translation>
     </message>
     <message>
         <source>covered before {0}, together {1} sections</source>
@@ -6508,6 +6516,22 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>expected {0}, got &apos;{1}&apos;</source>
         <translation>erwartet wird {0}, gefunden &apos;{1}&apos;</translation>
+    </message>
+    <message>
+        <source>facade {0}, of what can be covered</source>
+        <translation>Fassade {0}, vom Erreichbaren</translation>
+    </message>
+    <message>
+        <source>findings: {0}</source>
+        <translation>Befunde: {0}</translation>
+    </message>
+    <message>
+        <source>finest pixel</source>
+        <translation>feinstes Pixel</translation>
+    </message>
+    <message>
+        <source>finest pixel on the worst panel</source>
+        <translation>feinstes Pixel der schlechtesten Scheibe</translation>
     </message>
     <message>
         <source>first</source>
@@ -6894,6 +6918,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>jetzt im Format &apos;{0}{1}&apos; (siehe project.json)</translation>
     </message>
     <message>
+        <source>of all sections</source>
+        <translation>von allen Sektoren</translation>
+    </message>
+    <message>
+        <source>of what can be covered</source>
+        <translation>vom Erreichbaren</translation>
+    </message>
+    <message>
         <source>off</source>
         <translation>aus</translation>
     </message>
@@ -7050,6 +7082,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>gibt {0} Punkte an; höchstens {1} werden gelesen</translation>
     </message>
     <message>
+        <source>sections covered</source>
+        <translation>abgedeckte Sektoren</translation>
+    </message>
+    <message>
+        <source>sections no other plan covers</source>
+        <translation>Sektoren nur in diesem Plan</translation>
+    </message>
+    <message>
         <source>seen at least twice: {0} sections</source>
         <translation>mindestens zweimal gesehen: {0} Sektoren</translation>
     </message>
@@ -7088,6 +7128,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>size</source>
         <translation>Größe</translation>
+    </message>
+    <message>
+        <source>smallest clearance</source>
+        <translation>kleinster Abstand</translation>
     </message>
     <message>
         <source>sound</source>
@@ -7272,6 +7316,18 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the template&apos;s heights are {0}, but the wayline is flown in {1}; the wayline counts here, while a program that starts from the template would fly elsewhere</source>
         <translation>die Höhen des Templates sind {0}, die Wayline wird aber in {1} geflogen; hier zählt die Wayline, ein Programm, das vom Template ausgeht, flöge woanders</translation>
+    </message>
+    <message>
+        <source>time in the air</source>
+        <translation>Zeit in der Luft</translation>
+    </message>
+    <message>
+        <source>views found after</source>
+        <translation>Aufnahmen gefunden nach</translation>
+    </message>
+    <message>
+        <source>way flown</source>
+        <translation>Flugweg</translation>
     </message>
     <message>
         <source>{0}{1} - {2} ({3} {4}, tolerance {5}; costs about {6} s)</source>
