@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 from planning.aircraft.catalogue import Profile, profile
 from planning.base.errors import InputError
 from planning.base.findings import Finding
-from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor, Stop, TimeLimit, Trace, any_of, never
 from planning.coverage.evaluate import DepthCount, coverage, depth
 from planning.coverage.model import exact_coverage
@@ -355,9 +354,9 @@ def _choose(
 def _check_method(request: PlanRequest) -> None:
     method_named(request.method)
     if request.method != "greedy" and request.n_batteries is not None:
-        raise InputError(say("method '{}' cannot plan for a number of batteries; 'greedy' can", request.method))
+        raise InputError.say("method '{}' cannot plan for a number of batteries; 'greedy' can", request.method)
     if request.method != "greedy" and request.locked:
-        raise InputError(say("method '{}' cannot keep locked viewpoints; 'greedy' can, or unlock them", request.method))
+        raise InputError.say("method '{}' cannot keep locked viewpoints; 'greedy' can, or unlock them", request.method)
 
 
 def _optimiser(request: PlanRequest, locked: ViewpointArrays, spacing_m: float) -> Optimiser:
@@ -371,7 +370,7 @@ def _goal(request: PlanRequest) -> Goal:
         return Goal(n_views=request.n_views)
     if request.method == "pso":
         if request.share is not None:
-            raise InputError(say("method 'pso' needs a number of views (--views N); it cannot look for the fewest"))
+            raise InputError.say("method 'pso' needs a number of views (--views N); it cannot look for the fewest")
         return Goal(n_views=DEFAULT_VIEWS)
     return Goal(share=DEFAULT_SHARE if request.share is None else request.share)
 

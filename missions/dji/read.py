@@ -31,7 +31,6 @@ from missions.mission.model import (
 )
 from planning.base.errors import MissionError
 from planning.base.findings import Finding, Severity
-from planning.base.messages import say
 from planning.geo.frames import wrap_heading_deg
 
 # What the aircraft would do with a wayline: where it takes photos, and how the camera stands at each.
@@ -393,7 +392,7 @@ def read_dji(path: Path, *, strict: bool = False) -> tuple[ReadMission, ...]:
     unknown = [finding for finding in errors if _hides_path(finding)]
     if unknown or (strict and errors):
         others = [finding for finding in errors if finding not in unknown]
-        raise MissionError(say("aircraft would refuse this mission: {}", reasons([*unknown, *others]), place=path))
+        raise MissionError.say("aircraft would refuse this mission: {}", reasons([*unknown, *others]), place=path)
     remarks = tuple(map(as_remark, findings))
     return tuple(_read_wayline(path, parts, folder, remarks) for folder in parts.waylines.folders)
 
@@ -407,12 +406,10 @@ def _hides_path(error: Finding) -> bool:
 
 def _read_wayline(path: Path, parts: DjiParts, folder: Folder, findings: tuple[Finding, ...]) -> ReadMission:
     if folder.height_mode == "realTimeFollowSurface":
-        raise MissionError(
-            say(
-                "the mission follows the ground as the aircraft senses it, so its heights are not in the file; "
-                "save it with fixed heights",
-                place=path,
-            )
+        raise MissionError.say(
+            "the mission follows the ground as the aircraft senses it, so its heights are not in the file; "
+            "save it with fixed heights",
+            place=path,
         )
     is_relative = folder.height_mode == "relativeToStartPoint"
     is_ours = _is_ours(parts)

@@ -101,13 +101,11 @@ def dji_profile(identifier: str) -> DjiProfile:
     known = dji_catalogue().profiles
     if identifier not in known:
         found = say("the profile '{}'", identifier) if identifier else say("no profile")
-        raise MissionError(
-            say(
-                "a DJI mission names its aircraft and camera, but the plan has {}; expected one of {}; plan with "
-                "one of them, or export for MAVLink",
-                found,
-                ", ".join(sorted(known)),
-            )
+        raise MissionError.say(
+            "a DJI mission names its aircraft and camera, but the plan has {}; expected one of {}; plan with "
+            "one of them, or export for MAVLink",
+            found,
+            ", ".join(sorted(known)),
         )
     return known[identifier]
 
@@ -227,19 +225,17 @@ def parse_wpml(content: bytes, part: str) -> WpmlDocument:
     try:
         root = parse_xml(content, part)
     except HostileXml as error:
-        raise MissionError(say("{}, which no mission needs; refused as hostile", error, place=part)) from error
+        raise MissionError.say("{}, which no mission needs; refused as hostile", error, place=part) from error
     except ValueError as error:
-        raise MissionError(say("not readable as XML ({}); export the mission again", error, place=part)) from error
+        raise MissionError.say("not readable as XML ({}); export the mission again", error, place=part) from error
     version = next((found[1] for element in root.iter() if (found := _WPML_NAMESPACE.match(element.tag))), "")
     document = _child(root, "Document")
     if not version or document is None:
-        raise MissionError(
-            say(
-                "this is XML, but not a DJI mission; expected kml/Document with the namespace "
-                "http://www.dji.com/wpmz/1.0.x, found <{}>",
-                _local(root),
-                place=part,
-            )
+        raise MissionError.say(
+            "this is XML, but not a DJI mission; expected kml/Document with the namespace "
+            "http://www.dji.com/wpmz/1.0.x, found <{}>",
+            _local(root),
+            place=part,
         )
     return _Parser().document(document, version)
 
@@ -431,7 +427,7 @@ def _from_folder(folder: Path) -> DjiParts:
     inner = folder / "wpmz"
     folder = inner if inner.is_dir() else folder
     if not (folder / WAYLINES).is_file():
-        raise MissionError(say("expected the {} of an unpacked DJI mission, there is none", WAYLINES, place=folder))
+        raise MissionError.say("expected the {} of an unpacked DJI mission, there is none", WAYLINES, place=folder)
     template = folder / TEMPLATE
     return DjiParts(
         parse_wpml(read_limited(folder / WAYLINES), str(folder / WAYLINES)),

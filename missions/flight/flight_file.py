@@ -16,7 +16,6 @@ from missions.flight.record import FlightEvent, FlightRecord, TakenPhoto, Track
 from planning.base.effects import Decision
 from planning.base.errors import InputError
 from planning.base.json_file import expect_format, plain_values, read_json, to_record, write_atomically
-from planning.base.messages import say
 from planning.geo.frames import Origin
 from planning.plan import Plan, plan_to_json
 from planning.site.records import SiteModel
@@ -129,7 +128,7 @@ def _record(content: _RecordContent, place: str) -> FlightRecord:
         raise InputError(f"{place}.track.{error}") from error
     for i, photo in enumerate(content.photos):
         if not all(map(math.isfinite, (photo.time_s, *photo.position_enu_m))):
-            raise InputError(say("expected a finite time and position", place=f"{place}.photos[{i}]"))
+            raise InputError.say("expected a finite time and position", place=f"{place}.photos[{i}]")
     return FlightRecord(
         content.sortie,
         content.vehicle,

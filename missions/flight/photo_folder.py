@@ -101,13 +101,11 @@ def _usable(photos: Sequence[PhotoMetadata], label: str, findings: list[Finding]
         findings.append(Finding(Severity.WARNING, "photos-incomplete", text, "", float(n), 0.0, "photos"))
     if not usable:
         what = joined(", ", (say("{} without {}", n, what) for what, n in missing.items()))
-        raise InputError(
-            say(
-                "no photo says where and when it was taken ({}); use the files as the camera wrote them: "
-                "programs that edit, send or share photos often take that out",
-                what,
-                place=label,
-            )
+        raise InputError.say(
+            "no photo says where and when it was taken ({}); use the files as the camera wrote them: "
+            "programs that edit, send or share photos often take that out",
+            what,
+            place=label,
         )
     return usable
 

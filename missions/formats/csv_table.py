@@ -104,22 +104,22 @@ def read_csv(path: Path) -> tuple[ReadMission, ...]:
         check_lines(content, MAX_LINES, path)
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise MissionError(
-            say("expected text in UTF-8, found other bytes at offset {}", error.start, place=path)
+        raise MissionError.say(
+            "expected text in UTF-8, found other bytes at offset {}", error.start, place=path
         ) from error
     table = csv.DictReader(text.splitlines())
     sorties: dict[int, list[ReadWaypoint]] = {}
     try:
         missing = [name for name in NEEDED if name not in (table.fieldnames or ())]
         if missing:
-            raise MissionError(say("expected the column {} in the first line; it is missing", missing[0], place=path))
+            raise MissionError.say("expected the column {} in the first line; it is missing", missing[0], place=path)
         for row in table:
             number, waypoint = _read_row(row, say("{}, line {}", path, table.line_num))
             sorties.setdefault(number, []).append(waypoint)
     except csv.Error as error:
-        raise MissionError(say("no table of photos ({})", error, place=f"{path}, line {table.line_num}")) from error
+        raise MissionError.say("no table of photos ({})", error, place=f"{path}, line {table.line_num}") from error
     if not sorties:
-        raise MissionError(say("the table has no rows, so there is nothing to fly", place=path))
+        raise MissionError.say("the table has no rows, so there is nothing to fly", place=path)
     text = say(
         "a table of photos does not say which way was flown between them; the path is straight from one to the next"
     )
@@ -146,4 +146,4 @@ def _read_row(row: dict[str, str], place: str) -> tuple[int, ReadWaypoint]:
         photo = ReadPhoto(heading_deg, pitch_deg, row["viewpoint_id"])
         return number, ReadWaypoint(lat_deg, lon_deg, height_ellipsoid_m=height_m, photos=(photo,))
     except (TypeError, ValueError) as error:
-        raise MissionError(say("no photo ({}); expected numbers with a decimal point", error, place=place)) from error
+        raise MissionError.say("no photo ({}); expected numbers with a decimal point", error, place=place) from error

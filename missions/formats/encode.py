@@ -292,8 +292,8 @@ def encode_mavlink(missions: Sequence[Mission], file_format: FileFormat, options
 
     reference = options.height_reference
     if reference is HeightReference.ELLIPSOID:
-        raise MissionError(
-            say("MAVLink has no heights above the ellipsoid; expected above-takeoff or amsl (its absolute altitude)")
+        raise MissionError.say(
+            "MAVLink has no heights above the ellipsoid; expected above-takeoff or amsl (its absolute altitude)"
         )
     contents: list[bytes] = []
     findings: list[Finding] = []

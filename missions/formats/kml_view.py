@@ -29,7 +29,6 @@ from missions.mission.model import (
 from missions.mission.safe_files import read_limited
 from planning.base.errors import MissionError
 from planning.base.files import HostileXml, parse_xml
-from planning.base.messages import say
 from planning.geo.frames import Origin, camera_axes
 
 if TYPE_CHECKING:
@@ -147,23 +146,21 @@ def read_kml(path: Path) -> tuple[ReadMission, ...]:
     try:
         root = parse_xml(read_limited(path), path)
     except HostileXml as error:
-        raise MissionError(say("{}, which no mission needs; refused as hostile", error, place=path)) from error
+        raise MissionError.say("{}, which no mission needs; refused as hostile", error, place=path) from error
     except ValueError as error:
-        raise MissionError(say("not readable as XML ({})", error, place=path)) from error
+        raise MissionError.say("not readable as XML ({})", error, place=path) from error
     folders = [folder for folder in root.iter(f"{_KML}Folder") if "sortie" in _data(folder)]
     if not folders:
-        raise MissionError(
-            say(
-                "a KML of another program; it shows places but does not say where photos are taken and with "
-                "which angles; import the mission file itself",
-                place=path,
-            )
+        raise MissionError.say(
+            "a KML of another program; it shows places but does not say where photos are taken and with "
+            "which angles; import the mission file itself",
+            place=path,
         )
     try:
         return tuple(_read_folder(folder, path, several=len(folders) > 1) for folder in folders)
     except (KeyError, ValueError, IndexError) as error:
-        raise MissionError(
-            say("damaged: a sortie lacks what Reflight writes ({}); export it again", error, place=path)
+        raise MissionError.say(
+            "damaged: a sortie lacks what Reflight writes ({}); export it again", error, place=path
         ) from error
 
 

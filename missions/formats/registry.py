@@ -171,7 +171,7 @@ def write_files(encoded: EncodedFiles, path: Path) -> tuple[Path, ...]:
     if errors:
         first = about(errors[0].place, errors[0].message) if errors[0].place else errors[0].message
         more = say(" (and {} more errors)", len(errors) - 1) if len(errors) > 1 else ""
-        raise MissionError(say("the mission would be refused: {}", glue(first, more)))
+        raise MissionError.say("the mission would be refused: {}", glue(first, more))
     paths = tuple(sortie_path(path, number) for number in range(1, len(encoded.contents) + 1))
     write_together(dict(zip(paths, encoded.contents, strict=True)))
     return paths
@@ -221,12 +221,10 @@ def _reader(path: Path) -> _Reader:
         head = file.read(HEAD_BYTES)
     reader = _reader_of(head)
     if reader is None:
-        raise InputError(
-            say(
-                "no mission file that is known; expected a DJI KMZ (or its unpacked folder), a QGroundControl "
-                ".plan, a QGC WPL .waypoints, or a KML or CSV that Reflight wrote",
-                place=path,
-            )
+        raise InputError.say(
+            "no mission file that is known; expected a DJI KMZ (or its unpacked folder), a QGroundControl "
+            ".plan, a QGC WPL .waypoints, or a KML or CSV that Reflight wrote",
+            place=path,
         )
     return reader
 

@@ -43,7 +43,7 @@ class FencePolygon:
 
     def __post_init__(self) -> None:
         if len(self.corners) < MIN_CORNERS:
-            raise MissionError(say("a fence has {} corners; expected at least {}", len(self.corners), MIN_CORNERS))
+            raise MissionError.say("a fence has {} corners; expected at least {}", len(self.corners), MIN_CORNERS)
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +57,7 @@ class FenceCircle:
 
     def __post_init__(self) -> None:
         if not self.radius_m > 0.0:
-            raise MissionError(say("a fence has a radius of {:g} m; expected more than 0", self.radius_m))
+            raise MissionError.say("a fence has a radius of {:g} m; expected more than 0", self.radius_m)
 
 
 Fence = FencePolygon | FenceCircle

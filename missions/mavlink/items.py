@@ -268,11 +268,11 @@ def position_of(item: MissionItem, here: ReadWaypoint | GeoPoint | None, place: 
     lat_deg, lon_deg, altitude_m = item.params[4:]
     if not has_place(item):
         if here is None:
-            raise MissionError(say("its position means here, but nothing says where that is", place=place))
+            raise MissionError.say("its position means here, but nothing says where that is", place=place)
         lat_deg, lon_deg = here.lat_deg, here.lon_deg
     if not (abs(lat_deg) <= 90.0 and abs(lon_deg) <= 180.0 and math.isfinite(altitude_m)):
-        raise MissionError(
-            say("the position {:g}, {:g}, {:g} m is not on the globe", lat_deg, lon_deg, altitude_m, place=place)
+        raise MissionError.say(
+            "the position {:g}, {:g}, {:g} m is not on the globe", lat_deg, lon_deg, altitude_m, place=place
         )
     if item.frame in RELATIVE_FRAMES:
         return ReadWaypoint(lat_deg, lon_deg, height_above_takeoff_m=altitude_m)
@@ -280,14 +280,12 @@ def position_of(item: MissionItem, here: ReadWaypoint | GeoPoint | None, place: 
         point = point_at_amsl(lat_deg, lon_deg, altitude_m)
         return ReadWaypoint(lat_deg, lon_deg, height_ellipsoid_m=point.height_ellipsoid_m)
     if item.frame in TERRAIN_FRAMES:
-        raise MissionError(
-            say(
-                "its height counts from the terrain, which is not in the file; save the mission with heights "
-                "above take-off or sea level",
-                place=place,
-            )
+        raise MissionError.say(
+            "its height counts from the terrain, which is not in the file; save the mission with heights "
+            "above take-off or sea level",
+            place=place,
         )
-    raise MissionError(say("frame {} does not place it on the globe", item.frame, place=place))
+    raise MissionError.say("frame {} does not place it on the globe", item.frame, place=place)
 
 
 def is_same_place(a: ReadWaypoint, b: ReadWaypoint) -> bool:

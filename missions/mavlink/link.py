@@ -29,7 +29,6 @@ from missions.mavlink.messages import Address, Heartbeat, Message, Received
 from missions.mavlink.signing import Signer
 from missions.mavlink.wire import Counts, Decoder, Encoder
 from planning.base.errors import InputError, LinkError, LinkTimeout
-from planning.base.messages import say
 from planning.base.progress import Clock
 
 # Bytes to and from the other end: datagrams, TCP, a serial line, or memory. The only place that opens sockets.
@@ -85,7 +84,7 @@ class MemoryChannel:
     def read(self, timeout_s: float) -> Chunk | None:
         """Next frame."""
         if self._is_closed:
-            raise LinkError(say("the link is closed"))
+            raise LinkError.say("the link is closed")
         self._is_reading = True
         try:
             data = self.inbox.get(timeout=timeout_s) if timeout_s > 0.0 else self.inbox.get_nowait()
@@ -95,13 +94,13 @@ class MemoryChannel:
             self._is_reading = False
         if data is None:
             self._is_closed = True
-            raise LinkError(say("the other end closed the link"))
+            raise LinkError.say("the other end closed the link")
         return Chunk("memory", data, is_datagram=True)
 
     def write(self, data: bytes) -> None:
         """Hand a frame over."""
         if self._is_closed:
-            raise LinkError(say("the link is closed"))
+            raise LinkError.say("the link is closed")
         self.outbox.put(data)
 
     def heard(self, origin: Hashable) -> None:
@@ -123,7 +122,7 @@ def _ready(sockets: list[socket.socket], timeout_s: float) -> list[socket.socket
     try:
         return select.select(sockets, [], [], timeout_s)[0]
     except (OSError, ValueError) as error:
-        raise LinkError(say("the link is closed")) from error
+        raise LinkError.say("the link is closed") from error
 
 
 class UdpChannel:
@@ -161,7 +160,7 @@ class UdpChannel:
             # The other end does not listen yet, or not any more: UDP hears that, and can only go on.
             return None
         except OSError as error:
-            raise LinkError(say("the UDP link broke: {}", error.strerror or error)) from error
+            raise LinkError.say("the UDP link broke: {}", error.strerror or error) from error
         return Chunk(origin, data, is_datagram=True)
 
     def write(self, data: bytes) -> None:
@@ -179,7 +178,7 @@ class UdpChannel:
         except (ConnectionRefusedError, ConnectionResetError):
             return
         except OSError as error:
-            raise LinkError(say("the UDP link broke: {}", error.strerror or error)) from error
+            raise LinkError.say("the UDP link broke: {}", error.strerror or error) from error
 
     def heard(self, origin: Hashable) -> None:
         """Answer this one from now on."""
@@ -206,9 +205,9 @@ class TcpChannel:
         try:
             data = self._socket.recv(READ_BYTES)
         except OSError as error:
-            raise LinkError(say("the TCP link to {} broke: {}", self._name, error.strerror or error)) from error
+            raise LinkError.say("the TCP link to {} broke: {}", self._name, error.strerror or error) from error
         if not data:
-            raise LinkError(say("{} closed the TCP link", self._name))
+            raise LinkError.say("{} closed the TCP link", self._name)
         return Chunk("tcp", data)
 
     def write(self, data: bytes) -> None:
@@ -216,7 +215,7 @@ class TcpChannel:
         try:
             self._socket.sendall(data)
         except OSError as error:
-            raise LinkError(say("the TCP link to {} broke: {}", self._name, error.strerror or error)) from error
+            raise LinkError.say("the TCP link to {} broke: {}", self._name, error.strerror or error) from error
 
     def heard(self, origin: Hashable) -> None:
         """Nothing to note: there is one other end."""
@@ -294,15 +293,15 @@ class SerialChannel:
         try:
             import serial
         except ImportError as error:
-            raise LinkError(
-                say("serial links need the package pyserial; install it, or use a UDP or TCP link")
+            raise LinkError.say(
+                "serial links need the package pyserial; install it, or use a UDP or TCP link"
             ) from error
         self._broken: type[Exception] = serial.SerialException
         self._device = device
         try:
             self._port = serial.Serial(device, baud, timeout=SERIAL_WAIT_S, write_timeout=CONNECT_S)
         except (serial.SerialException, ValueError) as error:
-            raise LinkError(say("the serial line {} cannot be opened: {}", device, error)) from error
+            raise LinkError.say("the serial line {} cannot be opened: {}", device, error) from error
 
     def read(self, timeout_s: float) -> Chunk | None:
         """Bytes as they come; may come back before the time is up."""
@@ -310,7 +309,7 @@ class SerialChannel:
             data = self._port.read(1) if timeout_s > 0.0 else b""
             data += self._port.read(self._port.in_waiting)
         except (self._broken, OSError, TypeError) as error:
-            raise LinkError(say("the serial line {} broke: {}", self._device, error)) from error
+            raise LinkError.say("the serial line {} broke: {}", self._device, error) from error
         return Chunk("serial", data) if data else None
 
     def write(self, data: bytes) -> None:
@@ -318,7 +317,7 @@ class SerialChannel:
         try:
             self._port.write(data)
         except (self._broken, OSError) as error:
-            raise LinkError(say("the serial line {} broke: {}", self._device, error)) from error
+            raise LinkError.say("the serial line {} broke: {}", self._device, error) from error
 
     def heard(self, origin: Hashable) -> None:
         """Nothing to note: there is one other end."""
@@ -462,14 +461,12 @@ def parsed_url(url: str) -> tuple[str, str, int]:
     if kind == "serial":
         device, _, baud = rest.rpartition(":") if rest.count(":") else (rest, "", str(DEFAULT_BAUD))
         if not device or not baud.isdecimal():
-            raise InputError(say("link '{}': expected serial:DEVICE:BAUD, such as serial:/dev/ttyUSB0:57600", url))
+            raise InputError.say("link '{}': expected serial:DEVICE:BAUD, such as serial:/dev/ttyUSB0:57600", url)
         return kind, device, int(baud)
     host, _, port = rest.rpartition(":")
     if kind not in _SOCKETS or not host or not port.isdecimal() or int(port) > 65535:
         kinds = ", ".join((*_SOCKETS, "serial"))
-        raise InputError(
-            say("link '{}': expected KIND:HOST:PORT, such as tcp:127.0.0.1:5760; kinds are {}", url, kinds)
-        )
+        raise InputError.say("link '{}': expected KIND:HOST:PORT, such as tcp:127.0.0.1:5760; kinds are {}", url, kinds)
     return kind, host, int(port)
 
 
@@ -491,12 +488,13 @@ def open_link(
     try:
         return ChannelLink(_SOCKETS[kind](place.strip("[]"), number), address, signer, clock)
     except TimeoutError as error:
-        raise LinkTimeout(say("no answer within {:g} s; is the address right?", CONNECT_S, place=url)) from error
+        raise LinkTimeout.say("no answer within {:g} s; is the address right?", CONNECT_S, place=url) from error
     except OSError as error:
         if error.errno == errno.EADDRINUSE:
-            text = say("{} cannot be opened: another program has this port; end it, or take another", url)
-            raise LinkError(text) from error
-        raise LinkError(say("{} cannot be opened: {}; is the address right?", url, error.strerror or error)) from error
+            raise LinkError.say(
+                "{} cannot be opened: another program has this port; end it, or take another", url
+            ) from error
+        raise LinkError.say("{} cannot be opened: {}; is the address right?", url, error.strerror or error) from error
 
 
 def memory_pair(

@@ -98,21 +98,21 @@ def read_plan_json(path: Path) -> MavlinkFile:
     """
     content = read_json(path)
     if isinstance(content, dict) and str(content.get("format", "")).startswith("reflight-plan/"):
-        raise InputError(say("this is a Reflight plan already; it needs no import", place=path))
+        raise InputError.say("this is a Reflight plan already; it needs no import", place=path)
     if not isinstance(content, dict) or content.get("fileType") != "Plan":
-        raise MissionError(say("no QGroundControl plan; expected a JSON object with fileType 'Plan'", place=path))
+        raise MissionError.say("no QGroundControl plan; expected a JSON object with fileType 'Plan'", place=path)
     mission = content.get("mission")
     if not isinstance(mission, dict):
-        raise MissionError(
-            say("the plan has no mission (it may hold a fence only); save it with its mission", place=path)
+        raise MissionError.say(
+            "the plan has no mission (it may hold a fence only); save it with its mission", place=path
         )
     for name, found, expected in (
         ("version", content.get("version"), PLAN_VERSION),
         ("mission.version", mission.get("version"), MISSION_VERSION),
     ):
         if found != expected:
-            raise MissionError(
-                say("{} is {}; expected {}; save it with a current QGroundControl", name, found, expected, place=path)
+            raise MissionError.say(
+                "{} is {}; expected {}; save it with a current QGroundControl", name, found, expected, place=path
             )
     home, on_home = _home(mission.get("plannedHomePosition"))
     firmware = mission.get("firmwareType")
@@ -135,29 +135,27 @@ def read_plan_json(path: Path) -> MavlinkFile:
 def _read_item(item: Any, place: str) -> list[MissionItem]:
     """The items that a simple or complex item stands for."""
     if not isinstance(item, dict):
-        raise MissionError(say("expected an object, got {}", type(item).__name__, place=place))
+        raise MissionError.say("expected an object, got {}", type(item).__name__, place=place)
     if item.get("type") == "ComplexItem":
         name = item.get("complexItemType", "unnamed")
         transects = item.get("TransectStyleComplexItem")
         generated = transects.get("Items") if isinstance(transects, dict) else None
         if not generated:
-            raise MissionError(
-                say(
-                    "the complex item '{}' does not hold the items it generates, which only QGroundControl can make; "
-                    "turn it into simple items there",
-                    name,
-                    place=place,
-                )
+            raise MissionError.say(
+                "the complex item '{}' does not hold the items it generates, which only QGroundControl can make; "
+                "turn it into simple items there",
+                name,
+                place=place,
             )
         inner = _list(generated, place)
         return [made for i, child in enumerate(inner, 1) for made in _read_item(child, f"{place} ({name} {i})")]
     if item.get("type") != "SimpleItem":
-        raise MissionError(say("type is '{}'; expected SimpleItem or ComplexItem", item.get("type"), place=place))
+        raise MissionError.say("type is '{}'; expected SimpleItem or ComplexItem", item.get("type"), place=place)
     command, frame, params = item.get("command"), item.get("frame"), item.get("params")
     if not _is_number(command) or not _is_number(frame):
-        raise MissionError(say("expected numbers for command and frame, got {} and {}", command, frame, place=place))
+        raise MissionError.say("expected numbers for command and frame, got {} and {}", command, frame, place=place)
     if not isinstance(params, list) or len(params) != 7 or not all(p is None or _is_number(p) for p in params):
-        raise MissionError(say("expected params to be 7 numbers or null, got {}", str(params)[:60], place=place))
+        raise MissionError.say("expected params to be 7 numbers or null, got {}", str(params)[:60], place=place)
     values = [math.nan if value is None else float(value) for value in params]
     viewpoint_id = item.get(VIEWPOINT_KEY)
     filled: Params = (values[0], values[1], values[2], values[3], values[4], values[5], values[6])
@@ -166,7 +164,7 @@ def _read_item(item: Any, place: str) -> list[MissionItem]:
 
 def _list(content: Any, place: str) -> list[Any]:
     if not isinstance(content, list):
-        raise MissionError(say("expected a list, got {}", type(content).__name__, place=place))
+        raise MissionError.say("expected a list, got {}", type(content).__name__, place=place)
     return content
 
 

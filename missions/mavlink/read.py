@@ -194,8 +194,8 @@ class MavlinkFlight:
         """Points of a leg where the trigger releases the camera, each with its photo."""
         same_kind = (start.height_above_takeoff_m is None) == (end.height_above_takeoff_m is None)
         if not same_kind and self.file.home is None:
-            raise MissionError(
-                say("{}heights above take-off and above sea level are mixed, and home is not known", self.place)
+            raise MissionError.say(
+                "{}heights above take-off and above sea level are mixed, and home is not known", self.place
             )
         rise_m = self._metric_height_m(end) - self._metric_height_m(start)
         length_m = math.hypot(distance_m(start.lat_deg, start.lon_deg, end.lat_deg, end.lon_deg), rise_m)
@@ -416,12 +416,12 @@ def read_mavlink(path: Path, file: MavlinkFile, file_format: str, *, strict: boo
     flight = MavlinkFlight(file, f"{path}: ")
     flight.fly()
     if not flight.flown:
-        raise MissionError(say("the mission has no waypoint, so there is nothing to fly", place=path))
+        raise MissionError.say("the mission has no waypoint, so there is nothing to fly", place=path)
     is_relative = any(point.height_above_takeoff_m is not None for point in flight.flown)
     checks = check_items(file, flight.autopilot)
     errors = [finding for finding in checks if finding.severity is Severity.ERROR]
     if strict and errors:
-        raise MissionError(say("the vehicle would refuse this mission: {}", reasons(errors), place=path))
+        raise MissionError.say("the vehicle would refuse this mission: {}", reasons(errors), place=path)
     return ReadMission(
         name=path.stem,
         path=path,

@@ -53,7 +53,7 @@ def key_from_passphrase(passphrase: str) -> bytes:
         The passphrase is empty.
     """
     if not passphrase:
-        raise InputError(say("the passphrase for signing is empty; expected the one that the vehicle was given"))
+        raise InputError.say("the passphrase for signing is empty; expected the one that the vehicle was given")
     return hashlib.sha256(passphrase.encode()).digest()
 
 
@@ -204,8 +204,8 @@ class KeyStore:
         except ValueError:
             key = b""
         if len(key) != KEY_BYTES:
-            raise InputError(
-                say("{} does not hold a signing key of {} hex digits; set it anew", self.key_path, 2 * KEY_BYTES)
+            raise InputError.say(
+                "{} does not hold a signing key of {} hex digits; set it anew", self.key_path, 2 * KEY_BYTES
             )
         return key
 
@@ -234,7 +234,7 @@ class KeyStore:
             return int(read_given(self.timestamp_path, KEY_FILE).decode("ascii"))
         except (InputError, ValueError) as error:
             path = self.timestamp_path
-            raise InputError(say("{} does not hold a time stamp for signing ({}); delete it", path, error)) from error
+            raise InputError.say("{} does not hold a time stamp for signing ({}); delete it", path, error) from error
 
     def _reserve(self, timestamp: int) -> None:
         self._write(self.timestamp_path, str(max(timestamp, self._timestamp())))
@@ -244,21 +244,19 @@ class KeyStore:
             mode = stat.S_IMODE(self.key_path.stat().st_mode)
             # Windows has no such modes; there the folder is the user's own.
             if os.name != "nt" and mode & ~OWNER_ONLY:
-                raise InputError(
-                    say(
-                        "others may read the signing key {} (mode {:04o}, expected {:04o}); give the vehicle a new "
-                        "key, or run: chmod 600 '{}'",
-                        self.key_path,
-                        mode,
-                        OWNER_ONLY,
-                        self.key_path,
-                    )
+                raise InputError.say(
+                    "others may read the signing key {} (mode {:04o}, expected {:04o}); give the vehicle a new "
+                    "key, or run: chmod 600 '{}'",
+                    self.key_path,
+                    mode,
+                    OWNER_ONLY,
+                    self.key_path,
                 )
             return read_given(self.key_path, KEY_FILE).decode("ascii")
         except FileNotFoundError:
             return None
         except (OSError, UnicodeDecodeError) as error:
-            raise InputError(say("the signing key {} cannot be read: {}", self.key_path, error)) from error
+            raise InputError.say("the signing key {} cannot be read: {}", self.key_path, error) from error
 
     def _write(self, path: Path, text: str) -> None:
         """Write a file for the owner only, all of it or nothing."""
@@ -267,7 +265,7 @@ class KeyStore:
             with part_file(path, OWNER_ONLY) as part:
                 part.write_text(text, "ascii")
         except OSError as error:
-            raise InputError(say("{} cannot be written: {}", path, error.strerror or error)) from error
+            raise InputError.say("{} cannot be written: {}", path, error.strerror or error) from error
 
     def _in_system(self, use: Callable[[Any], object]) -> bool:
         """Do something with the system's key store; False where there is none, or it does not let us."""

@@ -60,11 +60,11 @@ def read_wpl(path: Path) -> MavlinkFile:
         check_lines(content, MAX_LINES, path)
         lines = content.decode("utf-8-sig").splitlines()
     except UnicodeDecodeError as error:
-        raise MissionError(say("expected text, found other bytes at offset {}", error.start, place=path)) from error
+        raise MissionError.say("expected text, found other bytes at offset {}", error.start, place=path) from error
     header = _HEADER.fullmatch(lines[0].strip()) if lines else None
     if header is None or header[1] not in (HOME_IN_LINE_0, NO_HOME):
         found = lines[0].strip()[:40] if lines else ""
-        raise MissionError(say("expected 'QGC WPL 110' in the first line, found '{}'", found, place=path))
+        raise MissionError.say("expected 'QGC WPL 110' in the first line, found '{}'", found, place=path)
     items = [
         _read_line(line, say("{}, line {}", path, number))
         for number, line in enumerate(lines[1:], 2)
@@ -90,10 +90,10 @@ def read_wpl(path: Path) -> MavlinkFile:
 def _read_line(line: str, place: str) -> tuple[int, MissionItem]:
     columns = line.split()
     if len(columns) != N_COLUMNS:
-        raise MissionError(say("expected {} columns, found {}", N_COLUMNS, len(columns), place=place))
+        raise MissionError.say("expected {} columns, found {}", N_COLUMNS, len(columns), place=place)
     try:
         seq, frame, command = int(columns[0]), int(columns[2]), int(columns[3])
         p1, p2, p3, p4, p5, p6, p7 = (float(column) for column in columns[4:11])
     except ValueError as error:
-        raise MissionError(say("expected numbers with a decimal point ({})", error, place=place)) from error
+        raise MissionError.say("expected numbers with a decimal point ({})", error, place=place) from error
     return seq, MissionItem(command, frame, (p1, p2, p3, p4, p5, p6, p7))

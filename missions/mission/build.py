@@ -83,39 +83,35 @@ def missions_from_plan(plan: Plan, origin: Origin | None = None, home_enu_m: Vec
 def _agreed(of_plan: Value | None, given: Value | None, name: str) -> Value:
     if of_plan is None:
         if given is None:
-            raise InputError(say("the plan has no {}, so nothing can be placed on the globe; add --site SITE", name))
+            raise InputError.say("the plan has no {}, so nothing can be placed on the globe; add --site SITE", name)
         return given
     if given is not None and of_plan != given:
-        raise InputError(say("the plan was made for the {} {}, but the site says {}; plan again", name, of_plan, given))
+        raise InputError.say("the plan was made for the {} {}, but the site says {}; plan again", name, of_plan, given)
     return of_plan
 
 
 def _check_each_viewpoint_once(plan: Plan) -> None:
     if not plan.sorties:
-        raise MissionError(
-            say("the plan has no sorties: nothing says which way to fly; plan again, locked views are kept")
+        raise MissionError.say(
+            "the plan has no sorties: nothing says which way to fly; plan again, locked views are kept"
         )
     seen: dict[str, int] = {}
     for number, sortie in enumerate(plan.sorties, 1):
         for viewpoint_id in sortie.viewpoint_ids:
             if viewpoint_id in seen:
-                raise MissionError(
-                    say(
-                        "viewpoint '{}' is in sortie {} and again in sortie {}; expected each viewpoint once",
-                        viewpoint_id,
-                        seen[viewpoint_id],
-                        number,
-                    )
+                raise MissionError.say(
+                    "viewpoint '{}' is in sortie {} and again in sortie {}; expected each viewpoint once",
+                    viewpoint_id,
+                    seen[viewpoint_id],
+                    number,
                 )
             seen[viewpoint_id] = number
     missing = [viewpoint.id for viewpoint in plan.viewpoints if viewpoint.id not in seen]
     if missing:
-        raise MissionError(
-            say(
-                "{} viewpoints are in no sortie (the first is '{}'): their photos would be lost; plan the route again",
-                len(missing),
-                missing[0],
-            )
+        raise MissionError.say(
+            "{} viewpoints are in no sortie (the first is '{}'): their photos would be lost; plan the route again",
+            len(missing),
+            missing[0],
         )
 
 
@@ -131,44 +127,38 @@ def _profile_of(plan: Plan) -> str:
 def _check_pitch(view: Viewpoint, plan: Plan) -> None:
     low, high = plan.camera.gimbal_pitch_deg
     if not low - 1e-6 <= view.gimbal_pitch_deg <= high + 1e-6:
-        raise MissionError(
-            say(
-                "viewpoint '{}' needs a gimbal pitch of {:.1f} deg, but {} turns from {:g} to {:g} deg and would "
-                "be stopped there; plan with this camera's limits",
-                view.id,
-                view.gimbal_pitch_deg,
-                plan.camera.name,
-                low,
-                high,
-            )
+        raise MissionError.say(
+            "viewpoint '{}' needs a gimbal pitch of {:.1f} deg, but {} turns from {:g} to {:g} deg and would "
+            "be stopped there; plan with this camera's limits",
+            view.id,
+            view.gimbal_pitch_deg,
+            plan.camera.name,
+            low,
+            high,
         )
 
 
 def _check_ends_at_home(path_enu_m: Sequence[Vec3], home_enu_m: Vec3, place: str) -> None:
     if len(path_enu_m) < 3:
-        raise MissionError(
-            say("its path has {} points; expected take-off, flight and landing", len(path_enu_m), place=place)
+        raise MissionError.say(
+            "its path has {} points; expected take-off, flight and landing", len(path_enu_m), place=place
         )
     for end, neighbour, verb in ((path_enu_m[0], path_enu_m[1], "starts"), (path_enu_m[-1], path_enu_m[-2], "ends")):
         away_m = math.dist(end, home_enu_m)
         if away_m > COLUMN_RADIUS_M:
-            raise MissionError(
-                say(
-                    "its path {} {:.1f} m from home; expected it to start and end on the ground at home, where "
-                    "heights above take-off are counted from",
-                    verb,
-                    away_m,
-                    place=place,
-                )
+            raise MissionError.say(
+                "its path {} {:.1f} m from home; expected it to start and end on the ground at home, where "
+                "heights above take-off are counted from",
+                verb,
+                away_m,
+                place=place,
             )
         if math.dist(neighbour[:2], end[:2]) > COLUMN_RADIUS_M or neighbour[2] <= end[2]:
-            raise MissionError(
-                say(
-                    "its path {} with a slanted leg, but aircraft climb and land vertically and would leave the "
-                    "checked path; expected a vertex straight above home",
-                    verb,
-                    place=place,
-                )
+            raise MissionError.say(
+                "its path {} with a slanted leg, but aircraft climb and land vertically and would leave the "
+                "checked path; expected a vertex straight above home",
+                verb,
+                place=place,
             )
 
 
@@ -196,13 +186,11 @@ def _photos_at(vertices: Sequence[Vec3], views: Sequence[Viewpoint], place: str)
         while index < len(vertices) and math.dist(vertices[index], view.position_enu_m) > SAME_POINT_M:
             index += 1
         if index == len(vertices):
-            raise MissionError(
-                say(
-                    "viewpoint '{}' is not on the path, or not in the order of viewpoint_ids, so its photo would be "
-                    "lost; plan the route again",
-                    view.id,
-                    place=place,
-                )
+            raise MissionError.say(
+                "viewpoint '{}' is not on the path, or not in the order of viewpoint_ids, so its photo would be "
+                "lost; plan the route again",
+                view.id,
+                place=place,
             )
         photos[index].append(Photo(view.id, wrap_heading_deg(view.heading_deg), view.gimbal_pitch_deg))
     return photos

@@ -15,7 +15,6 @@ from missions.mission.build import missions_from_plan
 from missions.mission.model import Mission
 from planning.base.errors import InfeasibleError, MissionError
 from planning.base.findings import Finding, Severity
-from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.plan import Plan
 from planning.revision import delete, revise
@@ -78,8 +77,8 @@ def resume_sortie(
     sortie = plan.sorties[number - 1]
     done = [identifier for identifier in sortie.viewpoint_ids if identifier in set(taken)]
     if len(done) == len(sortie.viewpoint_ids):
-        raise MissionError(
-            say("sortie {} is complete: all {} views have a photo, so there is nothing to resume", number, len(done))
+        raise MissionError.say(
+            "sortie {} is complete: all {} views have a photo, so there is nothing to resume", number, len(done)
         )
     if prepared is None:
         prepared = _prepared(plan, site_model, monitor)
@@ -90,14 +89,12 @@ def resume_sortie(
     errors = [finding for finding in rest.findings if finding.severity is Severity.ERROR]
     if errors:
         place = f" ({errors[0].place})" if errors[0].place else ""
-        raise MissionError(
-            say(
-                "the rest of sortie {} cannot be flown as it was planned{}: {}; plan a top-up instead, which "
-                "finds its own views and ways",
-                number,
-                place,
-                errors[0].message,
-            )
+        raise MissionError.say(
+            "the rest of sortie {} cannot be flown as it was planned{}: {}; plan a top-up instead, which "
+            "finds its own views and ways",
+            number,
+            place,
+            errors[0].message,
         )
     left = tuple(replace(view, locked=view.id in locked) for view in rest.plan.viewpoints)
     rest_plan = replace(
@@ -112,4 +109,4 @@ def _prepared(plan: Plan, site_model: SiteModel, monitor: Monitor) -> Prepared:
     try:
         return prepare(site_model, plan.camera, plan.constraints, seed=plan.seed, stop=lambda: True, monitor=monitor)
     except InfeasibleError as error:
-        raise InfeasibleError(say("the sortie cannot be resumed on the site as it is now: {}", error)) from error
+        raise InfeasibleError.say("the sortie cannot be resumed on the site as it is now: {}", error) from error

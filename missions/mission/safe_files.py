@@ -60,10 +60,10 @@ def open_archive(source: Path | BinaryIO, label: str) -> tuple[zipfile.ZipFile, 
     try:
         archive = zipfile.ZipFile(source)
     except OSError as error:
-        raise InputError(say("cannot be read ({})", error.strerror or error, place=label)) from error
+        raise InputError.say("cannot be read ({})", error.strerror or error, place=label) from error
     except (zipfile.BadZipFile, ValueError, NotImplementedError) as error:
-        raise MissionError(
-            say("damaged or no zip archive ({}); a KMZ is one; copy it again", error, place=label)
+        raise MissionError.say(
+            "damaged or no zip archive ({}); a KMZ is one; copy it again", error, place=label
         ) from error
     try:
         return archive, _checked_members(archive, label)
@@ -74,22 +74,20 @@ def open_archive(source: Path | BinaryIO, label: str) -> tuple[zipfile.ZipFile, 
 
 def _checked_members(archive: zipfile.ZipFile, label: str) -> dict[str, zipfile.ZipInfo]:
     if len(archive.infolist()) > MAX_MEMBERS:
-        raise MissionError(
-            say("holds {} files; expected at most {}", len(archive.infolist()), MAX_MEMBERS, place=label)
-        )
+        raise MissionError.say("holds {} files; expected at most {}", len(archive.infolist()), MAX_MEMBERS, place=label)
     members: dict[str, zipfile.ZipInfo] = {}
     for member in archive.infolist():
         name = member.filename.replace("\\", "/")
         if name.startswith("/") or ":" in name or ".." in PurePosixPath(name).parts:
-            raise MissionError(
-                say("holds the path '{}', which leads out of it; refused as hostile", member.filename, place=label)
+            raise MissionError.say(
+                "holds the path '{}', which leads out of it; refused as hostile", member.filename, place=label
             )
         if name in members:
-            raise MissionError(
-                say("holds '{}' twice, so which one is meant is unknown; export it again", name, place=label)
+            raise MissionError.say(
+                "holds '{}' twice, so which one is meant is unknown; export it again", name, place=label
             )
         if member.flag_bits & 0x1:
-            raise MissionError(say("'{}' is encrypted; export it without a password", name, place=label))
+            raise MissionError.say("'{}' is encrypted; export it without a password", name, place=label)
         members[name] = member
     return members
 
@@ -106,20 +104,18 @@ def read_member(archive: zipfile.ZipFile, member: zipfile.ZipInfo, label: str) -
         with archive.open(member) as file:
             content = file.read(MAX_FILE_BYTES + 1)
     except (zipfile.BadZipFile, OSError, EOFError, RuntimeError, NotImplementedError, ValueError) as error:
-        raise MissionError(
-            say("'{}' is damaged ({}); copy the file again", member.filename, error, place=label)
+        raise MissionError.say(
+            "'{}' is damaged ({}); copy the file again", member.filename, error, place=label
         ) from error
     except (zlib.error, lzma.LZMAError) as error:
-        raise MissionError(
-            say("'{}' cannot be inflated ({}); copy the file again", member.filename, error, place=label)
+        raise MissionError.say(
+            "'{}' cannot be inflated ({}); copy the file again", member.filename, error, place=label
         ) from error
     if len(content) > MAX_FILE_BYTES:
-        raise MissionError(
-            say(
-                "'{}' inflates to more than {} MiB; refused as hostile",
-                member.filename,
-                MAX_FILE_BYTES // 2**20,
-                place=label,
-            )
+        raise MissionError.say(
+            "'{}' inflates to more than {} MiB; refused as hostile",
+            member.filename,
+            MAX_FILE_BYTES // 2**20,
+            place=label,
         )
     return content

@@ -173,18 +173,16 @@ class _Unaimed:
 
 def _check_is_near(mission: ReadMission, home: tuple[float, float, float]) -> None:
     if not mission.waypoints:
-        raise InputError(say("the mission has no waypoints", place=mission.path))
+        raise InputError.say("the mission has no waypoints", place=mission.path)
     nearest_m = min(distance_m(w.lat_deg, w.lon_deg, home[0], home[1]) for w in mission.waypoints)
     if nearest_m > MAX_DISTANCE_M:
-        raise InputError(
-            say(
-                "the mission '{}' is {:.1f} km from the site's home; expected at most {:g} km; is it the right "
-                "site? Imported without one, the mission gets a bare site of its own, to look at it",
-                mission.name,
-                nearest_m / 1000.0,
-                MAX_DISTANCE_M / 1000.0,
-                place=mission.path,
-            )
+        raise InputError.say(
+            "the mission '{}' is {:.1f} km from the site's home; expected at most {:g} km; is it the right "
+            "site? Imported without one, the mission gets a bare site of its own, to look at it",
+            mission.name,
+            nearest_m / 1000.0,
+            MAX_DISTANCE_M / 1000.0,
+            place=mission.path,
         )
 
 
@@ -192,15 +190,13 @@ def _check_is_local(mission: ReadMission, path: Sequence[Vec3]) -> None:
     for point in path:
         away_m = max(map(abs, point))
         if away_m > MAX_COORDINATE_M:
-            raise InputError(
-                say(
-                    "the mission '{}' reaches {:.0f} km from the origin of the site; expected at most {:g} km; a "
-                    "coordinate or a height in it is wrong",
-                    mission.name,
-                    away_m / 1000.0,
-                    MAX_COORDINATE_M / 1000.0,
-                    place=mission.path,
-                )
+            raise InputError.say(
+                "the mission '{}' reaches {:.0f} km from the origin of the site; expected at most {:g} km; a "
+                "coordinate or a height in it is wrong",
+                mission.name,
+                away_m / 1000.0,
+                MAX_COORDINATE_M / 1000.0,
+                place=mission.path,
             )
 
 

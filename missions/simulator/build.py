@@ -66,7 +66,7 @@ def decide_effects(scene: FlightScene, settings: Mapping[str, EffectSetting] | N
     known = [effect.name for effect in EFFECTS]
     for name in settings:
         if name not in known:
-            raise InputError(say("there is no effect '{}' of the flight; known are: {}", name, ", ".join(known)))
+            raise InputError.say("there is no effect '{}' of the flight; known are: {}", name, ", ".join(known))
     return tuple(decide(effect, scene, settings.get(effect.name, "auto")) for effect in EFFECTS)
 
 

@@ -19,7 +19,6 @@ from missions.mavlink.messages import Address, Message, Received
 from missions.mavlink.wire import Encoder
 from missions.simulator.vehicle import SimulatedVehicle
 from planning.base.errors import LinkError
-from planning.base.messages import say
 from planning.base.progress import Clock, Stop, never
 
 MAX_SPEEDUP = 50.0
@@ -99,7 +98,7 @@ class DirectLink:
 
     def _check_open(self) -> None:
         if self._is_closed:
-            raise LinkError(say("the link to the simulated vehicle is closed"))
+            raise LinkError.say("the link to the simulated vehicle is closed")
 
     def _take(self, messages: Iterable[Message]) -> None:
         for message in messages:

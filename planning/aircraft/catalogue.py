@@ -12,7 +12,6 @@ from pathlib import Path
 
 from planning.base.errors import InputError
 from planning.base.json_file import read_toml
-from planning.base.messages import say
 from planning.base.plugins import NAME, Plugin, PluginGroup, load_plugins
 from planning.plan import Aircraft, Camera
 
@@ -42,18 +41,18 @@ def profiles() -> dict[str, Profile]:
 
     def take(_plugin: Plugin, path: object) -> None:
         if not isinstance(path, (str, Path)):
-            raise InputError(
-                say("expected its entry point to stand for the path of a TOML file, got {}", type(path).__name__)
+            raise InputError.say(
+                "expected its entry point to stand for the path of a TOML file, got {}", type(path).__name__
             )
         own = _read(Path(path))
         wrong = next((key for key in own if not NAME.fullmatch(key)), None)
         if wrong is not None:
-            raise InputError(
-                say("'{}' has other characters than a-z, 0-9, dot, hyphen and underscore", wrong, place=path)
+            raise InputError.say(
+                "'{}' has other characters than a-z, 0-9, dot, hyphen and underscore", wrong, place=path
             )
         known = next((key for key in own if key in found), None)
         if known is not None:
-            raise InputError(say("there is another aircraft profile '{}'", known, place=path))
+            raise InputError.say("there is another aircraft profile '{}'", known, place=path)
         found.update(own)
 
     load_plugins(PluginGroup.AIRCRAFT, take, ())
@@ -75,8 +74,8 @@ def profile(identifier: str) -> Profile:
     if identifier.lower().endswith(".toml"):
         own = _read(Path(identifier))
         if len(own) != 1:
-            raise InputError(
-                say("expected one table with an aircraft and its camera, got {}", len(own), place=identifier)
+            raise InputError.say(
+                "expected one table with an aircraft and its camera, got {}", len(own), place=identifier
             )
         return next(iter(own.values()))
     if identifier in bundled_profiles():
@@ -85,6 +84,6 @@ def profile(identifier: str) -> Profile:
         return profiles()[identifier]
     except KeyError:
         known = ", ".join(sorted(profiles()))
-        raise InputError(
-            say("there is no aircraft profile '{}'; known are: {}; your own can be a .toml file", identifier, known)
+        raise InputError.say(
+            "there is no aircraft profile '{}'; known are: {}; your own can be a .toml file", identifier, known
         ) from None

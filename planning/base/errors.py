@@ -6,6 +6,10 @@ A message says what was expected, what was found, where, and what to do. Wrong c
 
 from __future__ import annotations
 
+from typing import Self
+
+from planning.base.messages import say
+
 MAX_MESSAGE = 1000
 """Characters of a message: what a damaged file has in place of a name or number can be as long as the file."""
 
@@ -19,6 +23,11 @@ def shortened(text: str) -> str:
 
 class GroundStationError(Exception):
     """Root of all errors whose message is meant for the user."""
+
+    @classmethod
+    def say(cls, template: str, *values: object, place: object = "") -> Self:
+        """An error with this message: see `planning.base.messages.say`."""
+        return cls(say(template, *values, place=place))
 
 
 class InputError(GroundStationError):

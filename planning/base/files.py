@@ -61,8 +61,8 @@ def make_folder(folder: Path) -> None:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise InputError(
-            say("cannot be made ({}); name another folder", error.strerror or error, place=folder)
+        raise InputError.say(
+            "cannot be made ({}); name another folder", error.strerror or error, place=folder
         ) from error
 
 
@@ -86,15 +86,13 @@ def check_ending(path: Path, endings: Sequence[str], others: Collection[str] = P
     if is_known and not path.name.lower().endswith(tuple(endings)):
         told = " or ".join(endings)
         if path.exists():
-            raise InputError(say("would replace a {} file by what is {}; name another file", ending, told, place=path))
-        raise InputError(
-            say(
-                "not written: the name ends in {}, and what would be in the file is {}; name it so, or choose "
-                "another format",
-                ending,
-                told,
-                place=path,
-            )
+            raise InputError.say("would replace a {} file by what is {}; name another file", ending, told, place=path)
+        raise InputError.say(
+            "not written: the name ends in {}, and what would be in the file is {}; name it so, or choose "
+            "another format",
+            ending,
+            told,
+            place=path,
         )
 
 
@@ -108,12 +106,10 @@ def check_folder_name(path: Path) -> None:
     """
     ending = path.suffix.lower()
     if FILE_ENDING.fullmatch(ending) and not path.is_dir():
-        raise InputError(
-            say(
-                "not written: the name ends in {} as files do, and this is written as a folder; name one",
-                ending,
-                place=path,
-            )
+        raise InputError.say(
+            "not written: the name ends in {} as files do, and this is written as a folder; name one",
+            ending,
+            place=path,
         )
 
 
@@ -242,9 +238,9 @@ def sha256_given(path: Path, limit: FileLimit = ANY_FILE) -> str:
 
 def _check_status(path: Path, status: os.stat_result, limit: FileLimit) -> None:
     if stat.S_ISDIR(status.st_mode):
-        raise InputError(say("expected {}, found a folder; name a file", limit.what, place=path))
+        raise InputError.say("expected {}, found a folder; name a file", limit.what, place=path)
     if not stat.S_ISREG(status.st_mode):
-        raise InputError(say("expected {}, found a device or a pipe; name a file", limit.what, place=path))
+        raise InputError.say("expected {}, found a device or a pipe; name a file", limit.what, place=path)
     if status.st_size > limit.max_bytes:
         raise _too_large(path, limit)
 
@@ -263,8 +259,8 @@ def size_text(n_bytes: int) -> str:
 
 def _not_read(path: Path, error: Exception) -> InputError:
     if isinstance(error, FileNotFoundError):
-        return InputError(say("cannot be read: there is no such file", place=path))
-    return InputError(say("cannot be read ({})", getattr(error, "strerror", None) or error, place=path))
+        return InputError.say("cannot be read: there is no such file", place=path)
+    return InputError.say("cannot be read ({})", getattr(error, "strerror", None) or error, place=path)
 
 
 def check_lines(content: bytes, most: int, place: object) -> None:
@@ -277,7 +273,7 @@ def check_lines(content: bytes, most: int, place: object) -> None:
     """
     n_lines = content.count(b"\n") + content.count(b"\r")
     if n_lines > 2 * most:
-        raise InputError(say("has more than {} lines; cut out the part that is wanted", most, place=place))
+        raise InputError.say("has more than {} lines; cut out the part that is wanted", most, place=place)
 
 
 def check_json_size(content: bytes, path: Path) -> None:
@@ -315,14 +311,11 @@ def _text_bytes(content: bytes) -> int:
 
 
 def _too_rich(place: object, n_bytes: int) -> InputError:
-    return InputError(
-        say(
-            "its content would take about {:.0f} GiB of memory; expected at most {} GiB; cut out the part "
-            "that is wanted",
-            n_bytes / 2**30,
-            MAX_PARSED_BYTES // 2**30,
-            place=place,
-        )
+    return InputError.say(
+        "its content would take about {:.0f} GiB of memory; expected at most {} GiB; cut out the part that is wanted",
+        n_bytes / 2**30,
+        MAX_PARSED_BYTES // 2**30,
+        place=place,
     )
 
 
@@ -348,12 +341,10 @@ def check_zip_directory(file: BinaryIO, place: object) -> None:
         return
     *_, n_bytes, _, _ = ZIP_END.unpack_from(tail, at)
     if n_bytes > MAX_ZIP_DIRECTORY_BYTES:
-        raise InputError(
-            say(
-                "the list of its files has more than {}; pack it again with what is needed",
-                size_text(MAX_ZIP_DIRECTORY_BYTES),
-                place=place,
-            )
+        raise InputError.say(
+            "the list of its files has more than {}; pack it again with what is needed",
+            size_text(MAX_ZIP_DIRECTORY_BYTES),
+            place=place,
         )
 
 

@@ -80,21 +80,21 @@ def parse_json(written: bytes, path: Path, *, names_files: bool = False) -> Any:
     try:
         text = written.decode("utf-8-sig")  # editors on Windows put a byte order mark in front
     except UnicodeDecodeError as error:
-        raise InputError(
-            say("expected JSON in UTF-8, found other bytes at offset {}", error.start, place=path)
+        raise InputError.say(
+            "expected JSON in UTF-8, found other bytes at offset {}", error.start, place=path
         ) from error
     if not text.strip():
-        raise InputError(say("not valid JSON, line 1: the file is empty", place=path))
+        raise InputError.say("not valid JSON, line 1: the file is empty", place=path)
     try:
         content = json.loads(text)
     except json.JSONDecodeError as error:
-        raise InputError(
-            say("not valid JSON, line {}, column {}: {}", error.lineno, error.colno, error.msg, place=path)
+        raise InputError.say(
+            "not valid JSON, line {}, column {}: {}", error.lineno, error.colno, error.msg, place=path
         ) from error
     except RecursionError as error:
-        raise InputError(say("nested too deeply for a file of ours", place=path)) from error
+        raise InputError.say("nested too deeply for a file of ours", place=path) from error
     except ValueError as error:
-        raise InputError(say("holds a number with too many digits ({})", error, place=path)) from error
+        raise InputError.say("holds a number with too many digits ({})", error, place=path) from error
     _check_values(content, path, names_files)
     return content
 
@@ -120,7 +120,7 @@ def _check_values(content: Any, path: Path, names_files: bool, *, is_toml: bool 
         if not deeper:
             return
         level = deeper
-    raise InputError(say("nested too deeply for a file of ours", place=path))
+    raise InputError.say("nested too deeply for a file of ours", place=path)
 
 
 def _is_text(text: str) -> bool:
@@ -134,12 +134,12 @@ def _is_text(text: str) -> bool:
 def _refuse_value(content: Any, wrong: Any, path: Path) -> NoReturn:
     place = (_place_of(content, wrong, "") or "").lstrip(".").encode("ascii", "backslashreplace").decode()
     if isinstance(wrong, int):
-        raise InputError(
-            say("expected a number of at most 20 digits, found one of {}", len(str(wrong)), place=f"{path}: {place}")
+        raise InputError.say(
+            "expected a number of at most 20 digits, found one of {}", len(str(wrong)), place=f"{path}: {place}"
         )
     if isinstance(wrong, float):
-        raise InputError(say("expected a finite number, got NaN or Infinity", place=f"{path}: {place}"))
-    raise InputError(say("expected text, found half of a character (a surrogate by itself)", place=f"{path}: {place}"))
+        raise InputError.say("expected a finite number, got NaN or Infinity", place=f"{path}: {place}")
+    raise InputError.say("expected text, found half of a character (a surrogate by itself)", place=f"{path}: {place}")
 
 
 def _place_of(content: Any, wrong: Any, place: str) -> str | None:
@@ -186,7 +186,7 @@ def to_record(content: Any, record: type[Record], path: Path) -> Record:
     except msgspec.ValidationError as error:
         raise InputError(about(path, _in_words(error, record))) from error
     except UnicodeEncodeError as error:
-        raise InputError(say("a text in it holds half of a character (a surrogate by itself)", place=path)) from error
+        raise InputError.say("a text in it holds half of a character (a surrogate by itself)", place=path) from error
 
 
 def expect_format(content: Any, expected: str, path: Path) -> None:
@@ -199,7 +199,7 @@ def expect_format(content: Any, expected: str, path: Path) -> None:
     """
     found = content.get("format", expected) if isinstance(content, dict) else expected
     if found != expected:
-        raise InputError(say("format: expected '{}', got {}; is it the right file?", expected, repr(found), place=path))
+        raise InputError.say("format: expected '{}', got {}; is it the right file?", expected, repr(found), place=path)
 
 
 _WORDS = {
@@ -300,16 +300,16 @@ def parse_toml(written: bytes, path: Path) -> dict[str, Any]:
         long_key = _LONG_KEY.search(text)
         if long_key is not None:
             line = text.count("\n", 0, long_key.start()) + 1
-            raise InputError(
-                say("line {}: a key has more than {} parts; none of ours has", line, MAX_KEY_PARTS, place=path)
+            raise InputError.say(
+                "line {}: a key has more than {} parts; none of ours has", line, MAX_KEY_PARTS, place=path
             )
         content = tomllib.loads(text)
         _check_values(content, path, False, is_toml=True)
         return content
     except ValueError as error:  # TOMLDecodeError, UnicodeDecodeError, and numbers with thousands of digits
-        raise InputError(say("not valid TOML ({})", error, place=path)) from error
+        raise InputError.say("not valid TOML ({})", error, place=path) from error
     except RecursionError as error:
-        raise InputError(say("nested too deeply for a file of ours", place=path)) from error
+        raise InputError.say("nested too deeply for a file of ours", place=path) from error
 
 
 def check_settings(content: Mapping[str, Any], record: type[Any], path: Path, place: str = "") -> None:
@@ -330,7 +330,7 @@ def check_settings(content: Mapping[str, Any], record: type[Any], path: Path, pl
     known = [field.name for field in fields(record)]
     unknown = sorted(set(content) - set(known))
     if unknown:
-        raise InputError(say("no such setting; known are: {}", ", ".join(known), place=f"{path}: {place}{unknown[0]}"))
+        raise InputError.say("no such setting; known are: {}", ", ".join(known), place=f"{path}: {place}{unknown[0]}")
 
 
 def settings_over(base: Record, content: Mapping[str, Any], path: Path) -> Record:
@@ -383,21 +383,21 @@ def check_output(path: Path, sources: Iterable[Path] = ()) -> None:
     folder = real_path(path).parent
     # Files are made anew in their folder; devices and pipes are written into.
     if (path.is_file() or not path.exists()) and not os.access(folder, os.W_OK | os.X_OK):
-        raise InputError(
-            say("cannot be written: the folder '{}' is write-protected; name a file in another one", folder, place=path)
+        raise InputError.say(
+            "cannot be written: the folder '{}' is write-protected; name a file in another one", folder, place=path
         )
     for source in sources:
         if path.exists() and source.exists() and path.samefile(source):
-            raise InputError(say("would replace {}, which it is made from; name another file", source, place=path))
+            raise InputError.say("would replace {}, which it is made from; name another file", source, place=path)
 
 
 def _check_place(path: Path) -> None:
     if not path.parent.is_dir():
-        raise InputError(say("cannot be written: there is no folder '{}'; make it first", path.parent, place=path))
+        raise InputError.say("cannot be written: there is no folder '{}'; make it first", path.parent, place=path)
     if path.is_dir():
-        raise InputError(say("cannot be written: this is a folder; name a file in it", place=path))
+        raise InputError.say("cannot be written: this is a folder; name a file in it", place=path)
     if path.exists() and not os.access(path, os.W_OK):
-        raise InputError(say("cannot be written: the file is write-protected; name another one", place=path))
+        raise InputError.say("cannot be written: the file is write-protected; name another one", place=path)
 
 
 def write_atomically(path: Path, content: bytes) -> None:
@@ -418,7 +418,7 @@ def write_atomically(path: Path, content: bytes) -> None:
         with part_file(real_path(path)) as part:
             part.write_bytes(content)
     except OSError as error:
-        raise InputError(say("cannot be written ({})", error.strerror or error, place=path)) from error
+        raise InputError.say("cannot be written ({})", error.strerror or error, place=path) from error
 
 
 def write_together(files: Mapping[Path, bytes]) -> None:
@@ -441,7 +441,7 @@ def write_together(files: Mapping[Path, bytes]) -> None:
             for part, content in zip(parts, files.values(), strict=True):
                 part.write_bytes(content)
     except OSError as error:
-        raise InputError(say("cannot be written ({})", error.strerror or error, place=next(iter(files)))) from error
+        raise InputError.say("cannot be written ({})", error.strerror or error, place=next(iter(files))) from error
 
 
 @contextmanager

@@ -11,7 +11,6 @@ from typing import Any, TypeVar
 
 from planning.base.errors import InputError
 from planning.base.jit import n_threads
-from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 
 # Dask clusters: how the program gets in touch with one.
@@ -29,7 +28,7 @@ def cluster_client(address: str) -> Iterator[Any]:
     try:
         from distributed import Client
     except ImportError as error:
-        raise InputError(say("a cluster ({}) needs Dask: pip install 'reflight[cluster]'", address)) from error
+        raise InputError.say("a cluster ({}) needs Dask: pip install 'reflight[cluster]'", address) from error
     client = None
     try:
         client = Client(address, timeout="10s")
@@ -39,7 +38,7 @@ def cluster_client(address: str) -> Iterator[Any]:
         # What is left of the client closes itself when it is collected, for which it takes a lock of Dask's: now, and
         # not at any time, when another client may hold that lock and both would wait forever.
         gc.collect()
-        raise InputError(say("no Dask scheduler answers at {} ({})", address, reason))
+        raise InputError.say("no Dask scheduler answers at {} ({})", address, reason)
     with client:
         yield client
 

@@ -100,9 +100,9 @@ def load_plugins(group: PluginGroup, take: Callable[[Plugin, object], T], taken:
     for plugin in installed_plugins(group):
         try:
             if not NAME.fullmatch(plugin.name):
-                raise InputError(say("its name has other characters than a-z, 0-9, dot, hyphen and underscore"))
+                raise InputError.say("its name has other characters than a-z, 0-9, dot, hyphen and underscore")
             if plugin.name in taken or plugin.name in found:
-                raise InputError(say("there is another one of that name"))
+                raise InputError.say("there is another one of that name")
             found[plugin.name] = take(plugin, plugin.entry_point.load())
         except (Exception, SystemExit) as error:  # it is the code of others
             leave_out(plugin, error)
@@ -129,8 +129,8 @@ def expect_type(found: object, expected: type[T]) -> T:
         It is of another type.
     """
     if not isinstance(found, expected):
-        raise InputError(
-            say("expected its entry point to stand for a {}, got {}", expected.__name__, type(found).__name__)
+        raise InputError.say(
+            "expected its entry point to stand for a {}, got {}", expected.__name__, type(found).__name__
         )
     return found
 
@@ -193,7 +193,7 @@ def blamed(error: BaseException) -> BaseException:
 
 
 def _failure(plugin: Plugin, error: Exception) -> PluginError:
-    return PluginError(say("{} failed: {}: {}; update it, or remove it", plugin, type(error).__name__, error))
+    return PluginError.say("{} failed: {}: {}; update it, or remove it", plugin, type(error).__name__, error)
 
 
 def plugin_problems() -> tuple[PluginProblem, ...]:

@@ -41,9 +41,9 @@ def check_ends(path: Path) -> None:
         file.seek(max(0, file.seek(0, os.SEEK_END) - TAIL_BYTES))
         tail = file.read(TAIL_BYTES)
     if not head.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(START):
-        raise InputError(say("expected an IFC file (STEP text that begins with ISO-10303-21)", place=path))
+        raise InputError.say("expected an IFC file (STEP text that begins with ISO-10303-21)", place=path)
     if END not in tail:
-        raise InputError(say("the file is cut off (END-ISO-10303-21 is missing); copy or export it again", place=path))
+        raise InputError.say("the file is cut off (END-ISO-10303-21 is missing); copy or export it again", place=path)
 
 
 class Mended(NamedTuple):

@@ -54,16 +54,14 @@ def parse_crs(name: str) -> CRS:
     try:
         crs = CRS.from_user_input(_plain_name(name.strip()))
     except CRSError as error:
-        raise InputError(
-            say(
-                "'{}' is not a coordinate reference system known here; expected a code such as EPSG:25832, "
-                "EPSG:7415 or EPSG:25832+7837",
-                name,
-            )
+        raise InputError.say(
+            "'{}' is not a coordinate reference system known here; expected a code such as EPSG:25832, "
+            "EPSG:7415 or EPSG:25832+7837",
+            name,
         ) from error
     horizontal = horizontal_part(crs)
     if not (horizontal.is_projected or horizontal.is_geographic):
-        raise InputError(say("'{}' is a {}; expected a projected or geographic system", name, crs.type_name))
+        raise InputError.say("'{}' is a {}; expected a projected or geographic system", name, crs.type_name)
     return crs
 
 
@@ -167,8 +165,8 @@ class CrsConversion:
         is_good = np.isfinite(lon) & np.isfinite(lat) & np.isfinite(height_m)
         if not is_good.all():
             bad = tuple(coordinates[int(np.argmin(is_good))].tolist())
-            raise InputError(
-                say("the point {} has no position in {}; is this the system the file is in?", bad, self.name)
+            raise InputError.say(
+                "the point {} has no position in {}; is this the system the file is in?", bad, self.name
             )
         if self.is_orthometric:
             height_m = height_m + undulation_m(lat, lon)
@@ -259,15 +257,13 @@ def _axis_order(name: str, crs: CRS, middle: NDArray[np.float64], wanted: AxisOr
                 )
                 return _Order(swaps, (note,))
     tried = joined(say(" and as "), (in_words[swaps] for swaps in orders))
-    raise InputError(
-        say(
-            "the coordinates ({:.2f}, {:.2f}), read as {}, lie far outside the area of use of {}; name the "
-            "right system with --crs",
-            middle[0],
-            middle[1],
-            tried,
-            crs_label(crs),
-        )
+    raise InputError.say(
+        "the coordinates ({:.2f}, {:.2f}), read as {}, lie far outside the area of use of {}; name the "
+        "right system with --crs",
+        middle[0],
+        middle[1],
+        tried,
+        crs_label(crs),
     )
 
 
@@ -302,12 +298,10 @@ def _operation(crs: CRS, lon_deg: float, lat_deg: float) -> _Operation:
         group = TransformerGroup(crs, target, always_xy=True, area_of_interest=place, allow_ballpark=False)
     best = next((t for t in group.transformers if t.accuracy >= 0.0), None)
     if best is None:
-        raise InputError(
-            say(
-                "no transformation to WGS 84 of known accuracy is installed; convert the file to a system on WGS "
-                "84 or ETRS89 first (a UTM zone, say)",
-                place=crs_label(crs),
-            )
+        raise InputError.say(
+            "no transformation to WGS 84 of known accuracy is installed; convert the file to a system on WGS "
+            "84 or ETRS89 first (a UTM zone, say)",
+            place=crs_label(crs),
         )
     note = say("coordinates are in {}", crs_label(crs))
     if best.accuracy > 0.0:

@@ -72,14 +72,12 @@ def check_mesh_size(content: bytes, kind: str, path: Path) -> None:
 
 def _refuse(n_bytes: int, most: int, path: Path) -> None:
     if n_bytes > most:
-        raise InputError(
-            say(
-                "this mesh would take about {:.1f} GiB of memory; expected at most {:.1f} GiB of one of its "
-                "size; reduce it, or export the building alone as binary PLY",
-                n_bytes / 2**30,
-                most / 2**30,
-                place=path,
-            )
+        raise InputError.say(
+            "this mesh would take about {:.1f} GiB of memory; expected at most {:.1f} GiB of one of its "
+            "size; reduce it, or export the building alone as binary PLY",
+            n_bytes / 2**30,
+            most / 2**30,
+            place=path,
         )
 
 
@@ -95,18 +93,18 @@ def _is_text(content: bytes, kind: str) -> bool:
 def _glb_bytes(content: bytes, path: Path) -> int:
     """Memory for a GLB file."""
     if len(content) < 20 or content[:4] != b"glTF":
-        raise InputError(say("is no GLB file, or cut off; export it again", place=path))
+        raise InputError.say("is no GLB file, or cut off; export it again", place=path)
     length, kind = struct.unpack_from("<I4s", content, 12)
     if kind != b"JSON" or length > len(content) - 20:
-        raise InputError(
-            say("the GLB file does not begin with its description, or is cut off; export it again", place=path)
+        raise InputError.say(
+            "the GLB file does not begin with its description, or is cut off; export it again", place=path
         )
     header = parse_json(content[20 : 20 + length], path)
     try:
         return len(content) + sum(_glb_parts(header))
     except (TypeError, ValueError, KeyError, IndexError, AttributeError, OverflowError) as error:
-        raise InputError(
-            say("the description in the GLB file is damaged ({}); export it again", repr(error), place=path)
+        raise InputError.say(
+            "the description in the GLB file is damaged ({}); export it again", repr(error), place=path
         ) from error
     except _NotRead as error:
         raise InputError(about(path, error)) from error
@@ -259,9 +257,9 @@ def mesh_content(path: Path) -> tuple[bytes, str]:
         The file is missing, of another kind, or too large.
     """
     if path.suffix.lower() not in MESH_SUFFIXES:
-        raise InputError(say("expected a mesh file ({}), got '{}'", ", ".join(MESH_SUFFIXES), path.suffix, place=path))
+        raise InputError.say("expected a mesh file ({}), got '{}'", ", ".join(MESH_SUFFIXES), path.suffix, place=path)
     if not path.exists():
-        raise InputError(say("there is no such mesh file", place=path))
+        raise InputError.say("there is no such mesh file", place=path)
     return read_given(path, MESH_FILE), path.suffix.lower()
 
 
@@ -289,9 +287,9 @@ def load_triangles(content: bytes, kind: str, path: Path) -> tuple[NDArray[np.fl
                 loaded = loaded.to_mesh()
         vertices, triangles = np.asarray(loaded.vertices, np.float64), np.asarray(loaded.faces, np.int64)
     except Exception as error:  # trimesh's readers raise whatever their parsers raise
-        raise InputError(say("this mesh cannot be read ({})", error, place=path)) from error
+        raise InputError.say("this mesh cannot be read ({})", error, place=path) from error
     if vertices.ndim != 2 or vertices.shape[1] != 3:
-        raise InputError(say("this mesh cannot be read (its vertices do not have three coordinates each)", place=path))
+        raise InputError.say("this mesh cannot be read (its vertices do not have three coordinates each)", place=path)
     return vertices, triangles
 
 
@@ -307,28 +305,24 @@ def read_mesh(path: Path, max_coordinate_m: float = MAX_COORDINATE_M) -> Triangl
     content, kind = mesh_content(path)
     vertices, triangles = load_triangles(content, kind, path)
     if triangles.ndim != 2 or len(triangles) == 0:
-        raise InputError(say("the mesh has no triangles (a point cloud cannot serve as a building)", place=path))
+        raise InputError.say("the mesh has no triangles (a point cloud cannot serve as a building)", place=path)
     if not 0 <= triangles.min() <= triangles.max() < len(vertices):
         wrong = triangles.min() if triangles.min() < 0 else triangles.max()
-        raise InputError(
-            say(
-                "a triangle names vertex {}, which is not there (vertices: 0 to {}); export the mesh again",
-                wrong,
-                len(vertices) - 1,
-                place=path,
-            )
+        raise InputError.say(
+            "a triangle names vertex {}, which is not there (vertices: 0 to {}); export the mesh again",
+            wrong,
+            len(vertices) - 1,
+            place=path,
         )
     used = vertices[triangles]
     if not np.isfinite(used).all():
-        raise InputError(say("the mesh has coordinates that are not finite numbers", place=path))
+        raise InputError.say("the mesh has coordinates that are not finite numbers", place=path)
     if np.abs(used).max() > max_coordinate_m:
-        raise InputError(
-            say(
-                "the mesh has a coordinate of {:.10g} m; local ENU metres near the site's origin are expected. "
-                "Shift it (site import does) before using it",
-                np.abs(used).max(),
-                place=path,
-            )
+        raise InputError.say(
+            "the mesh has a coordinate of {:.10g} m; local ENU metres near the site's origin are expected. "
+            "Shift it (site import does) before using it",
+            np.abs(used).max(),
+            place=path,
         )
     return TriangleMesh(np.where(np.isfinite(vertices), vertices, 0.0), triangles)
 

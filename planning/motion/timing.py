@@ -16,7 +16,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from planning.base.errors import InfeasibleError
-from planning.base.messages import say
 from planning.geo.frames import heading_difference_rad
 from planning.parameters import FlightRules
 from planning.plan import Aircraft, Plan, Sortie, Viewpoint, viewpoint_arrays
@@ -62,25 +61,20 @@ def motion_limits(aircraft: Aircraft, rules: FlightRules) -> MotionLimits:
         The wind reaches the aircraft's limit, or leaves no speed over the ground.
     """
     if rules.wind_m_s >= aircraft.max_wind_m_s:
-        raise InfeasibleError(
-            say(
-                "{} may fly in wind below {:g} m/s, but {:g} m/s are expected; wait for less wind or take "
-                "another aircraft",
-                aircraft.name,
-                aircraft.max_wind_m_s,
-                rules.wind_m_s,
-            )
+        raise InfeasibleError.say(
+            "{} may fly in wind below {:g} m/s, but {:g} m/s are expected; wait for less wind or take another aircraft",
+            aircraft.name,
+            aircraft.max_wind_m_s,
+            rules.wind_m_s,
         )
     upwind_m_s = aircraft.max_speed_m_s - rules.wind_m_s
     if upwind_m_s <= 0.0:
-        raise InfeasibleError(
-            say(
-                "{} flies {:g} m/s and makes no headway against {:g} m/s of wind; wait for less wind or take "
-                "another aircraft",
-                aircraft.name,
-                aircraft.max_speed_m_s,
-                rules.wind_m_s,
-            )
+        raise InfeasibleError.say(
+            "{} flies {:g} m/s and makes no headway against {:g} m/s of wind; wait for less wind or take "
+            "another aircraft",
+            aircraft.name,
+            aircraft.max_speed_m_s,
+            rules.wind_m_s,
         )
     return MotionLimits(
         horizontal_m_s=min(upwind_m_s, rules.max_speed_m_s or math.inf),
@@ -106,15 +100,13 @@ def usable_battery_s(aircraft: Aircraft, rules: FlightRules) -> float:
     """
     usable_s = aircraft.endurance_s * (1.0 - rules.battery_reserve) - rules.takeoff_landing_s
     if usable_s <= 0.0:
-        raise InfeasibleError(
-            say(
-                "a battery of {} lasts {:g} s; a reserve of {:.0%} and {:g} s for take-off and landing leave "
-                "nothing; lower the reserve",
-                aircraft.name,
-                aircraft.endurance_s,
-                rules.battery_reserve,
-                rules.takeoff_landing_s,
-            )
+        raise InfeasibleError.say(
+            "a battery of {} lasts {:g} s; a reserve of {:.0%} and {:g} s for take-off and landing leave "
+            "nothing; lower the reserve",
+            aircraft.name,
+            aircraft.endurance_s,
+            rules.battery_reserve,
+            rules.takeoff_landing_s,
         )
     return usable_s
 

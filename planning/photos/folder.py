@@ -53,8 +53,8 @@ def read_photos(folder: Path, monitor: Monitor = QUIET) -> PhotoFolder:
                 else:
                     photos.append(found)
     if not photos:
-        raise InputError(
-            say("none of its {} photos can be read; the first: {}", len(paths), findings[0].message, place=folder)
+        raise InputError.say(
+            "none of its {} photos can be read; the first: {}", len(paths), findings[0].message, place=folder
         )
     findings += (
         Finding(
@@ -83,10 +83,10 @@ def _paths(folder: Path) -> list[Path]:
         if name.lower().endswith(SUFFIXES) and not name.startswith(".")
     ]
     if problems:
-        raise InputError(say("cannot be read ({})", problems[0].strerror, place=problems[0].filename)) from problems[0]
+        raise InputError.say("cannot be read ({})", problems[0].strerror, place=problems[0].filename) from problems[0]
     if not paths:
-        raise InputError(
-            say("holds no .jpg photo; name the folder that was copied from the camera's card", place=folder)
+        raise InputError.say(
+            "holds no .jpg photo; name the folder that was copied from the camera's card", place=folder
         )
     return sorted(paths)
 

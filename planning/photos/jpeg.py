@@ -92,7 +92,7 @@ class _Parts:
 
 def _header(file: BinaryIO, label: str) -> JpegHeader:
     if file.read(2) != bytes((0xFF, SOI)):
-        raise InputError(say("is no JPEG file; only .jpg photos as the camera wrote them can be read", place=label))
+        raise InputError.say("is no JPEG file; only .jpg photos as the camera wrote them can be read", place=label)
     parts = _Parts()
     for marker, length in _segments(file, label):
         if marker in SIZE_MARKERS and parts.size_px is None:
@@ -103,16 +103,14 @@ def _header(file: BinaryIO, label: str) -> JpegHeader:
             _keep(parts, _read(file, length, label))
     if parts.size_px is not None and 0 in parts.size_px:
         width, height = parts.size_px
-        raise InputError(
-            say(
-                "claims to be a picture of {} x {} pixels, so there is none in it; copy it from the card again",
-                width,
-                height,
-                place=label,
-            )
+        raise InputError.say(
+            "claims to be a picture of {} x {} pixels, so there is none in it; copy it from the card again",
+            width,
+            height,
+            place=label,
         )
     if parts.size_px is None:
-        raise InputError(say("the JPEG file holds no picture; copy it from the card again", place=label))
+        raise InputError.say("the JPEG file holds no picture; copy it from the card again", place=label)
     packets = tuple(packet for packet in (parts.xmp, _extended(parts)) if packet is not None)
     return JpegHeader(*parts.size_px, parts.exif, packets, _has_end(file))
 
@@ -135,17 +133,17 @@ def _segments(file: BinaryIO, label: str) -> Iterator[tuple[int, int]]:
         after = file.tell() + length
         yield marker, length
         file.seek(after)
-    raise InputError(say("the JPEG header has more than {} parts; refused as hostile", MAX_SEGMENTS, place=label))
+    raise InputError.say("the JPEG header has more than {} parts; refused as hostile", MAX_SEGMENTS, place=label)
 
 
 def _damaged(label: str) -> InputError:
-    return InputError(say("the header of the JPEG file is damaged; copy it from the card again", place=label))
+    return InputError.say("the header of the JPEG file is damaged; copy it from the card again", place=label)
 
 
 def _read(file: BinaryIO, n: int, label: str) -> bytes:
     content = file.read(n)
     if len(content) < n:
-        raise InputError(say("the file ends in its header; copy it from the card again", place=label))
+        raise InputError.say("the file ends in its header; copy it from the card again", place=label)
     return content
 
 

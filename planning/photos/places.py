@@ -77,15 +77,13 @@ def photos_near(
     away_m = np.linalg.norm(enu_from_geodetic(site.origin, lat, lon, site.origin.ellipsoid_height_m), axis=1)
     near = [photo for photo, m in zip(photos, away_m.tolist(), strict=True) if m <= MAX_DISTANCE_M]
     if not near:
-        raise InputError(
-            say(
-                "the photos were taken {:.1f} km from the site '{}'; expected at most {:g} km; are they the "
-                "right photos, and the right site?",
-                away_m.min() / 1000.0,
-                site.name,
-                MAX_DISTANCE_M / 1000.0,
-                place=label,
-            )
+        raise InputError.say(
+            "the photos were taken {:.1f} km from the site '{}'; expected at most {:g} km; are they the "
+            "right photos, and the right site?",
+            away_m.min() / 1000.0,
+            site.name,
+            MAX_DISTANCE_M / 1000.0,
+            place=label,
         )
     if len(near) == len(photos):
         return near, ()
@@ -133,8 +131,8 @@ def photo_places(photos: Sequence[PhotoMetadata], site: Locality, heights: Photo
         n = int((~is_known).sum())
         what = say("above take-off") if chosen == "takeoff" else say("above sea level or ellipsoid")
         if not is_known.any():
-            raise InputError(
-                say("no photo says its height {}; choose the other way of counting heights", what, place=label)
+            raise InputError.say(
+                "no photo says its height {}; choose the other way of counting heights", what, place=label
             )
         text = say("{} of {} photos do not say their height {}; theirs is counted the other way", n, len(photos), what)
         findings.append(Finding(Severity.WARNING, "height-mixed", text, "", float(n), 0.0, "photos"))

@@ -587,13 +587,11 @@ class _Search:
             if _fits(part, wanted, budget_s, n_sorties):
                 return part, most
             allowed_s *= TIGHTER * budget_s / max(_longest_s(part, wanted), budget_s)
-        raise InfeasibleError(
-            say(
-                "no flight through missing sections was found that fits {}'s waypoint limit and the {:.0f} s "
-                "that the battery allows; change the battery",
-                wanted.aircraft.name,
-                budget_s,
-            )
+        raise InfeasibleError.say(
+            "no flight through missing sections was found that fits {}'s waypoint limit and the {:.0f} s "
+            "that the battery allows; change the battery",
+            wanted.aircraft.name,
+            budget_s,
         )
 
     def _result(

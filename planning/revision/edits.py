@@ -19,7 +19,6 @@ from scipy.sparse.csgraph import dijkstra
 
 from planning.base.errors import InfeasibleError, InputError
 from planning.base.findings import Finding
-from planning.base.messages import say
 from planning.checks import check_case
 from planning.checks.case import Case, TimedFlight, flight_key, legs_of, pose_of
 from planning.coverage.evaluate import coverage_of_sights
@@ -654,6 +653,6 @@ def _rounded_heading_deg(heading_deg: float) -> float:
 def _check_unlocked(viewpoints: Iterable[Viewpoint], verb: str) -> None:
     for viewpoint in viewpoints:
         if viewpoint.locked:
-            raise InputError(
-                say("viewpoint '{}' is locked and stays as it is; unlock it before it is {}", viewpoint.id, verb)
+            raise InputError.say(
+                "viewpoint '{}' is locked and stays as it is; unlock it before it is {}", viewpoint.id, verb
             )

@@ -283,14 +283,12 @@ def _batteries(plan: Plan, request: TopUpRequest, is_few: bool) -> Batteries:
     if left_s <= 0.0 and n_full == 0 and is_few:
         return Batteries(None, None, full_s)
     if left_s <= 0.0 and n_full == 0:
-        raise InfeasibleError(
-            say(
-                "the battery is at {:.0%}; a reserve of {:.0%} and {:g} s for take-off and landing leave nothing "
-                "to fly on; change the battery",
-                request.battery,
-                rules.battery_reserve,
-                rules.takeoff_landing_s,
-            )
+        raise InfeasibleError.say(
+            "the battery is at {:.0%}; a reserve of {:.0%} and {:g} s for take-off and landing leave nothing "
+            "to fly on; change the battery",
+            request.battery,
+            rules.battery_reserve,
+            rules.takeoff_landing_s,
         )
     return Batteries(left_s, n_full, full_s)
 
@@ -299,12 +297,10 @@ def _nothing_closed(
     found: ClosingFlights, n_wanted: int, request: TopUpRequest, batteries: Batteries
 ) -> InfeasibleError:
     if len(found.in_sight) == 0:
-        return InfeasibleError(
-            say(
-                "none of the {} missing sections can be seen from any allowed place that was found on the site "
-                "as it is now; check its no-fly volumes and obstacles, or lower the minimum distance",
-                n_wanted,
-            )
+        return InfeasibleError.say(
+            "none of the {} missing sections can be seen from any allowed place that was found on the site "
+            "as it is now; check its no-fly volumes and obstacles, or lower the minimum distance",
+            n_wanted,
         )
     on_board = "" if request.battery is None else say(" of a battery at {:.0%}", request.battery)
     return InfeasibleError(

@@ -134,12 +134,10 @@ def plan_flights(
             budget_s *= times.budget_s / longest_s * 0.995
         if most_points > aircraft.max_waypoints:
             max_stops = max(1, int(max_stops * aircraft.max_waypoints / most_points * 0.95))
-    raise InfeasibleError(
-        say(
-            "the views cannot be shared out so that every sortie fits {}'s battery and waypoint limit; lower "
-            "the reserve or the number of views",
-            aircraft.name,
-        )
+    raise InfeasibleError.say(
+        "the views cannot be shared out so that every sortie fits {}'s battery and waypoint limit; lower "
+        "the reserve or the number of views",
+        aircraft.name,
     )
 
 

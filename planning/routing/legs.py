@@ -79,14 +79,12 @@ class LegTable:
         _, previous = dijkstra(self._graph, directed=False, indices=[start], return_predecessors=True)
         if previous[0, end] < 0:
             a, b = (", ".join(f"{value:.1f}" for value in place) for place in ends)
-            raise InfeasibleError(
-                say(
-                    "no way from ({:m}) to ({:m}) m was found that keeps {:g} m from everything; leave the place "
-                    "out, widen the airspace or lower the minimum distance",
-                    a,
-                    b,
-                    self.roadmap.space.min_distance_m,
-                )
+            raise InfeasibleError.say(
+                "no way from ({:m}) to ({:m}) m was found that keeps {:g} m from everything; leave the place "
+                "out, widen the airspace or lower the minimum distance",
+                a,
+                b,
+                self.roadmap.space.min_distance_m,
             )
         way = [end]
         while way[-1] != start:

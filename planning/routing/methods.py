@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InfeasibleError
-from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor, Stop, TimeLimit, Trace, any_of, never
 from planning.routing.tour import improve_tour, nearest_neighbour, tour_bound, tour_length
 
@@ -82,7 +81,7 @@ def find_tour(
     if method == "nearest-neighbour":
         length = tour_length(cost, start)
         if math.isinf(length):
-            raise InfeasibleError(say("the nearest neighbour ends where there is no leg back; take another method"))
+            raise InfeasibleError.say("the nearest neighbour ends where there is no leg back; take another method")
         if trace is not None:
             trace.record(length)
         return start

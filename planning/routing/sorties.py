@@ -157,21 +157,19 @@ def check_single_sorties(problem: SortieProblem, names: Sequence[str] | None = N
         name = say("viewpoint {}", worst if names is None else names[worst])
         others = say(" ({} more are too far as well)", len(too_far) - 1) if len(too_far) > 1 else ""
         if math.isinf(alone_s[worst]):
-            raise InfeasibleError(say("{} cannot be reached from home and left again{}; leave it out", name, others))
-        raise InfeasibleError(
-            say(
-                "{} takes {:.1f} s on a sortie of its own, but a battery allows {:.1f} s{}; move home closer, "
-                "raise the speed, lower the reserve or leave it out",
-                name,
-                alone_s[worst],
-                problem.budget_s,
-                others,
-            )
+            raise InfeasibleError.say("{} cannot be reached from home and left again{}; leave it out", name, others)
+        raise InfeasibleError.say(
+            "{} takes {:.1f} s on a sortie of its own, but a battery allows {:.1f} s{}; move home closer, "
+            "raise the speed, lower the reserve or leave it out",
+            name,
+            alone_s[worst],
+            problem.budget_s,
+            others,
         )
     heavy = np.flatnonzero(problem.load > problem.capacity)
     if len(heavy):
-        raise InfeasibleError(
-            say("stop {} has a load of {}, above {}", heavy[0], problem.load[heavy[0]], problem.capacity)
+        raise InfeasibleError.say(
+            "stop {} has a load of {}, above {}", heavy[0], problem.load[heavy[0]], problem.capacity
         )
 
 

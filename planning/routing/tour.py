@@ -529,7 +529,7 @@ def improve_tour(
     length = tour_length(cost, best, closed=closed)
     if math.isinf(length):
         reason = say("every order needs a leg that does not exist") if n <= MAX_POINTS else say("none was found")
-        raise InfeasibleError(say("no tour visits all {} points by existing legs: {}", n, reason))
+        raise InfeasibleError.say("no tour visits all {} points by existing legs: {}", n, reason)
     if length >= given_length:
         return order
     trace.record(length)
@@ -661,15 +661,15 @@ def _check_connected(cost: Floats, order: Ints, closed: bool) -> None:
     n_parts, part = connected_components(has_leg, directed=False)
     if n_parts > 1:
         lost = _listed(np.flatnonzero(part != part[order[0]]))
-        raise InfeasibleError(
-            say("no tour visits all {} points: there is no way from point {} to {}", n, order[0], lost)
+        raise InfeasibleError.say(
+            "no tour visits all {} points: there is no way from point {} to {}", n, order[0], lost
         )
     needed = np.full(n, min(2, n - 1))
     if not closed:
         needed[order[[0, -1]]] = 1
     lone = np.flatnonzero(has_leg.sum(axis=1) < needed)
     if len(lone):
-        raise InfeasibleError(say("no tour visits all {} points: there is only one leg at {}", n, _listed(lone)))
+        raise InfeasibleError.say("no tour visits all {} points: there is only one leg at {}", n, _listed(lone))
 
 
 def _listed(points: Ints) -> str:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from planning.base.errors import InputError
 from planning.base.files import MIB, FileLimit, check_lines, read_given
-from planning.base.messages import about, say
+from planning.base.messages import about
 
 Array = NDArray[np.float64]
 
@@ -84,7 +84,7 @@ class _File:
 
     def field(self, name: str, expected: str) -> _Line:
         if name not in self.fields:
-            raise InputError(say("{} is missing; expected {}", name, expected, place=self.path))
+            raise InputError.say("{} is missing; expected {}", name, expected, place=self.path)
         return self.fields[name]
 
     def integer(self, name: str, low: int, high: float) -> int:
@@ -99,7 +99,7 @@ class _File:
 
     def section(self, name: str) -> tuple[int, list[_Line]]:
         if name not in self.sections:
-            raise InputError(say("{} is missing", name, place=self.path))
+            raise InputError.say("{} is missing", name, place=self.path)
         return self.sections[name]
 
     def numbers(self, name: str) -> tuple[Array, NDArray[np.int64]]:
@@ -160,7 +160,7 @@ def _read(path: Path) -> _File:
             break
         if key in SECTIONS:
             if key in sections:
-                raise InputError(say("expected once, found again", place=f"{path}, line {number}: {key}"))
+                raise InputError.say("expected once, found again", place=f"{path}, line {number}: {key}")
             body = []
             sections[key] = (number, body)
         elif raw[:1].isalpha() and (":" in raw or body is None):
@@ -334,15 +334,13 @@ def tour_order(instance: Instance, tour: tuple[int, ...]) -> NDArray[np.int64]:
     if sorted(tour) != sorted(instance.ids):
         missing = sorted(set(instance.ids) - set(tour))
         strange = sorted(set(tour) - set(instance.ids))
-        raise InputError(
-            say(
-                "the tour does not fit {}: expected each of its {} points once, found {}, missing {}, unknown {}",
-                instance.name,
-                len(instance.ids),
-                len(tour),
-                missing[:5],
-                strange[:5],
-            )
+        raise InputError.say(
+            "the tour does not fit {}: expected each of its {} points once, found {}, missing {}, unknown {}",
+            instance.name,
+            len(instance.ids),
+            len(tour),
+            missing[:5],
+            strange[:5],
         )
     index = {number: i for i, number in enumerate(instance.ids)}
     return np.array([index[number] for number in tour], np.int64)

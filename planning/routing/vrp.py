@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 from pyvrp.stop import NoImprovement
 
 from planning.base.errors import InfeasibleError
-from planning.base.messages import say
 from planning.base.progress import QUIET, SLICE_S, Monitor, Stop, Trace, never
 from planning.routing.tour import check_costs, tour_length
 
@@ -83,7 +82,7 @@ def solve_tour(
         order = np.concatenate([[start], visits, [] if closed else [end]]).astype(np.int64)
     length = tour_length(cost, order, closed=closed)
     if math.isinf(length):
-        raise InfeasibleError(say("PyVRP found no tour of all {} points by existing legs; more time may help", n))
+        raise InfeasibleError.say("PyVRP found no tour of all {} points by existing legs; more time may help", n)
     if trace is not None:
         trace.record(length)
     return order

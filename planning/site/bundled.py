@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InputError
-from planning.base.messages import say
 from planning.geo.frames import Origin, Vec3
 from planning.geo.mesh import TriangleMesh, box_mesh, empty_mesh, extrude, write_mesh
 from planning.site.file import write_site
@@ -181,7 +180,7 @@ def write_scene(name: str, folder: Path) -> Path:
         There is no such scene.
     """
     if name not in SCENES:
-        raise InputError(say("there is no bundled site '{}'; known are: {}", name, ", ".join(sorted(SCENES))))
+        raise InputError.say("there is no bundled site '{}'; known are: {}", name, ", ".join(sorted(SCENES)))
     model = SCENES[name]()
     path = folder / f"{name}.site.json"
     if model.site.building_mesh is not None:

@@ -20,7 +20,6 @@ from planning.base.json_file import (
     to_record,
     write_atomically,
 )
-from planning.base.messages import say
 from planning.geo.mesh import TriangleMesh, empty_mesh, read_mesh
 from planning.site.records import SITE_FORMAT, Obstacle, Site, SiteModel, box_geometry
 
@@ -55,7 +54,7 @@ def _read_named_mesh(folder: Path, name: str, place: str) -> TriangleMesh:
     try:
         return read_mesh(folder / name)
     except InputError as error:
-        raise InputError(say("{}; mesh paths start from the folder of the site file", error, place=place)) from error
+        raise InputError.say("{}; mesh paths start from the folder of the site file", error, place=place) from error
 
 
 def _obstacle_geometry(folder: Path, obstacle: Obstacle, place: str) -> TriangleMesh:

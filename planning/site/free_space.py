@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InfeasibleError
-from planning.base.messages import say
 from planning.geo.mesh import join
 from planning.geo.solids import Solids
 from planning.site.records import Airspace, SiteModel, panel_corners, panel_triangles
@@ -145,13 +144,11 @@ def above_lowest_height(space: FreeSpace, airspace: Airspace, min_height_m: floa
     height_m = airspace.lowest_height_m(min_height_m)
     lowest_z_m = airspace.ground_z_m + height_m
     if lowest_z_m >= space.high_enu_m[2]:
-        raise InfeasibleError(
-            say(
-                "airspace: its ceiling lies {:g} m above the ground, and flights keep {:g} m from it; raise the "
-                "ceiling, or allow lower flights",
-                space.high_enu_m[2] - airspace.ground_z_m,
-                height_m,
-            )
+        raise InfeasibleError.say(
+            "airspace: its ceiling lies {:g} m above the ground, and flights keep {:g} m from it; raise the "
+            "ceiling, or allow lower flights",
+            space.high_enu_m[2] - airspace.ground_z_m,
+            height_m,
         )
     return replace(space, low_enu_m=np.maximum(space.low_enu_m, [-np.inf, -np.inf, lowest_z_m]))
 
@@ -159,40 +156,36 @@ def above_lowest_height(space: FreeSpace, airspace: Airspace, min_height_m: floa
 def _check_home(space: FreeSpace) -> None:
     home, top = space.home_enu_m, space.column_top_enu_m
     if not space.has_airspace_above(home):
-        raise InfeasibleError(
-            say(
-                "home {:m} is not below or inside the airspace box {:m} to {:m}; move home or widen the airspace",
-                _text(home),
-                _text(space.low_enu_m),
-                _text(space.high_enu_m),
-                place="home_enu_m",
-            )
+        raise InfeasibleError.say(
+            "home {:m} is not below or inside the airspace box {:m} to {:m}; move home or widen the airspace",
+            _text(home),
+            _text(space.low_enu_m),
+            _text(space.high_enu_m),
+            place="home_enu_m",
         )
     # A home on the ground lies on the bottom face of the building it is in; a hand's breadth above it does not.
     places = home + np.array([[0.0, 0.0, 0.0], [0.0, 0.0, 0.1]])
     if (space.solids.clearance_m(places, 1.0) < 0).any():
-        raise InfeasibleError(
-            say("home {:m} lies inside a building or obstacle; move it outside", _text(home), place="home_enu_m")
+        raise InfeasibleError.say(
+            "home {:m} lies inside a building or obstacle; move it outside", _text(home), place="home_enu_m"
         )
     if (space.no_fly.clearance_m(places, 1.0) < 0).any():
-        raise InfeasibleError(
-            say("home {:m} lies inside a no-fly volume; move it outside", _text(home), place="home_enu_m")
+        raise InfeasibleError.say(
+            "home {:m} lies inside a no-fly volume; move it outside", _text(home), place="home_enu_m"
         )
     distance = space.solids.segment_distances_m(home[None], top[None], 10.0 * space.min_distance_m + 10.0)[0]
     if distance < space.min_distance_m + SAFETY_MARGIN_M:
-        raise InfeasibleError(
-            say(
-                "the take-off column above home {:m} comes within {:.2f} m of the building or an obstacle, {:g} "
-                "m are required; move home away",
-                _text(home),
-                distance,
-                space.min_distance_m,
-                place="home_enu_m",
-            )
+        raise InfeasibleError.say(
+            "the take-off column above home {:m} comes within {:.2f} m of the building or an obstacle, {:g} "
+            "m are required; move home away",
+            _text(home),
+            distance,
+            space.min_distance_m,
+            place="home_enu_m",
         )
     if space.no_fly.segment_distances_m(home[None], top[None], 1.0)[0] <= 2.0 * SAFETY_MARGIN_M:
-        raise InfeasibleError(
-            say("the take-off column above home {:m} crosses a no-fly volume", _text(home), place="home_enu_m")
+        raise InfeasibleError.say(
+            "the take-off column above home {:m} crosses a no-fly volume", _text(home), place="home_enu_m"
         )
 
 

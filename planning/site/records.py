@@ -356,12 +356,10 @@ def require_panels(site: Site) -> None:
         The site has none; the message says where they come from.
     """
     if site.n_panels == 0:
-        raise InputError(
-            say(
-                "site '{}' has no panels yet: find them in photos ('panels' or the Photos tab), or draw them on "
-                "the building (the Site tab, or 'site import' with --panel-grid)",
-                site.name,
-            )
+        raise InputError.say(
+            "site '{}' has no panels yet: find them in photos ('panels' or the Photos tab), or draw them on "
+            "the building (the Site tab, or 'site import' with --panel-grid)",
+            site.name,
         )
 
 

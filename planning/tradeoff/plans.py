@@ -71,8 +71,8 @@ class Variants:
             method_named(method)
         for precision in self.precisions:
             if precision not in get_args(Precision):
-                raise InputError(
-                    say("there is no precision '{}'; known are: {}", precision, ", ".join(get_args(Precision)))
+                raise InputError.say(
+                    "there is no precision '{}'; known are: {}", precision, ", ".join(get_args(Precision))
                 )
         for n in self.n_candidates:
             if n < 1:

@@ -94,7 +94,7 @@ def tour_methods(names: Sequence[str]) -> tuple[TourMethod, ...]:
     """
     unknown = next((name for name in names if name not in TOUR_METHODS), None)
     if unknown is not None:
-        raise InputError(say("there is no routing method '{}'; known are: {}", unknown, ", ".join(TOUR_METHODS)))
+        raise InputError.say("there is no routing method '{}'; known are: {}", unknown, ", ".join(TOUR_METHODS))
     return tuple(method for method in TOUR_METHODS if method in names)
 
 
@@ -108,7 +108,7 @@ def tsplib_case(path: Path, monitor: Monitor = QUIET) -> TourCase:
     """
     instance = read_instance(path)
     if instance.kind == "CVRP":
-        raise InputError(say("a CVRP needs several routes; expected a TSP or ATSP", place=path))
+        raise InputError.say("a CVRP needs several routes; expected a TSP or ATSP", place=path)
     tour_path = path.with_suffix(".opt.tour")
     optimum = None
     if tour_path.is_file():
@@ -127,8 +127,8 @@ def plan_case(plan: Plan, site_model: SiteModel, monitor: Monitor = QUIET) -> To
         Home cannot be used, or a viewpoint cannot be reached from it.
     """
     if len(plan.viewpoints) < 2:
-        raise InputError(
-            say("expected two viewpoints or more, got {}", len(plan.viewpoints), place=f"plan of '{plan.site}'")
+        raise InputError.say(
+            "expected two viewpoints or more, got {}", len(plan.viewpoints), place=f"plan of '{plan.site}'"
         )
     roadmap = build_roadmap(
         free_space(site_model, plan.constraints.min_distance_m, plan.constraints.min_height_above_ground_m), plan.seed
@@ -162,8 +162,8 @@ def run_tours(
         importlib.import_module("planning.routing.vrp")  # so that the first run does not pay for loading it
     possible = [method for method in methods if method != "local-search" or case.is_symmetric]
     if not possible:
-        raise InputError(
-            say("local-search needs the same cost in both directions; add the method pyvrp", place=case.name)
+        raise InputError.say(
+            "local-search needs the same cost in both directions; add the method pyvrp", place=case.name
         )
     curves = tour_curves(case.cost, seconds, methods=possible, seed=seed, monitor=monitor)
     return tuple(TourRun(case.name, method, seed, tuple(trace.points)) for method, trace in curves.items())

@@ -128,11 +128,9 @@ def views_within_budget(
     )
     chosen = np.array([stop_number for sortie in selection.sorties for stop_number in sortie], np.int64)
     if len(chosen) == 0:
-        raise InfeasibleError(
-            say(
-                "no viewpoint that sees a panel can be reached and left again within {:.0f} s of one battery",
-                times.budget_s,
-            )
+        raise InfeasibleError.say(
+            "no viewpoint that sees a panel can be reached and left again within {:.0f} s of one battery",
+            times.budget_s,
         )
     everything = float(weights[np.unique(pool.elements.items)].sum())
     chosen = np.concatenate([np.arange(n_locked), chosen[chosen >= n_locked]])
@@ -146,14 +144,12 @@ def _required(times: FlightTimes, n_locked: int, n_batteries: int, max_stops: in
     travel_s, service_s = times.travel_s[: n_locked + 1, : n_locked + 1], times.service_s[:n_locked]
     sorties = plan_sorties(travel_s, service_s, times.budget_s, max_stops, seed=seed, stop=stop)
     if len(sorties) > n_batteries:
-        raise InfeasibleError(
-            say(
-                "the {} locked viewpoints alone take {} batteries, but {} are allowed; unlock some, or allow "
-                "more batteries",
-                n_locked,
-                len(sorties),
-                n_batteries,
-            )
+        raise InfeasibleError.say(
+            "the {} locked viewpoints alone take {} batteries, but {} are allowed; unlock some, or allow "
+            "more batteries",
+            n_locked,
+            len(sorties),
+            n_batteries,
         )
     return sorties
 
@@ -187,11 +183,8 @@ def with_fewer_views(model: CoverageModel, views: ViewpointArrays, n_locked: int
     """
     n_free = len(views.heading_rad) - n_locked
     if n_free == 0:
-        raise InfeasibleError(
-            say(
-                "the {} locked viewpoints alone need more batteries than are allowed; unlock some, or allow more",
-                n_locked,
-            )
+        raise InfeasibleError.say(
+            "the {} locked viewpoints alone need more batteries than are allowed; unlock some, or allow more", n_locked
         )
     elements = model.elements(views)
     counts = np.bincount(elements.items, minlength=model.n_elements)

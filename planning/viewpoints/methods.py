@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from planning.base.errors import InputError
-from planning.base.messages import say
 from planning.viewpoints.greedy import greedy
 from planning.viewpoints.noto import noto
 from planning.viewpoints.orbit import orbit
@@ -22,5 +21,5 @@ def method_named(name: str) -> Optimiser:
         There is no such method; the message lists those there are.
     """
     if name not in METHODS:
-        raise InputError(say("there is no planning method '{}'; known are: {}", name, ", ".join(METHODS)))
+        raise InputError.say("there is no planning method '{}'; known are: {}", name, ", ".join(METHODS))
     return METHODS[name]

@@ -242,12 +242,10 @@ def prepare(
     decided = replace(constraints, occlusion="on" if decision.on else "off")
     model = coverage_model(site_model, space, camera, decided, precision)
     if len(spread_positions(space, model.frames, N_PLACES, np.random.default_rng(seed))) == 0:
-        raise InfeasibleError(
-            say(
-                "airspace: no place in it keeps {:g} m from the building and all obstacles; widen the airspace "
-                "or lower the minimum distance",
-                constraints.min_distance_m,
-            )
+        raise InfeasibleError.say(
+            "airspace: no place in it keeps {:g} m from the building and all obstacles; widen the airspace "
+            "or lower the minimum distance",
+            constraints.min_distance_m,
         )
     reachability = find_reachable(model, space, seed, max_positions, max_cells, stop, monitor)
     is_cut_short = stop()

@@ -97,11 +97,9 @@ def take(views: ViewpointArrays, index: NDArray[np.int64] | NDArray[np.bool_]) -
 
 def nothing_to_see() -> InfeasibleError:
     """The error for a site on which no allowed viewpoint sees a panel."""
-    return InfeasibleError(
-        say(
-            "no allowed viewpoint sees any panel: the airspace may be empty or too close to the building, "
-            "the panels' corners clockwise (normals pointing inwards), or the minimum distance too large"
-        )
+    return InfeasibleError.say(
+        "no allowed viewpoint sees any panel: the airspace may be empty or too close to the building, "
+        "the panels' corners clockwise (normals pointing inwards), or the minimum distance too large"
     )
 
 
@@ -131,12 +129,8 @@ def locked_views(problem: ViewProblem, locked: Sequence[Viewpoint]) -> Viewpoint
                 high,
             )
         if reason:
-            raise InputError(
-                say(
-                    "viewpoint '{}' is locked, but cannot be flown: {}; unlock it, or move it first",
-                    viewpoint.id,
-                    reason,
-                )
+            raise InputError.say(
+                "viewpoint '{}' is locked, but cannot be flown: {}; unlock it, or move it first", viewpoint.id, reason
             )
     return views
 

@@ -78,8 +78,8 @@ def flights_of(log: RawLog, site: Site, label: str, heights: HeightSource = "tak
         if record is not None:
             records.append(record)
     if not records:
-        raise InputError(
-            say("the aircraft did not fly while this log was written; take the log of the flight", place=label)
+        raise InputError.say(
+            "the aircraft did not fly while this log was written; take the log of the flight", place=label
         )
     return LogFlights(tuple(records), tuple(findings), log.autopilot)
 
@@ -111,11 +111,9 @@ class _Place:
         values = table(log.positions, 5)
         values = values[_is_on_globe(values[:, 1:4])]
         if len(values) == 0:
-            raise InputError(
-                say(
-                    "holds no position of the aircraft; a log of the whole flight with GNSS reception is needed",
-                    place=label,
-                )
+            raise InputError.say(
+                "holds no position of the aircraft; a log of the whole flight with GNSS reception is needed",
+                place=label,
             )
         if len(values) < len(rows):
             n = len(rows) - len(values)
@@ -131,15 +129,13 @@ class _Place:
         nearest_m = float(np.min(np.linalg.norm(points[is_near], axis=1), initial=np.inf))
         if nearest_m > MAX_DISTANCE_M:
             away_km = float(np.min(np.linalg.norm(np.nan_to_num(points), axis=1))) / 1000.0
-            raise InputError(
-                say(
-                    "the flight is {:.1f} km from the site '{}'; expected at most {:g} km; is it the right log, and "
-                    "the right site?",
-                    away_km,
-                    site.name,
-                    MAX_DISTANCE_M / 1000.0,
-                    place=label,
-                )
+            raise InputError.say(
+                "the flight is {:.1f} km from the site '{}'; expected at most {:g} km; is it the right log, and "
+                "the right site?",
+                away_km,
+                site.name,
+                MAX_DISTANCE_M / 1000.0,
+                place=label,
             )
         findings += _height_findings(values[is_near, 1:], site, points[is_near], heights)
         return cls(site, heights, values[is_near, 0], points[is_near], tuple(findings))

@@ -11,7 +11,6 @@ from missions.flight.logs.telemetry import looks_like_tlog, read_tlog
 from missions.flight.logs.ulog import looks_like_ulog, read_ulog
 from planning.base.errors import InputError
 from planning.base.files import MIB, FileLimit, open_given, read_given
-from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.site.records import Site
 
@@ -45,7 +44,7 @@ def is_log(path: Path) -> bool:
 def _content(path: Path) -> bytes:
     content = read_given(path, LOG_FILE)
     if not content:
-        raise InputError(say("the log is empty; copy it from the vehicle again", place=path))
+        raise InputError.say("the log is empty; copy it from the vehicle again", place=path)
     return content
 
 
@@ -57,9 +56,6 @@ def _raw_log(content: bytes, label: str, monitor: Monitor) -> RawLog:
         return read_dataflash(content, monitor)
     if looks_like_tlog(head):
         return read_tlog(content, monitor)
-    raise InputError(
-        say(
-            "its content is no flight log; expected telemetry (.tlog), ArduPilot (.BIN, .log) or PX4 (.ulg)",
-            place=label,
-        )
+    raise InputError.say(
+        "its content is no flight log; expected telemetry (.tlog), ArduPilot (.BIN, .log) or PX4 (.ulg)", place=label
     )

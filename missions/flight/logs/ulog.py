@@ -85,8 +85,8 @@ def read_ulog(content: bytes, label: str, monitor: Monitor = QUIET) -> RawLog:
             _check_formats(core.ULog(_BoundedFile(content, label), parse_header_only=True))
             source = core.ULog(_BoundedFile(content, label), list(WANTED))
     except (core.ULogException, struct.error, ValueError, KeyError, IndexError, TypeError, OverflowError) as error:
-        raise InputError(
-            say("the ULog cannot be read ({}); copy it from the vehicle again", error, place=label)
+        raise InputError.say(
+            "the ULog cannot be read ({}); copy it from the vehicle again", error, place=label
         ) from error
     topics = _topics(source)
     if source.file_corruption:
@@ -123,8 +123,8 @@ class _BoundedFile(io.BytesIO):
         """
         self._n_left -= 1
         if self._n_left < 0:
-            raise InputError(
-                say("the ULog is damaged beyond reading; copy it from the vehicle again", place=self._label)
+            raise InputError.say(
+                "the ULog is damaged beyond reading; copy it from the vehicle again", place=self._label
             )
         return super().read(size)
 

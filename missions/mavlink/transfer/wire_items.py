@@ -71,8 +71,8 @@ def _message(item: MissionItem, place: str, mission_type: MissionType) -> Missio
 def _whole(value: float, scale: float, place: str) -> int:
     if not abs(value) <= LARGEST or (scale == 1.0 and value != math.trunc(value)):
         kind = "degrees" if scale == SCALE else "a whole number"
-        raise MissionError(
-            say("{} is {:g}, which has no place in MISSION_ITEM_INT; expected {}", place, value / scale, kind)
+        raise MissionError.say(
+            "{} is {:g}, which has no place in MISSION_ITEM_INT; expected {}", place, value / scale, kind
         )
     return round(value)
 

@@ -126,14 +126,12 @@ class GustyAir:
     def __init__(self, wind_enu_m_s: Vec3, height_m: float, facts: WindFacts, rng: np.random.Generator) -> None:
         speed, most = math.hypot(*wind_enu_m_s), highest_airspeed_m_s(facts)
         if not speed < most:
-            raise InfeasibleError(
-                say(
-                    "wind of {:g} m/s carries the aircraft away, which leans {:g} deg at most and so flies {:.1f} "
-                    "m/s through the air; wait for less wind",
-                    speed,
-                    facts.tilt_deg,
-                    most,
-                )
+            raise InfeasibleError.say(
+                "wind of {:g} m/s carries the aircraft away, which leans {:g} deg at most and so flies {:.1f} "
+                "m/s through the air; wait for less wind",
+                speed,
+                facts.tilt_deg,
+                most,
             )
         self._mean, self._airspeed_m_s, self._drag_per_s = wind_enu_m_s, most, facts.drag_per_s
         self._rng = rng

@@ -138,14 +138,14 @@ def city_source(
     """
     solid = [building for building in buildings if len(building.points())]
     if not solid:
-        raise InputError(say("there is no building with surfaces in this file", place=path))
+        raise InputError.say("there is no building with surfaces in this file", place=path)
     if options.panels_required and not options.panel_grids and not any(building.windows for building in solid):
-        raise InputError(say("no building in this file has windows; {}", HOW_TO_GET_PANELS, place=path))
+        raise InputError.say("no building in this file has windows; {}", HOW_TO_GET_PANELS, place=path)
     chosen, choice = _choose(path, solid, crs, options)
     wanted = merged(chosen)
     corners = wanted.triangles()
     if not len(corners):
-        raise InputError(say("building '{}' has no surface with an area", wanted.id, place=path))
+        raise InputError.say("building '{}' has no surface with an area", wanted.id, place=path)
     stands = stand(
         corners.reshape(-1, 3),
         np.arange(3 * len(corners)).reshape(-1, 3),
@@ -247,11 +247,8 @@ def _placement(crs: str | None, points: Array, ground_z: float, options: ImportO
         try:
             found = crs_conversion(crs, points, options.axis_order, options.height_reference)
         except InputError as error:
-            raise InputError(
-                say(
-                    "{}; where the coordinates are local ones, give --origin LAT,LON,HEIGHT (of their zero point)",
-                    error,
-                )
+            raise InputError.say(
+                "{}; where the coordinates are local ones, give --origin LAT,LON,HEIGHT (of their zero point)", error
             ) from error
     return place(found, points, ground_z, options)
 
@@ -267,8 +264,8 @@ def _choose(
         for building in buildings:
             if options.building in (building.id, *building.part_ids):
                 return [building], ()
-        raise InputError(
-            say("there is no building '{}'; there are {}", options.building, _listed(buildings), place=path)
+        raise InputError.say(
+            "there is no building '{}'; there are {}", options.building, _listed(buildings), place=path
         )
     if len(buildings) == 1:
         return buildings, ()

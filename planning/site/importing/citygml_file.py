@@ -70,7 +70,7 @@ def read_citygml(path: Path, options: ImportOptions, monitor: Monitor) -> Source
     """
     root = _parse(path)
     if _local(root) != "CityModel":
-        raise InputError(say("expected a CityGML file (root element CityModel), found '{}'", _local(root), place=path))
+        raise InputError.say("expected a CityGML file (root element CityModel), found '{}'", _local(root), place=path)
     crs = next((element.attrib["srsName"] for element in root.iter() if element.get("srsName")), None)
     buildings = []
     elements = list(_buildings(root))
@@ -84,9 +84,9 @@ def _parse(path: Path) -> Any:
     try:
         return parse_xml(read_given(path, CITYGML_FILE), path, forbid_dtd=False)
     except HostileXml as error:
-        raise InputError(say("the XML {}, which a CityGML file has no need of; refused", error, place=path)) from error
+        raise InputError.say("the XML {}, which a CityGML file has no need of; refused", error, place=path) from error
     except ValueError as error:
-        raise InputError(say("not valid XML ({})", error, place=path)) from error
+        raise InputError.say("not valid XML ({})", error, place=path) from error
 
 
 def _local(element: Element) -> str:
@@ -115,7 +115,7 @@ def _building(path: Path, element: Element, number: str) -> CityBuilding:
     try:
         _walk(element, reading, _Place())
     except RecursionError as error:
-        raise InputError(say("nested too deeply for a CityGML file", place=path)) from error
+        raise InputError.say("nested too deeply for a CityGML file", place=path) from error
     building = CityBuilding(
         id=_id(element) or number,
         name=real_name(_name(element), _id(element)),

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from planning.base.errors import InputError
 from planning.base.json_file import read_json
-from planning.base.messages import say
 from planning.base.progress import Monitor
 from planning.base.step_physical_file import real_name
 from planning.site.importing.city_model import MIN_RING_POINTS, CityBuilding, Rings, city_source
@@ -48,17 +47,17 @@ def read_cityjson(path: Path, options: ImportOptions, monitor: Monitor) -> Sourc
     """
     content = read_json(path)
     if not isinstance(content, dict) or content.get("type") != "CityJSON":
-        raise InputError(say('expected a CityJSON file (with "type": "CityJSON")', place=path))
+        raise InputError.say('expected a CityJSON file (with "type": "CityJSON")', place=path)
     version = str(content.get("version", ""))
     if not version.startswith(VERSIONS):
-        raise InputError(say("expected CityJSON version {}, got '{}'", ", ".join(VERSIONS), version, place=path))
+        raise InputError.say("expected CityJSON version {}, got '{}'", ", ".join(VERSIONS), version, place=path)
     try:
         vertices = _vertices(content)
         objects = dict(content["CityObjects"].items())
         crs = (content.get("metadata") or {}).get("referenceSystem")
     except BROKEN as error:
-        raise InputError(
-            say("this CityJSON file is broken ({}: {})", type(error).__name__, error, place=path)
+        raise InputError.say(
+            "this CityJSON file is broken ({}: {})", type(error).__name__, error, place=path
         ) from error
     buildings = [_building(name, objects, vertices) for name in objects if _is_root(objects[name])]
     return city_source(path, buildings, None if crs is None else str(crs), options, monitor)

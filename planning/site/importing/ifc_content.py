@@ -134,12 +134,10 @@ def site_place(model: Any, unit_m: float) -> SitePlace | None:
         if lat_deg is None or lon_deg is None or (lat_deg == 0.0 and lon_deg == 0.0):
             continue
         if abs(lat_deg) > 90.0 or abs(lon_deg) > 180.0:
-            raise InputError(
-                say(
-                    "IfcSite lies at latitude {:g}, longitude {:g}, which is nowhere on earth; give --origin",
-                    lat_deg,
-                    lon_deg,
-                )
+            raise InputError.say(
+                "IfcSite lies at latitude {:g}, longitude {:g}, which is nowhere on earth; give --origin",
+                lat_deg,
+                lon_deg,
             )
         x, y, z = (float(v) * unit_m for v in get_local_placement(site.ObjectPlacement)[:3, 3])
         return SitePlace(lat_deg, lon_deg, float(site.RefElevation or 0.0) * unit_m, (x, y, z))
@@ -407,14 +405,14 @@ def extract(
     try:
         model = ifcopenshell.open(str(path)) if better is None else _model_of(better.content)
     except Exception as error:  # the parser raises whatever goes wrong in it
-        raise InputError(
-            say("this IFC file cannot be read ({}); IFC 2x3, IFC 4 and IFC 4.3 are read", error, place=path)
+        raise InputError.say(
+            "this IFC file cannot be read ({}); IFC 2x3, IFC 4 and IFC 4.3 are read", error, place=path
         ) from error
     try:
         shapes = _one_by_one(announce) if announce is not None else _shapes(n_threads, report)
         return _extract(model, deflection_m, shapes, fatal, () if better is None else better.broken)
     except BROKEN as error:
-        raise InputError(say("this IFC file is broken ({}: {})", type(error).__name__, error, place=path)) from error
+        raise InputError.say("this IFC file is broken ({}: {})", type(error).__name__, error, place=path) from error
 
 
 def _model_of(content: bytes) -> Any:

@@ -104,7 +104,7 @@ def _map_frame(found: MapParameters, unit_m: float, options: ImportOptions) -> M
     """Frame on the map of the file, or on the one the user names."""
     name = options.crs or found.crs
     if name is None:
-        raise InputError(say("the map conversion names no coordinate reference system; give it with --crs EPSG:CODE"))
+        raise InputError.say("the map conversion names no coordinate reference system; give it with --crs EPSG:CODE")
     vertical_code = re.search(r"(?i)epsg\D*(\d+)", found.vertical or "")
     if options.crs is None and vertical_code and not parse_crs(name).is_compound:
         name = f"{name}+{vertical_code[1]}"
@@ -141,13 +141,11 @@ def _true_scale(given: float, map_unit_per_file_unit: float) -> tuple[float, tup
         return true, ()
     if abs(given - 1.0) <= SCALE_TOLERANCE:
         return given, (say("the scale of IfcMapConversion leaves out the change of units, which is put right"),)
-    raise InputError(
-        say(
-            "IfcMapConversion has the scale {:g}, which is neither near 1 nor the change of units ({:g}); "
-            "give the place with --origin",
-            given,
-            1.0 / map_unit_per_file_unit,
-        )
+    raise InputError.say(
+        "IfcMapConversion has the scale {:g}, which is neither near 1 nor the change of units ({:g}); "
+        "give the place with --origin",
+        given,
+        1.0 / map_unit_per_file_unit,
     )
 
 
@@ -219,13 +217,11 @@ def read_in_worker(path: Path, deflection_m: float, monitor: Monitor) -> tuple[I
         if run.refusal is not None:
             raise InputError(run.refusal)
         if run.is_dead:
-            raise InputError(
-                say(
-                    "the geometry kernel crashed on this IFC file (status {}), so something in it goes in circles or "
-                    "beyond all bounds; open and export it again in a BIM program",
-                    run.status,
-                    place=path,
-                )
+            raise InputError.say(
+                "the geometry kernel crashed on this IFC file (status {}), so something in it goes in circles or "
+                "beyond all bounds; open and export it again in a BIM program",
+                run.status,
+                place=path,
             )
         content = msgspec.json.decode((Path(folder) / "content.json").read_bytes(), type=IfcContent)
         notes = tuple(unpacked(json.loads(note)) for note in content.notes)
@@ -327,7 +323,7 @@ def read_ifc(path: Path, options: ImportOptions, monitor: Monitor) -> SourceMode
     """
     check_ends(path)
     if not options.deflection_m > 0.0:
-        raise InputError(say("--deflection {:g}: expected a positive length in metres", options.deflection_m))
+        raise InputError.say("--deflection {:g}: expected a positive length in metres", options.deflection_m)
     return ifc_source(path, *read_in_worker(path, options.deflection_m, monitor), options)
 
 
@@ -340,10 +336,10 @@ def ifc_source(path: Path, content: IfcContent, triangles: Array, options: Impor
         There is no geometry or no glass, or the place is not known.
     """
     if len(triangles) == 0:
-        raise InputError(say("no building element in this file has geometry", place=path))
+        raise InputError.say("no building element in this file has geometry", place=path)
     if options.panels_required and not content.pane_ids and not options.panel_grids:
-        raise InputError(
-            say("there is neither a window nor a glazed plate with geometry; {}", HOW_TO_GET_PANELS, place=path)
+        raise InputError.say(
+            "there is neither a window nor a glazed plate with geometry; {}", HOW_TO_GET_PANELS, place=path
         )
     points = triangles.reshape(-1, 3)
     georeference = ifc_georeference(content, options)

@@ -104,7 +104,7 @@ def surroundings(
             min_height_above_ground_m=options.min_height_m,
         )
     except ValueError as error:
-        raise InputError(say("--airspace-margin, --floor and --ceiling leave no airspace: {}", error)) from error
+        raise InputError.say("--airspace-margin, --floor and --ceiling leave no airspace: {}", error) from error
     notes = [
         say(
             "airspace: {:g} m around the building, from {:g} to {:g} m (--airspace-margin, --floor, "
@@ -318,9 +318,9 @@ def read_source(path: Path, options: ImportOptions, monitor: Monitor = QUIET) ->
     """
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:
-        raise InputError(say("expected a file ending in {}, got '{}'", ", ".join(SUFFIXES), suffix, place=path))
+        raise InputError.say("expected a file ending in {}, got '{}'", ", ".join(SUFFIXES), suffix, place=path)
     if not path.exists():
-        raise InputError(say("there is no such file", place=path))
+        raise InputError.say("there is no such file", place=path)
     if suffix in IFC_SUFFIXES:
         from planning.site.importing.ifc_file import read_ifc
 
@@ -354,16 +354,14 @@ def _check_extent(path: Path, source: SourceModel, options: ImportOptions) -> No
     size_m = _size_m(source)
     if max(size_m) > MAX_BUILDING_M:
         east, north, up = _sides(size_m)
-        raise InputError(
-            say(
-                "the building would be {:m} x {:m} x {} m, at most {:g} km are expected; {}",
-                east,
-                north,
-                up,
-                MAX_BUILDING_M / 1000.0,
-                _advice_on_units(path, size_m, options),
-                place=path,
-            )
+        raise InputError.say(
+            "the building would be {:m} x {:m} x {} m, at most {:g} km are expected; {}",
+            east,
+            north,
+            up,
+            MAX_BUILDING_M / 1000.0,
+            _advice_on_units(path, size_m, options),
+            place=path,
         )
 
 
@@ -492,8 +490,8 @@ def write_imported_site(
         The folder is missing or cannot be written, or the site would replace the file it was imported from.
     """
     if path.exists() and path.samefile(source):
-        raise InputError(
-            say("the site would be written over the file it is imported from; name another file", place=path)
+        raise InputError.say(
+            "the site would be written over the file it is imported from; name another file", place=path
         )
     model = imported.model
     site = model.site

@@ -84,8 +84,8 @@ def read_mesh_parts(path: Path, max_coordinate: float) -> tuple[TriangleMesh, tu
     n_broken = len(found.triangles) - int(is_whole.sum())
     left_out = [*found.left_out, *[say("a triangle without one of its corners")] * n_broken]
     if not is_whole.any():
-        raise InputError(
-            say("the mesh has no triangles that are whole (a point cloud cannot serve as a building)", place=path)
+        raise InputError.say(
+            "the mesh has no triangles that are whole (a point cloud cannot serve as a building)", place=path
         )
     vertices = np.where(np.abs(found.vertices) <= max_coordinate, found.vertices, 0.0)
     return TriangleMesh(vertices, inside[is_whole]), tuple(left_out)
@@ -160,13 +160,11 @@ def _stl(content: bytes, kind: str, path: Path) -> _Found:
     if is_binary:
         n_wanted, n_there = STL_HEADER.unpack_from(content)[1], (len(content) - STL_HEADER.size) // STL_FACET_BYTES
         if n_there < n_wanted:
-            raise InputError(
-                say(
-                    "the file is cut off: it announces {} triangles, and {} are there; copy or export it again",
-                    n_wanted,
-                    n_there,
-                    place=path,
-                )
+            raise InputError.say(
+                "the file is cut off: it announces {} triangles, and {} are there; copy or export it again",
+                n_wanted,
+                n_there,
+                place=path,
             )
         return _Found(*load_triangles(content, kind, path), [])
     found = _as_usual(content, kind, path)
@@ -190,12 +188,10 @@ def _ply(content: bytes, kind: str, path: Path) -> _Found:
     found = _as_usual(content, kind, path)
     if head is None:
         if found is None:
-            raise InputError(
-                say(
-                    "this PLY file cannot be read: it is cut off, or its header announces something else than what "
-                    "is there; copy or export it again",
-                    place=path,
-                )
+            raise InputError.say(
+                "this PLY file cannot be read: it is cut off, or its header announces something else than what "
+                "is there; copy or export it again",
+                place=path,
             )
         return found
     elements = [
@@ -204,13 +200,11 @@ def _ply(content: bytes, kind: str, path: Path) -> _Found:
     rows = content[head.end() :].splitlines()
     n_wanted = sum(count for _, count in elements)
     if len(rows) < n_wanted:
-        raise InputError(
-            say(
-                "the file is cut off: it announces {} rows, and {} are there; copy or export it again",
-                n_wanted,
-                len(rows),
-                place=path,
-            )
+        raise InputError.say(
+            "the file is cut off: it announces {} rows, and {} are there; copy or export it again",
+            n_wanted,
+            len(rows),
+            place=path,
         )
     n_faces = sum(count for name, count in elements if name == "face")
     if found is not None and len(found.triangles) >= n_faces and np.isfinite(found.vertices).all():
@@ -369,14 +363,12 @@ def read_mesh_source(path: Path, options: ImportOptions, monitor: Monitor) -> So
         required, or the place is not known.
     """
     if options.panels_required and not options.panel_grids:
-        raise InputError(
-            say(
-                "a mesh does not tell windows from walls; state where the panels are, for example --panel-grid "
-                "'0,0,0 36,0,0 0,0,42' --rows 14 --columns 20 (lower left, lower right and upper left corner of "
-                "a facade, seen from outside), or import the building alone with --without-panels and find them "
-                "in photos with 'panels'",
-                place=path,
-            )
+        raise InputError.say(
+            "a mesh does not tell windows from walls; state where the panels are, for example --panel-grid "
+            "'0,0,0 36,0,0 0,0,42' --rows 14 --columns 20 (lower left, lower right and upper left corner of "
+            "a facade, seen from outside), or import the building alone with --without-panels and find them "
+            "in photos with 'panels'",
+            place=path,
         )
     monitor.report(say("reading the mesh"), 0, 1)
     mesh, left_out = read_mesh_parts(path, MAX_SOURCE_COORDINATE)
@@ -392,8 +384,8 @@ def read_mesh_source(path: Path, options: ImportOptions, monitor: Monitor) -> So
         vertices = vertices * unit_m
         notes.append(say("lengths are in {} (--units)", options.unit))
     elif options.unit != "m":
-        raise InputError(
-            say("--units and --crs both say what the coordinates are in; the system of --crs has its own units")
+        raise InputError.say(
+            "--units and --crs both say what the coordinates are in; the system of --crs has its own units"
         )
     used = np.unique(triangles)
     step_m = float(np.spacing(np.abs(vertices[used]).max().astype(np.float32)))

@@ -143,35 +143,31 @@ def place(
     low, high = points.min(axis=0), points.max(axis=0)
     middle = (float(low[0] + high[0]) / 2.0, float(low[1] + high[1]) / 2.0, ground_z)
     if options.origin is not None and options.crs is not None:
-        raise InputError(say("--origin and --crs both say where the file is; give one of them"))
+        raise InputError.say("--origin and --crs both say where the file is; give one of them")
     if options.origin is not None:
         origin, note = _named_origin(options.origin, options.height_reference)
         return _at_named_origin(origin, note, float(np.abs([low[:2], high[:2]]).max()), middle, north_rad)
     if options.crs is not None:
         found = crs_conversion(options.crs, points, options.axis_order, options.height_reference)
     if found is None:
-        raise InputError(
-            say(
-                "the file does not say where on earth it is; give --origin LAT,LON,HEIGHT (of its zero point) or "
-                "--crs EPSG:CODE (of its coordinates)"
-            )
+        raise InputError.say(
+            "the file does not say where on earth it is; give --origin LAT,LON,HEIGHT (of its zero point) or "
+            "--crs EPSG:CODE (of its coordinates)"
         )
     if isinstance(found, LocalFrame):
         away_m = float(np.hypot(middle[0] - found.zero[0], middle[1] - found.zero[1]))
         if away_m > FAR_FROM_ZERO_M:
-            raise InputError(
-                say(
-                    "the building lies {:.0f} km from the point whose place the file gives, so its coordinates are "
-                    "projected ones; name their system with --crs EPSG:CODE",
-                    away_m / 1000.0,
-                )
+            raise InputError.say(
+                "the building lies {:.0f} km from the point whose place the file gives, so its coordinates are "
+                "projected ones; name their system with --crs EPSG:CODE",
+                away_m / 1000.0,
             )
     lat, lon, height = (float(value[0]) for value in found.geodetic(np.array([middle])))
     try:
         origin = Origin(round(lat, 9), round(lon, 9), round(height, 4))
     except ValueError as error:
-        raise InputError(
-            say("the building would stand at an impossible place ({}); check --crs and units", error)
+        raise InputError.say(
+            "the building would stand at an impossible place ({}); check --crs and units", error
         ) from error
     return Placement(origin, found, 0.0, middle)
 
