@@ -215,7 +215,7 @@ REACH_M = 1000.0
 """From the model's middle; further splats are the sky's business, as of those that are placed."""
 
 
-def given_splats(
+def splats_of_file(
     path: Path,
     source: PhotoSet,
     photos: Sequence[PosedPhoto],
@@ -353,7 +353,7 @@ def start_model(
     if begun is not None:
         splats = splats_from_tensors(begun.splats, str(checkpoint))
     elif given is not None:
-        splats = given_splats(given, source, learned, origin, config.memory_bytes, monitor)
+        splats = splats_of_file(given, source, learned, origin, config.memory_bytes, monitor)
         splats = with_primitive(splats, config.trained_by.primitive)
     else:
         parameters = InitialParameters(n_splats=config.n_splats, seed=config.seed)

@@ -45,8 +45,8 @@ Course = dict[str, Lesson]
 
 def rendered(scene: str, folder: Path, n_views: int, width_px: int) -> Path:
     """Photos of a bundled scene."""
-    wish = SceneRequest(scene, n_views=n_views, width_px=width_px, n_points=0, settings=RenderSettings())
-    photograph_files(wish, folder, 1)
+    request = SceneRequest(scene, n_views=n_views, width_px=width_px, n_points=0, settings=RenderSettings())
+    photograph_files(request, folder, 1)
     return folder
 
 

@@ -39,8 +39,8 @@ def _really_flown(program: Path, plan: Plan, model: SiteModel) -> Flown:
         tempfile.TemporaryDirectory() as folder,
         sitl(program, home, SPEEDUP, plan.aircraft.endurance_s, None) as restart,
     ):
-        wish = FlightRequest(link=SITL_LINK, sets_parameters=True, log_folder=Path(folder))
-        return fly_plan(plan, model, wish, between=restart)
+        request = FlightRequest(link=SITL_LINK, sets_parameters=True, log_folder=Path(folder))
+        return fly_plan(plan, model, request, between=restart)
 
 
 def _rows(scene: str, flown: Flown) -> Iterator[Row]:

@@ -162,8 +162,8 @@ def measure(context: Context) -> Iterator[Row]:
     width, n_views = (WIDTH_PX // 2, N_VIEWS // 4) if context.is_quick else (WIDTH_PX, N_VIEWS)
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place) / "planar"
-        wish = SceneRequest("planar", n_views=n_views, width_px=width, n_points=0, settings=RenderSettings())
-        photograph_files(wish, folder, 1)
+        request = SceneRequest("planar", n_views=n_views, width_px=width, n_points=0, settings=RenderSettings())
+        photograph_files(request, folder, 1)
         rays = rays_of(folder)
     right: dict[str, float] = {}
     for learner in learners(context.is_quick):

@@ -62,7 +62,7 @@ def _near_field(name: str, scene: Scene, photo: PosedPhoto, truth: NDArray[np.fl
     """What is lost where one picture of the surroundings stands in for what is near."""
     decision = decide_effects(scene, [photo], RenderSettings())[NEAR_FIELD]
     with_it, without = (
-        _psnr_db(_grey(scene, photo, RenderSettings(wishes={NEAR_FIELD: wish})), truth) for wish in ("on", "off")
+        _psnr_db(_grey(scene, photo, RenderSettings(wishes={NEAR_FIELD: setting})), truth) for setting in ("on", "off")
     )
     lost = with_it - without
     target, met = (

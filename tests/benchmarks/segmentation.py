@@ -138,7 +138,9 @@ def _steps(n_seeds: int) -> Iterator[Row]:
 
 def _irregular(n_seeds: int) -> Iterator[Row]:
     """Gables, braces and diagrids, searched with inclined lines and without; seeds from 20 on are no one's tuning."""
-    methods = {f"inclined lines {wish}": own_method(SegmentationParameters(inclined=wish)) for wish in ("auto", "off")}
+    methods = {
+        f"inclined lines {setting}": own_method(SegmentationParameters(inclined=setting)) for setting in ("auto", "off")
+    }
     for what, scores in _compared(made_set("made-irregular", n_seeds), methods).items():
         yield from _scores(f"made-irregular, {what}", scores, n_seeds)
 

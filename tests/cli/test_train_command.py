@@ -22,8 +22,8 @@ def glass(tmp_path_factory):
     folder = tmp_path_factory.mktemp("train")
     write_data_set(folder / "data", n=8)
     (folder / "quick.toml").write_text(SETTINGS)
-    wish = model_training.TrainRequest("smoke", "2dgs", iterations=8, settings=folder / "quick.toml")
-    model_training.train_files(folder / "data", folder / "model", wish)
+    request = model_training.TrainRequest("smoke", "2dgs", iterations=8, settings=folder / "quick.toml")
+    model_training.train_files(folder / "data", folder / "model", request)
     return folder
 
 

@@ -50,7 +50,7 @@ def settings_files() -> Sequence[SettingsFile]:
     from planning.plan import Aircraft, Camera
     from reconstruction.panels.search.parameters import SegmentationParameters
     from reconstruction.scenes.parameters import SceneRequest
-    from reconstruction.scenes.photos.camera_model import Taking
+    from reconstruction.scenes.photos.camera_model import CameraModel
     from reconstruction.scenes.world.look import Look
     from reconstruction.training.config import TrainConfig
     from reconstruction.training.parameters import TrainRequest
@@ -65,7 +65,7 @@ def settings_files() -> Sequence[SettingsFile]:
         SettingsFile("Search for panels", "`segment --parameters FILE`.", SegmentationParameters),
         SettingsFile("Rendered photos", "Options of `scene render`.", SceneRequest),
         SettingsFile("Look of a virtual scene", "`scene render --look FILE`.", Look),
-        SettingsFile("Camera model of rendered photos", "`scene render --camera FILE`.", Taking),
+        SettingsFile("Camera model of rendered photos", "`scene render --camera FILE`.", CameraModel),
         SettingsFile("What is asked of a training", "Options of `train`, rows in the Reconstruct tab.", TrainRequest),
         SettingsFile("Training", "`train --settings FILE`.", TrainConfig),
         SettingsFile("Export of models", "Options of `export`, rows of its dialog in the Model tab.", ModelExport),

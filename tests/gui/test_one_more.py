@@ -81,13 +81,13 @@ def glow(monkeypatch):
 
 def test_a_method_is_offered_by_command_window_and_settings_and_in_messages(glow, application):
     from groundstation.gui.reconstruct.choice_side import ChoiceForm
-    from groundstation.services.reconstruct.training import config_of_wish
+    from groundstation.services.reconstruct.training import config_of_request
     from reconstruction.training.methods.shaders import Surroundings, shader_of
 
     train, parser, told = described("train", "train")
     assert " glow Glow " in told
-    asked = train.wish_of(parser.parse_args(["train", "a", "-o", "b", "--method", "glow"]))
-    config = config_of_wish(asked)
+    asked = train.request_of(parser.parse_args(["train", "a", "-o", "b", "--method", "glow"]))
+    config = config_of_request(asked)
     assert (config.method, config.iterations) == ("glow", 7)
     assert isinstance(shader_of(config, Surroundings(None)), glow)
     form = ChoiceForm()
@@ -118,10 +118,10 @@ def haze(monkeypatch):
 def test_an_effect_is_taken_by_the_command_decided_and_named_in_messages(haze):
     scene, parser, _ = described("scene", "scene", "render")
     words = ["scene", "render", "planar", "-o", "a", "--effects", "none", "--effects", "haze=on"]
-    asked = scene._wish(parser.parse_args(words))
+    asked = scene._request(parser.parse_args(words))
     assert asked.settings.is_on("haze")
     assert not asked.settings.is_on("noise")
     with pytest.raises(InputError, match=r"--effects.*haze"):
-        scene._wish(parser.parse_args([*words, "--effects", "absent=on"]))
+        scene._request(parser.parse_args([*words, "--effects", "absent=on"]))
     with pytest.raises(InputError, match=r"there is no effect 'absent'; expected one of .*, haze"):
         parameters.RenderSettings(wishes={"absent": "on"})

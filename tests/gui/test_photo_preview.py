@@ -73,7 +73,7 @@ class Hands:
         assert "could not" not in self.preview.note()
         if shown is None or not is_fine:
             return shown is not None
-        return not shown.wish.is_quick and self.controller.is_at_rest()
+        return not shown.request.is_quick and self.controller.is_at_rest()
 
     def close(self):
         self.workspace.close()
@@ -100,19 +100,19 @@ def hands(application, monkeypatch):
 
 
 def east_of(photo):
-    return photo.wish.view.position_enu_m[0]
+    return photo.request.view.position_enu_m[0]
 
 
 def test_a_coarse_picture_comes_first_then_a_fine_one_with_its_effects(hands):
     assert hands.controller.shown() is None
     hands.preview.box.photo.click()
-    assert hands.until_photo(is_fine=False).wish.is_quick
+    assert hands.until_photo(is_fine=False).request.is_quick
     fine = hands.until_photo()
-    assert fine.wish.width_px > 100
+    assert fine.request.width_px > 100
     assert hands.preview.note() == ""
     effects = hands.controller.effects_window()
     assert "near-field reflection" in effects.text()
-    assert f"{fine.wish.width_px} x" in effects._words.text()
+    assert f"{fine.request.width_px} x" in effects._words.text()
     hands.preview.box.lines.click()
     assert hands.controller.shown() is None
     assert effects.text() == ""
@@ -146,7 +146,7 @@ def test_edits_undo_and_the_light_are_followed(hands):
     assert hands.controller.shown() is before
     hands.preview.box.light._heading.setValue(100.0)
     turned = hands.until_photo()
-    assert turned.wish.look == replace(ALONE, sun_heading_deg=100.0)
+    assert turned.request.look == replace(ALONE, sun_heading_deg=100.0)
     # What changes nothing in the picture renders nothing.
     hands.until_rest()
     n_jobs = len(hands.names)
@@ -172,7 +172,7 @@ def test_nothing_is_rendered_while_nobody_looks_or_a_flight_plays(hands):
     turn_until(hands.application, lambda: hands.preview.time_s() > 1.0)
     assert len(hands.names) == n_jobs
     hands.preview.pause()
-    at = hands.until_photo(is_fine=False).wish.view.position_enu_m
+    at = hands.until_photo(is_fine=False).request.view.position_enu_m
     assert at == pytest.approx(tuple(hands.preview.pinhole().eye_enu_m))
     hands.stage.hide()
     hands.until_rest()
@@ -213,7 +213,7 @@ def test_a_photo_that_was_cancelled_stays_away_until_it_is_asked_for(hands, monk
     with monkeypatch.context() as patched:
         patched.setattr(
             "groundstation.gui.camera_preview.photo_controller.kept_photo",
-            lambda _wish, **reporting: gate(reporting["monitor"]),
+            lambda _request, **reporting: gate(reporting["monitor"]),
         )
         hands.preview.box.photo.click()
         turn_until(hands.application, gate.begun.is_set)

@@ -122,18 +122,18 @@ def _line(case: Case, scene: str, scale: Scale, results: Sequence[Result]) -> st
 
 
 def _held(table: Table, scene: str, scale: Scale, results: Sequence[Result]) -> Iterator[str]:
-    for wish in table.must_hold:
+    for request in table.must_hold:
         run = {case.title for case in table.cases if of_case(results, scene, case.made_with(scene, scale))}
-        against = tuple(other for other in wish.others if other in run)
-        compared = replace(wish, others=against)
-        left = [other for other in wish.others if other not in run]
+        against = tuple(other for other in request.others if other in run)
+        compared = replace(request, others=against)
+        left = [other for other in request.others if other not in run]
         so_far = f"; not run: {', '.join(left)}" if left else ""
         for score, of_what in OF_WHAT.items():
             gap = gap_db(table, compared, scene, scale, results, score) if against else None
             if gap is not None:
-                met = "met" if gap >= wish.least_db else "**missed**"
-                words = f"{gap:+.2f} dB (at least {wish.least_db:g}: {met}{so_far})"
-                yield f"- {wish.better} above {' / '.join(against)}{of_what}: {words}"
+                met = "met" if gap >= request.least_db else "**missed**"
+                words = f"{gap:+.2f} dB (at least {request.least_db:g}: {met}{so_far})"
+                yield f"- {request.better} above {' / '.join(against)}{of_what}: {words}"
     yield ""
 
 
@@ -145,7 +145,7 @@ def _mean(found: Sequence[Result], score: Score) -> float | None:
 
 
 def gap_db(
-    table: Table, wish: Above, scene: str, scale: Scale, results: Sequence[Result], score: Score = "psnr_db"
+    table: Table, request: Above, scene: str, scale: Scale, results: Sequence[Result], score: Score = "psnr_db"
 ) -> float | None:
     """Between a case and the best of others, means over seeds; None where one of them was not run."""
     means = {}
@@ -154,6 +154,6 @@ def gap_db(
         mean = _mean(found, score) if found else None
         if mean is not None:
             means[case.title] = mean
-    if wish.better not in means or not set(wish.others) <= means.keys():
+    if request.better not in means or not set(request.others) <= means.keys():
         return None
-    return means[wish.better] - max(means[other] for other in wish.others)
+    return means[request.better] - max(means[other] for other in request.others)

@@ -30,7 +30,7 @@ def test_all_cases_can_be_trained_and_no_two_of_a_table_alike(scale):
         made_with = [case.made_with(table.scenes[0], scale) for case in table.cases]
         assert len(set(made_with)) == len(made_with)
         titles = {case.title for case in table.cases}
-        assert all({wish.better, *wish.others} <= titles for wish in table.must_hold)
+        assert all({request.better, *request.others} <= titles for request in table.must_hold)
 
 
 def test_a_case_is_another_one_with_other_settings_or_photos_but_not_with_another_seed():
@@ -158,8 +158,8 @@ def test_pixels_of_glass_alone_have_neighbours_of_the_same_panel():
 def test_what_must_hold_is_said_to_be_met_or_missed(tmp_path, whole_db, word):
     *others, whole = TABLE_5.cases
     results = [result(whole, whole_db), *(result(case, 25.0) for case in others)]
-    wish = TABLE_5.must_hold[0]
-    assert gap_db(TABLE_5, wish, "curved", SMALL, results) == pytest.approx(whole_db - 25.0)
+    request = TABLE_5.must_hold[0]
+    assert gap_db(TABLE_5, request, "curved", SMALL, results) == pytest.approx(whole_db - 25.0)
     assert f"{whole_db - 25.0:+.2f} dB (at least 0: {word})" in page(tmp_path, results)
 
 
@@ -174,8 +174,8 @@ def test_what_is_known_so_far_is_said_with_what_was_not_run(tmp_path):
 
 
 def test_nothing_is_said_of_what_was_not_run():
-    wish = Above(TABLE_5.cases[3].title, (TABLE_5.cases[0].title,), 0.0)
-    assert gap_db(TABLE_5, wish, "curved", SMALL, [result(TABLE_5.cases[3], 30.0)]) is None
+    request = Above(TABLE_5.cases[3].title, (TABLE_5.cases[0].title,), 0.0)
+    assert gap_db(TABLE_5, request, "curved", SMALL, [result(TABLE_5.cases[3], 30.0)]) is None
 
 
 @pytest.mark.slow

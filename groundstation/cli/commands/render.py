@@ -55,8 +55,8 @@ def run(options: argparse.Namespace) -> int:
         raise InputError(say("there is no layer '{}'; known are {}", unknown, ", ".join(LAYERS), place="--layers"))
     if options.frames == 1:
         raise InputError(say("expected 2 or more, got 1", place="--frames"))
-    wish = RenderRequest(options.views, options.layers, options.width, options.frames, options.held_out)
-    pictures = run_job("render", lambda context: render_files(options.model, wish, options.out, context))
+    request = RenderRequest(options.views, options.layers, options.width, options.frames, options.held_out)
+    pictures = run_job("render", lambda context: render_files(options.model, request, options.out, context))
     if options.json:
         print_json({"folder": str(options.out), "pictures": [str(path) for path in pictures]})
     else:

@@ -101,14 +101,14 @@ def run_render(options: argparse.Namespace) -> int:
     """Render, write and print; returns the exit status."""
     from groundstation.services.scenes.photos import photograph_files, rendered_summary
 
-    wish = _wish(options)
+    request = _request(options)
     if options.jobs is not None and options.jobs < 1:
         raise InputError(say("expected 1 or more, got {}", options.jobs, place="--jobs"))
     if options.jobs is not None and options.cluster is not None:
         raise InputError(say("--jobs is for this machine; leave it out, or --cluster"))
     rendered = run_job(
         "scene",
-        lambda context: photograph_files(wish, options.out, options.jobs, context, address=options.cluster),
+        lambda context: photograph_files(request, options.out, options.jobs, context, address=options.cluster),
     )
     if options.json:
         print_json(rendered_summary(rendered))
@@ -117,7 +117,7 @@ def run_render(options: argparse.Namespace) -> int:
     return 0
 
 
-def _wish(options: argparse.Namespace) -> SceneRequest:
+def _request(options: argparse.Namespace) -> SceneRequest:
     wishes = effect_settings(options.effects, EFFECTS)
     typed = typed_values(options, SceneRequest)
     rays = ("settings", "mitsuba_rays")

@@ -84,7 +84,7 @@ def run(options: argparse.Namespace) -> int:
     begun_s = time.perf_counter()
     from groundstation.services.reconstruct.training import preview_to, train_files, train_summary
 
-    wish = wish_of(options)
+    request = request_of(options)
     typed = typed_values(options, TrainRequest)
     given = [each.parameter.option for each in declared(TrainRequest).values() if each.path in typed]
     given += [f"--{name}" for name in ("settings", "start") if getattr(options, name) is not None]
@@ -100,7 +100,7 @@ def run(options: argparse.Namespace) -> int:
             lambda context: train_files(
                 options.dataset,
                 options.out,
-                wish,
+                request,
                 resume=options.resume,
                 preview=preview,
                 stop=context.stop,
@@ -122,7 +122,7 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
-def wish_of(options: argparse.Namespace) -> TrainRequest:
+def request_of(options: argparse.Namespace) -> TrainRequest:
     """What the options ask for."""
     with in_words_of_options(TrainRequest):
         asked = TrainRequest(settings=options.settings, start=options.start)

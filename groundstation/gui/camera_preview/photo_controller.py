@@ -79,7 +79,7 @@ class EffectsWindow(QDialog):
         self.model.set_rows(() if photo is None else photo.decisions)
         if photo is None:
             self._words.setText(self.tr("No photo is shown."))
-        elif photo.wish.is_quick:
+        elif photo.request.is_quick:
             self._words.setText(
                 self.tr("The coarse picture has all effects of light; the scene is asked for the fine one.")
             )
@@ -134,12 +134,12 @@ class _Wanted:
     """A fine photo of a site."""
 
     model: SiteModel
-    wish: PhotoRequest
+    request: PhotoRequest
 
     @property
     def view(self) -> _Wanted:
         """The same for pictures that differ in nothing but their size."""
-        return replace(self, wish=replace(self.wish, width_px=1))
+        return replace(self, request=replace(self.request, width_px=1))
 
 
 class PhotoController(QObject):
@@ -194,7 +194,7 @@ class PhotoController(QObject):
 
     def look(self) -> None:
         """Find out whether another photo is wanted now."""
-        wanted, before = self._wish(), self._wanted
+        wanted, before = self._request(), self._wanted
         if wanted == before:
             return
         self._wanted = wanted
@@ -209,7 +209,7 @@ class PhotoController(QObject):
             self._preview.show_note("")
         self._timer.start(AFTER_MS)
 
-    def _wish(self) -> _Wanted | None:
+    def _request(self) -> _Wanted | None:
         shot = self._preview.shot()
         if shot is None:
             return None
@@ -242,20 +242,22 @@ class PhotoController(QObject):
     def _is_fine(self, wanted: _Wanted) -> bool:
         shown = self._shown
         return (
-            shown is not None and not shown.wish.is_quick and shown.wish.width_px >= WIDE_ENOUGH * wanted.wish.width_px
+            shown is not None
+            and not shown.request.is_quick
+            and shown.request.width_px >= WIDE_ENOUGH * wanted.request.width_px
         )
 
     # Rendering
 
     def _start(self, wanted: _Wanted) -> None:
-        wish, model = wanted.wish, wanted.model
-        quick = quick_width_px(wish.width_px, self._seconds_per_px)
-        if self._shown is None and quick < wish.width_px:
-            wish = replace(wish, width_px=quick, is_quick=True)
+        request, model = wanted.request, wanted.model
+        quick = quick_width_px(request.width_px, self._seconds_per_px)
+        if self._shown is None and quick < request.width_px:
+            request = replace(request, width_px=quick, is_quick=True)
         known = self._key[1] if self._key is not None and self._key[0] is model else None
 
         def work(context: JobContext) -> tuple[SeenPhoto, QImage]:
-            asked = replace(wish, site_key=site_key(model) if known is None else known)
+            asked = replace(request, site_key=site_key(model) if known is None else known)
             photo = context.apart(kept_photo, asked)
             if photo is None:
                 photo = context.apart(site_photo, model, asked)
@@ -267,9 +269,9 @@ class PhotoController(QObject):
         )
 
     def _done(self, wanted: _Wanted, photo: SeenPhoto, image: QImage) -> None:
-        self._key = wanted.model, photo.wish.site_key
+        self._key = wanted.model, photo.request.site_key
         self._seconds_per_px = photo.seconds / (photo.picture.shape[0] * photo.picture.shape[1])
-        if not photo.wish.is_quick:
+        if not photo.request.is_quick:
             self._kept[wanted.view] = photo, image
             self._kept.move_to_end(wanted.view)
             while len(self._kept) > MAX_KEPT:
@@ -309,7 +311,7 @@ class PhotoController(QObject):
                 "The camera stands inside something here: a building opposite, a tree or an obstacle. Take the made-up "
                 "street away, or move the viewpoint."
             )
-        return self.tr("Coarse picture; the fine one follows.") if photo.wish.is_quick else ""
+        return self.tr("Coarse picture; the fine one follows.") if photo.request.is_quick else ""
 
     def _show_progress(self, event: JobProgress) -> None:
         if self._job is None or event.job_id != self._job.id or self._job.cancel_requested:

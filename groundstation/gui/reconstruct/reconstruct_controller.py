@@ -325,12 +325,12 @@ class ReconstructController(FolderController):
         if card is None or known is None or self.phase is not Phase.IDLE:
             return
         resume = self.standing.is_interrupted
-        wish = self.choice.wish(known.limit_bytes if known.is_reduced else None)
+        request = self.choice.request(known.limit_bytes if known.is_reduced else None)
         self.training, self.is_paused = ActiveTraining(card.folder, self.out), False
         if not resume:
             self.light, self.decisions = "", ()
         self._to(Phase.PREPARING)
-        self._process.send(Train(card.folder, self.out, wish, resume))
+        self._process.send(Train(card.folder, self.out, request, resume))
         self.watch_errors(TRAINING)
         self.lightChanged.emit()
         self.errorsChanged.emit()
@@ -343,7 +343,7 @@ class ReconstructController(FolderController):
             return
         self.training.stage = None
         self._to(Phase.ASKING)
-        self._process.send(AskScene(card.folder, replace(self.choice, light="auto").wish(known.limit_bytes)))
+        self._process.send(AskScene(card.folder, replace(self.choice, light="auto").request(known.limit_bytes)))
 
     def pause(self, is_on: bool) -> None:
         """Let the training wait, or go on."""

@@ -119,7 +119,7 @@ class RenderRequest:
     held_out_only: bool = False
 
 
-def render_files(model: Path, wish: RenderRequest, out: Path, monitor: Monitor = QUIET) -> tuple[Path, ...]:
+def render_files(model: Path, request: RenderRequest, out: Path, monitor: Monitor = QUIET) -> tuple[Path, ...]:
     """Render a model's views into a folder; the pictures written.
 
     Raises
@@ -132,31 +132,33 @@ def render_files(model: Path, wish: RenderRequest, out: Path, monitor: Monitor =
     from reconstruction.training.model.saved import read_model
 
     trained = read_model(model)
-    photos = _cameras(wish, trained)
-    if wish.n_frames is not None:
-        photos = cameras_between(photos, wish.n_frames)
-    return render.render_files(trained.model, photos, out, wish.layers, trained.record.config.raster, monitor)
+    photos = _cameras(request, trained)
+    if request.n_frames is not None:
+        photos = cameras_between(photos, request.n_frames)
+    return render.render_files(trained.model, photos, out, request.layers, trained.record.config.raster, monitor)
 
 
-def _cameras(wish: RenderRequest, trained: TrainedModel) -> tuple[PosedPhoto, ...]:
+def _cameras(request: RenderRequest, trained: TrainedModel) -> tuple[PosedPhoto, ...]:
     from groundstation.services.project.input_files import read_given_plan
     from reconstruction.light.photo_set import read_photo_set
     from reconstruction.scenes.parameters import WIDTHS_PX
     from reconstruction.scenes.photos.flight_views import lens_of, planned_shots, posed_photos
 
-    if wish.width_px is not None and not WIDTHS_PX[0] <= wish.width_px <= WIDTHS_PX[1]:
-        raise InputError(say("expected {} to {}, got {}", WIDTHS_PX[0], WIDTHS_PX[1], wish.width_px, place="--width"))
-    if not wish.views.is_dir():
-        plan = read_given_plan(wish.views)
-        return posed_photos(planned_shots(plan), lens_of(plan.camera, wish.width_px), Path())
-    source = read_photo_set(wish.views)
+    if request.width_px is not None and not WIDTHS_PX[0] <= request.width_px <= WIDTHS_PX[1]:
+        raise InputError(
+            say("expected {} to {}, got {}", WIDTHS_PX[0], WIDTHS_PX[1], request.width_px, place="--width")
+        )
+    if not request.views.is_dir():
+        plan = read_given_plan(request.views)
+        return posed_photos(planned_shots(plan), lens_of(plan.camera, request.width_px), Path())
+    source = read_photo_set(request.views)
     held_out = trained.record.held_out
-    photos = source.named(held_out) if wish.held_out_only else source.photos
+    photos = source.named(held_out) if request.held_out_only else source.photos
     if not photos:
         raise InputError(
-            say("has none of the views that the model did not learn from; leave --held-out out", place=wish.views)
+            say("has none of the views that the model did not learn from; leave --held-out out", place=request.views)
         )
-    return photos if wish.width_px is None else tuple(_resized(photo, wish.width_px) for photo in photos)
+    return photos if request.width_px is None else tuple(_resized(photo, request.width_px) for photo in photos)
 
 
 def _resized(photo: PosedPhoto, width_px: int) -> PosedPhoto:

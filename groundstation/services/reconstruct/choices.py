@@ -82,7 +82,7 @@ class TrainChoice:
     light: str = "auto"
     on_cuda: bool = False
 
-    def wish(self, memory_bytes: int | None = None) -> TrainRequest:
+    def request(self, memory_bytes: int | None = None) -> TrainRequest:
         """What is asked of the training."""
         knows_panels = method_named(self.method).knows_panels
         return TrainRequest(

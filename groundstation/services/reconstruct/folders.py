@@ -104,7 +104,7 @@ class TrainingNote:
     time_limit_s: float | None = None
 
 
-def note_training(out: Path, dataset: Path, wish: TrainRequest) -> None:
+def note_training(out: Path, dataset: Path, request: TrainRequest) -> None:
     """Note what a training is begun with, for going on with it and for the next one.
 
     Raises
@@ -116,10 +116,10 @@ def note_training(out: Path, dataset: Path, wish: TrainRequest) -> None:
     note = {
         "format": NOTE_FORMAT,
         "dataset": _from(out, dataset),
-        "preset": wish.preset,
-        "method": wish.method,
-        "light": wish.light,
-        "time_limit_s": wish.time_limit_s,
+        "preset": request.preset,
+        "method": request.method,
+        "light": request.light,
+        "time_limit_s": request.time_limit_s,
     }
     write_atomically(out / NOTE, json.dumps(note, indent=1).encode())
 

@@ -140,7 +140,7 @@ class Train:
 
     dataset: Path
     out: Path
-    wish: TrainRequest
+    request: TrainRequest
     resume: bool = False
 
 
@@ -149,7 +149,7 @@ class AskScene:
     """Which model of mirrored light the photos call for."""
 
     dataset: Path
-    wish: TrainRequest
+    request: TrainRequest
 
 
 @dataclass(frozen=True, slots=True)

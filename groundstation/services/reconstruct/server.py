@@ -140,11 +140,11 @@ class _Server:
         self._darkroom.forget_training()
         try:
             if not order.resume:
-                note_training(order.out, order.dataset, order.wish)
+                note_training(order.out, order.dataset, order.request)
             made = train_files(
                 order.dataset,
                 order.out,
-                order.wish,
+                order.request,
                 resume=order.resume,
                 pause=wishes.pause.is_set,
                 stop=wishes.stop.is_set,
@@ -168,7 +168,7 @@ class _Server:
 
         self._is_joint = False
         try:
-            self._tell(Chosen(*light_of_scene(order.dataset, order.wish, self)))
+            self._tell(Chosen(*light_of_scene(order.dataset, order.request, self)))
         except OperationCancelled:
             self._tell(Ended("kept"))
         except BaseException as error:

@@ -30,7 +30,7 @@ __all__ = [
     "DEFAULT_PRESET",
     "TrainRequest",
     "TrainedFiles",
-    "config_of_wish",
+    "config_of_request",
     "light_of_scene",
     "preview_to",
     "train_files",
@@ -50,7 +50,7 @@ class TrainedFiles:
     is_written: bool = True
 
 
-def config_of_wish(wish: TrainRequest) -> TrainConfig:
+def config_of_request(request: TrainRequest) -> TrainConfig:
     """Settings of a wish: the preset's, then the method's, then the file's, then what was asked for by itself.
 
     Raises
@@ -61,18 +61,18 @@ def config_of_wish(wish: TrainRequest) -> TrainConfig:
     from reconstruction.training.config import config_of
     from reconstruction.training.presets import as_asked, preset
 
-    config = preset(wish.preset)
-    if wish.method is not None:
-        config = config_of({"method": wish.method}, config, Path("--method"))
-    if wish.settings is not None:
-        config = config_of(read_toml(wish.settings, dict[str, Any]), config, wish.settings)
-    return as_asked(config, wish)
+    config = preset(request.preset)
+    if request.method is not None:
+        config = config_of({"method": request.method}, config, Path("--method"))
+    if request.settings is not None:
+        config = config_of(read_toml(request.settings, dict[str, Any]), config, request.settings)
+    return as_asked(config, request)
 
 
 def train_files(
     dataset: Path,
     out: Path,
-    wish: TrainRequest,
+    request: TrainRequest,
     *,
     resume: bool = False,
     preview: Callable[[Preview], None] | None = None,
@@ -116,7 +116,7 @@ def train_files(
     with ranks_of_environment() as ranks:
         waiting = _Waiting(monitor, pause, watch)
         watching = Callbacks(waiting, stop, pause, trace, preview if ranks.is_first else None, visit)
-        trained = _trained(dataset, out, wish, resume, watching, ranks, watch)
+        trained = _trained(dataset, out, request, resume, watching, ranks, watch)
         if ranks.is_first:
             save_model(trained, out)
             (out / CHECKPOINT).unlink(missing_ok=True)
@@ -143,7 +143,7 @@ class _Waiting:
 JOINT_STAGES = frozenset({"training", "paused", "settling"})
 
 
-def light_of_scene(dataset: Path, wish: TrainRequest, monitor: Monitor = QUIET) -> tuple[str, tuple[Decision, ...]]:
+def light_of_scene(dataset: Path, request: TrainRequest, monitor: Monitor = QUIET) -> tuple[str, tuple[Decision, ...]]:
     """The model of mirrored light that the photos of a data set call for, and the decisions that lead to it.
 
     Raises
@@ -157,7 +157,7 @@ def light_of_scene(dataset: Path, wish: TrainRequest, monitor: Monitor = QUIET) 
     from reconstruction.light.glass_rays import glass_rays
     from reconstruction.light.photo_set import held_out_names, read_photo_set
 
-    config = config_of_wish(wish)
+    config = config_of_request(request)
     source = read_photo_set(dataset)
     held_out = held_out_names([photo.name for photo in source.photos], config.held_out, config.seed)
     learned = [photo for photo in source.photos if photo.name not in held_out]
@@ -175,7 +175,7 @@ def light_of_scene(dataset: Path, wish: TrainRequest, monitor: Monitor = QUIET) 
 
 
 def _trained(
-    dataset: Path, out: Path, wish: TrainRequest, resume: bool, watching: Callbacks, ranks: Ranks, watch: Timer
+    dataset: Path, out: Path, request: TrainRequest, resume: bool, watching: Callbacks, ranks: Ranks, watch: Timer
 ) -> TrainedModel:
     from reconstruction.training.parameters import CHECKPOINT
     from reconstruction.training.train import resume_model, train_model
@@ -184,11 +184,11 @@ def _trained(
     if resume:
         if not checkpoint.is_file():
             raise InputError(say("holds no training that was interrupted; begin the training anew", place=out))
-        return resume_model(dataset, checkpoint, watching, method=wish.method, ranks=ranks, watch=watch)
-    config = config_of_wish(wish)
+        return resume_model(dataset, checkpoint, watching, method=request.method, ranks=ranks, watch=watch)
+    config = config_of_request(request)
     if ranks.is_first:
         _check_begin(dataset, out, checkpoint)
-    return train_model(dataset, config, watching, checkpoint, given=wish.start, ranks=ranks, watch=watch)
+    return train_model(dataset, config, watching, checkpoint, given=request.start, ranks=ranks, watch=watch)
 
 
 def _check_begin(dataset: Path, out: Path, checkpoint: Path) -> None:
@@ -254,7 +254,7 @@ POINTS = 12
 
 
 def train_tradeoff(
-    dataset: Path, wish: TrainRequest, knobs: Mapping[str, Sequence[Any]], out: Path, monitor: Monitor = QUIET
+    dataset: Path, request: TrainRequest, knobs: Mapping[str, Sequence[Any]], out: Path, monitor: Monitor = QUIET
 ) -> Compared[tuple[Trial, ...]]:
     """Turn settings of a training one at a time; write `tradeoff-train.csv` and `.png` into `out`.
 
@@ -276,7 +276,7 @@ def train_tradeoff(
     from reconstruction.tradeoff.scene_tradeoff import ERROR_AXIS
     from reconstruction.tradeoff.train_tradeoff import run_settings, settings_of, trial_panels, trial_rows
 
-    base = config_of_wish(wish)
+    base = config_of_request(request)
     if base.time_limit_s is not None:
         base = replace(base, score_every_s=min(base.score_every_s, base.time_limit_s / POINTS))
     settings = settings_of(base, knobs)

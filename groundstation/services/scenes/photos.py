@@ -15,9 +15,9 @@ import numpy as np
 from groundstation.services.scenes.views import (
     SITE_FILE,
     as_written,
-    given_scene,
     plan_of_site,
     planned_photos,
+    scene_of_request,
     scene_views,
 )
 from planning.aircraft.catalogue import profile
@@ -37,7 +37,7 @@ from reconstruction.base.cameras import Intrinsics, PosedPhoto
 from reconstruction.scenes.effects.registry import decide_effects
 from reconstruction.scenes.mitsuba.plugins import mitsuba
 from reconstruction.scenes.parameters import SceneRequest
-from reconstruction.scenes.photos.camera_model import USUAL_TAKING, Taking, read_taking
+from reconstruction.scenes.photos.camera_model import USUAL_CAMERA_MODEL, CameraModel, read_camera_model
 from reconstruction.scenes.photos.flight_views import lens_of, moments, planned_shots, posed_photos, square_photos
 from reconstruction.scenes.record import Scene
 from reconstruction.scenes.runs.photo_folder import ScenePhotos, photograph
@@ -109,7 +109,7 @@ SCENES: Subject[SceneTrials] = Subject(
 
 
 def scene_tradeoff(
-    wish: SceneRequest,
+    request: SceneRequest,
     variants: SceneVariants,
     truth_rays: int | None,
     out: Path,
@@ -140,32 +140,32 @@ def scene_tradeoff(
     make = _physically_based() if truth_rays is not None or variants.rays else None
 
     def run(folder: Path) -> SceneTrials:
-        scene, _ = given_scene(wish)
-        photos = _photos(wish, scene, folder)
+        scene, _ = scene_of_request(request)
+        photos = _photos(request, scene, folder)
         lens = photos[0].intrinsics
-        decisions = tuple(decide_effects(scene, photos, wish.settings).values())
+        decisions = tuple(decide_effects(scene, photos, request.settings).values())
         judge = None if make is None or truth_rays is None else (make, truth_rays)
         truth = make_truth(scene, photos, judge, monitor)
-        settings = scene_settings(wish.settings, decisions, variants, lens.width_px)
+        settings = scene_settings(request.settings, decisions, variants, lens.width_px)
         trials = run_scene_variants(scene, photos, truth, settings, make, monitor)
         title = f"{scene.name}: {len(photos)} photos of {lens.width_px} x {lens.height_px} px\nagainst {truth.name}"
         worths: tuple[EffectWorth, ...] = ()
         if n_reflection_views:
-            worths = _worths(replace(wish, n_views=n_reflection_views), scene, variants.effects, config, monitor)
+            worths = _worths(replace(request, n_views=n_reflection_views), scene, variants.effects, config, monitor)
         return SceneTrials(title, trials, decisions, truth, worths)
 
     return compare(SCENES, out, run)
 
 
 def _worths(
-    wish: SceneRequest, scene: Scene, effects: Sequence[str], config: ReflectionConfig | None, monitor: Monitor
+    request: SceneRequest, scene: Scene, effects: Sequence[str], config: ReflectionConfig | None, monitor: Monitor
 ) -> tuple[EffectWorth, ...]:
     from reconstruction.tradeoff.scene_downstream import effects_worth
 
     with tempfile.TemporaryDirectory(prefix="reflight-") as place:
         folder = Path(place)
-        photos = planned_photos(replace(wish, width_px=REFLECTIONS_WIDTH_PX), scene, folder, monitor)
-        decisions = tuple(decide_effects(scene, photos, wish.settings).values())
+        photos = planned_photos(replace(request, width_px=REFLECTIONS_WIDTH_PX), scene, folder, monitor)
+        decisions = tuple(decide_effects(scene, photos, request.settings).values())
         return effects_worth(scene, photos, decisions, effects, folder, config=config, monitor=monitor)
 
 
@@ -182,15 +182,15 @@ def _physically_based() -> MakeRenderer:
     return MitsubaRenderer
 
 
-def _photos(wish: SceneRequest, scene: Scene, folder: Path) -> tuple[PosedPhoto, ...]:
-    if wish.plan is None:
-        lens = lens_of(profile(wish.profile_id).camera, wish.width_px)
-        return square_photos(scene, lens, wish.n_views or DEFAULT_VIEWS, folder, wish.seed)
-    plan = plan_of_site(wish.plan, scene.site)
-    photos = posed_photos(planned_shots(plan), lens_of(plan.camera, wish.width_px), folder)
+def _photos(request: SceneRequest, scene: Scene, folder: Path) -> tuple[PosedPhoto, ...]:
+    if request.plan is None:
+        lens = lens_of(profile(request.profile_id).camera, request.width_px)
+        return square_photos(scene, lens, request.n_views or DEFAULT_VIEWS, folder, request.seed)
+    plan = plan_of_site(request.plan, scene.site)
+    photos = posed_photos(planned_shots(plan), lens_of(plan.camera, request.width_px), folder)
     # Spread over the plan: all of it would take as long as rendering it a dozen times.
-    step = max(1, len(photos) // (wish.n_views or DEFAULT_VIEWS))
-    return photos[::step][: wish.n_views or DEFAULT_VIEWS]
+    step = max(1, len(photos) // (request.n_views or DEFAULT_VIEWS))
+    return photos[::step][: request.n_views or DEFAULT_VIEWS]
 
 
 @dataclass(frozen=True, slots=True)
@@ -204,7 +204,7 @@ class RenderedScene:
 
 
 def photograph_files(
-    wish: SceneRequest,
+    request: SceneRequest,
     folder: Path,
     n_processes: int | None = None,
     monitor: Monitor = QUIET,
@@ -226,49 +226,49 @@ def photograph_files(
     InfeasibleError
         Views were to be planned, and none is possible.
     """
-    n_given = sum(given is not None for given in (wish.n_views, wish.n_square))
-    if n_given and (wish.plan is not None or wish.flight is not None):
+    n_given = sum(given is not None for given in (request.n_views, request.n_square))
+    if n_given and (request.plan is not None or request.flight is not None):
         raise InputError(say("a number of views is for scenes without a plan or flight; leave it out, or them"))
     if n_given > 1:
         raise InputError(say("views are planned or square to the facades; give one number, not both"))
     check_folder(folder)
-    if wish.settings.mitsuba_rays is not None:
+    if request.settings.mitsuba_rays is not None:
         mitsuba()
     with nullcontext() if address is None else cluster_client(address) as cluster:
-        return _photographed(wish, folder, n_processes, monitor, cluster)
+        return _photographed(request, folder, n_processes, monitor, cluster)
 
 
 def _photographed(
-    wish: SceneRequest, folder: Path, n_processes: int | None, monitor: Monitor, cluster: Any
+    request: SceneRequest, folder: Path, n_processes: int | None, monitor: Monitor, cluster: Any
 ) -> RenderedScene:
     started_s = time.perf_counter()
     monitor.report(say("building the scene"), 0, 1)
-    taking = USUAL_TAKING if wish.camera is None else read_taking(wish.camera)
-    scene, made_from = given_scene(wish)
+    camera_model = USUAL_CAMERA_MODEL if request.camera is None else read_camera_model(request.camera)
+    scene, made_from = scene_of_request(request)
     written_site, companions = as_written(scene.site)
-    views = scene_views(wish, scene, written_site, folder, monitor)
-    lens = _lens(wish, views.camera, taking)
+    views = scene_views(request, scene, written_site, folder, monitor)
+    lens = _lens(request, views.camera, camera_model)
     photos = posed_photos(views.shots, lens, folder / "images")
     findings = (*views.findings, *_walled_in(photos, scene.site))
     job = PhotoJob(
         scene,
         photos,
-        wish.settings,
+        request.settings,
         {**made_from, **views.made_from},
         {**companions, **views.companions},
-        wish.n_points,
-        taking,
-        moments(views.shots, taking),
+        request.n_points,
+        camera_model,
+        moments(views.shots, camera_model),
     )
     written = photograph(job, folder, n_processes, monitor, cluster=cluster)
     return RenderedScene(scene.name, written, findings, time.perf_counter() - started_s)
 
 
-def _lens(wish: SceneRequest, camera: Camera, taking: Taking) -> Intrinsics:
+def _lens(request: SceneRequest, camera: Camera, camera_model: CameraModel) -> Intrinsics:
     try:
-        return lens_of(camera, wish.width_px, taking)
+        return lens_of(camera, request.width_px, camera_model)
     except InputError as error:
-        raise InputError(about(wish.camera, error)) from error
+        raise InputError(about(request.camera, error)) from error
 
 
 def _walled_in(photos: Sequence[PosedPhoto], model: SiteModel) -> Iterator[Finding]:

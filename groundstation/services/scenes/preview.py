@@ -109,7 +109,7 @@ class SeenPhoto:
         Of rendering, without what was prepared for it.
     """
 
-    wish: PhotoRequest
+    request: PhotoRequest
     picture: NDArray[np.uint8]
     panels: NDArray[np.int64]
     decisions: tuple[Decision, ...]
@@ -135,15 +135,15 @@ def quick_width_px(fine_width_px: int, seconds_per_px: float | None) -> int:
 
 
 def kept_photo(
-    wish: PhotoRequest, *, stop: Stop = never, trace: Trace | None = None, monitor: Monitor = QUIET
+    request: PhotoRequest, *, stop: Stop = never, trace: Trace | None = None, monitor: Monitor = QUIET
 ) -> SeenPhoto | None:
     """The photo, if this process still has its scene; None if not."""
-    studio = next((kept for kept in _KEPT if kept.key == wish.scene_key), None)
-    return None if studio is None else studio.photo(wish, monitor)
+    studio = next((kept for kept in _KEPT if kept.key == request.scene_key), None)
+    return None if studio is None else studio.photo(request, monitor)
 
 
 def site_photo(
-    model: SiteModel, wish: PhotoRequest, *, stop: Stop = never, trace: Trace | None = None, monitor: Monitor = QUIET
+    model: SiteModel, request: PhotoRequest, *, stop: Stop = never, trace: Trace | None = None, monitor: Monitor = QUIET
 ) -> SeenPhoto:
     """The photo; its scene is kept in place of the last one.
 
@@ -154,40 +154,40 @@ def site_photo(
     """
     monitor.report(say("building the scene"), 0, 1)
     _KEPT.clear()
-    _KEPT.append(_Studio(model, wish))
-    return _KEPT[0].photo(wish, monitor)
+    _KEPT.append(_Studio(model, request))
+    return _KEPT[0].photo(request, monitor)
 
 
 class _Studio:
     """A scene, with renderers for quick and for fine pictures. What renders takes a second to import."""
 
-    def __init__(self, model: SiteModel, wish: PhotoRequest) -> None:
+    def __init__(self, model: SiteModel, request: PhotoRequest) -> None:
         from reconstruction.scenes.parameters import RenderSettings
         from reconstruction.scenes.photos.renderer import Renderer
         from reconstruction.scenes.world.build import build_scene
 
-        self.key = wish.scene_key
-        self._scene = build_scene(model, wish.look, wish.seed)
+        self.key = request.scene_key
+        self._scene = build_scene(model, request.look, request.seed)
         self._solids = Solids.of(join(list(self._scene.site.obstacles)).corners_enu_m)
         self._quick = Renderer(self._scene, RenderSettings(wishes=LEFT_OUT))
         self._fine: tuple[frozenset[str], Renderer] | None = None
         """With the effects that it simulates."""
 
-    def photo(self, wish: PhotoRequest, monitor: Monitor) -> SeenPhoto:
+    def photo(self, request: PhotoRequest, monitor: Monitor) -> SeenPhoto:
         from reconstruction.base.cameras import Pose, PosedPhoto
         from reconstruction.scenes.photos.flight_views import lens_of
         from reconstruction.scenes.photos.lens_effects import developed
 
-        lens = lens_of(wish.camera, wish.width_px)
-        photo = PosedPhoto(wish.view.id, Path(wish.view.id), lens, Pose.of(wish.view), None)
-        renderer, decisions = (self._quick, ()) if wish.is_quick else self._decided(photo, monitor)
+        lens = lens_of(request.camera, request.width_px)
+        photo = PosedPhoto(request.view.id, Path(request.view.id), lens, Pose.of(request.view), None)
+        renderer, decisions = (self._quick, ()) if request.is_quick else self._decided(photo, monitor)
         started_s = time.perf_counter()
         taken = _taken(renderer, photo, monitor)
         picture = developed(taken)
         seconds = time.perf_counter() - started_s
         seen = np.unique(taken.panel).astype(np.int64)
         clearance_m = self._solids.clearance_m(np.asarray(photo.pose.position_enu_m)[None])[0]
-        return SeenPhoto(wish, picture, seen[seen > 0] - 1, decisions, bool(clearance_m < 0.0), seconds)
+        return SeenPhoto(request, picture, seen[seen > 0] - 1, decisions, bool(clearance_m < 0.0), seconds)
 
     def _decided(self, photo: PosedPhoto, monitor: Monitor) -> tuple[Renderer, tuple[Decision, ...]]:
         """A renderer of what the scene calls for in this photo, and why."""

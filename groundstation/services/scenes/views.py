@@ -136,7 +136,7 @@ class SceneViews:
     findings: tuple[Finding, ...] = ()
 
 
-def given_scene(wish: SceneRequest) -> tuple[Scene, dict[str, Any]]:
+def scene_of_request(request: SceneRequest) -> tuple[Scene, dict[str, Any]]:
     """The scene, and what it is made from.
 
     Raises
@@ -144,28 +144,28 @@ def given_scene(wish: SceneRequest) -> tuple[Scene, dict[str, Any]]:
     InputError
         A file cannot be read, or there is no such scene.
     """
-    path = Path(wish.scene)
-    if wish.scene in SCENES and not path.is_file():  # a folder of photos is easily named after its scene
-        if wish.look is not None:
+    path = Path(request.scene)
+    if request.scene in SCENES and not path.is_file():  # a folder of photos is easily named after its scene
+        if request.look is not None:
             raise InputError(
                 say(
                     "bundled scenes have a look of their own; name a site file to give one, or leave it out",
-                    place=wish.look,
+                    place=request.look,
                 )
             )
-        return bundled_scene(wish.scene, wish.seed), {"bundled": wish.scene}
+        return bundled_scene(request.scene, request.seed), {"bundled": request.scene}
     if not path.exists():
         raise InputError(
             say(
                 "there is neither a site file nor a bundled scene of that name; bundled are: {}",
                 ", ".join(SCENES),
-                place=wish.scene,
+                place=request.scene,
             )
         )
     model = read_given_site(path)
-    look = None if wish.look is None else read_look(wish.look)
+    look = None if request.look is None else read_look(request.look)
     made_from = {"site": model.site.name, "look": None if look is None else plain_values(look)}
-    return build_scene(model, look, wish.seed), made_from
+    return build_scene(model, look, request.seed), made_from
 
 
 def as_written(model: SiteModel) -> tuple[SiteModel, dict[str, bytes]]:
@@ -184,7 +184,7 @@ def as_written(model: SiteModel) -> tuple[SiteModel, dict[str, bytes]]:
     return replace(model, site=site, sha256=site_sha256(site)), {SITE_FILE: site_bytes(site), **files}
 
 
-def scene_views(wish: SceneRequest, scene: Scene, written: SiteModel, folder: Path, monitor: Monitor) -> SceneViews:
+def scene_views(request: SceneRequest, scene: Scene, written: SiteModel, folder: Path, monitor: Monitor) -> SceneViews:
     """The views that are wished for: a plan's, a flight's, square ones, or some that are planned here.
 
     Parameters
@@ -202,21 +202,21 @@ def scene_views(wish: SceneRequest, scene: Scene, written: SiteModel, folder: Pa
         Views were to be planned, and none is possible.
     """
     model = scene.site
-    plan = None if wish.plan is None else plan_of_site(wish.plan, model)
-    if wish.flight is not None:
-        return _flown(wish, wish.flight, plan, model)
-    if plan is not None and wish.plan is not None:
+    plan = None if request.plan is None else plan_of_site(request.plan, model)
+    if request.flight is not None:
+        return _flown(request, request.flight, plan, model)
+    if plan is not None and request.plan is not None:
         is_current = is_planned_on(plan.site_sha256, model) or is_planned_on(plan.site_sha256, written)
         findings = () if is_current else (SITE_CHANGED,)
-        return SceneViews(planned_shots(plan), plan.camera, {"plan": wish.plan.name}, {}, findings)
-    if wish.n_square is not None:
-        camera = profile(wish.profile_id).camera
-        shots = square_shots(scene, lens_of(camera), wish.n_square, wish.seed)
-        return SceneViews(shots, camera, {"square": {"n_views": wish.n_square, "profile": wish.profile_id}}, {})
-    made = _planned_here(wish, written, folder, monitor)
-    request = {"n_views": wish.n_views or DEFAULT_VIEWS, "profile": wish.profile_id}
+        return SceneViews(planned_shots(plan), plan.camera, {"plan": request.plan.name}, {}, findings)
+    if request.n_square is not None:
+        camera = profile(request.profile_id).camera
+        shots = square_shots(scene, lens_of(camera), request.n_square, request.seed)
+        return SceneViews(shots, camera, {"square": {"n_views": request.n_square, "profile": request.profile_id}}, {})
+    made = _planned_here(request, written, folder, monitor)
+    asked = {"n_views": request.n_views or DEFAULT_VIEWS, "profile": request.profile_id}
     content = json.dumps(plan_to_json(made), indent=1, allow_nan=False).encode()
-    return SceneViews(planned_shots(made), made.camera, {"views": request}, {PLAN_FILE: content})
+    return SceneViews(planned_shots(made), made.camera, {"views": asked}, {PLAN_FILE: content})
 
 
 SITE_CHANGED = Finding(
@@ -248,24 +248,28 @@ def plan_of_site(path: Path, model: SiteModel) -> Plan:
     return plan
 
 
-def planned_photos(wish: SceneRequest, scene: Scene, folder: Path, monitor: Monitor = QUIET) -> tuple[PosedPhoto, ...]:
+def planned_photos(
+    request: SceneRequest, scene: Scene, folder: Path, monitor: Monitor = QUIET
+) -> tuple[PosedPhoto, ...]:
     """Photos from views that are planned here, around what the scene has beside the building, to lie in `folder`."""
-    plan = _planned_here(wish, as_written(scene.site)[0], folder, monitor)
-    return posed_photos(planned_shots(plan), lens_of(plan.camera, wish.width_px), folder)
+    plan = _planned_here(request, as_written(scene.site)[0], folder, monitor)
+    return posed_photos(planned_shots(plan), lens_of(plan.camera, request.width_px), folder)
 
 
-def _planned_here(wish: SceneRequest, model: SiteModel, folder: Path, monitor: Monitor) -> Plan:
+def _planned_here(request: SceneRequest, model: SiteModel, folder: Path, monitor: Monitor) -> Plan:
     """The plan that the folder has already, or a quick new one."""
     if (folder / PLAN_FILE).is_file() and (folder / RUN_FILE).is_file():
         return read_plan(folder / PLAN_FILE)
-    n_views = wish.n_views or DEFAULT_VIEWS
+    n_views = request.n_views or DEFAULT_VIEWS
     near = Constraints(max_distance_m=FARTHEST_M)
-    request = PlanRequest(n_views=n_views, profile_id=wish.profile_id, constraints=near, greedy=QUICK, seed=wish.seed)
-    return plan_document_site(model, request, monitor=monitor).plan
+    to_plan = PlanRequest(
+        n_views=n_views, profile_id=request.profile_id, constraints=near, greedy=QUICK, seed=request.seed
+    )
+    return plan_document_site(model, to_plan, monitor=monitor).plan
 
 
-def _flown(wish: SceneRequest, flight: Path, plan: Plan | None, model: SiteModel) -> SceneViews:
+def _flown(request: SceneRequest, flight: Path, plan: Plan | None, model: SiteModel) -> SceneViews:
     shots, findings = shots_of_flight(flight, plan, model)
-    camera = profile(wish.profile_id).camera if plan is None else plan.camera
-    made_from = {"flight": flight.name, "plan": None if wish.plan is None else wish.plan.name}
+    camera = profile(request.profile_id).camera if plan is None else plan.camera
+    made_from = {"flight": flight.name, "plan": None if request.plan is None else request.plan.name}
     return SceneViews(shots, camera, made_from, {}, findings)

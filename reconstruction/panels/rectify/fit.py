@@ -339,8 +339,8 @@ class Unrolling:
 
 def decide_view(views: Sequence[SurfaceView], kind: ViewKind = "auto") -> Decision:
     """Whether photos of a facade are unrolled by arc length: the decision of the photo that it changes most."""
-    wish: EffectSetting = "auto" if kind == "auto" else "on" if kind == "exact" else "off"
-    return max((decide(Unrolling(), view, wish) for view in views), key=lambda found: found.size)
+    setting: EffectSetting = "auto" if kind == "auto" else "on" if kind == "exact" else "off"
+    return max((decide(Unrolling(), view, setting) for view in views), key=lambda found: found.size)
 
 
 def drawn_view(view: SurfaceView, kind: ViewKind, unrolling: Decision) -> Rectification:

@@ -108,14 +108,17 @@ def _lies_on(patch: FacadePatch, other: FacadePatch) -> bool:
 
 
 def _facade(
-    photos: Sequence[PosedPhoto], cluster: list[tuple[int, FacadePatch]], wish: EffectSetting, parameters: FitParameters
+    photos: Sequence[PosedPhoto],
+    cluster: list[tuple[int, FacadePatch]],
+    setting: EffectSetting,
+    parameters: FitParameters,
 ) -> Facade:
     points = np.concatenate([patch.points_enu_m for _, patch in cluster])
     camera = np.mean([photos[number].pose.position_enu_m for number, _ in cluster], axis=0)
     plane, cylinder = fit_plane(points, camera, parameters), fit_cylinder(points, camera, parameters)
     low, high = _extent(cylinder.surface, points)
     scenes = [FittedFacade(photos[number], plane, cylinder, low, high) for number, _ in cluster]
-    decision = max((decide(Curvature(), scene, wish) for scene in scenes), key=lambda found: found.size)
+    decision = max((decide(Curvature(), scene, setting) for scene in scenes), key=lambda found: found.size)
     fit = cylinder if decision.on else plane
     low, high = _extent(fit.surface, points)
     numbers = sorted(

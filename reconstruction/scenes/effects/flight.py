@@ -108,7 +108,7 @@ class ExposureChanges:
 
     def assess(self, probe: Probe) -> Assessment:
         """Metered on the rays of the probe."""
-        if probe.taking.exposure == "locked":
+        if probe.camera_model.exposure == "locked":
             return Assessment(0.0, say("one exposure is locked for all photos"), 0.0)
         means = np.array([light.mean() for light in probe.lights])
         own = in_stops(MIDDLE_GREY / np.maximum(means, DARKEST) / probe.exposure)
@@ -132,8 +132,8 @@ class PositionError:
 
     def assess(self, probe: Probe) -> Assessment:
         """With the very errors that the photos would get."""
-        horizontal_m, vertical_m = probe.taking.position.total_m
-        what = say("with RTK") if probe.taking.position.fix == "rtk" else say("without RTK")
+        horizontal_m, vertical_m = probe.camera_model.position.total_m
+        what = say("with RTK") if probe.camera_model.position.fix == "rtk" else say("without RTK")
         reason = say(
             "{}, positions are off by {} horizontally on each axis and {} vertically",
             what,
@@ -153,7 +153,7 @@ class GimbalError:
 
     def assess(self, probe: Probe) -> Assessment:
         """With the very errors that the photos would get."""
-        gimbal = probe.taking.gimbal
+        gimbal = probe.camera_model.gimbal
         heading, pitch, roll = np.hypot(gimbal.bias_deg, gimbal.deviation_deg)
         reason = say("headings are off by {:.2g} degrees, pitch by {:.2g}, roll by {:.2g}", heading, pitch, roll)
         return Assessment(_told_px(probe, positions=False), reason, 0.0)
@@ -166,7 +166,7 @@ def _length(metres: float) -> str:
 def _told_px(probe: Probe, *, positions: bool) -> float:
     """How far poses that are told wrong, in their positions or in their angles, move what photos show of buildings."""
     told = told_poses(
-        probe.photos, probe.moments, probe.taking, probe.scene.seed, positions=positions, angles=not positions
+        probe.photos, probe.moments, probe.camera_model, probe.scene.seed, positions=positions, angles=not positions
     )
     is_building = np.array([*(body.layer is Layer.BUILDING for body in probe.scene.bodies), False])
     moved = []

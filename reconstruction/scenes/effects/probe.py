@@ -15,7 +15,7 @@ from reconstruction.scenes.light.geometry import Geometry, Meeting
 from reconstruction.scenes.light.pane_surfaces import PaneSurfaces, mirrored
 from reconstruction.scenes.light.shading import SkyLight, facade_middle_enu_m
 from reconstruction.scenes.light.tracing import Switches, Tracer, layer_mask
-from reconstruction.scenes.photos.camera_model import USUAL_TAKING, Moment, Taking
+from reconstruction.scenes.photos.camera_model import USUAL_CAMERA_MODEL, CameraModel, Moment
 from reconstruction.scenes.photos.lens_effects import DARKEST, MIDDLE_GREY, grey_levels
 from reconstruction.scenes.record import Layer, Scene
 
@@ -106,11 +106,11 @@ class Probe:
         self,
         scene: Scene,
         photos: Sequence[PosedPhoto],
-        taking: Taking = USUAL_TAKING,
+        camera_model: CameraModel = USUAL_CAMERA_MODEL,
         moments: Sequence[Moment] = (),
     ) -> None:
         self.scene, self.photos = scene, tuple(photos)
-        self.taking, self.moments = taking, tuple(moments) or (Moment(),) * len(self.photos)
+        self.camera_model, self.moments = camera_model, tuple(moments) or (Moment(),) * len(self.photos)
         self.geometry = Geometry(scene)
         chosen = np.unique(np.linspace(0, len(photos) - 1, min(N_PHOTOS, len(photos))).round().astype(int))
         rays = [spread(photos[k]) for k in chosen]

@@ -18,7 +18,7 @@ from reconstruction.scenes.effects.mirror import Curvature, Doubling, Fresnel, N
 from reconstruction.scenes.effects.probe import TOLERANCE_GREY, TOLERANCE_PX, Probe
 from reconstruction.scenes.effects.sun import SunGlare
 from reconstruction.scenes.parameters import RenderSettings
-from reconstruction.scenes.photos.camera_model import USUAL_TAKING, Moment, Taking
+from reconstruction.scenes.photos.camera_model import USUAL_CAMERA_MODEL, CameraModel, Moment
 from reconstruction.scenes.photos.lens_effects import USUAL_SENSOR, Sensor
 from reconstruction.scenes.record import Scene
 
@@ -36,7 +36,7 @@ def decide_effects(
     scene: Scene,
     photos: Sequence[PosedPhoto],
     settings: RenderSettings,
-    taking: Taking = USUAL_TAKING,
+    camera_model: CameraModel = USUAL_CAMERA_MODEL,
     moments: Sequence[Moment] = (),
 ) -> dict[str, Decision]:
     """What is simulated in photographs of a scene, and why, by the effects' names.
@@ -50,6 +50,6 @@ def decide_effects(
     """
     if not photos:
         raise InputError(say("effects are decided by the photos of a flight; expected at least one, got none"))
-    probe = Probe(scene, photos, taking, moments)
-    chosen, wishes = effects(settings.tolerance, taking.sensor), settings.wishes
+    probe = Probe(scene, photos, camera_model, moments)
+    chosen, wishes = effects(settings.tolerance, camera_model.sensor), settings.wishes
     return {effect.name: decide(effect, probe, wishes.get(effect.name, "auto")) for effect in chosen}

@@ -139,7 +139,7 @@ class GimbalErrors:
 
 
 @dataclass(frozen=True, slots=True)
-class Taking:
+class CameraModel:
     """How photos are taken.
 
     Parameters
@@ -172,7 +172,7 @@ class Taking:
             _check("distortion", value, -100.0, 100.0)
 
 
-USUAL_TAKING = Taking()
+USUAL_CAMERA_MODEL = CameraModel()
 
 
 @dataclass(frozen=True, slots=True)
@@ -217,7 +217,7 @@ class Capture:
         return cls(photo.pose, 0.0, np.zeros(3), 1.0, SHUTTER_S)
 
 
-def read_taking(path: Path) -> Taking:
+def read_camera_model(path: Path) -> CameraModel:
     """From a TOML file with any of the fields as keys, those of records as tables; the others keep their defaults.
 
     Raises
@@ -226,12 +226,12 @@ def read_taking(path: Path) -> Taking:
         The file cannot be read, or a key or value is none of ours; the message names it.
     """
     content = read_toml(path, dict[str, Any])
-    check_settings(content, Taking, path)
+    check_settings(content, CameraModel, path)
     for name, record in (("sensor", Sensor), ("position", PositionErrors), ("gimbal", GimbalErrors)):
         table = content.get(name)
         if isinstance(table, dict):
             check_settings(table, record, path, f"{name}.")
-    return to_record(content, Taking, path)
+    return to_record(content, CameraModel, path)
 
 
 ALONG = np.linspace(0.0, 1.0, 33)

@@ -20,7 +20,7 @@ from planning.site.records import Facade
 from reconstruction.base.cameras import Intrinsics, Pose, PosedPhoto
 from reconstruction.photos.write import photo_name
 from reconstruction.scenes.parameters import WIDTHS_PX
-from reconstruction.scenes.photos.camera_model import SHUTTER_S, Moment, Taking, bent_lens
+from reconstruction.scenes.photos.camera_model import SHUTTER_S, CameraModel, Moment, bent_lens
 from reconstruction.scenes.record import Scene
 
 Array = NDArray[np.float64]
@@ -68,7 +68,7 @@ def planned_shots(plan: Plan) -> tuple[Shot, ...]:
     return tuple(Shot(view, n * BETWEEN, place.get(view.id, last)[1]) for n, view in enumerate(views))
 
 
-def lens_of(camera: Camera, width_px: int | None = None, taking: Taking | None = None) -> Intrinsics:
+def lens_of(camera: Camera, width_px: int | None = None, camera_model: CameraModel | None = None) -> Intrinsics:
     """Of a planned camera whose pictures are made `width_px` wide, in the same shape; None: as the camera takes them.
 
     Raises
@@ -79,8 +79,8 @@ def lens_of(camera: Camera, width_px: int | None = None, taking: Taking | None =
         The distortion folds the picture.
     """
     lens = Intrinsics.of(camera)
-    if taking is not None:
-        lens = bent_lens(lens, taking.distortion)
+    if camera_model is not None:
+        lens = bent_lens(lens, camera_model.distortion)
     if width_px is None:
         return lens
     if not WIDTHS_PX[0] <= width_px <= WIDTHS_PX[1]:
@@ -98,17 +98,17 @@ def posed_photos(shots: Iterable[Shot], lens: Intrinsics, folder: Path) -> tuple
     return tuple(photos)
 
 
-def moments(shots: Iterable[Shot], taking: Taking) -> tuple[Moment, ...]:
+def moments(shots: Iterable[Shot], camera_model: CameraModel) -> tuple[Moment, ...]:
     """How the photos of shots come about, in the order of `posed_photos`."""
     found = []
     for sortie, group in groupby(_in_order(shots), key=lambda shot: shot.sortie):
         row = list(group)
         velocities: Array = np.array([shot.velocity_enu_m_s for shot in row], np.float64)
-        if taking.speed_m_s is not None:
-            velocities = taking.speed_m_s * _courses(row)
+        if camera_model.speed_m_s is not None:
+            velocities = camera_model.speed_m_s * _courses(row)
         for shot, (east, north, up) in zip(row, velocities.tolist(), strict=True):
             known_s = SHUTTER_S if shot.exposure_s is None else shot.exposure_s
-            exposure_s = known_s if taking.shutter_s is None else taking.shutter_s
+            exposure_s = known_s if camera_model.shutter_s is None else camera_model.shutter_s
             found.append(Moment(sortie, (east, north, up), exposure_s))
     return tuple(found)
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reconstruction.base.cameras import Pose, PosedPhoto
-from reconstruction.scenes.photos.camera_model import Moment, Taking
+from reconstruction.scenes.photos.camera_model import CameraModel, Moment
 
 Array = NDArray[np.float64]
 
@@ -34,7 +34,7 @@ class Told:
 def told_poses(
     photos: Sequence[PosedPhoto],
     moments: Sequence[Moment],
-    taking: Taking,
+    camera_model: CameraModel,
     seed: int,
     *,
     positions: bool = True,
@@ -51,13 +51,16 @@ def told_poses(
         pose, higher_m = photo.pose, 0.0
         if positions:
             bias_m, deviation_m = (
-                np.array([h, h, v]) for h, v in (taking.position.bias_m, taking.position.deviation_m)
+                np.array([h, h, v]) for h, v in (camera_model.position.bias_m, camera_model.position.deviation_m)
             )
             shift = bias_m * of_sortie[:3] + deviation_m * of_photo[:3]
             pose = Pose(pose.position_enu_m + shift, pose.cam_from_enu)
             higher_m = float(bias_m[2] * of_sortie[2])
         if angles:
-            bias_deg, deviation_deg = np.array(taking.gimbal.bias_deg), np.array(taking.gimbal.deviation_deg)
+            bias_deg, deviation_deg = (
+                np.array(camera_model.gimbal.bias_deg),
+                np.array(camera_model.gimbal.deviation_deg),
+            )
             turn = bias_deg * of_sortie[3:] + deviation_deg * of_photo[3:]
             heading, pitch, roll = (np.array(pose.angles_deg) + turn).tolist()
             pose = Pose.looking(pose.position_enu_m, heading, pitch, roll)

@@ -68,7 +68,7 @@ def captures_of(job: PhotoJob, common: float, monitor: Monitor = QUIET) -> tuple
     """
     is_on, seed = job.settings.is_on, job.scene.seed
     told = told_poses(
-        job.photos, job.moments, job.taking, seed, positions=is_on(POSITION_ERROR), angles=is_on(GIMBAL_ERROR)
+        job.photos, job.moments, job.camera_model, seed, positions=is_on(POSITION_ERROR), angles=is_on(GIMBAL_ERROR)
     )
     factors = _own_exposures(job, common, monitor)
     captures = []
@@ -82,7 +82,7 @@ def captures_of(job: PhotoJob, common: float, monitor: Monitor = QUIET) -> tuple
 def _own_exposures(job: PhotoJob, common: float, monitor: Monitor) -> Array:
     """Each photo's exposure against the common one, shape (n,): what the camera's shutters can do of it."""
     n = len(job.photos)
-    if job.taking.exposure == "locked" or not job.settings.is_on(EXPOSURE):
+    if job.camera_model.exposure == "locked" or not job.settings.is_on(EXPOSURE):
         return np.ones(n)
     renderer, factors = Renderer(job.scene, job.settings), np.ones(n)
     for number, photo in enumerate(job.photos):
@@ -139,7 +139,7 @@ def photograph(
         raise InputError(say("there are no views to photograph; name a plan or flight that has some"))
     monitor.report("deciding on effects", 0, 1)
     job = replace(job, moments=job.moments or (Moment(),) * len(job.photos))
-    found = decide_effects(job.scene, job.photos, job.settings, job.taking, job.moments)
+    found = decide_effects(job.scene, job.photos, job.settings, job.camera_model, job.moments)
     decisions = tuple(found.values())
     if not found[DISTORTION].on:
         straight = tuple(replace(photo, intrinsics=photo.intrinsics.straight()) for photo in job.photos)

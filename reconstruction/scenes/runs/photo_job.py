@@ -16,7 +16,7 @@ from reconstruction.dataset.refined_mesh import grown_corners
 from reconstruction.photos.write import Circumstances, photo_jpeg
 from reconstruction.scenes.mitsuba.renderer import renderer_of
 from reconstruction.scenes.parameters import DEFAULT_POINTS, RenderSettings
-from reconstruction.scenes.photos.camera_model import USUAL_TAKING, Capture, Moment, Taking
+from reconstruction.scenes.photos.camera_model import USUAL_CAMERA_MODEL, CameraModel, Capture, Moment
 from reconstruction.scenes.photos.lens_effects import developed
 from reconstruction.scenes.photos.photo_layers import facade_mask, layer_contents, layer_file
 from reconstruction.scenes.record import Scene
@@ -52,7 +52,7 @@ class PhotoJob:
     made_from: Mapping[str, Any]
     companions: Mapping[str, bytes] = field(default_factory=dict)
     n_points: int = DEFAULT_POINTS
-    taking: Taking = USUAL_TAKING
+    camera_model: CameraModel = USUAL_CAMERA_MODEL
     moments: tuple[Moment, ...] = ()
     captures: tuple[Capture, ...] = ()
 
@@ -80,8 +80,8 @@ class RenderWorker:
         taken = self._renderer.render(photo, seed, capture.moved_enu_m)
         site = job.scene.site.site
         assert photo.taken_at is not None
-        picture = developed(taken, self._exposure * capture.exposure, job.taking.sensor)
-        told, position = replace(photo, pose=capture.told), job.taking.position
+        picture = developed(taken, self._exposure * capture.exposure, job.camera_model.sensor)
+        told, position = replace(photo, pose=capture.told), job.camera_model.position
         how = Circumstances(
             position.fix == "rtk", position.total_m, capture.exposure_s, self._moments[number].velocity_enu_m_s
         )

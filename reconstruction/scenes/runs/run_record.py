@@ -45,7 +45,7 @@ def run_record(job: PhotoJob, decisions: Sequence[Decision]) -> RunRecord:
         "made_from": dict(job.made_from),
         "scene_sha256": checksum(scene),
         "settings": asdict(job.settings),
-        "taking": asdict(job.taking),
+        "taking": asdict(job.camera_model),
         "effects": [asdict(decision) for decision in decisions],
         "camera": asdict(lens),
         "photos": [

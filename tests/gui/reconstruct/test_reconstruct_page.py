@@ -178,13 +178,13 @@ def test_the_scene_is_asked_and_its_decisions_are_shown_and_overruled(chosen):
     assert "near-field light" in chosen.light.effects.card("near-field light").text()
     assert chosen.side.train.isEnabled()
     chosen.light.light.setCurrentIndex(chosen.light.light.findData("mlp"))
-    assert begin(chosen).wish.light == "mlp"
+    assert begin(chosen).request.light == "mlp"
 
 
 def test_a_method_that_has_its_own_light_says_so(chosen):
     chosen.side.form.method.setCurrentIndex(chosen.side.form.method.findData("refglass-gs"))
     assert chosen.light.light.itemText(0) == "as the method has it: network by place and direction (paper)"
-    assert begin(chosen).wish.light is None
+    assert begin(chosen).request.light is None
     take(chosen, Chosen("mlp", ()))
     assert chosen.light.text() == "It is learned as: network by place and direction (paper)."
 
@@ -193,8 +193,8 @@ def test_a_method_without_panels_has_no_light_to_choose(chosen):
     chosen.side.form.method.setCurrentIndex(chosen.side.form.method.findData("2dgs"))
     assert not chosen.light.light.isEnabled()
     assert not chosen.light.ask.isEnabled()
-    wish = begin(chosen).wish
-    assert (wish.method, wish.light) == ("2dgs", None)
+    request = begin(chosen).request
+    assert (request.method, request.light) == ("2dgs", None)
 
 
 def test_the_computer_page_says_what_is_there_and_what_follows(chosen):
@@ -207,7 +207,7 @@ def test_the_computer_page_says_what_is_there_and_what_follows(chosen):
     take(chosen, Devices(("H200, 141 GiB",)))
     assert chosen.side.form._form.isRowVisible(chosen.side.form.device)
     chosen.side.form.device.setCurrentIndex(1)
-    assert begin(chosen).wish.device == "cuda"
+    assert begin(chosen).request.device == "cuda"
 
 
 def test_short_memory_and_a_full_disk_are_told_before_it_starts(chosen):
@@ -218,7 +218,7 @@ def test_short_memory_and_a_full_disk_are_told_before_it_starts(chosen):
     assert "Memory is short" in words
     assert "5 MiB are free on the disk" in words
     assert not chosen.side.wrong.isHidden()
-    assert begin(chosen).wish.memory_bytes < 1 << 30
+    assert begin(chosen).request.memory_bytes < 1 << 30
 
 
 def test_a_data_set_of_another_site_is_told(application, page, data, controller):

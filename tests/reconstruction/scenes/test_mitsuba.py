@@ -258,10 +258,14 @@ def test_settings_choose_the_renderer() -> None:
 def test_rooms_that_mitsuba_lacks_are_added_and_light_adds_up() -> None:
     made = build_scene(single_panel(), Look(near=False), 2)
     (taken,) = square_photos(made, Intrinsics(16, 12, 14.0, 14.0, 8.0, 6.0), 1, Path())
-    with_it, without = (judge(made, {INTERIOR: wish, SUN_GLARE: "off"}, 2).render(taken, 3) for wish in ("on", "off"))
+    with_it, without = (
+        judge(made, {INTERIOR: setting, SUN_GLARE: "off"}, 2).render(taken, 3) for setting in ("on", "off")
+    )
     wanted, plain = (
-        Renderer(made, RenderSettings(samples=SAMPLES, wishes={INTERIOR: wish, SUN_GLARE: "off"})).render(taken).linear
-        for wish in ("on", "off")
+        Renderer(made, RenderSettings(samples=SAMPLES, wishes={INTERIOR: setting, SUN_GLARE: "off"}))
+        .render(taken)
+        .linear
+        for setting in ("on", "off")
     )
     assert np.abs(wanted - plain).max() > 0.01
     np.testing.assert_allclose(with_it.linear, np.maximum(without.linear + (wanted - plain), 0.0), atol=1e-6)

@@ -21,7 +21,7 @@ from reconstruction.colmap.georeference import posed_photos as of_colmap
 from reconstruction.photos.lens import LensSource
 from reconstruction.photos.poses import pose_photos
 from reconstruction.scenes.parameters import DISTORTION, EXPOSURE, GIMBAL_ERROR, MOTION_BLUR, RenderSettings
-from reconstruction.scenes.photos.camera_model import GimbalErrors, Moment, PositionErrors, Taking, bent_lens
+from reconstruction.scenes.photos.camera_model import CameraModel, GimbalErrors, Moment, PositionErrors, bent_lens
 from reconstruction.scenes.record import Scene
 from reconstruction.scenes.runs.photo_folder import ScenePhotos, photograph
 from reconstruction.scenes.runs.photo_job import PhotoJob
@@ -31,7 +31,7 @@ from tests.reconstruction.scenes.runs.test_photo_folder import job_for
 
 BEND = (-0.35, 0.05, 0.002, -0.001, -0.02)
 LENS = bent_lens(Intrinsics(64, 48, 60.0, 60.0, 32.0, 24.0), BEND)
-TAKING = Taking(
+CAMERA_MODEL = CameraModel(
     exposure="metered",
     distortion=BEND,
     position=PositionErrors("rtk", 0.05, 0.08, 0.2, 0.3),
@@ -47,7 +47,9 @@ def scene() -> Scene:
 
 def taken_job(scene: Scene, folder: Path, lens: Intrinsics = LENS, **changes: Any) -> PhotoJob:
     """Three photos of a bent camera in motion; the second looks up to the sky."""
-    job = job_for(scene, folder, taking=TAKING, moments=MOMENTS, settings=RenderSettings(wishes={GIMBAL_ERROR: "on"}))
+    job = job_for(
+        scene, folder, camera_model=CAMERA_MODEL, moments=MOMENTS, settings=RenderSettings(wishes={GIMBAL_ERROR: "on"})
+    )
     photos = [replace(photo, intrinsics=lens) for photo in job.photos]
     middle = photos[1].pose
     photos[1] = replace(photos[1], pose=Pose.looking(middle.position_enu_m, middle.heading_deg, 17.0))
@@ -145,9 +147,9 @@ def test_what_is_off_leaves_no_trace(scene: Scene, tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_another_way_of_taking_is_another_run(scene: Scene, written: ScenePhotos) -> None:
-    other = replace(TAKING, sensor=replace(TAKING.sensor, gain=2.0))
+    other = replace(CAMERA_MODEL, sensor=replace(CAMERA_MODEL.sensor, gain=2.0))
     with pytest.raises(InputError, match=r"taking\.sensor\.gain is 1\.0 there, and 2\.0 was asked for"):
-        photograph(taken_job(scene, written.folder, taking=other), written.folder, 1)
+        photograph(taken_job(scene, written.folder, camera_model=other), written.folder, 1)
     again = photograph(taken_job(scene, written.folder), written.folder, 1)
     assert again.n_kept == len(again.photos)
 

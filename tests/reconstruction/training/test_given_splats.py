@@ -14,7 +14,7 @@ from reconstruction.splats.ply import write_splats
 from reconstruction.splats.splats import NO_PANEL
 from reconstruction.splats.surfels import known_scene, model_origin
 from reconstruction.training.config import TrainConfig
-from reconstruction.training.start import given_splats
+from reconstruction.training.start import splats_of_file
 from reconstruction.training.train import train_model
 
 OTHER = np.array([30.0, -20.0, 4.0])
@@ -34,7 +34,7 @@ def test_splats_of_another_frame_are_where_they_were(known, tmp_path):
     with torch.no_grad():
         splats.means -= torch.from_numpy(OTHER).float()
     write_splats(tmp_path / "a.ply", splats, "2dgs", origin + OTHER)
-    found = given_splats(tmp_path / "a.ply", source, source.photos, origin, MEMORY)
+    found = splats_of_file(tmp_path / "a.ply", source, source.photos, origin, MEMORY)
     there = splats.means.detach() + torch.from_numpy(OTHER).float()
     assert torch.allclose(found.means, there, atol=1e-5)
     assert torch.equal(found.sh, splats.sh)
@@ -46,7 +46,7 @@ def test_photos_tell_the_panels_of_splats_that_do_not_say_them(known, tmp_path):
     truth = splats.panels.clone()
     splats.panels.fill_(NO_PANEL)
     write_splats(tmp_path / "a.ply", splats, "2dgs", origin)
-    found = given_splats(tmp_path / "a.ply", source, source.photos, origin, MEMORY).panels
+    found = splats_of_file(tmp_path / "a.ply", source, source.photos, origin, MEMORY).panels
     assert len(torch.unique(truth)) > 5
     # What lies on the edge of a pane may show more beside it.
     assert (found == truth).double().mean() > 0.9
@@ -58,11 +58,11 @@ def test_what_is_of_another_site_is_refused(known, tmp_path):
     source, origin, splats = known
     write_splats(tmp_path / "far.ply", splats, "2dgs", origin + 5000.0)
     with pytest.raises(InputError, match=r"far.ply: has no splat within 1000 m .* in one frame"):
-        given_splats(tmp_path / "far.ply", source, source.photos, origin, MEMORY)
+        splats_of_file(tmp_path / "far.ply", source, source.photos, origin, MEMORY)
     splats.panels[3] = 9
     write_splats(tmp_path / "more.ply", splats, "2dgs", origin)
     with pytest.raises(InputError, match=r"more.ply: has splats on panel 10, and .* has 6 panels"):
-        given_splats(tmp_path / "more.ply", source, source.photos, origin, MEMORY)
+        splats_of_file(tmp_path / "more.ply", source, source.photos, origin, MEMORY)
 
 
 def test_a_training_goes_on_from_the_splats_of_another(data_set, tmp_path):

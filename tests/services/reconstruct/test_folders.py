@@ -169,14 +169,14 @@ def test_methods_and_presets_have_rows(card):
 )
 def test_an_own_time_has_the_settings_of_the_preset_that_is_nearest(minutes, name):
     assert preset_for(minutes) == name
-    wish = TrainChoice(minutes=float(minutes)).wish()
-    assert (wish.preset, wish.time_limit_s) == (name, 60.0 * minutes)
+    request = TrainChoice(minutes=float(minutes)).request()
+    assert (request.preset, request.time_limit_s) == (name, 60.0 * minutes)
 
 
 def test_light_is_wished_only_of_methods_that_know_panels():
-    assert TrainChoice(light="mlp").wish().light == "mlp"
-    assert TrainChoice(method="2dgs", light="mlp").wish().light is None
-    assert TrainChoice(light="auto").wish().light is None
+    assert TrainChoice(light="mlp").request().light == "mlp"
+    assert TrainChoice(method="2dgs", light="mlp").request().light is None
+    assert TrainChoice(light="auto").request().light is None
 
 
 def test_memory_is_told_and_taken_from_what_is_free(card):

@@ -3,7 +3,7 @@
 import pytest
 
 from groundstation.services.reconstruct import training as model_training
-from groundstation.services.reconstruct.training import config_of_wish, light_of_scene
+from groundstation.services.reconstruct.training import config_of_request, light_of_scene
 from planning.base.errors import InputError, OperationCancelled
 from reconstruction.training.parameters import TrainRequest
 from reconstruction.training.timer import Timer
@@ -18,11 +18,11 @@ def data(tmp_path_factory):
 
 
 def test_device_and_memory_are_those_of_the_wish():
-    config = config_of_wish(TrainRequest("smoke", memory_bytes=1 << 28, device="cuda"))
+    config = config_of_request(TrainRequest("smoke", memory_bytes=1 << 28, device="cuda"))
     assert (config.memory_bytes, config.device) == (1 << 28, "cuda")
-    assert config_of_wish(TrainRequest("smoke")).device == "cpu"
+    assert config_of_request(TrainRequest("smoke")).device == "cpu"
     with pytest.raises(ValueError, match="memory_bytes: expected 1 or more"):
-        config_of_wish(TrainRequest("smoke", memory_bytes=0))
+        config_of_request(TrainRequest("smoke", memory_bytes=0))
 
 
 class Heard:

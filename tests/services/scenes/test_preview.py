@@ -36,7 +36,7 @@ ALONE = Look(near=False)
 VIEW = Viewpoint("photo", (0.0, -20.0, 20.0), 0.0, 0.0)
 
 
-def wish_for(model, **changes):
+def request_for(model, **changes):
     return replace(PhotoRequest(site_key(model), ALONE, 0, VIEW, CAMERA, 96), **changes)
 
 
@@ -64,7 +64,7 @@ def _nothing_kept():
 def test_the_fine_picture_is_the_photo_that_would_be_rendered_whole(monkeypatch, tmp_path):
     model = office()
     monkeypatch.setattr(photo_preview, "STRIP_PX", 96 * 20)
-    seen = site_photo(model, wish_for(model))
+    seen = site_photo(model, request_for(model))
     scene = build_scene(model, ALONE)
     photo = PosedPhoto("a", tmp_path / "a", lens_of(CAMERA, 96), Pose.of(VIEW))
     settings = RenderSettings(wishes=LEFT_OUT)
@@ -81,22 +81,22 @@ def test_a_scene_is_built_once_and_only_the_last_one_is_kept(monkeypatch):
 
     monkeypatch.setattr(build, "build_scene", lambda *given: built.append(given[1:]) or build_scene(*given))
     model = office()
-    wish = wish_for(model, is_quick=True, width_px=32)
-    assert kept_photo(wish) is None
-    first = site_photo(model, wish)
-    again = kept_photo(replace(wish, view=replace(VIEW, heading_deg=5.0)))
+    request = request_for(model, is_quick=True, width_px=32)
+    assert kept_photo(request) is None
+    first = site_photo(model, request)
+    again = kept_photo(replace(request, view=replace(VIEW, heading_deg=5.0)))
     assert len(built) == 1
     assert (first.picture != again.picture).any()
-    for other in (replace(wish, look=replace(ALONE, sun_heading_deg=90.0)), replace(wish, seed=1)):
+    for other in (replace(request, look=replace(ALONE, sun_heading_deg=90.0)), replace(request, seed=1)):
         assert kept_photo(other) is None
-    site_photo(model, replace(wish, seed=1))
+    site_photo(model, replace(request, seed=1))
     assert built == [(ALONE, 0), (ALONE, 1)]
-    assert kept_photo(wish) is None
+    assert kept_photo(request) is None
 
 
 def test_a_quick_picture_has_all_effects_and_decides_nothing():
     model = office()
-    seen = site_photo(model, wish_for(model, is_quick=True, width_px=32))
+    seen = site_photo(model, request_for(model, is_quick=True, width_px=32))
     assert seen.decisions == ()
     assert seen.picture.shape == (24, 32, 3)
     assert seen.picture.std() > 10.0
@@ -106,8 +106,8 @@ def test_rendering_ends_soon_after_a_cancel_and_keeps_the_scene(monkeypatch):
     monkeypatch.setattr(photo_preview, "STRIP_PX", 96 * 10)
     model = office()
     with pytest.raises(OperationCancelled, match="choosing what to simulate"):
-        site_photo(model, wish_for(model), monitor=_Cancelling(4))
-    quick = wish_for(model, is_quick=True)
+        site_photo(model, request_for(model), monitor=_Cancelling(4))
+    quick = request_for(model, is_quick=True)
     for n in (1, 2, 5):
         cancelling = _Cancelling(n)
         with pytest.raises(OperationCancelled):
@@ -120,9 +120,9 @@ def test_a_camera_inside_a_building_opposite_is_told():
     model = office()
     opposite = next(o for o in build_scene(model, Look()).site.site.obstacles if o.id.startswith("scene-opposite"))
     middle = tuple(map(float, np.mean(opposite.box_enu_m, axis=0)))
-    wish = wish_for(model, look=Look(), view=replace(VIEW, position_enu_m=middle), is_quick=True, width_px=32)
-    assert site_photo(model, wish).is_walled_in
-    assert not kept_photo(replace(wish, view=VIEW)).is_walled_in
+    request = request_for(model, look=Look(), view=replace(VIEW, position_enu_m=middle), is_quick=True, width_px=32)
+    assert site_photo(model, request).is_walled_in
+    assert not kept_photo(replace(request, view=VIEW)).is_walled_in
 
 
 def test_a_site_without_a_mesh_and_one_of_a_single_panel_are_photographed():
@@ -135,7 +135,7 @@ def test_a_site_without_a_mesh_and_one_of_a_single_panel_are_photographed():
     heading = float(np.degrees(np.arctan2(-normal[0], -normal[1])))
     view = Viewpoint("photo", tuple(map(float, eye)), heading, 0.0)
     for found in (model, alone):
-        seen = site_photo(found, wish_for(found, view=view, width_px=48, is_quick=True))
+        seen = site_photo(found, request_for(found, view=view, width_px=48, is_quick=True))
         assert seen.panels.tolist() == [0]
 
 
@@ -143,7 +143,7 @@ def test_a_site_without_panels_is_refused_in_words():
     model = office()
     bare = SiteModel(replace(model.site, facades=()), model.building, model.obstacles)
     with pytest.raises(InputError, match="has no panels yet"):
-        site_photo(bare, wish_for(bare))
+        site_photo(bare, request_for(bare))
 
 
 def test_the_key_of_a_site_changes_with_panels_and_with_meshes_of_the_same_file():
@@ -170,5 +170,5 @@ def test_quick_pictures_are_as_large_as_the_machine_allows_and_never_larger_than
 def test_a_tower_of_thousands_of_panels_is_photographed():
     model = tower()
     assert model.site.n_panels > 3000
-    seen = site_photo(model, wish_for(model, view=replace(VIEW, position_enu_m=(0.0, -110.0, 65.0)), is_quick=True))
+    seen = site_photo(model, request_for(model, view=replace(VIEW, position_enu_m=(0.0, -110.0, 65.0)), is_quick=True))
     assert 600 < len(seen.panels) <= 910

@@ -112,8 +112,8 @@ def test_mirrored_roofs_and_shadows_cut_nothing(tilt_deg: float) -> None:
 def test_without_inclined_lines_nothing_changes_and_the_reason_is_told() -> None:
     photo = scored(make_facade(random_case("planar", 1, CAMERA)))
     with_search, without = (
-        segment_image(photo.image, photo.views, SegmentationParameters(inclined=wish)).facades[0]
-        for wish in ("auto", "off")
+        segment_image(photo.image, photo.views, SegmentationParameters(inclined=setting)).facades[0]
+        for setting in ("auto", "off")
     )
     assert with_search.inclined == ()
     assert (with_search.rows, with_search.columns) == (without.rows, without.columns)

@@ -33,8 +33,8 @@ BEHIND = Sky(sun_heading_deg=185.0, sun_elevation_deg=10.0)
 def both(made: Scene, camera: PosedPhoto, effect: str, samples: int = 1) -> tuple[Photograph, Photograph]:
     """Photos with all effects of light, and without one."""
     photos = []
-    for wish in ("on", "off"):
-        settings = RenderSettings(samples=samples, wishes={effect: wish, VIGNETTING: "off", NOISE: "off"})
+    for setting in ("on", "off"):
+        settings = RenderSettings(samples=samples, wishes={effect: setting, VIGNETTING: "off", NOISE: "off"})
         photos.append(Renderer(made, settings).render(camera))
     return photos[0], photos[1]
 

@@ -30,7 +30,7 @@ from reconstruction.scenes.parameters import (
     VIGNETTING,
     RenderSettings,
 )
-from reconstruction.scenes.photos.camera_model import Taking
+from reconstruction.scenes.photos.camera_model import CameraModel
 from reconstruction.scenes.photos.lens_effects import Sensor, developed, grey_levels, metered_exposure, vignette
 from reconstruction.scenes.photos.renderer import Photograph, Renderer
 from reconstruction.scenes.record import Body, Glass, Layer, Scene, Sky, Texture
@@ -178,7 +178,7 @@ def test_lenses_bend_pictures_where_it_shows(k1: float, used: bool) -> None:
 @pytest.mark.parametrize(("loss", "used"), [(0.25, True), (0.005, False)])
 def test_dark_corners_are_simulated_where_they_show(loss: float, used: bool) -> None:
     made, camera, sensor = scene(corners=np.zeros((0, 4, 3))), photo(), Sensor(corner_loss=loss)
-    decided = decide_effects(made, [camera], RenderSettings(), Taking(sensor=sensor))[VIGNETTING]
+    decided = decide_effects(made, [camera], RenderSettings(), CameraModel(sensor=sensor))[VIGNETTING]
     light = 0.18 * vignette(192, 256, loss)
     change = float(grey_levels(np.array(0.18)) - grey_levels(light[0, 0]))
     assert decided.on == used == (change > decided.tolerance)
@@ -190,7 +190,7 @@ def test_dark_corners_are_simulated_where_they_show(loss: float, used: bool) -> 
 @pytest.mark.parametrize(("full_well_e", "used"), [(20_000.0, True), (1e6, False)])
 def test_noise_is_simulated_where_it_is_more_than_rounding(full_well_e: float, used: bool) -> None:
     made, camera, sensor = scene(corners=np.zeros((0, 4, 3))), photo(), Sensor(full_well_e=full_well_e)
-    decided = decide_effects(made, [camera], RenderSettings(), Taking(sensor=sensor))[NOISE]
+    decided = decide_effects(made, [camera], RenderSettings(), CameraModel(sensor=sensor))[NOISE]
     settings = RenderSettings(wishes={VIGNETTING: "off"})
     taken = Renderer(made, settings).render(camera, seed=3)
     noise = developed(taken, sensor=sensor).astype(float) - grey_levels(np.array(0.18))

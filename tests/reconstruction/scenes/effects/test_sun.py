@@ -126,7 +126,7 @@ def test_no_sun_is_mirrored_where_there_is_none(sky: Sky, position: tuple[float,
 def test_a_sun_in_the_picture_makes_it_neither_black_nor_grey() -> None:
     made = scene(ground(), corners=facing_south(), sky=replace(Sky(), sun_heading_deg=10.0, sun_elevation_deg=30.0))
     camera = photo((0.0, -20.0, 10.0), 0.0, 15.0, width_px=64, height_px=48, focal_px=60.0)
-    settings = [RenderSettings(samples=1, wishes={SUN_GLARE: wish}) for wish in ("on", "off")]
+    settings = [RenderSettings(samples=1, wishes={SUN_GLARE: setting}) for setting in ("on", "off")]
     with_sun, without = (Renderer(made, one).render(camera) for one in settings)
     assert with_sun.linear.max() > 1000.0 > without.linear.max()
     assert metered_exposure(with_sun) == pytest.approx(metered_exposure(without), rel=0.1)

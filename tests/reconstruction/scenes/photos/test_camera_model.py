@@ -15,12 +15,12 @@ from planning.plan import Viewpoint
 from reconstruction.base.cameras import Intrinsics
 from reconstruction.scenes.photos.camera_model import (
     SHUTTER_S,
+    CameraModel,
     GimbalErrors,
     PositionErrors,
-    Taking,
     bent_lens,
     in_stops,
-    read_taking,
+    read_camera_model,
 )
 from reconstruction.scenes.photos.flight_views import Shot, flown_shots, moments
 from reconstruction.scenes.photos.lens_effects import Sensor
@@ -43,8 +43,8 @@ def test_a_file_says_how_photos_are_taken(tmp_path: Path) -> None:
         'shutter_s = 0.001\nspeed_m_s = 5\nexposure = "metered"\ndistortion = [-0.1, 0.02, 0, 0, 0]\n'
         '[sensor]\ngain = 4.0\n[position]\nfix = "single"\nvertical_m = 0.2\n[gimbal]\nheading_bias_deg = 2.0\n',
     )
-    taking = read_taking(path)
-    assert taking == Taking(
+    camera_model = read_camera_model(path)
+    assert camera_model == CameraModel(
         0.001,
         5.0,
         "metered",
@@ -53,9 +53,9 @@ def test_a_file_says_how_photos_are_taken(tmp_path: Path) -> None:
         PositionErrors("single", vertical_m=0.2),
         GimbalErrors(heading_bias_deg=2.0),
     )
-    assert taking.position.deviation_m == (0.14, 0.2)
-    assert taking.position.bias_m == (1.06, 3.0)
-    assert read_taking(written(tmp_path, "")) == Taking()
+    assert camera_model.position.deviation_m == (0.14, 0.2)
+    assert camera_model.position.bias_m == (1.06, 3.0)
+    assert read_camera_model(written(tmp_path, "")) == CameraModel()
 
 
 @pytest.mark.parametrize(
@@ -81,7 +81,7 @@ def test_a_file_says_how_photos_are_taken(tmp_path: Path) -> None:
 )
 def test_what_makes_no_sense_is_named(tmp_path: Path, text: str, message: str) -> None:
     with pytest.raises(InputError, match=message) as raised:
-        read_taking(written(tmp_path, text))
+        read_camera_model(written(tmp_path, text))
     assert "camera.toml" in str(raised.value)
 
 
@@ -120,26 +120,26 @@ def row(n: int = 4, step_m: float = 3.0) -> list[Shot]:
 
 
 def test_planned_aircraft_stop_unless_a_speed_is_given() -> None:
-    for moment, sortie in zip(moments(row(), Taking()), (0, 0, 1, 1), strict=True):
+    for moment, sortie in zip(moments(row(), CameraModel()), (0, 0, 1, 1), strict=True):
         assert (moment.sortie, moment.velocity_enu_m_s, moment.exposure_s) == (sortie, (0.0, 0.0, 0.0), SHUTTER_S)
         assert moment.moved_m == 0.0
-    for moment in moments(row(), Taking(speed_m_s=5.0, shutter_s=0.01)):
+    for moment in moments(row(), CameraModel(speed_m_s=5.0, shutter_s=0.01)):
         assert moment.velocity_enu_m_s == pytest.approx((5.0, 0.0, 0.0))
         assert moment.moved_m == pytest.approx(0.05)
 
 
 def test_a_view_with_no_neighbour_is_passed_to_its_right() -> None:
     alone = [Shot(Viewpoint("v", (0.0, 0.0, 5.0), 90.0, -20.0), timedelta(0))]
-    (moment,) = moments(alone, Taking(speed_m_s=3.0))
+    (moment,) = moments(alone, CameraModel(speed_m_s=3.0))
     assert moment.velocity_enu_m_s == pytest.approx((0.0, -3.0, 0.0), abs=1e-12)
-    for moment in moments(row(3, 0.0), Taking(speed_m_s=3.0)):
+    for moment in moments(row(3, 0.0), CameraModel(speed_m_s=3.0)):
         assert math.hypot(*moment.velocity_enu_m_s) == pytest.approx(3.0)
 
 
 def test_a_flight_knows_its_own_speeds_and_exposures_and_a_file_overrules_them() -> None:
     view = row()[0].view
     shots = flown_shots([[(view, 1.0)], [(view, 2.0)]], [[((1.0, 2.0, 0.5), 0.004)], [((0.0, 0.0, 0.0), None)]])
-    first, second = moments(shots, Taking())
+    first, second = moments(shots, CameraModel())
     assert (first.sortie, first.velocity_enu_m_s, first.exposure_s) == (0, (1.0, 2.0, 0.5), 0.004)
     assert (second.sortie, second.velocity_enu_m_s, second.exposure_s) == (1, (0.0, 0.0, 0.0), SHUTTER_S)
-    assert [moment.exposure_s for moment in moments(shots, Taking(shutter_s=0.0))] == [0.0, 0.0]
+    assert [moment.exposure_s for moment in moments(shots, CameraModel(shutter_s=0.0))] == [0.0, 0.0]

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from planning.base import jit
 from reconstruction.scenes.effects.registry import decide_effects
 from reconstruction.scenes.parameters import MOTION_BLUR, RenderSettings
-from reconstruction.scenes.photos.camera_model import Moment, Taking
+from reconstruction.scenes.photos.camera_model import CameraModel, Moment
 from reconstruction.scenes.photos.motion_blur import MOST_TIMES, moved_px, n_times, times, windows
 from reconstruction.scenes.photos.renderer import Photograph, Renderer
 from reconstruction.scenes.record import Layer, Scene, Sky
@@ -152,7 +152,7 @@ def test_what_is_near_or_beside_the_way_moves_as_the_camera_projects_it() -> Non
 def test_the_scene_decides_by_how_far_the_picture_moves(speed_m_s: float, used: bool) -> None:
     made, camera = half_board(), photo(heading_deg=180.0, **SMALL)
     moment = Moment(0, (speed_m_s, 0.0, 0.0), 0.002)
-    decided = decide_effects(made, [camera], RenderSettings(), Taking(), [moment])[MOTION_BLUR]
+    decided = decide_effects(made, [camera], RenderSettings(), CameraModel(), [moment])[MOTION_BLUR]
     size_px = moment.moved_m * SMALL["focal_px"] / DIRECT_M
     # Off the picture's middle things are further away.
     assert decided.size == pytest.approx(size_px, rel=0.15, abs=1e-9)

@@ -11,7 +11,7 @@ from planning.base.effects import EffectSetting
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.scenes.effects.registry import decide_effects
 from reconstruction.scenes.parameters import EXPOSURE, RenderSettings
-from reconstruction.scenes.photos.camera_model import SHUTTERS_S, Moment, Taking
+from reconstruction.scenes.photos.camera_model import SHUTTERS_S, CameraModel, Moment
 from reconstruction.scenes.photos.lens_effects import grey_levels
 from reconstruction.scenes.photos.renderer import Renderer
 from reconstruction.scenes.record import Layer, Scene
@@ -20,7 +20,7 @@ from reconstruction.scenes.runs.photo_job import PhotoJob
 from tests.reconstruction.scenes.small_scenes import photo, quad, scene
 
 SMALL = {"width_px": 32, "height_px": 24, "focal_px": 60.0}
-METERED = Taking(exposure="metered")
+METERED = CameraModel(exposure="metered")
 
 
 def walls(darker: float) -> Scene:
@@ -38,9 +38,11 @@ def two(first_deg: float = 90.0, second_deg: float = -90.0) -> tuple[PosedPhoto,
     return tuple(photo(heading_deg=heading, **SMALL) for heading in (first_deg, second_deg))
 
 
-def job(made: Scene, taking: Taking = METERED, wish: EffectSetting = "on", exposure_s: float = 0.002) -> PhotoJob:
-    settings = RenderSettings(wishes={EXPOSURE: wish})
-    return PhotoJob(made, two(), settings, {}, taking=taking, moments=(Moment(exposure_s=exposure_s),) * 2)
+def job(
+    made: Scene, camera_model: CameraModel = METERED, setting: EffectSetting = "on", exposure_s: float = 0.002
+) -> PhotoJob:
+    settings = RenderSettings(wishes={EXPOSURE: setting})
+    return PhotoJob(made, two(), settings, {}, camera_model=camera_model, moments=(Moment(exposure_s=exposure_s),) * 2)
 
 
 def factors(of: PhotoJob) -> list[float]:
@@ -63,9 +65,9 @@ def test_the_scene_decides_by_how_much_photos_would_differ(darker: float, used: 
 
 
 def test_a_locked_exposure_is_that_of_all_photos() -> None:
-    locked = decide_effects(walls(0.5), two(), RenderSettings(), Taking())[EXPOSURE]
+    locked = decide_effects(walls(0.5), two(), RenderSettings(), CameraModel())[EXPOSURE]
     assert (locked.on, locked.size) == (False, 0.0)
-    assert factors(job(walls(0.5), Taking())) == [1.0, 1.0]
+    assert factors(job(walls(0.5), CameraModel())) == [1.0, 1.0]
     assert factors(job(walls(0.5), METERED, "off")) == [1.0, 1.0]
 
 
