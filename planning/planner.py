@@ -320,7 +320,7 @@ def _prepared(
 
 
 def _fitting(prepared: Prepared, site_model: SiteModel, request: PlanRequest, chosen_profile: Profile) -> Prepared:
-    """A prepared site as it was handed over, under the site's present checksum."""
+    """A prepared site as it was passed on, under the site's present checksum."""
     wanted = (site_model, chosen_profile.camera, request.constraints, request.precision, request.seed)
     differs = prepared.unfit_for(*wanted)
     if differs:

@@ -97,7 +97,7 @@ READERS = {
     "reconstruction/records/database.py", "groundstation/services/map/tiles.py",
     "reconstruction/records/book.py", "reconstruction/records/csv.py",
     # Files of our own: in the package, or made by a process of ours a moment ago; the system's; texts of our own.
-    "planning/geo/geoid.py", "planning/geo/make_egm96_grid.py", "planning/base/step_physical_file.py",
+    "planning/geo/geoid.py", "planning/base/step_physical_file.py",
     "planning/site/importing/ifc_file.py", "reconstruction/records/ifc/importing.py",
     "reconstruction/exports/web.py",
     "reconstruction/scenes/runs/cluster_workers.py", "reconstruction/scenes/runs/run_record.py",

@@ -174,8 +174,8 @@ class MavlinkFlight:
         course_deg = None
         if start is not None:
             course_deg = courses_deg([start.lat_deg, end.lat_deg], [start.lon_deg, end.lon_deg])[0]
-        wishes = (self.wanted_yaw_deg, yaw_deg, course_deg, self.nose_deg)
-        self.nose_deg = next((wish for wish in wishes if wish is not None), None)
+        headings_deg = (self.wanted_yaw_deg, yaw_deg, course_deg, self.nose_deg)
+        self.nose_deg = next((heading for heading in headings_deg if heading is not None), None)
         self.wanted_yaw_deg = None
         if start is not None:
             self.flown[-1] = start = replace(start, speed_m_s=self.speed_m_s)

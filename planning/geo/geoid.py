@@ -3,7 +3,8 @@
 The 15-minute grid is interpolated bilinearly, as DJI's FlightHub does (its own files agree to 0.3 mm). That is not
 EGM96 itself: at cell centres, the worst places, it is off by 0.016 m in the median, by less than 0.21 m in 99 of 100
 cells and by 1.1 m at most (against a bicubic spline, which reproduces NGA's six test points to 3 mm). EGM96 in turn is
-some 0.5 to 1 m from the true geoid (NIMA TR8350.2, 2000). `make_egm96_grid` says where the grid comes from.
+some 0.5 to 1 m from the true geoid (NIMA TR8350.2, 2000). `tests.planning.geo.make_egm96_grid` says where the
+grid comes from.
 
 pyproj is no help here: its wheel has no vertical grids, and without them it returns heights unchanged and says nothing.
 """

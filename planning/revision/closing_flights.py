@@ -465,7 +465,7 @@ def closing_flights(
     known
         Views that are worth trying first.
     limit, stop
-        The end of the time there is, and a wish to end earlier.
+        The end of the time there is, and a request to end earlier.
     trace
         Gets the number of wanted elements that are shown.
     durations

@@ -157,7 +157,7 @@ def _rounded(way: Array) -> tuple[Vec3, ...]:
     return tuple((float(x), float(y), float(z)) for x, y, z in way.round(POSITION_DECIMALS))
 
 
-# A plan in hand: measured, checked, and ready to be edited.
+# The active plan: measured, checked, and ready to be edited.
 
 LENGTH_DECIMALS, DURATION_DECIMALS = 3, 2
 """Of stated lengths (m) and durations (s), as the planner writes them."""
@@ -211,7 +211,7 @@ class Revision:
 
 
 def revise(plan: Plan, prepared: Prepared, before: Revision | None = None) -> Revision:
-    """Take a plan in hand.
+    """Activate a plan.
 
     Parameters
     ----------

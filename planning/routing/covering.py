@@ -79,7 +79,7 @@ def shortest_cover(
     travel_s, service_s
         As in `planning.routing.orienteering.solve_orienteering`. All stops must be within reach of both ends.
     gain
-        Worth of a set of stops, empty when handed over; holds the result's stops afterwards.
+        Worth of a set of stops, empty at first; holds the result's stops afterwards.
     first
         Stops to begin with, in order; none of the result's routes is longer than this one once it is complete.
     max_rounds

@@ -101,7 +101,7 @@ def solve_orienteering(
     n_sorties
         Most sorties that may be flown.
     gain
-        Worth of a set of stops, empty when handed over; holds the result's stops afterwards.
+        Worth of a set of stops, empty at first; holds the result's stops afterwards.
     max_stops
         Most stops in one sortie.
     required
@@ -152,7 +152,7 @@ def solve_orienteering(
     return search.selection(max(search.best.value, min(bound, search.bound())))
 
 
-class _Kept(NamedTuple):
+class _Snapshot(NamedTuple):
     """Routes as they were, their worth and the time they take."""
 
     routes: tuple[Ints, ...]
@@ -190,7 +190,7 @@ class _Search:
         for i in range(n_sorties):
             self._set_route(i, self.routes[i])
         self.is_required = np.zeros(n + 1, np.bool_)
-        self.best = self._kept()
+        self.best = self._snapshot()
 
     def require(self, sorties: Sorties) -> None:
         """Begin with these sorties, and never take their stops out again."""
@@ -201,7 +201,7 @@ class _Search:
             self.is_open[route] = False
             self.is_required[route] = True
             self._set_route(i, route)
-        self.best = self._kept()
+        self.best = self._snapshot()
 
     def duration_s(self, route: Ints) -> float:
         """Time from start to end; 0 for a sortie that is not flown."""
@@ -216,9 +216,9 @@ class _Search:
         self.spare_s[i] = self.budget_s - self.duration_s(route) if len(route) < self.max_stops else -math.inf
         insertion.insertion_costs(self.travel_s, route, self.added_s[i], self.position[i])
 
-    def _kept(self) -> _Kept:
+    def _snapshot(self) -> _Snapshot:
         time_s = math.fsum(self.duration_s(route) for route in self.routes)
-        return _Kept(tuple(route for route in self.routes), self.gain.value, time_s)
+        return _Snapshot(tuple(route for route in self.routes), self.gain.value, time_s)
 
     def fill(self, exponent: float, noise: Floats) -> None:
         """Put in stops while any fits that adds worth, the best by worth^exponent / time * noise first."""
@@ -248,13 +248,13 @@ class _Search:
         for place in route[is_out]:
             self.gain.remove(int(place) - 1)
             self.is_open[place] = True
-        kept = route[~is_out]
-        insertion.shorten(self.travel_s, kept, FIT * self.budget_s)
-        self._set_route(i, kept)
+        left = route[~is_out]
+        insertion.shorten(self.travel_s, left, FIT * self.budget_s)
+        self._set_route(i, left)
 
     def change(self) -> None:
         """One round: take some stops out, put in others, and keep the outcome or go back to where the round began."""
-        before = self._kept()
+        before = self._snapshot()
         if not any(len(route) for route in before.routes):
             return
         self._ruin()
@@ -264,7 +264,7 @@ class _Search:
         for i, route in enumerate(self.routes):
             self.take_out(i, np.zeros(len(route), np.bool_))
         self.fill(exponent, noise)
-        after = self._kept()
+        after = self._snapshot()
         least = before.value - TOLERANCE * self.rng.random() * self.best.value
         if after.value < least:
             self._restore(before)
@@ -289,21 +289,21 @@ class _Search:
 
     def keep_if_best(self) -> bool:
         """Remember the routes if they are worth more than any before, or the same in less time; try to fit in more."""
-        if not self._is_better(self._kept()):
+        if not self._is_better(self._snapshot()):
             return False
         while True:
-            self.best = self._kept()
+            self.best = self._snapshot()
             for i, route in enumerate(self.routes):
                 self._set_route(i, self._reordered(route))
             self.fill(1.0, np.ones(len(self.service_s) - 1))
-            if not self._is_better(self._kept()):
+            if not self._is_better(self._snapshot()):
                 return True
 
-    def _is_better(self, kept: _Kept) -> bool:
-        least = FIT * max(abs(self.best.value), abs(kept.value))
-        if abs(kept.value - self.best.value) > least:
-            return kept.value > self.best.value
-        return kept.time_s < self.best.time_s - FIT * self.budget_s
+    def _is_better(self, snapshot: _Snapshot) -> bool:
+        least = FIT * max(abs(self.best.value), abs(snapshot.value))
+        if abs(snapshot.value - self.best.value) > least:
+            return snapshot.value > self.best.value
+        return snapshot.time_s < self.best.time_s - FIT * self.budget_s
 
     def _reordered(self, route: Ints) -> Ints:
         """The same stops in a shorter order, where one is found."""
@@ -320,17 +320,17 @@ class _Search:
         shorter = places[order[1:-1]]
         return min(route, shorter, key=self.duration_s)
 
-    def _restore(self, kept: _Kept) -> None:
+    def _restore(self, snapshot: _Snapshot) -> None:
         """Go back to routes as they were."""
         now = {int(place) for route in self.routes for place in route}
-        then = {int(place) for route in kept.routes for place in route}
+        then = {int(place) for route in snapshot.routes for place in route}
         for place in now - then:
             self.gain.remove(place - 1)
         for place in then - now:
             self.gain.add(place - 1)
         self.is_open[list(now - then)] = True
         self.is_open[list(then - now)] = False
-        for i, route in enumerate(kept.routes):
+        for i, route in enumerate(snapshot.routes):
             if route is not self.routes[i]:
                 self._set_route(i, route)
 

@@ -516,13 +516,13 @@ def improve_tour(
         raise ValueError(f"order: expected a permutation of {n} points, got {order!r}")
     _check_connected(cost, order, closed)
     trace = Trace() if trace is None else trace
-    given_length = tour_length(cost, order, closed=closed)
-    trace.record(given_length)
+    first_length = tour_length(cost, order, closed=closed)
+    trace.record(first_length)
     if n <= 3:
         best = order
     elif n <= MAX_POINTS:
         finite, _ = _without_infinities(cost, order, closed)
-        best = _as_given(exact_tour(finite), order, closed)
+        best = _as_ordered(exact_tour(finite), order, closed)
     else:
         search = _LocalSearch(cost, order, closed, seed, monitor)
         best = _run(search, max_kicks, patience * n, target_length, stop, trace, monitor)
@@ -530,7 +530,7 @@ def improve_tour(
     if math.isinf(length):
         reason = say("every order needs a leg that does not exist") if n <= MAX_POINTS else say("none was found")
         raise InfeasibleError.say("no tour visits all {} points by existing legs: {}", n, reason)
-    if length >= given_length:
+    if length >= first_length:
         return order
     trace.record(length)
     return best
@@ -581,7 +581,7 @@ class _LocalSearch:
     @property
     def tour(self) -> Ints:
         """The shortest tour so far, shape (n,), as the one it began with starts (and, as a path, ends)."""
-        return _as_given(self._state.best, self._order, self._closed)
+        return _as_ordered(self._state.best, self._order, self._closed)
 
     @property
     def length(self) -> float:
@@ -644,7 +644,7 @@ def _legs(cost: Floats, monitor: Monitor) -> Legs:
     return Legs(cost, *(np.concatenate(columns) for columns in zip(*parts, strict=True)))
 
 
-def _as_given(tour: Ints, order: Ints, closed: bool) -> Ints:
+def _as_ordered(tour: Ints, order: Ints, closed: bool) -> Ints:
     """A copy of a closed tour, starting where `order` does and, as a path, ending where it does."""
     turned = np.roll(tour, -int(np.flatnonzero(tour == order[0])[0]))
     return turned if closed or turned[-1] == order[-1] else np.roll(turned[::-1], 1)

@@ -248,10 +248,10 @@ class Airspace:
                     say("the airspace is empty, {} runs from {} to {} m", axis, low, high, place="max_enu_m")
                 )
 
-    def lowest_height_m(self, wished_m: float | None = None) -> float:
-        """Lowest flight above the ground: as wished, else the site's, else the usual."""
+    def lowest_height_m(self, wanted_m: float | None = None) -> float:
+        """Lowest flight above the ground: as wanted, else the site's, else the usual."""
         own_m = self.min_height_above_ground_m
-        return next((value for value in (wished_m, own_m) if value is not None), MIN_HEIGHT_ABOVE_GROUND_M)
+        return next((value for value in (wanted_m, own_m) if value is not None), MIN_HEIGHT_ABOVE_GROUND_M)
 
 
 @dataclass(frozen=True, slots=True)

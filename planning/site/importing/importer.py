@@ -90,7 +90,7 @@ def surroundings(
     Raises
     ------
     InputError
-        The wishes leave no airspace, or no place for home in it.
+        The options leave no airspace, or no place for home in it.
     """
     low, high = building.min(axis=0), building.max(axis=0)
     margin = options.airspace_margin_m
@@ -233,7 +233,7 @@ def import_site(path: Path, options: ImportOptions, monitor: Monitor = QUIET) ->
     ------
     InputError
         The file is missing, of another kind or broken, its place on earth is not known, panels are required and there
-        are none, or a wish cannot be met; the message says what to do.
+        are none, or an option cannot be met; the message says what to do.
     """
     return assemble(path, read_source(path, options, monitor), options, monitor)
 
@@ -244,7 +244,7 @@ def assemble(path: Path, source: SourceModel, options: ImportOptions, monitor: M
     Raises
     ------
     InputError
-        Panels are required and there are none, the building is far too large, the ground is not clear, or a wish
+        Panels are required and there are none, the building is far too large, the ground is not clear, or an option
         cannot be met.
     """
     _check_extent(path, source, options)

@@ -36,7 +36,7 @@ class PanelGrid:
 
 @dataclass(frozen=True, slots=True)
 class ImportOptions:
-    """Wishes for one import.
+    """Options of one import.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What every reader hands over: windows, building and neighbours in local ENU metres, and how they got there."""
+"""What every reader returns: windows, building and neighbours in local ENU metres, and how they got there."""
 
 from __future__ import annotations
 

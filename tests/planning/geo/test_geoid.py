@@ -14,7 +14,7 @@ from hypothesis import given
 from scipy.interpolate import RectBivariateSpline
 
 from planning.geo.geoid import GRID_PATH, amsl_from_ellipsoid_m, ellipsoid_from_amsl_m, grid_m, undulation_m
-from planning.geo.make_egm96_grid import DEFAULT_SOURCE, packed, read_gtx_m
+from tests.planning.geo.make_egm96_grid import DEFAULT_SOURCE, packed, read_gtx_m
 
 
 def spline() -> RectBivariateSpline:

@@ -1,4 +1,4 @@
-"""Make `planning/geo/data/egm96_15_mm.xz`: `python -m planning.geo.make_egm96_grid [EGM96_15.GTX]`.
+"""Make `planning/geo/data/egm96_15_mm.xz`: `python -m tests.planning.geo.make_egm96_grid [EGM96_15.GTX]`.
 
 Source: the 15-minute grid of geoid heights of the Earth Gravitational Model 1996 (WW15MGH.GRD of NIMA, now NGA, and
 NASA Goddard), a work of the United States government and in the public domain. Debian's package `proj-data` carries it
