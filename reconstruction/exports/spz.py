@@ -21,7 +21,7 @@ from planning.base.errors import InputError
 from planning.base.json_file import write_atomically
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
-from reconstruction.exports.component_parts import NO_PANEL, Ellipsoids, check_scene
+from reconstruction.exports.component_parts import Ellipsoids, check_scene
 from reconstruction.exports.compression import PRESETS, Compressed, Compression
 from reconstruction.exports.gaussian_blocks import (
     Axes,
@@ -34,7 +34,6 @@ from reconstruction.exports.gaussian_blocks import (
     n_gaussians,
 )
 from reconstruction.objects.gs_scene import GsScene
-from reconstruction.splats.harmonic_colour import N_HARMONICS
 from reconstruction.splats.rasterising.raster_types import FLAT, SOLID
 
 # Gaussians in the bytes of SPZ (Niantic, version 3), and back.
@@ -106,27 +105,6 @@ def n_resized(ellipsoids: Ellipsoids, n_sizes: int) -> int:
     return int(((logs < LEAST_LOG_SCALE - half) | (logs > MOST_LOG_SCALE + half)).any(axis=1).sum())
 
 
-def unpacked(streams: dict[str, Bytes], fraction: int, degree: int, version: int) -> Ellipsoids:
-    """Gaussians of streams, in the file's axes."""
-    n = len(streams["alphas"])
-    wide = np.zeros((n, 3, 4), np.uint8)
-    wide[:, :, 1:] = streams["positions"].reshape(n, 3, 3)
-    fixed = wide.view("<i4").reshape(n, 3) >> 8  # brings the sign along
-    sh = np.zeros((n, N_HARMONICS, 3), np.float32)
-    sh[:, 0] = (streams["colors"] / np.float32(255.0) - np.float32(0.5)) / np.float32(COLOR_SCALE)
-    rest = (streams["sh"].astype(np.float32) - 128.0) / 128.0
-    sh[:, 1 : (degree + 1) ** 2] = rest.reshape(n, -1, 3)
-    quats = _first_three(streams["rotations"]) if version == 2 else _smallest_three(streams["rotations"])
-    return Ellipsoids(
-        (fixed * 2.0**-fraction).astype(np.float32),
-        quats,
-        np.exp(streams["scales"].astype(np.float32) / np.float32(LOG_SCALE_STEPS) + np.float32(LEAST_LOG_SCALE)),
-        streams["alphas"][:, 0].astype(np.float32) / np.float32(255.0),
-        sh,
-        np.full(n, NO_PANEL, np.int32),
-    )
-
-
 def _to_bytes(values: NDArray[np.float32]) -> Bytes:
     found: Bytes = np.clip(np.rint(values), 0.0, 255.0).astype(np.uint8)
     return found
@@ -155,32 +133,6 @@ def _packed_quaternions(quats: NDArray[np.float32]) -> Bytes:
     for column in range(3):
         found = found << np.uint32(10) | parts[:, column]
     return np.asarray(found, "<u4").view(np.uint8).reshape(len(xyzw), 4)
-
-
-def _smallest_three(rotations: Bytes) -> NDArray[np.float32]:
-    """Quaternions w, x, y, z with w >= 0."""
-    found = np.ascontiguousarray(rotations).view("<u4")[:, 0]
-    largest = (found >> np.uint32(30)).astype(np.int64)
-    parts = np.stack([found >> np.uint32(20), found >> np.uint32(10), found], axis=1)
-    sizes = (parts & np.uint32(MAGNITUDES)).astype(np.float64) * (LARGEST_SMALL / MAGNITUDES)
-    others = np.where(parts & np.uint32(512), -sizes, sizes)
-    xyzw = np.zeros((len(found), 4))
-    np.put_along_axis(xyzw, OTHERS[largest], others, axis=1)
-    rest = np.sqrt(np.maximum(0.0, 1.0 - (others**2).sum(axis=1)))
-    np.put_along_axis(xyzw, largest[:, None], rest[:, None], axis=1)
-    return _unit(xyzw)
-
-
-def _first_three(rotations: Bytes) -> NDArray[np.float32]:
-    """As version 2 has them: x, y, z in 8 bits each, w >= 0 the rest."""
-    xyz = rotations / 127.5 - 1.0
-    w = np.sqrt(np.maximum(0.0, 1.0 - (xyz**2).sum(axis=1)))
-    return _unit(np.column_stack([xyz, w]))
-
-
-def _unit(xyzw: NDArray[np.float64]) -> NDArray[np.float32]:
-    found = xyzw[:, [3, 0, 1, 2]] / np.linalg.norm(xyzw, axis=1, keepdims=True)
-    return np.asarray(np.where(found[:, :1] < 0.0, -found, found), np.float32)
 
 
 # The file of SPZ's version 4: header and table of contents as they are, and a ZSTD frame for each stream.

@@ -171,11 +171,6 @@ class LinearMap:
         """Rows m and columns n."""
         return self._matrix.shape
 
-    @property
-    def n_weights(self) -> int:
-        """Entries that are not 0."""
-        return int(self._matrix.nnz)
-
     def __call__(self, values: Tensor) -> Tensor:
         """Shape (m, c) of values of shape (n, c)."""
         if values.device.type == "cpu" and values.dtype == torch.float32:

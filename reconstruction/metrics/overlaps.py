@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import shapely
 from numpy.typing import NDArray
 
 from planning.base.jit import chunks, kernel
@@ -213,36 +212,3 @@ def _numbers(index: NDArray[Any]) -> NDArray[np.int32]:
     if lowest < 0 or highest > MOST_PANELS:
         raise ValueError(f"expected panel numbers from 0 to {MOST_PANELS}, got {lowest} to {highest}")
     return np.asarray(index, np.int32)
-
-
-def polygon_overlaps(
-    true_polygons: Sequence[Array], found_polygons: Sequence[Array], width_px: int, height_px: int
-) -> Overlaps:
-    """Exact areas of polygons, each shape (k, 2), inside a picture; regions are the unions of the panels.
-
-    As in `pixel_overlaps`, polygons with no area inside the picture do not count.
-    """
-    frame = shapely.box(0.0, 0.0, width_px, height_px)
-    true, found = (_inside(polygons, frame) for polygons in (true_polygons, found_polygons))
-    joint = np.zeros((len(true), len(found)))
-    if len(true) and len(found):
-        first, second = shapely.STRtree(found).query(true, predicate="intersects")
-        joint[first, second] = shapely.area(shapely.intersection(true[first], found[second]))
-    true_region, found_region = shapely.union_all(true), shapely.union_all(found)
-    return Overlaps(
-        joint,
-        np.asarray(shapely.area(true), float),
-        np.asarray(shapely.area(found), float),
-        np.asarray(shapely.area(shapely.intersection(true, found_region)), float),
-        float(true_region.area),
-        float(found_region.area),
-        float(true_region.intersection(found_region).area),
-        float(frame.area),
-    )
-
-
-def _inside(polygons: Sequence[Array], frame: Any) -> NDArray[Any]:
-    """Shapely's polygons, cut at a frame."""
-    shapes = shapely.make_valid(np.array([shapely.Polygon(polygon) for polygon in polygons], object))
-    cut = shapely.intersection(shapes, frame)
-    return np.asarray(cut[shapely.area(cut) > 0.0])

@@ -6,9 +6,10 @@ import cv2
 import numpy as np
 import pytest
 
-from reconstruction.scenes.facades.cases import simple_case, wide_camera
+from reconstruction.scenes.facades.cases import wide_camera
 from reconstruction.scenes.facades.record import Layout
 from reconstruction.scenes.facades.render import make_facade
+from tests.reconstruction.made_photos import simple_case
 
 
 @pytest.fixture(scope="module")

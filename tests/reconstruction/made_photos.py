@@ -9,9 +9,16 @@ import numpy as np
 
 from planning.geo.frames import Origin
 from planning.geo.mesh import TriangleMesh, box_mesh, join, write_mesh
+from reconstruction.base.cameras import Intrinsics
 from reconstruction.panels.rectify.surface import FacadeSurface
-from reconstruction.scenes.facades.cases import simple_case, wide_camera
-from reconstruction.scenes.facades.record import Disturbances, Layout, MadeFacade, Wall
+from reconstruction.scenes.facades.cases import photo_of, wide_camera
+from reconstruction.scenes.facades.record import (
+    Case,
+    Disturbances,
+    Layout,
+    MadeFacade,
+    Wall,
+)
 from reconstruction.scenes.facades.render import make_facade, write_photos
 from tests.reconstruction.panels.rectify.scenes import surface_mesh
 
@@ -47,3 +54,44 @@ def write_flight(folder: Path, photos: Sequence[MadeFacade]) -> None:
 def write_model(path: Path, wall: Wall) -> None:
     """The coarse model as a file."""
     write_mesh(path, coarse_model(wall))
+
+
+STRONG = Disturbances(
+    reflection=0.45,
+    tilt_deg=0.35,
+    pillow_deg=0.25,
+    blinds=0.3,
+    glare=0.8,
+    shadow=0.4,
+    clutter=True,
+    blur_px=0.6,
+    noise_grey=3.0,
+)
+"""Everything at once, as on a sunny day in a street."""
+
+
+def simple_case(
+    layout: Layout | None = None,
+    disturbances: Disturbances | None = None,
+    *,
+    wall: Wall | None = None,
+    intrinsics: Intrinsics | None = None,
+    seed: int = 0,
+    oblique_deg: float = 0.0,
+    from_below_deg: float = 0.0,
+    roll_deg: float = 0.0,
+    fill: float = 0.85,
+) -> Case:
+    """A facade seen straight from the front and without any disturbance, but for what is asked for."""
+    layout, wall = layout or Layout(), wall or Wall()
+    photo = photo_of(
+        wall,
+        layout,
+        intrinsics or wide_camera(),
+        seed=seed,
+        oblique_deg=oblique_deg,
+        from_below_deg=from_below_deg,
+        roll_deg=roll_deg,
+        fill=fill,
+    )
+    return Case("made", layout, wall, photo, disturbances or Disturbances(), seed=seed)

@@ -203,19 +203,6 @@ SHAPES: tuple[Shape, ...] = ("planar", "curved", "irregular")
 WIDE_FOCAL_RATIO = 12.29 / 17.3
 """Focal length of the DJI M3E's wide camera as a share of the picture's width."""
 
-STRONG = Disturbances(
-    reflection=0.45,
-    tilt_deg=0.35,
-    pillow_deg=0.25,
-    blinds=0.3,
-    glare=0.8,
-    shadow=0.4,
-    clutter=True,
-    blur_px=0.6,
-    noise_grey=3.0,
-)
-"""Everything at once, as on a sunny day in a street."""
-
 
 def wide_camera(width_px: int = 1600, height_px: int = 1200) -> Intrinsics:
     """A straight camera with the field of view of the DJI M3E."""
@@ -279,33 +266,6 @@ def _fits(photo: PosedPhoto, outline: Array, fill: float) -> bool:
         return False
     half = 0.5 * np.array([photo.intrinsics.width_px, photo.intrinsics.height_px])
     return bool((np.abs(pixels - half) <= fill * half).all())
-
-
-def simple_case(
-    layout: Layout | None = None,
-    disturbances: Disturbances | None = None,
-    *,
-    wall: Wall | None = None,
-    intrinsics: Intrinsics | None = None,
-    seed: int = 0,
-    oblique_deg: float = 0.0,
-    from_below_deg: float = 0.0,
-    roll_deg: float = 0.0,
-    fill: float = 0.85,
-) -> Case:
-    """A facade seen straight from the front and without any disturbance, but for what is asked for."""
-    layout, wall = layout or Layout(), wall or Wall()
-    photo = photo_of(
-        wall,
-        layout,
-        intrinsics or wide_camera(),
-        seed=seed,
-        oblique_deg=oblique_deg,
-        from_below_deg=from_below_deg,
-        roll_deg=roll_deg,
-        fill=fill,
-    )
-    return Case("made", layout, wall, photo, disturbances or Disturbances(), seed=seed)
 
 
 def case_name(shape: Shape, seed: int) -> str:

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
 import pytest
+import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
+from numpy.typing import NDArray
 
 from reconstruction.metrics.metrics import score_overlaps
-from reconstruction.metrics.overlaps import MOST_PANELS, index_image, pixel_overlaps, polygon_overlaps
+from reconstruction.metrics.overlaps import MOST_PANELS, Array, Overlaps, index_image, pixel_overlaps
 
 indices = arrays.arrays(np.uint16, (7, 9), elements=st.integers(0, 4))
 masks = arrays.arrays(bool, (7, 9))
@@ -96,3 +101,36 @@ def test_wrong_calls_are_refused() -> None:
         pixel_overlaps(index, index.T)
     with pytest.raises(ValueError, match=f"to {MOST_PANELS}"):
         pixel_overlaps(index, np.full((4, 5), 65_535, np.uint16))
+
+
+def polygon_overlaps(
+    true_polygons: Sequence[Array], found_polygons: Sequence[Array], width_px: int, height_px: int
+) -> Overlaps:
+    """Exact areas of polygons, each shape (k, 2), inside a picture; regions are the unions of the panels.
+
+    As in `pixel_overlaps`, polygons with no area inside the picture do not count.
+    """
+    frame = shapely.box(0.0, 0.0, width_px, height_px)
+    true, found = (_inside(polygons, frame) for polygons in (true_polygons, found_polygons))
+    joint = np.zeros((len(true), len(found)))
+    if len(true) and len(found):
+        first, second = shapely.STRtree(found).query(true, predicate="intersects")
+        joint[first, second] = shapely.area(shapely.intersection(true[first], found[second]))
+    true_region, found_region = shapely.union_all(true), shapely.union_all(found)
+    return Overlaps(
+        joint,
+        np.asarray(shapely.area(true), float),
+        np.asarray(shapely.area(found), float),
+        np.asarray(shapely.area(shapely.intersection(true, found_region)), float),
+        float(true_region.area),
+        float(found_region.area),
+        float(true_region.intersection(found_region).area),
+        float(frame.area),
+    )
+
+
+def _inside(polygons: Sequence[Array], frame: Any) -> NDArray[Any]:
+    """Shapely's polygons, cut at a frame."""
+    shapes = shapely.make_valid(np.array([shapely.Polygon(polygon) for polygon in polygons], object))
+    cut = shapely.intersection(shapes, frame)
+    return np.asarray(cut[shapely.area(cut) > 0.0])

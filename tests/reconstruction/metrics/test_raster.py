@@ -15,9 +15,10 @@ from reconstruction.metrics.overlaps import found_index, found_region, index_ima
 from reconstruction.panels.search.cells import facade_grid
 from reconstruction.panels.search.record import FacadeGrid, FoundPanel, GridLine, InclinedLine, Segmentation
 from reconstruction.panels.search.views import WholePicture
-from reconstruction.scenes.facades.cases import simple_case, wide_camera
+from reconstruction.scenes.facades.cases import wide_camera
 from reconstruction.scenes.facades.record import Layout
 from reconstruction.scenes.facades.render import make_facade
+from tests.reconstruction.made_photos import simple_case
 
 coordinates = st.floats(-20.0, 60.0, allow_subnormal=False)
 

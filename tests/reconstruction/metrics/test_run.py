@@ -14,9 +14,10 @@ from planning.base.errors import InfeasibleError, InputError, OperationCancelled
 from planning.base.progress import QUIET
 from reconstruction.metrics.run import Answer, masks_method, own_method, score_answer, score_set
 from reconstruction.metrics.sets import MADE_SETS, PhotoSet, ScoredPhoto, made_set, scored, surface_of
-from reconstruction.scenes.facades.cases import random_case, simple_case, wide_camera
+from reconstruction.scenes.facades.cases import random_case, wide_camera
 from reconstruction.scenes.facades.record import Layout, Wall
 from reconstruction.scenes.facades.render import make_facade
+from tests.reconstruction.made_photos import simple_case
 
 SMALL = wide_camera(400, 300)
 

@@ -9,10 +9,11 @@ import pytest
 from reconstruction.metrics.sets import PhotoSet, made_set, scored
 from reconstruction.panels.search.grid import Axes, Rows, posterior
 from reconstruction.panels.search.parameters import SegmentationParameters
-from reconstruction.scenes.facades.cases import simple_case, wide_camera
+from reconstruction.scenes.facades.cases import wide_camera
 from reconstruction.scenes.facades.record import Layout
 from reconstruction.scenes.facades.render import make_facade
 from reconstruction.tradeoff.search_tradeoff import SegmentVariants, run_variants, variant_rows, variants_panel
+from tests.reconstruction.made_photos import simple_case
 
 
 def test_every_setting_is_scored_on_the_same_photos_and_drawn_a_line_a_knob() -> None:

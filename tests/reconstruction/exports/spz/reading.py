@@ -9,23 +9,33 @@ from typing import BinaryIO
 
 import numpy as np
 from backports import zstd
+from numpy.typing import NDArray
 
 from planning.base.errors import InputError
 from planning.base.files import MIB, FileLimit, open_given
 from reconstruction.exports import spz
-from reconstruction.exports.component_parts import Ellipsoids
-from reconstruction.exports.gaussian_blocks import Axes, turned_back
+from reconstruction.exports.component_parts import NO_PANEL, Ellipsoids
+from reconstruction.exports.gaussian_blocks import (
+    Axes,
+    turned_back,
+)
 from reconstruction.exports.spz import (
     AT_ONCE_BYTES,
+    COLOR_SCALE,
     GZIP,
     HEADER,
+    LARGEST_SMALL,
+    LEAST_LOG_SCALE,
+    LOG_SCALE_STEPS,
     MAGIC,
+    MAGNITUDES,
     MOST_FRACTION_BITS,
+    OTHERS,
     STREAMS,
     Bytes,
     sizes_of,
-    unpacked,
 )
+from reconstruction.splats.harmonic_colour import N_HARMONICS
 
 SPZ_FILE = FileLimit("a SPZ file", 2048 * MIB)
 
@@ -188,3 +198,50 @@ def _checked_sizes(
     if n > MOST_GAUSSIANS:
         raise InputError(f"{path}: has {n} Gaussians; at most {MOST_GAUSSIANS} are read")
     return sizes
+
+
+def unpacked(streams: dict[str, Bytes], fraction: int, degree: int, version: int) -> Ellipsoids:
+    """Gaussians of streams, in the file's axes."""
+    n = len(streams["alphas"])
+    wide = np.zeros((n, 3, 4), np.uint8)
+    wide[:, :, 1:] = streams["positions"].reshape(n, 3, 3)
+    fixed = wide.view("<i4").reshape(n, 3) >> 8  # brings the sign along
+    sh = np.zeros((n, N_HARMONICS, 3), np.float32)
+    sh[:, 0] = (streams["colors"] / np.float32(255.0) - np.float32(0.5)) / np.float32(COLOR_SCALE)
+    rest = (streams["sh"].astype(np.float32) - 128.0) / 128.0
+    sh[:, 1 : (degree + 1) ** 2] = rest.reshape(n, -1, 3)
+    quats = _first_three(streams["rotations"]) if version == 2 else _smallest_three(streams["rotations"])
+    return Ellipsoids(
+        (fixed * 2.0**-fraction).astype(np.float32),
+        quats,
+        np.exp(streams["scales"].astype(np.float32) / np.float32(LOG_SCALE_STEPS) + np.float32(LEAST_LOG_SCALE)),
+        streams["alphas"][:, 0].astype(np.float32) / np.float32(255.0),
+        sh,
+        np.full(n, NO_PANEL, np.int32),
+    )
+
+
+def _smallest_three(rotations: Bytes) -> NDArray[np.float32]:
+    """Quaternions w, x, y, z with w >= 0."""
+    found = np.ascontiguousarray(rotations).view("<u4")[:, 0]
+    largest = (found >> np.uint32(30)).astype(np.int64)
+    parts = np.stack([found >> np.uint32(20), found >> np.uint32(10), found], axis=1)
+    sizes = (parts & np.uint32(MAGNITUDES)).astype(np.float64) * (LARGEST_SMALL / MAGNITUDES)
+    others = np.where(parts & np.uint32(512), -sizes, sizes)
+    xyzw = np.zeros((len(found), 4))
+    np.put_along_axis(xyzw, OTHERS[largest], others, axis=1)
+    rest = np.sqrt(np.maximum(0.0, 1.0 - (others**2).sum(axis=1)))
+    np.put_along_axis(xyzw, largest[:, None], rest[:, None], axis=1)
+    return _unit(xyzw)
+
+
+def _first_three(rotations: Bytes) -> NDArray[np.float32]:
+    """As version 2 has them: x, y, z in 8 bits each, w >= 0 the rest."""
+    xyz = rotations / 127.5 - 1.0
+    w = np.sqrt(np.maximum(0.0, 1.0 - (xyz**2).sum(axis=1)))
+    return _unit(np.column_stack([xyz, w]))
+
+
+def _unit(xyzw: NDArray[np.float64]) -> NDArray[np.float32]:
+    found = xyzw[:, [3, 0, 1, 2]] / np.linalg.norm(xyzw, axis=1, keepdims=True)
+    return np.asarray(np.where(found[:, :1] < 0.0, -found, found), np.float32)

@@ -15,9 +15,10 @@ from reconstruction.metrics.sets import scored
 from reconstruction.panels.search.parameters import SegmentationParameters
 from reconstruction.panels.search.record import FacadeGrid
 from reconstruction.panels.search.segment import segment_image, segment_rectified
-from reconstruction.scenes.facades.cases import STRONG, random_case, simple_case, wide_camera
+from reconstruction.scenes.facades.cases import random_case, wide_camera
 from reconstruction.scenes.facades.record import Case, Disturbances, Layout
 from reconstruction.scenes.facades.render import make_facade
+from tests.reconstruction.made_photos import STRONG, simple_case
 from tests.reconstruction.panels.search.pictures import draw, spans
 from tests.slow import slow
 

@@ -19,9 +19,10 @@ from reconstruction.panels.search.record import FacadeGrid
 from reconstruction.panels.solving.facades import Facade
 from reconstruction.panels.solving.find import FindParameters, FoundSingly, Fusion, SearchedFacade, doubt, search_facade
 from reconstruction.panels.solving.solve import solve_facade
-from reconstruction.scenes.facades.cases import simple_case, wide_camera
+from reconstruction.scenes.facades.cases import wide_camera
 from reconstruction.scenes.facades.record import Disturbances, Layout, MadeFacade, Wall
 from reconstruction.scenes.facades.render import make_facade
+from tests.reconstruction.made_photos import simple_case
 from tests.reconstruction.panels.solving.test_register import stated
 
 LAYOUT = Layout(4, 7, 1.5, 2.2)

@@ -15,9 +15,10 @@ from reconstruction.panels.rectify.surface import Rectification
 from reconstruction.panels.rectify.view import SurfaceView, surface_view
 from reconstruction.panels.solving.adjustment import moved_pose
 from reconstruction.panels.solving.register import registered
-from reconstruction.scenes.facades.cases import simple_case, wide_camera
+from reconstruction.scenes.facades.cases import wide_camera
 from reconstruction.scenes.facades.record import Disturbances, Layout, MadeFacade, Wall
 from reconstruction.scenes.facades.render import make_facade
+from tests.reconstruction.made_photos import simple_case
 
 LAYOUT = Layout(5, 9, 1.5, 2.4)
 MIRRORING = Disturbances(reflection=0.45, opposite="grid", tilt_deg=0.3, clutter=True, blur_px=0.6, noise_grey=3.0)
