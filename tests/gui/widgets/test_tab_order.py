@@ -79,20 +79,21 @@ def test_from_outside_all_regions_it_begins_anew_and_without_stops_there_is_none
     assert first_in(right).objectName() == "right 1"
 
 
-@pytest.fixture
-def window(application, worker, tmp_path, monkeypatch):
-    """The window with a site."""
+@pytest.fixture(scope="module")
+def window(application, worker, tmp_path_factory):
+    """The window with a site, of which tests choose the tab only."""
     from groundstation.gui.window.project_controller import ProjectController
 
-    monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path))
-    controller = ProjectController(application, worker=worker)
-    controller.show()
-    window = controller.window
-    window.setGeometry(0, 0, 1280, 720)
-    controller.workspace.session.open(Document(SCENES["single-panel"]()), None)
-    turn_until(application, lambda: window.stage.scene() is not None)
-    yield window
-    close_controller(controller)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path_factory.mktemp("config")))
+        controller = ProjectController(application, worker=worker)
+        controller.show()
+        window = controller.window
+        window.setGeometry(0, 0, 1280, 720)
+        controller.workspace.session.open(Document(SCENES["single-panel"]()), None)
+        turn_until(application, lambda: window.stage.scene() is not None)
+        yield window
+        close_controller(controller)
 
 
 @pytest.mark.parametrize("tab", ["site", "plan", "mission"])
