@@ -8,10 +8,12 @@ from dataclasses import replace
 from pathlib import Path
 
 from reconstruction.tradeoff.train_tradeoff import Setting
-from reconstruction.training.presets import HOUR_S, preset
+from reconstruction.training.presets import preset
 from tests.benchmarks import presets
 from tests.benchmarks.harness import Benchmark, Context, Row
 from tests.benchmarks.lessons import rendered
+
+HOUR_S = 3600.0
 
 LOOKS = 12
 """At held-out views on the way."""
