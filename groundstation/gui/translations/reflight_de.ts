@@ -2078,7 +2078,7 @@ Scheiben: {2}, je {3} × {4}</translation>
     </message>
     <message>
         <source>found around the building</source>
-        <translation>rings um das Gebäude ermittelt</translation>
+        <translation>am Gebäude ermittelt</translation>
     </message>
     <message>
         <source>Building</source>
