@@ -7,15 +7,15 @@ import sys
 from groundstation.cli.main import WindowOptions, main
 
 
-def open_window(wish: WindowOptions) -> int:
+def open_window(request: WindowOptions) -> int:
     """Open the window, or take pictures of it; Qt is imported here and not before."""
-    if wish.screenshots is not None:
+    if request.screenshots is not None:
         from groundstation.gui.start import take_pictures
 
-        return take_pictures(wish.screenshots, wish.site)
+        return take_pictures(request.screenshots, request.site)
     from groundstation.gui.start import run_window
 
-    return run_window(wish.open)
+    return run_window(request.open)
 
 
 def run() -> int:

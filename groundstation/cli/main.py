@@ -183,12 +183,12 @@ def _outcome(arguments: Sequence[str], open_window: OpenWindow, stack: ExitStack
         parser = build_parser()
         options = parser.parse_args(arguments)
         stack.enter_context(speaking(options.language))
-        wish = WindowOptions(options.open, options.screenshots, options.pictured_site)
-        if wish.site is not None and wish.screenshots is None:
+        request = WindowOptions(options.open, options.screenshots, options.pictured_site)
+        if request.site is not None and request.screenshots is None:
             parser.error(say("--site without a command is for --screenshots"))
         if not hasattr(options, "run"):
-            return open_window(wish)
-        if wish != WindowOptions():
+            return open_window(request)
+        if request != WindowOptions():
             parser.error(say("--open and --screenshots are for the window, which opens without a command"))
         return int(options.run(options))
     except SystemExit as stop:

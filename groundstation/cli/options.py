@@ -371,7 +371,7 @@ def add_pose_arguments(parser: Any) -> None:
     add("--heights", choices=("auto", "takeoff", "absolute"), default="auto", help="which heights of photos count")
 
 
-def refine_wish(options: argparse.Namespace) -> RefineRequest | None:
+def refine_request(options: argparse.Namespace) -> RefineRequest | None:
     """What was asked for; None without `--refine`.
 
     Raises

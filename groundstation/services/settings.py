@@ -26,7 +26,7 @@ Record = TypeVar("Record")
 Tell = Callable[[str], None]
 
 
-def read_kept(path: Path, first: Record, tell: Tell = lambda _: None) -> Record:
+def read_preferences(path: Path, first: Record, tell: Tell = lambda _: None) -> Record:
     """What was kept; `first` where nothing was, or the file is damaged, which is told then and put aside."""
     return or_first(path, lambda: read_toml(path, type(first)), first, tell)
 
@@ -57,7 +57,7 @@ def _put_aside(path: Path) -> str:
     return say("its settings are as at first again, and the damaged file is kept as '{}'", aside)
 
 
-def write_kept(path: Path, record: object) -> None:
+def write_preferences(path: Path, record: object) -> None:
     """Keep a record; its folder is made where it is missing.
 
     Raises
@@ -210,7 +210,7 @@ def read_settings(path: Path) -> Settings:
 
 
 def settings_at_start(path: Path, tell: Tell) -> Settings:
-    """Settings for a program that starts: those of the first start where the file is damaged, see `read_kept`."""
+    """Settings to start with: those of the first start where the file is damaged; see `read_preferences`."""
     return or_first(path, lambda: read_settings(path), Settings(), tell)
 
 

@@ -124,7 +124,7 @@ def test_views_are_planned_where_none_are_named_and_the_plan_is_kept(reflight, t
         (("planar", "--jobs", 0), "--jobs: expected 1 or more"),
         (("planar", "--jobs", 2, "--cluster", "tcp://10.0.0.5:8786"), "--jobs is for this machine"),
         (("planar", "--rays", 8), "--rays is for Mitsuba; add --renderer mitsuba"),
-        (("planar", "--renderer", "mitsuba", "--rays", 0), "rays: expected 1 to 1048576 through each pixel"),
+        (("planar", "--renderer", "mitsuba", "--rays", 0), "--rays: expected 1 to 1048576, got 0"),
         (("planar", "--seed", -1), "--seed: expected 0 to"),
         (("planar", "--tolerance", 0), "tolerance: expected"),
         (("planar", "--effects", "rain=on"), "names are near-field-reflection, fresnel"),

@@ -396,13 +396,13 @@ def _checkpoint() -> None:
 
 def _settings() -> None:
     from groundstation.services.fly.options import USUAL
-    from groundstation.services.settings import Settings, write_kept, write_settings
+    from groundstation.services.settings import Settings, write_preferences, write_settings
     from missions.mavlink.signing import KeyStore
 
     write_settings(
         Path("config/settings.toml"), Settings(recent_projects=("/a", "/b"), window_layouts={"800x600": "AA"})
     )
-    write_kept(Path("config/flight.toml"), USUAL)
+    write_preferences(Path("config/flight.toml"), USUAL)
     store = KeyStore(Path("config").absolute(), may_use_system=False)
     store.save(bytes(range(32)))
     Path("config/mavlink-signing-timestamp").write_text("123456789")

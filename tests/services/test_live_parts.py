@@ -17,7 +17,7 @@ from groundstation.services.fly.options import (
     read_flight_settings,
 )
 from groundstation.services.fly.readouts import allowed_requests, battery_left_s, link_state
-from groundstation.services.settings import write_kept
+from groundstation.services.settings import write_preferences
 from groundstation.vehicle.sortie.run_records import Phase
 from groundstation.vehicle.state import Timed, VehicleState
 from missions.flight.matching import DEFAULT_GATES
@@ -136,7 +136,7 @@ def test_the_last_choice_comes_back_and_a_damaged_file_gives_the_first_one(tmp_p
     path = tmp_path / "deep" / "connection.toml"
     choice = ConnectionChoice(LinkKind.SERIAL, "/dev/ttyACM0:115200", Autopilot.PX4, 10.0)
     assert read_choice(path) == ConnectionChoice()
-    write_kept(path, choice)
+    write_preferences(path, choice)
     assert read_choice(path) == choice
     assert choice.url == "serial:/dev/ttyACM0:115200"
     path.write_text("kind = 'pigeon'")
@@ -146,7 +146,7 @@ def test_the_last_choice_comes_back_and_a_damaged_file_gives_the_first_one(tmp_p
 def test_whether_rtk_is_needed_comes_back_and_leave_to_set_parameters_does_not(tmp_path):
     path = tmp_path / "flight.toml"
     assert read_flight_settings(path) == FlightSettings()
-    write_kept(path, FlightSettings(needs_rtk=True))
+    write_preferences(path, FlightSettings(needs_rtk=True))
     assert read_flight_settings(path) == FlightSettings(needs_rtk=True)
     path.write_text("needs_rtk = 'perhaps'")
     assert read_flight_settings(path) == FlightSettings()
@@ -155,4 +155,4 @@ def test_whether_rtk_is_needed_comes_back_and_leave_to_set_parameters_does_not(t
 def test_what_cannot_be_kept_is_told(tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(InputError, match="this folder cannot be made"):
-        write_kept(tmp_path / "file" / "flight.toml", FlightSettings())
+        write_preferences(tmp_path / "file" / "flight.toml", FlightSettings())

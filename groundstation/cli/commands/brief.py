@@ -44,7 +44,7 @@ def run(options: argparse.Namespace) -> int:
     from groundstation.services.mission.brief import flight_brief
     from groundstation.services.mission.brief_html import brief_html, brief_pictures, sources_in_page
     from groundstation.services.mission.readiness import Readiness, preflight
-    from groundstation.services.project.input_files import read_given_plan, read_given_site
+    from groundstation.services.project.input_files import read_input_plan, read_input_site
     from groundstation.services.units import UnitSystem
     from planning.base.errors import InputError
     from planning.base.json_file import check_output, write_atomically
@@ -58,7 +58,7 @@ def run(options: argparse.Namespace) -> int:
             )
         )
     check_output(options.out, [options.plan, options.site])
-    plan, site_model = read_given_plan(options.plan), read_given_site(options.site)
+    plan, site_model = read_input_plan(options.plan), read_input_site(options.site)
     units, day = UnitSystem(options.units), flight_day(options)
     words, titles = translation(options.language), translation(options.language, "Brief")
 

@@ -16,7 +16,7 @@ from groundstation.cli.options import (
     json_file,
     parameters_of,
     print_refined,
-    refine_wish,
+    refine_request,
 )
 from planning.base.messages import glue
 
@@ -87,14 +87,14 @@ def run(options: argparse.Namespace) -> int:
             options.fuse,
             segmentation=parameters_of(options),
         )
-    wishes, refine = import_options(options), refine_wish(options)
+    wanted, refine = import_options(options), refine_request(options)
     search = run_job(
         "panels",
         lambda context: find_panel_files(
             options.photos,
             options.model,
             options.out,
-            wishes,
+            wanted,
             parameters,
             heights=options.heights,
             colmap=options.colmap,

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from groundstation.cli.console import counted, named_like, print_findings, print_json, print_next, run_job, show, tell
-from groundstation.cli.options import add_pose_arguments, print_refined, refine_wish
+from groundstation.cli.options import add_pose_arguments, print_refined, refine_request
 from planning.base.messages import say
 
 EPILOG = """examples:
@@ -49,7 +49,7 @@ def run(options: argparse.Namespace) -> int:
     from groundstation.services.units import per_cent
     from reconstruction.photos.quality import QualityLimits
 
-    limits, refine = QualityLimits(scale=options.scale), refine_wish(options)
+    limits, refine = QualityLimits(scale=options.scale), refine_request(options)
     intake = run_job(
         "photos",
         lambda context: take_in(

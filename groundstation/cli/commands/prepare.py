@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from groundstation.cli.console import counted, print_findings, print_json, run_job, show, tell
-from groundstation.cli.options import add_pose_arguments, in_words_of_options, new_folder, refine_wish
+from groundstation.cli.options import add_pose_arguments, in_words_of_options, new_folder, refine_request
 from planning.base.messages import glue
 
 EPILOG = """Writes images/, sparse/0 and points.ply as COLMAP and splatting programs read them, transforms.json for
@@ -50,7 +50,7 @@ def run(options: argparse.Namespace) -> int:
         parameters = PrepareParameters(
             options.normal_step, options.points, options.hidden_panels, options.lens_distortion
         )
-    refine = refine_wish(options)
+    refine = refine_request(options)
     prepared = run_job(
         "prepare",
         lambda context: prepare_files(

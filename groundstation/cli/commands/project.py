@@ -51,9 +51,9 @@ def run_new(options: argparse.Namespace) -> int:
     """Make a project; returns the exit status."""
     from groundstation.services.project.document import Document
     from groundstation.services.project.folder import create_project, facades_beside, open_project
-    from groundstation.services.project.input_files import read_given_site
+    from groundstation.services.project.input_files import read_input_site
 
-    document = Document(read_given_site(options.site), found_facades=facades_beside(options.site))
+    document = Document(read_input_site(options.site), found_facades=facades_beside(options.site))
     create_project(options.folder, document, name=options.name, site_source=options.site)
     project = open_project(options.folder)
     _print(project)

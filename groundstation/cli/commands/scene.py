@@ -118,7 +118,7 @@ def run_render(options: argparse.Namespace) -> int:
 
 
 def _request(options: argparse.Namespace) -> SceneRequest:
-    wishes = effect_settings(options.effects, EFFECTS)
+    settings = effect_settings(options.effects, EFFECTS)
     typed = typed_values(options, SceneRequest)
     rays = ("settings", "mitsuba_rays")
     if options.renderer == "mitsuba":
@@ -127,7 +127,7 @@ def _request(options: argparse.Namespace) -> SceneRequest:
         raise InputError(say("--rays is for Mitsuba; add --renderer mitsuba, or leave it out"))
     with in_words_of_options(SceneRequest):
         files = {name: getattr(options, name) for name in ("scene", "plan", "flight", "look", "camera")}
-        asked = SceneRequest(**files, profile_id=options.profile, settings=RenderSettings(wishes=wishes))
+        asked = SceneRequest(**files, profile_id=options.profile, settings=RenderSettings(wishes=settings))
         return with_values(asked, typed)
 
 

@@ -100,17 +100,17 @@ def _fly(options: argparse.Namespace, monitor: Monitor) -> Flown:
 
     if options.sitl is None:
         between = _battery_change if sys.stdin is not None and sys.stdin.isatty() else None
-        return fly_files(options.plan, options.site, options.out, _wish(options), monitor=monitor, between=between)
+        return fly_files(options.plan, options.site, options.out, _request(options), monitor=monitor, between=between)
     from groundstation.services.fly.flying import SITL_LINK, sitl
-    from groundstation.services.project.input_files import read_given_plan, read_given_site
+    from groundstation.services.project.input_files import read_input_plan, read_input_site
     from missions.mission.build import missions_from_plan
 
-    site, plan = read_given_site(options.site).site, read_given_plan(options.plan)
+    site, plan = read_input_site(options.site).site, read_input_plan(options.plan)
     first = missions_from_plan(plan, site.origin, site.home_enu_m)[0]
     speedup, options.speedup, options.link = options.speedup or SITL_SPEEDUP, None, SITL_LINK
     endurance_s = plan.aircraft.endurance_s
     with sitl(options.sitl, first.takeoff, speedup, endurance_s, options.sitl_defaults, monitor) as restart:
-        return fly_files(options.plan, options.site, options.out, _wish(options), monitor=monitor, between=restart)
+        return fly_files(options.plan, options.site, options.out, _request(options), monitor=monitor, between=restart)
 
 
 def _battery_change(number: int) -> None:
@@ -119,7 +119,7 @@ def _battery_change(number: int) -> None:
     sys.stdin.readline()
 
 
-def _wish(options: argparse.Namespace) -> FlightRequest:
+def _request(options: argparse.Namespace) -> FlightRequest:
     from groundstation.services.fly.flying import SIMULATED, FlightRequest
     from groundstation.services.fly.signing import link_signer
     from missions.mavlink.autopilots import Autopilot
@@ -140,9 +140,9 @@ def _wish(options: argparse.Namespace) -> FlightRequest:
     with in_words_of_options(Conditions):
         conditions = with_values(Conditions(), typed_values(options, Conditions))
     if not hasattr(options, "wind"):
-        from groundstation.services.project.input_files import read_given_plan
+        from groundstation.services.project.input_files import read_input_plan
 
-        conditions = replace(conditions, wind_m_s=read_given_plan(options.plan).rules.wind_m_s)
+        conditions = replace(conditions, wind_m_s=read_input_plan(options.plan).rules.wind_m_s)
     return FlightRequest(
         link=options.link,
         autopilot=None if options.autopilot is None else Autopilot(options.autopilot),

@@ -138,14 +138,14 @@ def run(options: argparse.Namespace) -> int:
     check_not_index(options.out)
     check_output(options.out, [options.file])
     started = time.perf_counter()
-    wishes = replace(
+    wanted = replace(
         import_options(options),
         panel_grids=_grids(options),
         grid_tolerance_m=options.grid_tolerance,
         panels_required=not options.without_panels,
     )
     with expecting(FileKind.BUILDING, options.file):
-        imported = run_job("site import", lambda context: import_site(options.file, wishes, context))
+        imported = run_job("site import", lambda context: import_site(options.file, wanted, context))
     model = write_imported_site(options.out, imported, options.file)
     seconds = time.perf_counter() - started
     site = model.site

@@ -1,6 +1,6 @@
 """Has the photo rendered that the camera preview wants to show: a coarse one at once, then a fine one.
 
-One job at a time, and none while nobody looks. A newer wish replaces an older one, and other work comes first: the
+One job at a time, and none while nobody looks. A newer request replaces an older one, and other work comes first: the
 photo gives way to it and is begun anew.
 """
 

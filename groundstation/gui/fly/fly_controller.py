@@ -50,7 +50,7 @@ from groundstation.services.jobs.runner import JobContext
 from groundstation.services.mission.readiness import TooLong, shared_out, too_long
 from groundstation.services.plan.top_up import flown_plan, resume_flight, top_up_flight
 from groundstation.services.project.document import Document, PlanEntry
-from groundstation.services.settings import write_kept
+from groundstation.services.settings import write_preferences
 from groundstation.services.site.edits import move_home
 from groundstation.vehicle.preflight import stands_enu_m
 from groundstation.vehicle.setup import ParameterChange
@@ -474,7 +474,7 @@ class FlyController(QObject):
 
     def _keep(self, path: Path, record: object) -> None:
         try:
-            write_kept(path, record)
+            write_preferences(path, record)
         except InputError as error:
             self._say(Severity.WARNING, str(error))
 

@@ -13,10 +13,10 @@ from groundstation.services.jobs.runner import Job, JobContext, JobState
 from groundstation.services.plan.editing import KEEPING_METHODS, edit_effect, has_same_panels, with_edited_plan
 from groundstation.services.plan.effects import EffectChoice, SceneEffects, plan_effects, scene_effects
 from groundstation.services.plan.places import item_of_place
-from groundstation.services.plan.plan_cache import ActivePlan, PlanCache, PreparedSite, take_in_hand
+from groundstation.services.plan.plan_cache import ActivePlan, PlanCache, PreparedSite, activate
 from groundstation.services.plan.planning import plan_document_site, reunited
 from groundstation.services.project.document import Document, Item, ItemKind, PlanEntry
-from groundstation.services.project.input_files import read_given_plan
+from groundstation.services.project.input_files import read_input_plan
 from planning import revision as edits
 from planning.base.errors import GroundStationError
 from planning.base.findings import Severity
@@ -242,7 +242,7 @@ class PlanController(QObject):
             entry = PlanEntry(document.free_plan_id(), path.name.removesuffix(".json").removesuffix(".plan"), plan)
             self._workspace.change(self.tr("Open plan"), document.with_plan(entry))
 
-        self._workspace.start(self.tr("Open plan"), lambda _context: read_given_plan(path), opened)
+        self._workspace.start(self.tr("Open plan"), lambda _context: read_input_plan(path), opened)
 
     def set_viewpoint(self, viewpoint: Viewpoint) -> None:
         """Move, turn, lock or unlock the viewpoint with this identifier, as it differs."""
@@ -394,7 +394,7 @@ class PlanController(QObject):
 
         self._taking = self._workspace.start(
             self.tr("Look at the plan"),
-            lambda context: take_in_hand(site, plan, groundwork, context),
+            lambda context: activate(site, plan, groundwork, context),
             taken,
             lambda error: self._give_up(self._workspace.words(str(error))) if self._is_current(plan) else None,
         )

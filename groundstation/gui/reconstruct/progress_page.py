@@ -63,7 +63,7 @@ class LightPage(QWidget):
         return str(self.light.currentData())
 
     def setValue(self, light: str) -> None:  # noqa: N802
-        """Show another wish."""
+        """Show another request."""
         with QSignalBlocker(self.light):
             self.light.setCurrentIndex(self.light.findData(light))
 

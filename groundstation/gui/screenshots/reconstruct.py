@@ -81,9 +81,9 @@ def reconstruct_states(controller: ProjectController, scratch: Path, take: Take,
 
 def _render(photos: Path) -> None:
     """Photos of a bundled scene. Rendering is loaded by its name only: it is no part of the window."""
-    wish = import_module("groundstation.services.scenes.views").SceneRequest
+    request = import_module("groundstation.services.scenes.views").SceneRequest
     render = import_module("groundstation.services.scenes.photos").photograph_files
-    render(wish("planar", n_views=N_VIEWS, width_px=WIDTH_PX), photos)
+    render(request("planar", n_views=N_VIEWS, width_px=WIDTH_PX), photos)
 
 
 def _steps(page: ReconstructPage) -> int:

@@ -30,7 +30,7 @@ from groundstation.services.project.folder import create_project, save_project
 from groundstation.services.project.lock import ProjectLock
 from groundstation.services.project.project_file import is_project
 from groundstation.services.project.recovery import Recovery, discard_recovery, find_recovery, find_unsaved, recover
-from groundstation.services.project.session import ProjectSession, Session, TakenProject
+from groundstation.services.project.session import LockedProject, ProjectSession, Session
 from groundstation.services.settings import Settings, settings_at_start, settings_path, write_settings
 from planning.base.errors import GroundStationError, InputError
 from planning.base.findings import Severity
@@ -278,7 +278,7 @@ class ProjectController(QObject):
 
         self.workspace.start(self.tr("Save"), work, done)
 
-    def _opened(self, taken: TakenProject) -> None:
+    def _opened(self, taken: LockedProject) -> None:
         project = taken.project
         site_source = project.folder / project.record.site if project.record.site else None
         self._put_on_controller(replace(project.document, site_source=site_source), project.folder, taken.lock)

@@ -254,7 +254,7 @@ class Listener:
 # What is new since it was last looked: photos, answers and warnings, told once each.
 
 
-class FlightNews:
+class FlightEvents:
     """Publishes what was not published before."""
 
     def __init__(self, publish: Callable[[LiveEvent], None], coverage: LiveCoverage) -> None:
@@ -334,7 +334,7 @@ ORDERS = {
 # Tells once, while a link is open, that its two ends do not sign alike.
 
 
-class SigningNews:
+class SigningEvents:
     """Publishes what is wrong with the signing of a link when that changes to something."""
 
     def __init__(self, publish: Callable[[LinkProblem], None]) -> None:
@@ -395,7 +395,7 @@ class LiveFlight:
         self._thread = threading.Thread(target=self._live, name="live-flight", daemon=True)
         self._is_closing = False
         self._wire = LoggedLink(connection, folder, lambda text: publish(LogProblem(text)), clock, unix_clock)
-        self._keeper = FlightRecordings(sortie.case, folder, flown)
+        self._recordings = FlightRecordings(sortie.case, folder, flown)
         self._link = LinkState.OPENING
         self._view: LiveView | None = None
         self._shown_s = -math.inf
@@ -403,9 +403,9 @@ class LiveFlight:
         self._run: FlightRun | None = None
         self._awaited: Request | None = None
         self._ordered: deque[Request] = deque()
-        self._news = FlightNews(publish, self._coverage)
-        self._signing = SigningNews(publish)
-        self._put_in_hand(sortie, VehicleState())
+        self._events = FlightEvents(publish, self._coverage)
+        self._signing = SigningEvents(publish)
+        self._activate(sortie, VehicleState())
         for record in flown:
             for photo in record.photos:
                 self._coverage.add(photo, self._plan_order())
@@ -506,7 +506,7 @@ class LiveFlight:
                 self._settle(asked)
             elif isinstance(asked, LiveSortie):
                 if self._run is None or self._run.phase in BEFORE_TAKE_OFF:
-                    self._put_in_hand(asked, self._machine.state)
+                    self._activate(asked, self._machine.state)
             elif not isinstance(asked, Request):
                 if self._run is not None and self._run.phase in BEFORE_TAKE_OFF:
                     self._agree(self._run, asked)
@@ -549,7 +549,7 @@ class LiveFlight:
         run.state = replace(self._machine.state, photos=())
         self._run, self._awaited = run, Request.UPLOAD
         self._ordered.clear()
-        self._news.begin()
+        self._events.begin()
         self._coverage.add_sortie(self._sortie.viewpoint_ids)
         for message in run.start(self._clock()):
             self._wire.send(message)
@@ -561,10 +561,10 @@ class LiveFlight:
         self._notice_link()
         self._signing.look(self._wire.opened, is_heard=self._machine.state.heartbeat is not None)
         machine, run = self._machine, self._run
-        self._news.photos(machine.state.photos, self._sortie.viewpoint_ids)
-        for outcome in self._news.new_answers(machine.answers):
+        self._events.photos(machine.state.photos, self._sortie.viewpoint_ids)
+        for outcome in self._events.new_answers(machine.answers):
             self._answer(self._ordered.popleft(), outcome.is_accepted, outcome.text)
-        self._news.warnings(() if run is None else run.watch.warnings)
+        self._events.warnings(() if run is None else run.watch.warnings)
         if run is not None:
             awaited = self._awaited
             if awaited is not None and run.phase in REACHED[awaited]:
@@ -600,7 +600,7 @@ class LiveFlight:
         error, record, awaited = run.outcome.error, run.outcome.record, self._awaited
         if awaited is not None:
             self._answer(awaited, False, str(error))
-        self._put_in_hand(self._sortie, run.state)
+        self._activate(self._sortie, run.state)
         # The report takes a while: meanwhile nobody should take the aircraft for one in the air.
         self._show(self._clock())
         if awaited is not Request.UPLOAD:
@@ -611,7 +611,7 @@ class LiveFlight:
         if record is None:
             self._publish(FlightEnded(run.orders.number, error, None, None, None))
         else:
-            self._publish(self._keeper.ended(run, record, error, self._wire.opened, self._wire.name))
+            self._publish(self._recordings.ended(run, record, error, self._wire.opened, self._wire.name))
 
     def _keep_unfinished(self) -> None:
         """Keep what was flown of a sortie that is not over."""
@@ -626,14 +626,14 @@ class LiveFlight:
 
     # What is in hand
 
-    def _put_in_hand(self, sortie: LiveSortie, state: VehicleState) -> None:
+    def _activate(self, sortie: LiveSortie, state: VehicleState) -> None:
         """Listen, with this sortie to be flown next."""
         orders = sortie.orders
         frame = LocalFrame.of_home(orders.site.origin, orders.home_enu_m)
         self._sortie, self._listener = sortie, Listener(frame, replace(state, photos=()))
         self._run = self._awaited = None
         self._ordered.clear()
-        self._news.begin()
+        self._events.begin()
 
     def _plan_order(self) -> tuple[str, ...]:
         return tuple(view_id for sortie in self._sortie.case.plan.sorties for view_id in sortie.viewpoint_ids)

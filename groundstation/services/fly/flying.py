@@ -16,7 +16,7 @@ from pathlib import Path
 
 from groundstation.services.fly.connection import TruthRecorder
 from groundstation.services.mission.files import within_item_limit
-from groundstation.services.project.input_files import read_given_plan, read_given_site
+from groundstation.services.project.input_files import read_input_plan, read_input_site
 from groundstation.services.project.project_file import check_not_index
 from groundstation.vehicle.duration import items_duration_s, timed_by_items
 from groundstation.vehicle.orders import SortieOrders, sortie_orders
@@ -225,7 +225,7 @@ def report_files(
     if out is not None:
         check_not_index(out)
         check_output(out, [plan_path, site_path, *logs])
-    plan, site_model = read_given_plan(plan_path), read_given_site(site_path)
+    plan, site_model = read_input_plan(plan_path), read_input_site(site_path)
     if plan.origin is not None and plan.origin != site_model.site.origin:
         raise InputError(
             say(
@@ -412,7 +412,7 @@ def fly_files(
     plan_path: Path,
     site_path: Path,
     out: Path,
-    wish: FlightRequest,
+    request: FlightRequest,
     show: Show | None = None,
     monitor: Monitor = QUIET,
     between: Between | None = None,
@@ -427,7 +427,7 @@ def fly_files(
     """
     check_not_index(out)
     check_output(out, [plan_path, site_path])
-    flown = fly_plan(read_given_plan(plan_path), read_given_site(site_path), wish, show, monitor, between)
+    flown = fly_plan(read_input_plan(plan_path), read_input_site(site_path), request, show, monitor, between)
     write_flight(out, flown.flight)
     if flown.error is not None:
         raise type(flown.error)(f"{flown.error}; what was flown before is in {out}") from flown.error
@@ -437,7 +437,7 @@ def fly_files(
 def fly_plan(
     plan: Plan,
     site_model: SiteModel,
-    wish: FlightRequest,
+    request: FlightRequest,
     show: Show | None = None,
     monitor: Monitor = QUIET,
     between: Between | None = None,
@@ -461,20 +461,20 @@ def fly_plan(
     started_s = time.perf_counter()
     check_site(plan, site_model)
     planned = plan
-    autopilot = wish.autopilot or default_autopilot(plan.profile)
+    autopilot = request.autopilot or default_autopilot(plan.profile)
     plan, findings = within_item_limit(plan, site_model, ExportOptions(autopilot=autopilot))
-    case = _Case(plan, site_model, wish, autopilot, show, monitor)
+    case = _Case(plan, site_model, request, autopilot, show, monitor)
     missions = missions_from_plan(plan, site_model.site.origin, site_model.site.home_enu_m)
     flown: list[tuple[FlightRecord, FlownSortie]] = []
     error: GroundStationError | None = None
     for mission in missions:
-        if flown and between is not None and wish.link != SIMULATED:
+        if flown and between is not None and request.link != SIMULATED:
             between(mission.number)
         try:
-            record, sortie, error = case.fly(sortie_orders(plan, site_model, mission, wish.raised_m))
+            record, sortie, error = case.fly(sortie_orders(plan, site_model, mission, request.raised_m))
         except GroundStationError as failure:
             # A real flight cannot be flown again for its record.
-            if not flown or wish.link == SIMULATED or isinstance(failure, OperationCancelled):
+            if not flown or request.link == SIMULATED or isinstance(failure, OperationCancelled):
                 raise
             error = failure
             break
@@ -524,19 +524,19 @@ class _Case:
 
     plan: Plan
     site_model: SiteModel
-    wish: FlightRequest
+    request: FlightRequest
     autopilot: Autopilot
     show: Show | None
     monitor: Monitor
 
     def fly(self, orders: SortieOrders) -> tuple[FlightRecord, FlownSortie, GroundStationError | None]:
         """Fly one; an error says which it was, and is returned where an aircraft at a link has flown all the same."""
-        flies = self._simulate if self.wish.link == SIMULATED else self._fly_link
+        flies = self._simulate if self.request.link == SIMULATED else self._fly_link
         outcome, record, sortie = flies(orders)
         place = f"sortie {orders.number}: " if len(self.plan.sorties) > 1 else ""
         if outcome.error is not None:
             error = type(outcome.error)(f"{place}{outcome.error}")
-            if record is None or self.wish.link == SIMULATED:
+            if record is None or self.request.link == SIMULATED:
                 raise error from outcome.error
             return record, sortie, error
         if record is None:
@@ -545,25 +545,25 @@ class _Case:
 
     def _simulate(self, orders: SortieOrders) -> tuple[RunOutcome, FlightRecord | None, FlownSortie]:
         """Fly with a vehicle of this process, on a fresh battery."""
-        wish, origin = self.wish, self.site_model.site.origin
-        seed = wish.seed * 1000 + orders.number
-        conditions = wish.conditions or Conditions(wind_m_s=self.plan.rules.wind_m_s)
+        request, origin = self.request, self.site_model.site.origin
+        seed = request.seed * 1000 + orders.number
+        conditions = request.conditions or Conditions(wind_m_s=self.plan.rules.wind_m_s)
         airframe, effects = make_airframe(
             self.plan,
             self.site_model,
             self.plan.sorties[orders.number - 1],
             conditions=conditions,
-            settings=wish.effects,
+            settings=request.effects,
             home_enu_m=orders.home_enu_m,
             seed=seed,
             autopilot=self.autopilot,
         )
         vehicle = SimulatedVehicle(self.autopilot, airframe, origin, orders.home_enu_m)
         direct = DirectLink(vehicle)
-        truth, pace = TruthRecorder(vehicle), _Pace(wish.speedup)
+        truth, pace = TruthRecorder(vehicle), _Pace(request.speedup)
         # Nothing real moves: what needs a pilot's word elsewhere is only told.
         options = RunOptions(
-            autopilot=self.autopilot, sets_parameters=True, needs_rtk=wish.needs_rtk, overrules=OVERRULABLE
+            autopilot=self.autopilot, sets_parameters=True, needs_rtk=request.needs_rtk, overrules=OVERRULABLE
         )
         run = FlightRun(orders, options, "simulation")
 
@@ -583,18 +583,18 @@ class _Case:
 
     def _fly_link(self, orders: SortieOrders) -> tuple[RunOutcome, FlightRecord | None, FlownSortie]:
         """Fly the vehicle at the end of the link."""
-        wish = self.wish
-        if wish.log_folder is None:
+        request = self.request
+        if request.log_folder is None:
             raise ValueError("log_folder: a flight over a link is always logged")
         options = RunOptions(
-            autopilot=wish.autopilot,
-            simulations_only=wish.simulations_only,
-            sets_parameters=wish.sets_parameters,
-            needs_rtk=wish.needs_rtk,
-            overrules=wish.overrules,
+            autopilot=request.autopilot,
+            simulations_only=request.simulations_only,
+            sets_parameters=request.sets_parameters,
+            needs_rtk=request.needs_rtk,
+            overrules=request.overrules,
         )
         run, outcome, log = fly_link(
-            orders, wish.link, options, wish.log_folder, self.show, signer=wish.signer, monitor=self.monitor
+            orders, request.link, options, request.log_folder, self.show, signer=request.signer, monitor=self.monitor
         )
         found = run.state.autopilot or self.autopilot
         sortie = FlownSortie(orders.number, items_duration_s(orders, found), (), outcome.notes, log)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
 
-from groundstation.services.settings import Tell, read_kept, settings_path
+from groundstation.services.settings import Tell, read_preferences, settings_path
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.link import DEFAULT_BAUD
 
@@ -73,8 +73,8 @@ def choice_path() -> Path:
 
 
 def read_choice(path: Path, tell: Tell = lambda _: None) -> ConnectionChoice:
-    """The last choice, as `read_kept`; the first one where none was kept."""
-    return read_kept(path, ConnectionChoice(), tell)
+    """The last choice, as `read_preferences`; the first one where none was kept."""
+    return read_preferences(path, ConnectionChoice(), tell)
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,5 +99,5 @@ def flight_settings_path() -> Path:
 
 
 def read_flight_settings(path: Path, tell: Tell = lambda _: None) -> FlightSettings:
-    """What was kept, as `read_kept`."""
-    return read_kept(path, USUAL, tell)
+    """What was kept, as `read_preferences`."""
+    return read_preferences(path, USUAL, tell)

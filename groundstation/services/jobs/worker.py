@@ -62,7 +62,7 @@ class _Ended:
     error: BaseException | None = None
 
 
-class _Wish(Enum):
+class _Order(Enum):
     LOAD = auto()
     STOP = auto()
     CANCEL = auto()
@@ -108,7 +108,7 @@ class Worker:
         """Start the process and let it load what planning needs, so that the first plan need not wait for it."""
         with self._lock:
             if not self._is_closed and self._child is None:
-                self._running().process.send(_Wish.LOAD)
+                self._running().process.send(_Order.LOAD)
 
     def run(
         self,
@@ -163,7 +163,7 @@ class Worker:
         while True:
             if not is_stopped and stop():
                 is_stopped = True
-                child.process.send(_Wish.STOP)
+                child.process.send(_Order.STOP)
             match child.receive():
                 case _Report() as latest:
                     monitor.report(latest.stage, latest.done, latest.total)
@@ -182,7 +182,7 @@ class Worker:
         if child is None:
             return
         with suppress(_LostError):
-            child.process.send(_Wish.CANCEL)
+            child.process.send(_Order.CANCEL)
             while time.monotonic() < end_s:
                 if isinstance(child.receive(), _Ended):
                     return
@@ -212,7 +212,7 @@ class Worker:
 
 
 class _Service:
-    """Over there: calls one after the other, wishes at once; monitor and observer of what is called."""
+    """Over there: calls one after the other, orders at once; monitor and observer of what is called."""
 
     def __init__(self, send: Send) -> None:
         self._send = send
@@ -221,17 +221,17 @@ class _Service:
         self._stage, self._last_s = "", 0.0
 
     def take(self, message: Any) -> None:
-        """Take a call or a wish."""
+        """Take a call or a request."""
         match message:
             case _Call() as call:
                 self._stop.clear()
                 self._cancel.clear()
                 self._calls.put(call)
-            case _Wish.LOAD:
+            case _Order.LOAD:
                 self._calls.put(None)
-            case _Wish.STOP:
+            case _Order.STOP:
                 self._stop.set()
-            case _Wish.CANCEL:
+            case _Order.CANCEL:
                 self._cancel.set()
 
     def gone(self) -> float:

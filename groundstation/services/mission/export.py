@@ -15,7 +15,7 @@ from groundstation.services.mission.files import (
     readiness,
     within_item_limit,
 )
-from groundstation.services.project.input_files import read_given_plan, read_given_site
+from groundstation.services.project.input_files import read_input_plan, read_input_site
 from groundstation.services.project.project_file import SITE_FOLDER, check_not_index
 from missions.formats.encode import DEFAULT_OPTIONS, ExportOptions
 from missions.formats.registry import encode, mission_format, sortie_path, write_files
@@ -42,7 +42,7 @@ def find_site(plan: Plan, plan_path: Path, site_path: Path | None = None) -> Sit
         The site cannot be read, or the one named lies at another place than the plan.
     """
     if site_path is not None:
-        site_model = read_given_site(site_path)
+        site_model = read_input_site(site_path)
         if plan.origin is not None and plan.origin != site_model.site.origin:
             raise InputError(
                 say(
@@ -91,7 +91,7 @@ def export_plan(
     InputError, MissionError
         A file cannot be read or written, the site is another one, or an aircraft would refuse the mission.
     """
-    plan = read_given_plan(plan_path)
+    plan = read_input_plan(plan_path)
     site_path = _site_beside(plan, plan_path) if site_path is None else site_path
     sources = [path for path in (plan_path, site_path) if path is not None]
     check_not_index(out)
@@ -150,7 +150,7 @@ def import_missions(
     if site_path is not None:
         check_output(out, [*paths, site_path])
         plan, findings = missions_as_plan(
-            paths, read_given_site(site_path), profile_id, constraints, monitor, strict=strict
+            paths, read_input_site(site_path), profile_id, constraints, monitor, strict=strict
         )
         write_plan(out, plan)
         return plan, findings, site_path
@@ -176,5 +176,5 @@ def import_missions(
 
 def _is_bare(path: Path) -> bool:
     """Whether a site file holds a place alone, with nothing added."""
-    site = read_given_site(path).site
+    site = read_input_site(path).site
     return site.is_bare and site.n_panels == 0 and site.building_mesh is None and not site.obstacles

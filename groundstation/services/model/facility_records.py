@@ -224,7 +224,7 @@ def make_records(folder: Path, site_path: Path | None = None, who: str | None = 
     InputError
         Site or scene cannot be read, or the file cannot be written.
     """
-    from groundstation.services.project.input_files import read_given_site
+    from groundstation.services.project.input_files import read_input_site
     from planning.base.files import make_folder
     from reconstruction.objects.store import StoredScene
     from reconstruction.records.book import make_book
@@ -234,7 +234,7 @@ def make_records(folder: Path, site_path: Path | None = None, who: str | None = 
         scene = StoredScene(folder)
         rows, origin = object_rows(scene), scene.origin
     else:
-        site = read_given_site(site_path).site
+        site = read_input_site(site_path).site
         rows, origin = site_objects(site), site.origin
     make_folder(folder)
     if not records_path(folder).exists():
@@ -470,10 +470,10 @@ def export_ifc(
         A file cannot be read or written.
     """
     if original is None:
-        from groundstation.services.project.input_files import read_given_site
+        from groundstation.services.project.input_files import read_input_site
         from reconstruction.records.ifc.new import write_new_ifc
 
-        mesh = None if site is None else read_given_site(site).building
+        mesh = None if site is None else read_input_site(site).building
         return Exported((out,), write_new_ifc(book, out, mesh))
     if site is not None:
         raise InputError(say("--site goes with a new IFC file; leave out --into or --site"))

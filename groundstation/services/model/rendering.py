@@ -139,7 +139,7 @@ def render_files(model: Path, request: RenderRequest, out: Path, monitor: Monito
 
 
 def _cameras(request: RenderRequest, trained: TrainedModel) -> tuple[PosedPhoto, ...]:
-    from groundstation.services.project.input_files import read_given_plan
+    from groundstation.services.project.input_files import read_input_plan
     from reconstruction.light.photo_set import read_photo_set
     from reconstruction.scenes.parameters import WIDTHS_PX
     from reconstruction.scenes.photos.flight_views import lens_of, planned_shots, posed_photos
@@ -149,7 +149,7 @@ def _cameras(request: RenderRequest, trained: TrainedModel) -> tuple[PosedPhoto,
             say("expected {} to {}, got {}", WIDTHS_PX[0], WIDTHS_PX[1], request.width_px, place="--width")
         )
     if not request.views.is_dir():
-        plan = read_given_plan(request.views)
+        plan = read_input_plan(request.views)
         return posed_photos(planned_shots(plan), lens_of(plan.camera, request.width_px), Path())
     source = read_photo_set(request.views)
     held_out = trained.record.held_out

@@ -8,7 +8,7 @@ from typing import Any
 
 from groundstation.services.photos.intake import PhotoIntake
 from groundstation.services.photos.poses import RefinedOutcome, RefineRequest, better_poses, refined_summary, still_true
-from groundstation.services.project.input_files import read_given_site
+from groundstation.services.project.input_files import read_input_site
 from planning.base.findings import Finding
 from planning.base.progress import QUIET, Monitor
 from planning.photos.folder import read_photos
@@ -53,7 +53,7 @@ def prepare_files(
     InputError
         Photos, site or COLMAP model cannot be used, poses cannot be refined, or the data set cannot be written.
     """
-    model = read_given_site(site)
+    model = read_input_site(site)
     read = read_photos(folder, monitor)
     posed = pose_photos(read.photos, model.site, folder, heights=heights)
     better = better_poses(posed, folder, colmap, refine, monitor)

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from groundstation.services.photos.poses import BetterPoses, RefineRequest, better_poses, refined_summary, still_true
-from groundstation.services.project.input_files import read_given_plan, read_given_site
+from groundstation.services.project.input_files import read_input_plan, read_input_site
 from planning.aircraft.catalogue import profile
 from planning.base.effects import Decision
 from planning.base.findings import Finding, Severity
@@ -92,8 +92,8 @@ def take_in(
     InputError
         As `take_in_photos`, or a plan is given for a site without panels.
     """
-    model = read_given_site(site)
-    flown = None if plan is None else read_given_plan(plan)
+    model = read_input_site(site)
+    flown = None if plan is None else read_input_plan(plan)
     if flown is not None:
         require_panels(model.site)
     return take_in_photos(folder, model, flown, limits, heights=heights, colmap=colmap, refine=refine, monitor=monitor)

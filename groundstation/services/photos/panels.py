@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from groundstation.services.photos.poses import RefinedOutcome, RefineRequest, better_poses, refined_summary, still_true
-from groundstation.services.project.input_files import FileKind, kind_of, read_given_site
+from groundstation.services.project.input_files import FileKind, kind_of, read_input_site
 from groundstation.services.project.project_file import check_not_index
 from planning.base.errors import InputError
 from planning.base.findings import Finding
@@ -124,7 +124,7 @@ def find_panel_files(
     check_output(out, [model])
     given = None if grids is None else read_panels_folder(grids)
     read = read_photos(folder, monitor)
-    site_model = read_given_site(model) if kind_of(model) is FileKind.SITE else None
+    site_model = read_input_site(model) if kind_of(model) is FileKind.SITE else None
     without_panels = replace(options, panels_required=False)
     source = None if site_model is not None else read_source(model, without_panels, monitor)
     place, mesh = _place(model, site_model, source, options)

@@ -162,7 +162,7 @@ def better_poses(
 
 
 def refined_poses(
-    photos: Sequence[PosedPhoto], folder: Path, wish: RefineRequest, monitor: Monitor = QUIET
+    photos: Sequence[PosedPhoto], folder: Path, request: RefineRequest, monitor: Monitor = QUIET
 ) -> BetterPoses:
     """Poses refined with COLMAP, or those that were kept of the same photos.
 
@@ -180,15 +180,15 @@ def refined_poses(
     ReconstructionError
         The photos do not fit together.
     """
-    where = wish.kept_in(folder)
-    kept = _kept(where, photos, wish)
+    where = request.kept_in(folder)
+    kept = _kept(where, photos, request)
     if kept is not None:
         return _judged(photos, kept, where, was_kept=True)
     load_colmap()  # what is missing is said before anything is compared
     check_refined_folder(where)
     parameters = RefineParameters()
-    if wish.max_image_size_px is not None:
-        parameters = replace(parameters, max_image_size_px=wish.max_image_size_px)
+    if request.max_image_size_px is not None:
+        parameters = replace(parameters, max_image_size_px=request.max_image_size_px)
     refinement = refine_poses(photos, folder, parameters, monitor)
     write_refined(where, refinement, photos, parameters)
     return _judged(photos, read_refined(where, photos), where, was_kept=False)
@@ -217,7 +217,7 @@ def refined_summary(outcome: RefinedOutcome) -> dict[str, Any]:
     }
 
 
-def _kept(where: Path, photos: Sequence[PosedPhoto], wish: RefineRequest) -> KeptRefinement | None:
+def _kept(where: Path, photos: Sequence[PosedPhoto], request: RefineRequest) -> KeptRefinement | None:
     """What was computed before of the same photos, and in the size that is wished for."""
     if not is_refined_folder(where):
         return None
@@ -225,7 +225,7 @@ def _kept(where: Path, photos: Sequence[PosedPhoto], wish: RefineRequest) -> Kep
         kept = read_refined(where, photos)
     except InputError as error:
         raise InputError(say("{}; remove the folder {} to have the poses refined again", error, where)) from error
-    size = wish.max_image_size_px
+    size = request.max_image_size_px
     is_same = kept.photos_sha256 == fingerprint(photos)
     return kept if is_same and size in (None, kept.parameters.max_image_size_px) else None
 

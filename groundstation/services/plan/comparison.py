@@ -9,7 +9,7 @@ from typing import Any
 
 from groundstation.services.mission.files import missions_as_plan
 from groundstation.services.project.document import PlanEntry
-from groundstation.services.project.input_files import FileKind, kind_of, read_given_plan, read_given_site
+from groundstation.services.project.input_files import FileKind, kind_of, read_input_plan, read_input_site
 from planning.aircraft.catalogue import profiles
 from planning.base.errors import InputError
 from planning.base.files import real_path
@@ -90,14 +90,14 @@ def compare_files(plan_paths: Sequence[Path], site_path: Path, monitor: Monitor 
     names = [_name_of(path) for path in plan_paths]
     if len(set(names)) < len(names):
         names = [str(path) for path in plan_paths]
-    site_model, first = read_given_site(site_path), read_given_plan(plan_paths[0])
+    site_model, first = read_input_site(site_path), read_input_plan(plan_paths[0])
     plans, notes = [first], []
     for path, name in zip(plan_paths[1:], names[1:], strict=True):
         if kind_of(path) is FileKind.MISSION:
             plan, found = _plan_of_mission(path, site_model, first, monitor)
             notes += [about(name, finding.message) for finding in found if finding.severity is not Severity.OK]
         else:
-            plan = read_given_plan(path)
+            plan = read_input_plan(path)
         plans.append(plan)
     comparison = compare(site_model, plans, names, monitor=monitor)
     return replace(comparison, notes=(*comparison.notes, *notes))

@@ -1,7 +1,7 @@
 """What looking at plans, editing them and planning again have in common, kept so that it is computed once.
 
 Preparing a site takes seconds (what can be reached is proven), taking a plan in hand a fraction of one; an edit then
-takes milliseconds. A `PlanCache` is a value that lives in the window's thread; `take_in_hand` is for jobs and gives a
+takes milliseconds. A `PlanCache` is a value that lives in the window's thread; `activate` is for jobs and gives a
 `ActivePlan` that the bench keeps.
 """
 
@@ -27,7 +27,7 @@ from planning.revision import Revision, revise
 from planning.site.records import SiteModel
 from planning.viewpoints.prepare import Prepared, is_same_place, prepare, settled
 
-MAX_IN_HAND = 40
+MAX_ACTIVE = 40
 """Plans kept: undo goes back through so many edits without computing anything; each shares most with the others."""
 
 MAX_GROUNDWORKS = 3
@@ -66,7 +66,7 @@ class PlanCache:
     """The plans that were in hand, the last ones first to be found."""
 
     def __init__(self) -> None:
-        self._in_hand: OrderedDict[int, tuple[Plan, ActivePlan]] = OrderedDict()
+        self._active: OrderedDict[int, tuple[Plan, ActivePlan]] = OrderedDict()
         self._groundworks: list[PreparedSite] = []
 
     def find(self, plan: Plan, site_model: SiteModel) -> ActivePlan | None:
@@ -75,19 +75,19 @@ class PlanCache:
         Plans are told apart by being one object, as the document's history keeps them; the record inside may be
         another one, equal to it.
         """
-        found = self._in_hand.get(id(plan))
+        found = self._active.get(id(plan))
         if found is None or not is_same_place(found[1].groundwork.prepared.site_model, site_model):
             return None
-        self._in_hand.move_to_end(id(plan))
+        self._active.move_to_end(id(plan))
         return found[1]
 
-    def keep(self, plan: Plan, in_hand: ActivePlan) -> None:
+    def keep(self, plan: Plan, active: ActivePlan) -> None:
         """Remember a plan, under the object that the document has."""
-        self._in_hand[id(plan)] = (plan, in_hand)
-        self._in_hand.move_to_end(id(plan))
-        while len(self._in_hand) > MAX_IN_HAND:
-            self._in_hand.popitem(last=False)
-        self.keep_groundwork(in_hand.groundwork)
+        self._active[id(plan)] = (plan, active)
+        self._active.move_to_end(id(plan))
+        while len(self._active) > MAX_ACTIVE:
+            self._active.popitem(last=False)
+        self.keep_groundwork(active.groundwork)
 
     def keep_groundwork(self, groundwork: PreparedSite) -> None:
         """Remember a prepared site."""
@@ -105,7 +105,7 @@ class PlanCache:
         return next((kept.prepared for kept in self._groundworks if not kept.prepared.unfit_for(*wanted)), None)
 
 
-def take_in_hand(
+def activate(
     site_model: SiteModel, plan: Plan, groundwork: PreparedSite | None, monitor: Monitor = QUIET
 ) -> ActivePlan:
     """Measure a plan and find out what it leaves unseen and why.

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from groundstation.services.mission.readiness import UNKNOWN_DAY, FlightDay, preflight
-from groundstation.services.project.input_files import read_given_plan, read_given_site
+from groundstation.services.project.input_files import read_input_plan, read_input_site
 from groundstation.services.project.project_file import check_not_index
 from planning.aircraft.catalogue import profile
 from planning.base.errors import InputError
@@ -51,7 +51,7 @@ def plan_site(
         check_not_index(out)
         check_output(out, [site_path])
     planned = plan_document_site(
-        read_given_site(site_path), request, started_s=started_s, stop=stop, trace=trace, monitor=monitor
+        read_input_site(site_path), request, started_s=started_s, stop=stop, trace=trace, monitor=monitor
     )
     if out is not None:
         write_plan(out, planned.plan)
@@ -131,7 +131,7 @@ def locked_viewpoints(plan_path: Path) -> tuple[Viewpoint, ...]:
     InputError
         The file cannot be read, or none of its viewpoints is locked.
     """
-    locked = tuple(viewpoint for viewpoint in read_given_plan(plan_path).viewpoints if viewpoint.locked)
+    locked = tuple(viewpoint for viewpoint in read_input_plan(plan_path).viewpoints if viewpoint.locked)
     if not locked:
         raise InputError(
             say(
@@ -223,7 +223,7 @@ def check_files(
     plan_path: Path, site_path: Path, day: FlightDay = UNKNOWN_DAY, monitor: Monitor = QUIET
 ) -> tuple[Finding, ...]:
     """All findings on a plan file and its site file, for a day of which something is known or not."""
-    return preflight(read_given_plan(plan_path), read_given_site(site_path), day, monitor).findings
+    return preflight(read_input_plan(plan_path), read_input_site(site_path), day, monitor).findings
 
 
 def planned_summary(planned: Planned, seconds: float) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from groundstation.services.plan.planning import finding_summary
-from groundstation.services.project.input_files import read_given_plan, read_given_site
+from groundstation.services.project.input_files import read_input_plan, read_input_site
 from groundstation.services.project.project_file import check_not_index
 from missions.flight.flight_file import Flight, flight_of, plan_sha256, read_flight
 from missions.flight.logs.read import is_log, read_log
@@ -294,7 +294,7 @@ def resume_files(
 def _flown_files(flight_path: Path, plan_path: Path, site_path: Path, out: Path) -> FlownPlan:
     check_not_index(out)
     check_output(out, [flight_path, plan_path, site_path])
-    plan, site_model = read_given_plan(plan_path), read_given_site(site_path)
+    plan, site_model = read_input_plan(plan_path), read_input_site(site_path)
     if is_log(flight_path):
         log = read_log(flight_path, site_model.site)
         # A log does not say which plan was flown: whether its photos are near the views decides.

@@ -14,8 +14,8 @@ from groundstation.services.project.input_files import (
     FileKind,
     expecting,
     kind_of,
-    read_given_plan,
-    read_given_site,
+    read_input_plan,
+    read_input_site,
 )
 from planning.base.errors import InfeasibleError, InputError
 from planning.base.messages import say
@@ -166,7 +166,7 @@ def route_tradeoff(
 
 def _timed_site(path: Path) -> tuple[SiteModel, float]:
     started = time.perf_counter()
-    model = read_given_site(path)
+    model = read_input_site(path)
     return model, time.perf_counter() - started
 
 
@@ -188,9 +188,9 @@ def _plans_with_sites(paths: Sequence[Path]) -> list[tuple[Plan, SiteModel]]:
     sites, plans = [], []
     for path in paths:
         if kind_of(path) is FileKind.SITE:
-            sites.append(read_given_site(path))
+            sites.append(read_input_site(path))
         else:
-            plans.append((path, read_given_plan(path)))
+            plans.append((path, read_input_plan(path)))
     if sites and not plans:
         raise InputError(say("a site alone has no viewpoints to fly to; name a plan as well", place=paths[0]))
     return [(plan, _site_for(plan, path, sites)) for path, plan in plans]

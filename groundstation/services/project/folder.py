@@ -10,7 +10,7 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from groundstation.services.project.document import Document, PlanEntry
-from groundstation.services.project.input_files import read_given_plan
+from groundstation.services.project.input_files import read_input_plan
 from groundstation.services.project.migration import FORMAT, VERSION, free_name, title_of
 from groundstation.services.project.project_file import (
     FOLDERS,
@@ -210,7 +210,7 @@ def add_plans(document: Document, paths: Sequence[Path]) -> tuple[Document, tupl
     """
     notes = []
     for path in paths:
-        plan = read_given_plan(path)
+        plan = read_input_plan(path)
         same = next((entry for entry in document.plans if entry.plan == plan), None)
         if same is not None:
             raise InputError(say("the project holds this plan already, as '{}'; leave it out", same.title, place=path))

@@ -92,7 +92,7 @@ ADVICE_FOR_ALL = {
 }
 
 
-def read_given_plan(path: Path) -> Plan:
+def read_input_plan(path: Path) -> Plan:
     """Read a plan file that the user named.
 
     Raises
@@ -104,7 +104,7 @@ def read_given_plan(path: Path) -> Plan:
         return read_plan(path)
 
 
-def read_given_site(path: Path) -> SiteModel:
+def read_input_site(path: Path) -> SiteModel:
     """Read a site file that the user named.
 
     Raises

@@ -175,7 +175,7 @@ class Session:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class TakenProject:
+class LockedProject:
     """A project that was read, and the lock on it, or why there is none."""
 
     project: OpenedProject
@@ -204,7 +204,7 @@ class ProjectSession:
         """Whether the project is locked for this window, so that it may be written."""
         return self._lock is not None
 
-    def taking(self, folder: Path) -> Callable[[], TakenProject]:
+    def taking(self, folder: Path) -> Callable[[], LockedProject]:
         """Work for a job: lock a project and read it. Without the lock it can still be looked at.
 
         Raises
@@ -293,7 +293,7 @@ class ProjectSession:
         return Autosave(folder, self._writer, self._report)
 
 
-def _take(folder: Path, held: ProjectLock | None) -> TakenProject:
+def _take(folder: Path, held: ProjectLock | None) -> LockedProject:
     lock, problem = held, ""
     if lock is None:
         try:
@@ -301,7 +301,7 @@ def _take(folder: Path, held: ProjectLock | None) -> TakenProject:
         except GroundStationError as error:
             problem = str(error)
     try:
-        return TakenProject(open_project(folder), lock, problem)
+        return LockedProject(open_project(folder), lock, problem)
     except BaseException:
         if lock is not None and lock is not held:
             lock.release()

@@ -48,7 +48,7 @@ LAST_S = 30.0
 """For keeping the state of a training after the window has gone."""
 
 
-class _Wishes:
+class _Requests:
     """What the window wants now; written by the thread that reads, asked by the one that works."""
 
     def __init__(self) -> None:
@@ -95,19 +95,19 @@ class _Server:
     """Does what is wished, and tells."""
 
     def __init__(self, send: Send) -> None:
-        self._tell, self._wishes = send, _Wishes()
-        self.take = self._wishes.take
+        self._tell, self._requests = send, _Requests()
+        self.take = self._requests.take
         self._darkroom = RenderQueue(self._tell)
         self._stage, self._reported_s, self._stepped_s = "", 0.0, 0.0
         self._is_joint, self._n_measured = False, 0
 
     def gone(self) -> float:
         """Break a training off: it keeps its state."""
-        wishes = self._wishes
-        wishes.gone.set()
-        wishes.cancel.set()
-        wishes.pause.clear()
-        wishes.orders.put(None)
+        requests = self._requests
+        requests.gone.set()
+        requests.cancel.set()
+        requests.pause.clear()
+        requests.orders.put(None)
         return LAST_S
 
     def run(self) -> None:
@@ -115,11 +115,11 @@ class _Server:
         from reconstruction.training.ranks import cuda_devices, use_threads
 
         self._tell(Devices(cuda_devices()))
-        while not self._wishes.gone.is_set():
+        while not self._requests.gone.is_set():
             use_threads(max(1, (os.cpu_count() or 1) - 1))
-            has_more = self._look() or self._darkroom.prepare() or self._darkroom.judge(self._wishes.errors, None)
+            has_more = self._look() or self._darkroom.prepare() or self._darkroom.judge(self._requests.errors, None)
             try:
-                order = self._wishes.orders.get(block=not has_more)
+                order = self._requests.orders.get(block=not has_more)
             except queue.Empty:
                 continue
             match order:
@@ -135,7 +135,7 @@ class _Server:
     def _train(self, order: Train) -> None:
         from groundstation.services.reconstruct.training import train_files, train_summary
 
-        wishes = self._wishes
+        requests = self._requests
         self._is_joint, self._n_measured = False, 0
         self._darkroom.forget_training()
         try:
@@ -146,8 +146,8 @@ class _Server:
                 order.out,
                 order.request,
                 resume=order.resume,
-                pause=wishes.pause.is_set,
-                stop=wishes.stop.is_set,
+                pause=requests.pause.is_set,
+                stop=requests.stop.is_set,
                 trace=Trace(),
                 monitor=self,
                 visit=self._visit,
@@ -186,7 +186,7 @@ class _Server:
 
     def report(self, stage: str, done: float, total: float) -> None:
         """Monitor of a training: looks at photos and finished models come between, its own model only in visits."""
-        if self._wishes.cancel.is_set():
+        if self._requests.cancel.is_set():
             raise OperationCancelled("the training was cancelled")
         now = time.monotonic()
         if stage != self._stage or now - self._reported_s >= REPORT_S:
@@ -210,11 +210,11 @@ class _Server:
         self._n_measured = max(self._n_measured, len(visit.history))
         while self._look():
             pass
-        self._darkroom.judge(self._wishes.errors, visit)
+        self._darkroom.judge(self._requests.errors, visit)
 
     def _look(self) -> bool:
         """Answer one look; whether there was one."""
-        look = self._wishes.next_look()
+        look = self._requests.next_look()
         match look:
             case Look():
                 self._tell(self._darkroom.seen(look))

@@ -51,7 +51,7 @@ class TrainedFiles:
 
 
 def config_of_request(request: TrainRequest) -> TrainConfig:
-    """Settings of a wish: the preset's, then the method's, then the file's, then what was asked for by itself.
+    """Settings of a request: the preset's, then the method's, then the file's, then what was asked for by itself.
 
     Raises
     ------

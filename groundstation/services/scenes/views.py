@@ -10,7 +10,7 @@ from typing import Any
 
 from groundstation.services.plan.planning import plan_document_site
 from groundstation.services.plan.top_up import flown_plan
-from groundstation.services.project.input_files import read_given_plan, read_given_site
+from groundstation.services.project.input_files import read_input_plan, read_input_site
 from missions.flight.flight_file import Flight, read_flight
 from missions.flight.matching import PhotoRef, pose_of_photo, shutter_velocities, taken_poses
 from missions.flight.record import TakenPhoto
@@ -110,12 +110,12 @@ SITE_FILE, PLAN_FILE = "site.json", "plan.json"
 """Written beside the photos: the site with what the scene adds to it, and the plan that was made for them."""
 
 BUNDLED_TEXTS = {
-    "planar": "plane facade of 20 x 8 panels, street, buildings opposite, trees and cars before it",
-    "curved": "the same on a convex facade",
-    "planar-far": "the plane facade alone, with everything else far away",
-    "curved-far": "the convex facade alone, with everything else far away",
-    "court": "two facades at a right angle, whose glass sees glass",
-    "concrete": "matt concrete with punched windows",
+    "planar": say("plane facade of 20 x 8 panels, street, buildings opposite, trees and cars before it"),
+    "curved": say("the same on a convex facade"),
+    "planar-far": say("the plane facade alone, with everything else far away"),
+    "curved-far": say("the convex facade alone, with everything else far away"),
+    "court": say("two facades at a right angle, whose glass sees glass"),
+    "concrete": say("matt concrete with punched windows"),
 }
 
 QUICK = GreedyParameters(n_candidates=2000, improve=False, certify=False)
@@ -162,7 +162,7 @@ def scene_of_request(request: SceneRequest) -> tuple[Scene, dict[str, Any]]:
                 place=request.scene,
             )
         )
-    model = read_given_site(path)
+    model = read_input_site(path)
     look = None if request.look is None else read_look(request.look)
     made_from = {"site": model.site.name, "look": None if look is None else plain_values(look)}
     return build_scene(model, look, request.seed), made_from
@@ -234,7 +234,7 @@ def plan_of_site(path: Path, model: SiteModel) -> Plan:
     InputError
         It cannot be read, or belongs to another site.
     """
-    plan, site = read_given_plan(path), model.site
+    plan, site = read_input_plan(path), model.site
     if plan.site != site.name or (plan.origin is not None and plan.origin != site.origin):
         raise InputError(
             say(

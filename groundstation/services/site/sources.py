@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from groundstation.services.project.document import Document
-from groundstation.services.project.input_files import read_given_site
+from groundstation.services.project.input_files import read_input_site
 from planning.base.errors import InputError
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
@@ -96,10 +96,10 @@ def open_site(path: Path, monitor: Monitor = QUIET) -> SiteModel:
     Raises
     ------
     InputError
-        As `groundstation.services.project.input_files.read_given_site`: a building model is told from a site file.
+        As `groundstation.services.project.input_files.read_input_site`: a building model is told from a site file.
     """
     monitor.report(say("reading the site"), 0, 0)
-    return read_given_site(path)
+    return read_input_site(path)
 
 
 def preview_import(path: Path, options: ImportOptions, monitor: Monitor = QUIET) -> ImportPreview:

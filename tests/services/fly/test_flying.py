@@ -209,7 +209,7 @@ def test_sorties_flown_at_a_link_are_kept_when_a_later_one_fails(tmp_path, monke
     def at_link(case, orders):
         if orders.number == 2:
             raise LinkRejected("sortie 2: the battery holds 40%")
-        return flying._Case._simulate(replace(case, wish=simulated), orders)
+        return flying._Case._simulate(replace(case, request=simulated), orders)
 
     monkeypatch.setattr(flying._Case, "_fly_link", at_link)
     asked = []
@@ -229,7 +229,7 @@ def test_what_a_vehicle_at_a_link_flew_before_it_vanished_is_kept(tmp_path, monk
     write_plan(plan_path, plan)
 
     def vanishing(case, orders):
-        outcome, record, sortie = flying._Case._simulate(replace(case, wish=FlightRequest()), orders)
+        outcome, record, sortie = flying._Case._simulate(replace(case, request=FlightRequest()), orders)
         error = LinkTimeout("the vehicle was not heard for 300 s in flight")
         return replace(outcome, error=error), replace(record, photos=record.photos[:2], duration_s=None), sortie
 
