@@ -6778,6 +6778,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>niedrigster Flug {0} m über dem Boden{1} (ohne Start und Landung)</translation>
     </message>
     <message>
+        <source>matt concrete with punched windows</source>
+        <translation>matter Beton mit Lochfenstern</translation>
+    </message>
+    <message>
         <source>mean</source>
         <translation>Mittel</translation>
     </message>
@@ -6998,6 +7002,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Plan fertig</translation>
     </message>
     <message>
+        <source>plane facade of 20 x 8 panels, street, buildings opposite, trees and cars before it</source>
+        <translation>ebene Fassade aus 20 x 8 Scheiben, Straße, Häuser gegenüber, Bäume und Autos davor</translation>
+    </message>
+    <message>
         <source>planned in {0} s ({1})</source>
         <translation>geplant in {0} s ({1})</translation>
     </message>
@@ -7202,6 +7210,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>der Cluster antwortet nicht mehr ({0}); fertige Fotos bleiben in {1}: noch einmal starten, um weiterzumachen</translation>
     </message>
     <message>
+        <source>the convex facade alone, with everything else far away</source>
+        <translation>die konvexe Fassade allein, alles andere weit weg</translation>
+    </message>
+    <message>
         <source>the data of the file do not end (ENDSEC is missing)</source>
         <translation>die Daten der Datei enden nicht (ENDSEC fehlt)</translation>
     </message>
@@ -7274,6 +7286,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>der Plan versprach {0} Sektoren; {1} davon fehlen</translation>
     </message>
     <message>
+        <source>the plane facade alone, with everything else far away</source>
+        <translation>die ebene Fassade allein, alles andere weit weg</translation>
+    </message>
+    <message>
         <source>the points do not determine a polynomial of degree {0}: they are in line</source>
         <translation>die Punkte bestimmen kein Polynom vom Grad {0}: sie liegen auf einer Linie</translation>
     </message>
@@ -7288,6 +7304,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the return height would have to be {0} m above take-off: DJI&apos;s remote controllers take no more than {1} m</source>
         <translation>die Rückkehrhöhe müsste {0} m über dem Startplatz sein: DJIs Fernsteuerungen nehmen höchstens {1} m an</translation>
+    </message>
+    <message>
+        <source>the same on a convex facade</source>
+        <translation>dasselbe an einer konvexen Fassade</translation>
     </message>
     <message>
         <source>the shortest there is</source>
@@ -7320,6 +7340,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>time in the air</source>
         <translation>Zeit in der Luft</translation>
+    </message>
+    <message>
+        <source>two facades at a right angle, whose glass sees glass</source>
+        <translation>zwei Fassaden im rechten Winkel, deren Glas Glas sieht</translation>
     </message>
     <message>
         <source>views found after</source>
