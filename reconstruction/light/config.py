@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
+from planning.base.parameters import check, parameter
 from reconstruction.light.reflection_mlp import MlpShape
 
 # What is learned of panes and photos beside the light that is mirrored.
@@ -119,39 +120,31 @@ class GridSettings:
         Steps in which rates rise; it cannot die as an MLP can.
     """
 
-    most_cells: int = 1 << 18
-    rays_per_cell: float = 1.0
-    cell: float = 0.6
-    reach_m: float | None = None
-    outer: float = 0.5
-    levels: int = 2
-    grown: float = 0.3
+    most_cells: int = parameter(1 << 18, least=64)
+    rays_per_cell: float = parameter(1.0, above=0.0)
+    cell: float = parameter(0.6, above=0.0)
+    reach_m: float | None = parameter(None, above=0.0, most=math.inf, expected="more than 0")
+    outer: float = parameter(0.5, above=0.0)
+    levels: int = parameter(2, least=0)
+    grown: float = parameter(0.3, least=0.0, most=1.0)
     far_side: int = 128
     places: int = 5
     diffuse_degree: int = 1
     rough_density: float = 1e-8
     rough_light: float = 1e-8
     emptier: float = 2e-10
-    rest: int = 25
-    rate: float = 2e-2
-    tilt_rate: float = 2e-4
-    batch_share: float = 0.375
-    squared_to: float = 0.1
-    passes: float = 14.0
+    rest: int = parameter(25, least=1)
+    rate: float = parameter(2e-2, above=0.0)
+    tilt_rate: float = parameter(2e-4, above=0.0)
+    batch_share: float = parameter(0.375, above=0.0)
+    squared_to: float = parameter(0.1, least=0.0, most=math.inf, expected="0 or more")
+    passes: float = parameter(14.0, above=0.0)
     warm_up: int = 10
 
     def __post_init__(self) -> None:
-        for name in ("cell", "rays_per_cell", "outer", "rate", "tilt_rate", "batch_share", "passes"):
-            if not (math.isfinite(getattr(self, name)) and getattr(self, name) > 0.0):
-                raise ValueError(f"{name}: expected more than 0, got {getattr(self, name)}")
-        if self.most_cells < 64 or self.rest < 1 or self.levels < 0 or not 0.0 <= self.grown <= 1.0:
-            raise ValueError("expected most_cells from 64, rest from 1, levels from 0, and grown from 0 to 1")
+        check(self)
         if self.far_side < 4 or self.far_side & (self.far_side - 1):
             raise ValueError(f"far_side: expected a power of 2 from 4 on, got {self.far_side}")
-        if not self.squared_to >= 0.0:
-            raise ValueError(f"squared_to: expected 0 or more, got {self.squared_to}")
-        if self.reach_m is not None and not self.reach_m > 0.0:
-            raise ValueError(f"reach_m: expected more than 0, got {self.reach_m}")
 
     def level(self, progress: float) -> int:
         """How often the grid is still to be made finer, by progress of the training, 0 to 1."""
@@ -220,41 +213,26 @@ class ReflectionConfig:
     environment_rows: int = 128
     places: int = 3
     diffuse_degree: int = 1
-    steps: int = 1000
-    batch: int = 8192
-    passes: float = 9.0
-    mlp_rate: float = 6e-3
-    mlp_decay: float = 0.3
-    table_rate: float = 2e-2
-    panel_rate: float = 1e-2
-    last_rate: float = 0.02
-    warm_up: int = 100
+    steps: int = parameter(1000, least=1)
+    batch: int = parameter(8192, least=1)
+    passes: float = parameter(9.0, above=0.0)
+    mlp_rate: float = parameter(6e-3, above=0.0)
+    mlp_decay: float = parameter(0.3, least=0.0)
+    table_rate: float = parameter(2e-2, above=0.0)
+    panel_rate: float = parameter(1e-2, above=0.0)
+    last_rate: float = parameter(0.02, above=0.0, most=1.0)
+    warm_up: int = parameter(100, least=0)
     high_frequency: tuple[HighFrequencyStage, ...] = ()
     squared_to: float = 0.0
     precision: Precision = "auto"
-    threads: int = 1
-    time_limit_s: float | None = None
-    held_out: float = 0.15
+    threads: int = parameter(1, least=1)
+    time_limit_s: float | None = parameter(None, above=0.0, most=math.inf, expected="more than 0")
+    held_out: float = parameter(0.15, above=0.0, below=1.0)
     seed: int = 0
-    memory_bytes: int = 1 << 30
+    memory_bytes: int = parameter(1 << 30, least=1)
 
     def __post_init__(self) -> None:
-        for name in ("steps", "batch", "threads", "memory_bytes"):
-            if getattr(self, name) < 1:
-                raise ValueError(f"{name}: expected 1 or more, got {getattr(self, name)}")
-        for name in ("mlp_rate", "table_rate", "panel_rate", "passes"):
-            if not (math.isfinite(getattr(self, name)) and getattr(self, name) > 0.0):
-                raise ValueError(f"{name}: expected more than 0, got {getattr(self, name)}")
-        if not (math.isfinite(self.mlp_decay) and self.mlp_decay >= 0.0):
-            raise ValueError(f"mlp_decay: expected 0 or more, got {self.mlp_decay}")
-        if not 0.0 < self.last_rate <= 1.0:
-            raise ValueError(f"last_rate: expected above 0, at most 1, got {self.last_rate}")
-        if self.warm_up < 0:
-            raise ValueError(f"warm_up: expected 0 or more, got {self.warm_up}")
-        if not 0.0 < self.held_out < 1.0:
-            raise ValueError(f"held_out: expected above 0 and below 1, got {self.held_out}")
-        if self.time_limit_s is not None and not self.time_limit_s > 0.0:
-            raise ValueError(f"time_limit_s: expected more than 0, got {self.time_limit_s}")
+        check(self)
 
     @property
     def for_grid(self) -> ReflectionConfig:

@@ -14,6 +14,7 @@ from scipy.spatial.transform import Rotation
 
 from planning.base.errors import InputError
 from planning.base.messages import say
+from planning.base.parameters import check, parameter
 from planning.base.progress import QUIET, Monitor
 from planning.geo.mesh import from_corners, join
 from planning.site.records import panel_triangles
@@ -232,24 +233,17 @@ class InitialParameters:
         Of the rays.
     """
 
-    n_splats: int = 20_000
-    finest_px: float = 1.0
-    coarser_around: float = 2.0
-    width: float = 0.6
-    opacity: float = 0.9
-    loose_opacity: float = 0.5
-    reach_m: float = 1000.0
+    n_splats: int = parameter(20_000, least=1)
+    finest_px: float = parameter(1.0, above=0.0)
+    coarser_around: float = parameter(2.0, above=0.0)
+    width: float = parameter(0.6, above=0.0)
+    opacity: float = parameter(0.9, above=1.0 / 255.0, below=1.0, expected="more than 1/255 and less than 1")
+    loose_opacity: float = parameter(0.5, above=1.0 / 255.0, below=1.0, expected="more than 1/255 and less than 1")
+    reach_m: float = parameter(1000.0, above=0.0)
     seed: int = 0
 
     def __post_init__(self) -> None:
-        if self.n_splats < 1:
-            raise ValueError(f"n_splats: expected at least 1, got {self.n_splats}")
-        for name in ("finest_px", "coarser_around", "width", "reach_m"):
-            if not (math.isfinite(getattr(self, name)) and getattr(self, name) > 0.0):
-                raise ValueError(f"{name}: expected a positive number, got {getattr(self, name)}")
-        for name in ("opacity", "loose_opacity"):
-            if not 1.0 / 255.0 < getattr(self, name) < 1.0:
-                raise ValueError(f"{name}: expected more than 1/255 and less than 1, got {getattr(self, name)}")
+        check(self)
 
 
 def initial_splats(

@@ -15,6 +15,7 @@ import torch
 from torch import Tensor
 from torch.optim import Optimizer
 
+from planning.base.parameters import check, parameter
 from reconstruction.splats.densification.strategy import (
     CUT,
     NOTHING,
@@ -67,23 +68,17 @@ class McmcParameters:
     start: int = 500
     stop: int = 25_000
     every: int = 100
-    n_splats: int = 100_000
-    growth: float = 0.05
-    least_opacity: float = 0.01
-    noise: float = 0.1
-    opacity_weight: float = 0.002
-    size_weight: float = 0.002
+    n_splats: int = parameter(100_000, least=1)
+    growth: float = parameter(0.05, least=0.0)
+    least_opacity: float = parameter(0.01, above=CUT, below=1.0, expected="above 1/255 and below 1")
+    noise: float = parameter(0.1, least=0.0)
+    opacity_weight: float = parameter(0.002, least=0.0)
+    size_weight: float = parameter(0.002, least=0.0)
 
     def __post_init__(self) -> None:
+        check(self)
         if not (0 <= self.start <= self.stop and self.every >= 1):
             raise ValueError(f"expected 0 <= start <= stop, every >= 1, got {self.start}, {self.stop}, {self.every}")
-        if self.n_splats < 1:
-            raise ValueError(f"n_splats: expected at least 1, got {self.n_splats}")
-        if not CUT < self.least_opacity < 1.0:
-            raise ValueError(f"least_opacity: expected above 1/255 and below 1, got {self.least_opacity}")
-        for name in ("growth", "noise", "opacity_weight", "size_weight"):
-            if not (math.isfinite(getattr(self, name)) and getattr(self, name) >= 0.0):
-                raise ValueError(f"{name}: expected 0 or more, got {getattr(self, name)}")
 
 
 class MarkovChain:
