@@ -82,7 +82,7 @@ UNHEARD_S = 2.0
 """An aircraft at 5 m/s is 10 m further on by then, and may have been at a view meanwhile."""
 
 
-def n_lost_between(record: FlightRecord, first: int, last: int) -> int:
+def _n_lost_between(record: FlightRecord, first: int, last: int) -> int:
     """How many photos the camera counted between two that it told of, without the others that it told of.
 
     Parameters
@@ -104,7 +104,7 @@ def n_lost_between(record: FlightRecord, first: int, last: int) -> int:
     return max(0, after.index - before.index - 1 - len(told))
 
 
-def is_unheard_between(record: FlightRecord, first: int, last: int) -> bool:
+def _is_unheard_between(record: FlightRecord, first: int, last: int) -> bool:
     """Whether the track has a pause between two photos, so that it does not say where the aircraft was meanwhile."""
     start_s, end_s = record.photos[first].time_s, record.photos[last].time_s
     time_s = record.track.time_s
@@ -115,24 +115,24 @@ def is_unheard_between(record: FlightRecord, first: int, last: int) -> bool:
 def n_lost_before(record: FlightRecord, photo: int) -> int:
     """How many photos the camera counted from the beginning of the flight to one that it told of, and did not tell of.
 
-    0 where it did not say how many there were before, as `n_lost_between` otherwise.
+    0 where it did not say how many there were before, as `_n_lost_between` otherwise.
     """
     first, counted = record.photos[0], record.counted_before
     if counted is None or first.source not in FIRST_NUMBER or _failed(record, -float("inf"), first.time_s):
-        return n_lost_between(record, 0, photo)
-    return max(0, first.index - counted - _first_number(record, first)) + n_lost_between(record, 0, photo)
+        return _n_lost_between(record, 0, photo)
+    return max(0, first.index - counted - _first_number(record, first)) + _n_lost_between(record, 0, photo)
 
 
 def n_lost_after(record: FlightRecord, photo: int) -> int:
     """How many photos the camera counted from one that it told of to the end of the flight, and did not tell of.
 
-    0 where it did not say how many there were afterwards, as `n_lost_between` otherwise.
+    0 where it did not say how many there were afterwards, as `_n_lost_between` otherwise.
     """
     last, counted = record.photos[-1], record.counted_after
     end = len(record.photos) - 1
     if counted is None or last.source not in FIRST_NUMBER or _failed(record, last.time_s, float("inf")):
-        return n_lost_between(record, photo, end)
-    return max(0, counted - 1 - (last.index - _first_number(record, last))) + n_lost_between(record, photo, end)
+        return _n_lost_between(record, photo, end)
+    return max(0, counted - 1 - (last.index - _first_number(record, last))) + _n_lost_between(record, photo, end)
 
 
 def n_lost(record: FlightRecord) -> int:
@@ -141,7 +141,7 @@ def n_lost(record: FlightRecord) -> int:
         before, after = record.counted_before, record.counted_after
         return 0 if before is None or after is None else max(0, after - before)
     pairs = itertools.pairwise(range(len(record.photos)))
-    between = sum(n_lost_between(record, first, last) for first, last in pairs)
+    between = sum(_n_lost_between(record, first, last) for first, last in pairs)
     return n_lost_before(record, 0) + between + n_lost_after(record, len(record.photos) - 1)
 
 
@@ -159,9 +159,6 @@ def _first_number(record: FlightRecord, photo: TakenPhoto) -> int:
 
 def _failed(record: FlightRecord, start_s: float, end_s: float) -> bool:
     return any(event.code == "camera-failed" and start_s <= event.time_s <= end_s for event in record.events)
-
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -299,20 +296,20 @@ def _closest_m(views: Sequence[Viewpoint], record: FlightRecord) -> list[float]:
     return found
 
 
-def _misfits(views: Sequence[Viewpoint], photos: Sequence[TakenPhoto], gates: Gates) -> Floats:
+def _misfits(views: Sequence[Viewpoint], photos: Sequence[TakenPhoto], gates: Gates) -> Array:
     """How far each photo is from each view in parts of the gates, shape (n, m): the largest of position and angles."""
     planned, taken = viewpoint_arrays(tuple(views)), _photo_arrays(photos)
     position = np.linalg.norm(planned.positions_enu_m[:, None] - taken.positions_enu_m[None], axis=2)
     return np.asarray(np.maximum(position / gates.position_m, _angles_off(planned, taken, gates)))
 
 
-def _angles_off(planned: ViewpointArrays, taken: ViewpointArrays, gates: Gates) -> Floats:
+def _angles_off(planned: ViewpointArrays, taken: ViewpointArrays, gates: Gates) -> Array:
     """The larger of heading and pitch error in parts of the gate, shape (n, m); angles that are not known fit."""
     heading = np.abs(heading_difference_rad(planned.heading_rad[:, None], taken.heading_rad[None]))
     # Looking steeply down a heading hardly matters: what counts is how far the picture turns and moves.
     heading = heading * np.cos(planned.pitch_rad)[:, None]
     pitch = np.abs(planned.pitch_rad[:, None] - taken.pitch_rad[None])
-    off: Floats = np.nan_to_num(np.fmax(heading, pitch)) / math.radians(gates.angle_deg)
+    off: Array = np.nan_to_num(np.fmax(heading, pitch)) / math.radians(gates.angle_deg)
     return off
 
 
@@ -323,14 +320,14 @@ def _photo_arrays(photos: Sequence[TakenPhoto]) -> ViewpointArrays:
     return ViewpointArrays(positions, np.radians(angles[:, 0]), np.radians(angles[:, 1]))
 
 
-def _gains(misfits: Floats, gates: Gates) -> Floats:
+def _gains(misfits: Array, gates: Gates) -> Array:
     """What pairing each view and photo is worth: 1 - e^2, and nothing where they are not to be paired."""
     best = misfits.min(axis=0, initial=np.inf)
     fits = (misfits <= 1.0) & (misfits <= best + gates.slack)
     return np.where(fits, 1.0 - np.minimum(misfits, 1.0) ** 2, 0.0)
 
 
-def _aligned(misfits: Floats, gates: Gates = DEFAULT_GATES) -> tuple[list[tuple[int, int]], float]:
+def _aligned(misfits: Array, gates: Gates = DEFAULT_GATES) -> tuple[list[tuple[int, int]], float]:
     """The best pairs of view and photo in order, and their worth.
 
     `best[i, j]` is the worth of the first i views and j photos: the larger of leaving out view i, leaving out photo j,
@@ -396,8 +393,8 @@ def _with_lost_reports(found: list[ViewMatch], records: Sequence[FlightRecord], 
     for (before, first), (after, last) in itertools.pairwise(told):
         if first.record == last.record and first.photo <= last.photo:
             ends = records[first.record], first.photo, last.photo
-            reasons = passed | ({Reason.NOT_REACHED} if is_unheard_between(*ends) else set())
-            stretches.append((range(before + 1, after), n_lost_between(*ends), reasons))
+            reasons = passed | ({Reason.NOT_REACHED} if _is_unheard_between(*ends) else set())
+            stretches.append((range(before + 1, after), _n_lost_between(*ends), reasons))
     if len(own) == 1 and told:
         (first_view, first), (last_view, last) = told[0], told[-1]
         stretches.append((range(first_view), n_lost_before(records[own[0]], first.photo), passed))
@@ -412,7 +409,7 @@ def _with_lost_reports(found: list[ViewMatch], records: Sequence[FlightRecord], 
     return found
 
 
-def _out_of_order(misfits: Floats, photo_of: dict[int, int], gates: Gates) -> dict[int, int]:
+def _out_of_order(misfits: Array, photo_of: dict[int, int], gates: Gates) -> dict[int, int]:
     """Pairs of what is left after pairing in order."""
     from scipy.optimize import linear_sum_assignment
 

@@ -31,7 +31,7 @@ Floats = NDArray[Any]
 
 
 @kernel
-def panel_codes(
+def _panel_codes(
     panel: Floats,
     views: Floats,
     limits: Floats,
@@ -99,15 +99,15 @@ def _all_passes(
     sectors_per_quadrant: int,
     codes: NDArray[np.int32],
 ) -> None:
-    panel_codes(panel, views, limits, cos2, tangents, 1, sectors_per_quadrant, codes)
+    _panel_codes(panel, views, limits, cos2, tangents, 1, sectors_per_quadrant, codes)
     for c, t in zip(further[0], further[1]):  # noqa: B905  (Numba knows no strict)
         more_cos2 = (c[0], c[1], c[2], c[3], c[4], c[5], c[6], c[7])
         more_tangents = (t[0], t[1], t[2], t[3], t[4], t[5], t[6], t[7])
-        panel_codes(panel, views, limits, more_cos2, more_tangents, 0, sectors_per_quadrant, codes)
+        _panel_codes(panel, views, limits, more_cos2, more_tangents, 0, sectors_per_quadrant, codes)
 
 
 @kernel
-def mark_covered(
+def _mark_covered(
     panels: Floats,
     views: Floats,
     limits: Floats,
@@ -131,7 +131,7 @@ def mark_covered(
 
 
 @kernel
-def fill_codes(
+def _fill_codes(
     panels: Floats,
     views: Floats,
     limits: Floats,
@@ -147,7 +147,7 @@ def fill_codes(
 
 
 @kernel
-def elements_per_view(codes: NDArray[np.int32], counts: NDArray[np.int64]) -> None:
+def _elements_per_view(codes: NDArray[np.int32], counts: NDArray[np.int64]) -> None:
     """Number of panels that each view covers, from codes of shape (m, n), added to `counts`, shape (n,)."""
     for j in range(codes.shape[0]):
         for i in range(codes.shape[1]):
@@ -155,7 +155,7 @@ def elements_per_view(codes: NDArray[np.int32], counts: NDArray[np.int64]) -> No
 
 
 @kernel
-def gather_elements(
+def _gather_elements(
     codes: NDArray[np.int32], n_sections: int, next_free: NDArray[np.int64], elements: NDArray[np.int32]
 ) -> None:
     """Write element numbers (panel * n_sections + section) view by view; `next_free` holds each view's first place."""
@@ -248,7 +248,7 @@ class CoverageModel:
         arguments = self._arguments
         packed = arguments.pack(views)
         hits = np.zeros((len(self.frames), self.grid.n_sections + 1), np.uint8)
-        mark_covered(*arguments.call(packed, hits))
+        _mark_covered(*arguments.call(packed, hits))
         return hits[:, 1:].reshape(-1).view(np.bool_)
 
     def elements(self, views: ViewpointArrays) -> Elements:
@@ -259,12 +259,12 @@ class CoverageModel:
 
         def work(start: int, stop: int) -> Elements:
             codes = np.empty((m, stop - start), np.int32)
-            fill_codes(*arguments.call(np.ascontiguousarray(packed[:, start:stop]), codes))
+            _fill_codes(*arguments.call(np.ascontiguousarray(packed[:, start:stop]), codes))
             counts = np.zeros(stop - start, np.int64)
-            elements_per_view(codes, counts)
+            _elements_per_view(codes, counts)
             starts = np.concatenate([[0], np.cumsum(counts)])
             items = np.empty(starts[-1], np.int32)
-            gather_elements(codes, self.grid.n_sections, starts[:-1].copy(), items)
+            _gather_elements(codes, self.grid.n_sections, starts[:-1].copy(), items)
             return self._with_effects(_rows(views, start, stop), Elements(starts, items))
 
         size = max(1, min(VIEWS_PER_CHUNK, PAIRS_PER_CHUNK // max(m, 1)))
@@ -299,7 +299,7 @@ def codes_all_around(model: CoverageModel, points_enu_m: NDArray[np.float64]) ->
     packed = np.zeros((N_VIEW_ROWS, len(points_enu_m)), arguments.dtype)
     packed[:3] = (points_enu_m - arguments.centre).T
     codes = np.empty((len(model.frames), len(points_enu_m)), np.int32)
-    fill_codes(*arguments.call(packed, codes))
+    _fill_codes(*arguments.call(packed, codes))
     return codes
 
 

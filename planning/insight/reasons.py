@@ -83,7 +83,7 @@ class World(NamedTuple):
 
 
 @kernel
-def broken_rules(
+def _broken_rules(
     p: Array, elevation: float, distance: float, target: Array, world: World, most: int, best: Array, amounts: Array
 ) -> int:
     """Rules that a place p breaks, as bits; -1 where they are more than `most`, or one and no better than known.
@@ -153,7 +153,7 @@ def _keep_away(
 
 @kernel
 def _look(place: Array, question: Question, world: World, most: int, best: Array, amounts: Array, p: Array) -> int:
-    """`broken_rules` of the place at (theta, phi, distance), each as a part of its range; fills `p`."""
+    """`_broken_rules` of the place at (theta, phi, distance), each as a part of its range; fills `p`."""
     panel, bounds = question.panel, question.bounds
     theta = bounds[0] + (INSET + (1.0 - 2.0 * INSET) * place[0]) * (bounds[1] - bounds[0])
     phi = bounds[2] + (INSET + (1.0 - 2.0 * INSET) * place[1]) * (bounds[3] - bounds[2])
@@ -165,7 +165,7 @@ def _look(place: Array, question: Question, world: World, most: int, best: Array
         p[axis] = panel[axis] + distance * d
         vertical = d
     elevation = np.arcsin(min(max(-vertical, -1.0), 1.0))
-    return broken_rules(p, elevation, distance, question.target, world, most, best, amounts)
+    return _broken_rules(p, elevation, distance, question.target, world, most, best, amounts)
 
 
 @kernel
@@ -192,7 +192,7 @@ def _refine(
 
 
 @kernel
-def explain_section(
+def _explain_section(
     question: Question, world: World, n_angles: int, masks: NDArray[np.int64], amounts: Array, places: Array
 ) -> int:
     """Why no place covers a section: rows of rules that are broken together, and how many there are.
@@ -259,11 +259,11 @@ def explain_sections(
     amounts: Array,
     places: Array,
 ) -> None:
-    """`explain_section` for k sections: panel numbers (k,), bounds (k, 4); outputs have k as first axis."""
+    """`_explain_section` for k sections: panel numbers (k,), bounds (k, 4); outputs have k as first axis."""
     for i in range(len(panel_of)):
         j = panel_of[i]
         question = Question(panels[j], targets[j], bounds[i], farthest[j])
-        n_rows[i] = explain_section(question, world, n_angles, masks[i], amounts[i], places[i])
+        n_rows[i] = _explain_section(question, world, n_angles, masks[i], amounts[i], places[i])
 
 
 # Sections that some allowed place covers, but to none of which a way from home was found.

@@ -242,7 +242,7 @@ def revise(plan: Plan, prepared: Prepared, before: Revision | None = None) -> Re
     return Revision(prepared, ways, case, check_case(case))
 
 
-def with_route(revision: Revision, viewpoints: Iterable[Viewpoint], sorties: Iterable[Sortie]) -> Revision:
+def _with_route(revision: Revision, viewpoints: Iterable[Viewpoint], sorties: Iterable[Sortie]) -> Revision:
     """The plan with other viewpoints and sorties; it states what they cover, and length and duration of new sorties."""
     known = {id(sortie) for sortie in revision.plan.sorties}
     case = revision.case.with_plan(replace(revision.plan, viewpoints=tuple(viewpoints), sorties=tuple(sorties)))
@@ -551,7 +551,7 @@ def move(
         else sortie
         for sortie in revision.plan.sorties
     ]
-    return with_route(revision, after.values(), sorties)
+    return _with_route(revision, after.values(), sorties)
 
 
 def add(revision: Revision, position_enu_m: Vec3, heading_deg: float, gimbal_pitch_deg: float) -> Revision:
@@ -567,7 +567,7 @@ def add(revision: Revision, position_enu_m: Vec3, heading_deg: float, gimbal_pit
     pitch_deg = round(float(gimbal_pitch_deg), ANGLE_DECIMALS)
     heading_deg = _rounded_heading_deg(heading_deg)
     new = Viewpoint(next_id(revision.plan), _rounded_m(position_enu_m), heading_deg, pitch_deg)
-    return with_route(revision, (*revision.plan.viewpoints, new), with_stop(revision, new))
+    return _with_route(revision, (*revision.plan.viewpoints, new), with_stop(revision, new))
 
 
 def delete(revision: Revision, viewpoint_ids: Collection[str]) -> Revision:
@@ -591,7 +591,7 @@ def delete(revision: Revision, viewpoint_ids: Collection[str]) -> Revision:
             sorties.append(sortie)
         elif left:
             sorties.append(redrawn(sortie, before, left, after, revision.ways))
-    return with_route(revision, after.values(), sorties)
+    return _with_route(revision, after.values(), sorties)
 
 
 def lock(revision: Revision, viewpoint_ids: Collection[str], locked: bool = True) -> Revision:
@@ -604,7 +604,7 @@ def lock(revision: Revision, viewpoint_ids: Collection[str], locked: bool = True
     """
     changed = {viewpoint_id: replace(revision.viewpoint(viewpoint_id), locked=locked) for viewpoint_id in viewpoint_ids}
     viewpoints = [changed.get(viewpoint.id, viewpoint) for viewpoint in revision.plan.viewpoints]
-    return with_route(revision, viewpoints, revision.plan.sorties)
+    return _with_route(revision, viewpoints, revision.plan.sorties)
 
 
 def unlock(revision: Revision, viewpoint_ids: Collection[str]) -> Revision:

@@ -74,7 +74,7 @@ def exact_tour(cost: NDArray[np.float64]) -> NDArray[np.int64]:
 # Throughout, the legs (t1, t2), (t3, t4), (t5, t6) are removed and (t2, t3), (t4, t5), (t6, t1) are added.
 
 N_NEAREST, N_SPREAD, SPREAD = 7, 5, 0.7
-"""Legs to add are looked for among the nearest points and some spread out around (see `find_neighbours`).
+"""Legs to add are looked for among the nearest points and some spread out around (see `_find_neighbours`).
 
 Measured on six sets of 318 to 1000 points: with the 10 nearest alone, tours of evenly spread points are as good, of
 clustered points 7 % and of repeated points 9 % longer. 5 to 10 nearest, 4 to 6 others and 0.5 to 0.8 are all alike.
@@ -121,7 +121,7 @@ class Search(NamedTuple):
     reversals: Ints
 
 
-def start_search(order: Ints, length: float) -> Search:
+def _start_search(order: Ints, length: float) -> Search:
     """State of a search that starts from `order`."""
     n = len(order)
     position = np.empty(n, np.int64)
@@ -138,7 +138,7 @@ def start_search(order: Ints, length: float) -> Search:
 
 
 @kernel
-def find_neighbours(cost: Floats, first: int, last: int) -> tuple[Ints, Floats]:
+def _find_neighbours(cost: Floats, first: int, last: int) -> tuple[Ints, Floats]:
     """Neighbours of the points from `first` to before `last`, and their costs.
 
     The nearest few alone would all lie in the same cluster (20 photos at one spot, say), and no exchange could be
@@ -570,7 +570,7 @@ class _LocalSearch:
         self._cost, self._order, self._closed = cost, order, closed
         finite, missing = _without_infinities(cost, order, closed)
         self._legs = _legs(finite, monitor)
-        self._state = start_search(order, tour_length(finite, order))
+        self._state = _start_search(order, tour_length(finite, order))
         self._rng = np.random.default_rng(seed)
         # Six costs are added to compare two tours: rounding stays below 1e-15 of the largest.
         self._least_gain = 1e-12 * missing
@@ -638,7 +638,7 @@ def _legs(cost: Floats, monitor: Monitor) -> Legs:
 
     def find(first: int, last: int) -> tuple[Ints, Floats]:
         monitor.report("neighbours", first, n)
-        return find_neighbours(cost, first, last)
+        return _find_neighbours(cost, first, last)
 
     parts = run_chunks(find, chunks(n, max(1, 1_000_000 // n)))
     return Legs(cost, *(np.concatenate(columns) for columns in zip(*parts, strict=True)))

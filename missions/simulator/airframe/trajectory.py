@@ -83,7 +83,7 @@ def _change_s(gain: float, a_max: float, j_max: float) -> float:
 
 
 @kernel
-def pass_speed_m_s(a_max: float, j_max: float, overshoot_m: float) -> float:
+def _pass_speed_m_s(a_max: float, j_max: float, overshoot_m: float) -> float:
     """Speed from which the aircraft stops within `overshoot_m`: v r(v) = 2 overshoot, as in `rest_to_rest_s`."""
     least = a_max * a_max / j_max
     speed: float
@@ -166,7 +166,7 @@ def _try_share(
         if rest_m <= ARRIVED_M:
             return first_s + bend_s
         speed = _speed_limit(to_go / rest_m, caps)
-        fastest = pass_speed_m_s(a_max, j_max, 0.5 * rest_m)
+        fastest = _pass_speed_m_s(a_max, j_max, 0.5 * rest_m)
         if fastest < speed:
             return first_s + bend_s + 2.0 * _change_s(fastest, a_max, j_max)
         return first_s + bend_s + rest_m / speed + _change_s(speed, a_max, j_max)
@@ -277,10 +277,10 @@ def _best_share(
 
 
 @kernel
-def plan_pieces(state: Floats, target: Floats, caps: Floats, a_max: float, j_max: float, passes: bool) -> Floats:
+def _plan_pieces(state: Floats, target: Floats, caps: Floats, a_max: float, j_max: float, passes: bool) -> Floats:
     """Pieces of a trajectory, shape (n, 13): start time, position, velocity, acceleration, jerk; the last is rest."""
     goal_v, end, along = np.zeros(3), np.zeros(3), np.zeros(3)
-    exit_m_s = pass_speed_m_s(a_max, j_max, PASS_OVERSHOOT_M) if passes else 0.0
+    exit_m_s = _pass_speed_m_s(a_max, j_max, PASS_OVERSHOOT_M) if passes else 0.0
     share = _best_share(state, target, caps, a_max, j_max, exit_m_s, goal_v, end, along)
     # Once more, for what it writes.
     _try_share(share, state, target, caps, a_max, j_max, exit_m_s, goal_v, end, along)
@@ -395,7 +395,7 @@ def plan_trajectory(
         raise ValueError(f"expected positive limits, got {speeds_m_s}, {acceleration_m_s2}, {jerk_m_s3}")
     jerk = jerk_m_s3 if math.isfinite(jerk_m_s3) else acceleration_m_s2 / JERK_RAMP_S
     target = np.array(target_enu_m, np.float64)
-    found = plan_pieces(
+    found = _plan_pieces(
         np.array(state, np.float64), target, np.array(speeds_m_s, np.float64), acceleration_m_s2, jerk, passes
     )
     if np.abs(found[-1, 1:4] - target).max() <= ARRIVED_M:

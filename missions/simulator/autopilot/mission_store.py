@@ -121,7 +121,7 @@ def stored(message: MissionItemInt, autopilot: Autopilot) -> StoredItem:
     return _stored_by_ardupilot(item) if autopilot is Autopilot.ARDUPILOT else _stored_by_px4(item)
 
 
-def from_float_item(message: MissionItem) -> MissionItemInt:
+def _from_float_item(message: MissionItem) -> MissionItemInt:
     """The deprecated MISSION_ITEM as a MISSION_ITEM_INT; its float32 degrees are up to a metre off.
 
     Raises
@@ -152,7 +152,7 @@ def to_wire(item: StoredItem, seq: int, is_current: bool, mission_type: int) -> 
     )  # fmt: skip
 
 
-def to_float_wire(item: MissionItemInt) -> MissionItem:
+def _to_float_wire(item: MissionItemInt) -> MissionItem:
     """The same item in the deprecated message."""
     is_place = item.command in WITH_POSITION | FENCE_COMMANDS | RALLY_COMMANDS
     scale = 1.0 / DEGREES_E7 if is_place else 1.0
@@ -422,7 +422,7 @@ class MissionStore:
         if message.seq != self._expected:
             return [self._ack(mavlink.MAV_MISSION_INVALID_SEQUENCE, source)] if self.rules.answers_wrong_seq else []
         try:
-            item = stored(from_float_item(message) if isinstance(message, MissionItem) else message, self._autopilot)
+            item = stored(_from_float_item(message) if isinstance(message, MissionItem) else message, self._autopilot)
         except Refused as refused:
             self.state = StoreState.IDLE
             return [self._ack(refused.result, source)]
@@ -459,7 +459,7 @@ class MissionStore:
         sent = to_wire(item, message.seq, False, self._mission_type)
         sent = replace(sent, target_system=source.system, target_component=source.component)
         # ArduPilot, and MAVLink's own words, answer the deprecated request with the deprecated item.
-        return to_float_wire(sent) if isinstance(message, MissionRequest) else sent
+        return _to_float_wire(sent) if isinstance(message, MissionRequest) else sent
 
     def _on_clear(self, source: Address) -> Message:
         if self.state is StoreState.RECEIVING:

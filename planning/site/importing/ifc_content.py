@@ -68,7 +68,7 @@ class MapParameters:
     scale_z: float
 
 
-def map_parameters(model: Any) -> MapParameters | None:
+def _map_parameters(model: Any) -> MapParameters | None:
     """From IfcMapConversion and IfcProjectedCRS, or the property sets that stand for them in IFC 2x3."""
     if model.schema == "IFC2X3":
         sets = _property_sets(model)
@@ -125,7 +125,7 @@ def _named_unit_m(name: str) -> float | None:
     return {"METRE": 1.0, "METER": 1.0, "M": 1.0, "MILLIMETRE": 0.001, "FOOT": 0.3048}.get(name.upper())
 
 
-def site_place(model: Any, unit_m: float) -> SitePlace | None:
+def _site_place(model: Any, unit_m: float) -> SitePlace | None:
     """Place of the first IfcSite that has one; zero latitude and longitude together stand for none."""
     from ifcopenshell.util.placement import get_local_placement
 
@@ -151,7 +151,7 @@ def _angle_deg(parts: Any) -> float | None:
     return sum(float(part) / size for part, size in zip(parts, (1.0, 60.0, 3600.0, 3.6e9), strict=False))
 
 
-def true_north_rad(model: Any) -> float:
+def _true_north_rad(model: Any) -> float:
     """Direction of true north in the model's plane, counter-clockwise from its y axis; 0 if the file says nothing."""
     for context in model.by_type("IfcGeometricRepresentationContext", include_subtypes=False):
         north = context.TrueNorth
@@ -447,9 +447,9 @@ def _extract(
         are_oriented=tuple(pane.is_oriented for pane in panes.values()),
         unit_m=unit_m,
         site_z_m=_site_z_m(model, unit_m),
-        site=site_place(model, unit_m),
-        map=map_parameters(model),
-        north_rad=true_north_rad(model),
+        site=_site_place(model, unit_m),
+        map=_map_parameters(model),
+        north_rad=_true_north_rad(model),
         notes=(*notes, *left_out_notes([*broken, *dict.fromkeys(left_out)])),
     )
     return content, np.concatenate([np.zeros((0, 3, 3)), *(shape.triangles for shape in shapes.values())])
