@@ -6,7 +6,6 @@ does: it presses a button, types a path, or leaves by Escape.
 
 from __future__ import annotations
 
-import gc
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -257,10 +256,7 @@ def clicked(*steps: Step | str, timeout_s: float = PATIENCE_S) -> Iterator[list[
 
 
 def close_controller(controller) -> None:
-    """Close the window as somebody does who wants to leave, whatever is asked, and let go of everything.
-
-    Windows that are garbage are still told of each change of style, and cost the next window more than itself.
-    """
+    """Close the window as somebody does who wants to leave, whatever is asked, and let go of everything."""
     buttons = QMessageBox.StandardButton
 
     def leave(dialog: QDialog) -> None:
@@ -275,7 +271,6 @@ def close_controller(controller) -> None:
     finally:
         hand.end()
     controller.close()
-    gc.collect()
 
 
 def accept_button(dialog: QFileDialog) -> QAbstractButton:
