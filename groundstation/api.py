@@ -20,7 +20,8 @@ from missions.mission.model import FileFormat, Mission, ReadMission
 from planning.aircraft.catalogue import Profile, profile, profiles
 from planning.base.errors import GroundStationError, InfeasibleError, InputError, MissionError, OperationCancelled
 from planning.base.findings import Finding, Severity
-from planning.plan import Constraints, Plan, read_plan, write_plan
+from planning.parameters import Constraints
+from planning.plan import Plan, read_plan, write_plan
 from planning.planner import Planned, plan_flight
 from planning.request import PlanRequest
 from planning.site.bundled import write_scene

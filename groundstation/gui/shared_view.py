@@ -66,7 +66,7 @@ class Stage(QWidget):
         self._camera_viewpoint = ""
         self._in_camera: tuple[SiteModel | None, Plan | None, str] = (None, None, "")
         self._camera: CameraPreview | None = None
-        self._waiting: list[Callable[[SceneView], None]] = []
+        self._waiting: list[Callable[[SceneView], object]] = []
         self._has_shown_plan = False
         self._pages = QStackedWidget()
         self._loading = QLabel(self.tr("The 3-D view is being prepared ..."))
@@ -102,7 +102,9 @@ class Stage(QWidget):
 
     def page(self) -> SharedViewPage:
         """What is shown."""
-        return SharedViewPage(self._buttons.checkedButton().property("page"))
+        button = self._buttons.checkedButton()
+        assert button is not None
+        return SharedViewPage(button.property("page"))
 
     def show_page(self, page: SharedViewPage) -> None:
         """Show the site in another way."""
@@ -121,7 +123,7 @@ class Stage(QWidget):
         """The 3-D view; None before it is ready."""
         return self._scene
 
-    def with_scene(self, callback: Callable[[SceneView], None]) -> None:
+    def with_scene(self, callback: Callable[[SceneView], object]) -> None:
         """Call with the 3-D view: now, or once it is ready."""
         if self._scene is not None:
             callback(self._scene)

@@ -20,7 +20,7 @@ from typing import Any
 
 import psutil
 
-from groundstation.gui.screenshots.virtual_screen import has_screen, start_virtual_screen
+from groundstation.gui.start import has_screen, start_virtual_screen
 
 N_VIEWS, N_EDITS = 560, 40
 BUDGET_S, IDLE_S, N_PLANS = 20.0, 4.0, 3

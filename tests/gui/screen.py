@@ -1,5 +1,5 @@
 """A virtual screen: 3-D views need OpenGL, which Qt's "offscreen" platform does not have."""
 
-from groundstation.gui.screenshots.virtual_screen import start_virtual_screen
+from groundstation.gui.start import start_virtual_screen
 
 __all__ = ["start_virtual_screen"]

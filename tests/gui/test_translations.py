@@ -13,6 +13,7 @@ from PySide6.QtCore import QTranslator
 from PySide6.QtWidgets import QMenu, QWidget
 
 from groundstation.gui.application.translate import FOLDER
+from groundstation.gui.tabs import TABS
 from groundstation.services.settings import Language
 from tests.gui.driving import close_controller, turn_until
 
@@ -155,7 +156,7 @@ def controller(application, worker, tmp_path, monkeypatch):
 def test_the_window_speaks_german_once_it_is_chosen(controller):
     titles = [action.text().replace("&", "") for action in controller.window.menuBar().actions()]
     assert {"Projekt", "Bearbeiten", "Ansicht", "Hilfe"} <= set(titles)
-    assert [spec.shown_title() for spec in controller.window.specs()] == [
+    assert [spec.shown_title() for spec in TABS] == [
         *("Standort", "Planung", "Mission", "Fliegen", "Fotos", "Rekonstruktion", "Modell")
     ]
 

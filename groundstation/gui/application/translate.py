@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from PySide6.QtCore import QT_TRANSLATE_NOOP, QCoreApplication, QLibraryInfo, QLocale, QTranslator
+from PySide6.QtCore import QCoreApplication, QLibraryInfo, QLocale, QTranslator
 from PySide6.QtGui import QKeySequence
 from PySide6.QtWidgets import QApplication
 
@@ -16,6 +16,12 @@ from groundstation.services.messages import in_window_words, told
 from groundstation.services.settings import Language
 from groundstation.services.units import UnitSystem
 from planning.base.findings import Finding
+
+
+def QT_TRANSLATE_NOOP(context: str, text: str) -> str:  # noqa: N802
+    """Mark a text for `lupdate`, which looks for this name. Qt's own returns the text as an `object`."""
+    return text
+
 
 # Words that stand in messages, and what the window says in place of what is typed.
 #

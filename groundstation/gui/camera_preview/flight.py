@@ -46,7 +46,8 @@ def covered_by_view(sight: SiteSight, plan: Plan, view: ViewpointArrays) -> NDAr
     """
     rules = plan.constraints
     grid = SectionGrid(rules.section_step_deg)
-    seen = sections_seen(view, sight.frames, plan.camera, grid, rules.whole_panel, rules.max_distance_m)[0] != NOT_SEEN
+    sections = sections_seen(view, sight.frames, plan.camera, grid, rules.whole_panel, rules.max_distance_m)[0]
+    seen: NDArray[np.bool_] = sections != NOT_SEEN
     if rules.occlusion == "off":
         return seen
     eye = np.ascontiguousarray(view.positions_enu_m[0])
@@ -111,7 +112,7 @@ class CameraFlight:
     def pose_at(self, t_s: float) -> CameraPose:
         """Pose at a time; before the start and after the end it rests."""
         position = self.profile.at(np.array([t_s])).positions_enu_m[0]
-        heading = np.interp(t_s, self.turn_s, self.heading_rad)
+        heading = np.asarray(np.interp(t_s, self.turn_s, self.heading_rad))
         pitch = np.interp(t_s, self.turn_s, self.pitch_rad)
         return CameraPose(position, float(wrap_heading_rad(heading)), float(pitch))
 

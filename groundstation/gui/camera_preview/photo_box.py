@@ -21,7 +21,7 @@ from PySide6.QtWidgets import (
 )
 
 from groundstation.gui.view3d.orbit import Pinhole
-from groundstation.gui.widgets.inputs import ChoiceBox, NumberBox, calm
+from groundstation.gui.widgets.inputs import ChoiceBox, NumberBox, calm, moment_of
 from groundstation.gui.widgets.theme import colours
 from groundstation.services.site.sun import sun_place_deg
 from planning.geo.frames import Origin
@@ -285,7 +285,7 @@ class LightBox(QWidget):
             return self._heading.value(), self._elevation.value()
         if self._origin is None:
             return self._value.sun_heading_deg, self._value.sun_elevation_deg
-        at = self._when.dateTime().toPython().astimezone()  # type: ignore[attr-defined]
+        at = moment_of(self._when)
         heading_deg, elevation_deg = sun_place_deg(self._origin.lat_deg, self._origin.lon_deg, at)
         return heading_deg % 360.0, elevation_deg
 
@@ -377,8 +377,8 @@ class PhotoBox(QWidget):
 
     def event(self, event: QEvent) -> bool:
         """Let the space bar press the button that has the keyboard; elsewhere it flies through the sortie."""
-        is_override = isinstance(event, QKeyEvent) and event.type() == QEvent.Type.ShortcutOverride
-        if is_override and event.key() == Qt.Key.Key_Space:
+        is_override = event.type() == QEvent.Type.ShortcutOverride
+        if is_override and isinstance(event, QKeyEvent) and event.key() == Qt.Key.Key_Space:
             event.accept()
             return True
         return super().event(event)

@@ -335,15 +335,16 @@ class ProfileChart(QWidget):
     def _mark(self) -> None:
         curve = self._curve()
         at = None
-        if curve is not None and self._number_of(self._selection) == self._sortie.currentIndex():
-            at = self._photo_x(curve)[curve.photo_ids.index(self._selection.id)]
+        item = self._selection
+        if curve is not None and item is not None and self._number_of(item) == self._sortie.currentIndex():
+            at = self._photo_x(curve)[curve.photo_ids.index(item.id)]
         for mark in self._marks:
             mark.setVisible(at is not None)
             if at is not None:
                 mark.setValue(float(at))
 
     def _is_over_time(self) -> bool:
-        return self._over.currentData() == TIME
+        return bool(self._over.currentData() == TIME)
 
     def _x(self, curve: ProfileCurves) -> np.ndarray:
         return curve.t_s / 60.0 if self._is_over_time() else curve.distance_m * length_unit(self._units).factor

@@ -43,7 +43,9 @@ class SimulationPage(QWidget):
         add_rows(form, self.rows)
         layout = QVBoxLayout(self)
         # The cards need the whole width beside a scroll bar.
-        for one in (layout, self.effects.layout()):
+        inner = self.effects.layout()
+        assert inner is not None
+        for one in (layout, inner):
             one.setContentsMargins(2, 4, 2, 4)
         layout.addLayout(form)
         layout.addWidget(self.effects, 1)

@@ -145,7 +145,10 @@ def wedges(places: NDArray[np.float64], heading_rad: NDArray[np.float64]) -> NDA
     """Triangles, shape (n, 3, 2), with a corner at each place, shape (n, 2), opening along the heading; y runs down."""
     turns = heading_rad[:, None] + np.array([0.0, -WEDGE_HALF_RAD, WEDGE_HALF_RAD])
     lengths = np.array([0.0, WEDGE_PX, WEDGE_PX])
-    return places[:, None] + lengths[None, :, None] * np.stack([np.sin(turns), -np.cos(turns)], axis=-1)
+    corners: NDArray[np.float64] = places[:, None] + lengths[None, :, None] * np.stack(
+        [np.sin(turns), -np.cos(turns)], axis=-1
+    )
+    return corners
 
 
 def sortie_colour(number: int) -> QColor:

@@ -150,7 +150,8 @@ def place_of(item: Item, site: SiteShapes | None, plan: PlanShapes | None) -> ND
     """World coordinates of a thing, shape (n, 2), n >= 1; None where the map does not show it."""
     if plan is not None:
         if item.kind is ItemKind.VIEWPOINT and item.id in plan.viewpoint_ids:
-            return plan.viewpoints[plan.viewpoint_ids.index(item.id)][None]
+            place: NDArray[np.float64] = plan.viewpoints[plan.viewpoint_ids.index(item.id)][None]
+            return place
         if item.kind in (ItemKind.SORTIE, ItemKind.LEG):
             return _place_on_route(item, plan)
     if site is None:
@@ -435,8 +436,9 @@ class MapView(MapCanvas):
             self._draw_anew()
 
     def _draw_plan_anew(self) -> None:
-        has_both = self._plan is not None and self._model is not None
-        self._plan_shapes = plan_shapes(self._plan, self._model.site.origin) if has_both else None
+        self._plan_shapes = None
+        if self._plan is not None and self._model is not None:
+            self._plan_shapes = plan_shapes(self._plan, self._model.site.origin)
         self._draw_anew()
 
     def _draw_anew(self) -> None:

@@ -266,14 +266,15 @@ class SortieTable(QTableView):
             self._rows.horizontalHeaderItem(2).setToolTip(text.format(extra_s))
         self._rows.horizontalHeaderItem(3).setToolTip(self.tr("Length of the flight"))
         self._rows.horizontalHeaderItem(4).setToolTip(self.tr("Part of the battery's endurance that the sortie takes"))
-        plan = self._plan
-        for number, sortie in enumerate(() if plan is None else plan.sorties, 1):
+        if self._plan is None:
+            return
+        for number, sortie in enumerate(self._plan.sorties, 1):
             texts = [
                 str(number),
                 str(len(sortie.viewpoint_ids)),
                 minutes_text(sortie.duration_s),
                 f"{unit.shown(sortie.length_m):.{unit.decimals}f}",
-                f"{sortie.duration_s / plan.aircraft.endurance_s:.0%}",
+                f"{sortie.duration_s / self._plan.aircraft.endurance_s:.0%}",
             ]
             cells = [QStandardItem(text) for text in texts]
             for cell in cells:
@@ -304,7 +305,8 @@ class MissionLists(QTabWidget):
         self._panels_covered: Mapping[str, int] = {}
         self._selection: Item | None = None
         self.waypoints, self.profile, self.comparison = WaypointTable(), ProfileChart(), ComparisonView()
-        self._unfilled: set[QWidget] = set()
+        self._filled_late: frozenset[WaypointTable | ProfileChart] = frozenset((self.waypoints, self.profile))
+        self._unfilled: set[WaypointTable | ProfileChart] = set()
         # After an edit the 3-D view draws, too: each in a turn of its own keeps the window answering.
         self._fill_soon = QTimer(self, interval=0, singleShot=True)
         self._fill_soon.timeout.connect(self._fill)
@@ -325,7 +327,7 @@ class MissionLists(QTabWidget):
     def set_plan(self, plan: Plan | None, site_model: SiteModel | None) -> None:
         """Show another plan, or none; a comparison with the one before goes."""
         self._plan, self._site_model, self._panels_covered = plan, site_model, {}
-        self._unfilled = {self.waypoints, self.profile}
+        self._unfilled = set(self._filled_late)
         self.comparison.set_comparison(None)
         self._fill_soon.start()
 
@@ -337,7 +339,7 @@ class MissionLists(QTabWidget):
     def set_selection(self, item: Item | None) -> None:
         """Mark a thing; no signal comes from it."""
         self._selection = item
-        for view in {self.waypoints, self.profile} - self._unfilled:
+        for view in self._filled_late - self._unfilled:
             view.set_selection(item)
 
     def set_units(self, units: UnitSystem) -> None:
@@ -356,15 +358,16 @@ class MissionLists(QTabWidget):
 
     def _fill(self) -> None:
         """Fill the list in sight, where it still shows another plan."""
-        view, plan, site_model = self.currentWidget(), self._plan, self._site_model
-        if view not in self._unfilled:
-            return
-        self._unfilled.remove(view)
-        has_both = plan is not None and site_model is not None
-        if view is self.waypoints:
-            self.waypoints.set_rows(waypoint_rows(plan, site_model.site.origin) if has_both else ())
-            self.waypoints.set_panels_covered(self._panels_covered)
-        else:
-            limits = None if site_model is None else height_limits(site_model)
-            self.profile.set_curves(plan_profiles(plan) if has_both else (), limits)
-        view.set_selection(self._selection)
+        plan, site_model = self._plan, self._site_model
+        for view in tuple(self._unfilled):
+            if view is not self.currentWidget():
+                continue
+            self._unfilled.remove(view)
+            if view is self.waypoints:
+                origin = None if site_model is None else site_model.site.origin
+                self.waypoints.set_rows(() if plan is None or origin is None else waypoint_rows(plan, origin))
+                self.waypoints.set_panels_covered(self._panels_covered)
+            else:
+                limits = None if site_model is None else height_limits(site_model)
+                self.profile.set_curves(() if plan is None or limits is None else plan_profiles(plan), limits)
+            view.set_selection(self._selection)

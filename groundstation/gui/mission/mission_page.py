@@ -26,7 +26,7 @@ from groundstation.gui.mission.mission_controller import MissionController
 from groundstation.gui.mission.mission_lists import MissionLists, SortieTable
 from groundstation.gui.shared_view import Stage
 from groundstation.gui.widgets.findings_list import SIZE_PX, FindingsList, severity_icon
-from groundstation.gui.widgets.inputs import NumberBox, calm
+from groundstation.gui.widgets.inputs import NumberBox, calm, moment_of
 from groundstation.gui.widgets.questions import choose_files
 from groundstation.gui.widgets.theme import colours
 from groundstation.services.mission.files import in_order_of_sorties
@@ -221,7 +221,7 @@ class DayBox(QWidget):
 
     def value(self) -> FlightDay:
         """What is known of the day."""
-        at = self.when.dateTime().toPython().astimezone() if self.has_time.isChecked() else None
+        at = moment_of(self.when) if self.has_time.isChecked() else None
         return FlightDay(at, self.temperature.value() if self.has_temperature.isChecked() else None)
 
     def setValue(self, day: FlightDay) -> None:  # noqa: N802

@@ -8,7 +8,7 @@ from datetime import date
 from pathlib import Path
 from typing import Any
 
-from PySide6.QtCore import QT_TRANSLATE_NOOP, QCoreApplication, QLocale, QSignalBlocker, Qt, Signal
+from PySide6.QtCore import QCoreApplication, QLocale, QSignalBlocker, Qt, Signal
 from PySide6.QtGui import QAction
 from PySide6.QtWidgets import (
     QComboBox,
@@ -26,6 +26,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from groundstation.gui.application.translate import QT_TRANSLATE_NOOP
 from groundstation.gui.widgets.inputs import ChoiceBox, Form
 from groundstation.gui.widgets.questions import choose_file
 from groundstation.services.model.scene_card import Level, Subject
@@ -262,10 +263,10 @@ class RecordDialog(QDialog):
         text = box.text().strip()
         if name in MAY_BE_NONE and not text:
             return None
-        return _number(text) if name in NUMBERS else text
+        return float(_number(text)) if name in NUMBERS else text
 
 
-def _typed(text: str, kind: str) -> str | float | bool:
+def _typed(text: str, kind: str) -> Any:
     if kind == "number":
         return _number(text)
     if kind == "yes/no":
@@ -321,7 +322,7 @@ class RecordSide(QWidget):
         self._words = words
         self._subject: Subject | None = None
         self.level = ChoiceBox()
-        self.title, self.facade, self.size, self.global_id = (QLabel() for _ in range(4))
+        self.title, self.facade, self.extent, self.global_id = (QLabel() for _ in range(4))
         self.tree, self.kinds = QTreeWidget(), QMenu(self)
         self._groups: dict[type[Any], QTreeWidgetItem] = {}
         self.add, self.change = QPushButton(self.tr("Add ...")), QPushButton(self.tr("Change ..."))
@@ -345,8 +346,8 @@ class RecordSide(QWidget):
         self.global_id.setText("" if subject is None else subject.global_id)
         unit, area = length_unit(units), area_unit(units)
         size = self.tr("{0} x {1}, {2}").format(unit.text(width_m), unit.text(height_m), area.text(width_m * height_m))
-        self.size.setText("" if panel is None else size)
-        for label in (self.facade, self.size):
+        self.extent.setText("" if panel is None else size)
+        for label in (self.facade, self.extent):
             self._facts.setRowVisible(label, level == "panel")
         self._enable()
 
@@ -367,7 +368,8 @@ class RecordSide(QWidget):
     def entry(self) -> Entry | None:
         """The record that is chosen."""
         item = self.tree.currentItem()
-        return None if item is None else item.data(0, ENTRY)  # type: ignore[no-any-return]
+        entry: Entry | None = None if item is None else item.data(0, ENTRY)
+        return entry
 
     def put_asked_of(self, kind: type[Any], entry: Entry | None = None) -> None:
         """Ask for a new record of a kind, or for what is to be changed."""
@@ -407,7 +409,7 @@ class RecordSide(QWidget):
         for name, label in (
             (self.tr("Records of"), self.level),
             (self.tr("Facade"), self.facade),
-            (self.tr("Size"), self.size),
+            (self.tr("Size"), self.extent),
             (self.tr("GlobalId"), self.global_id),
         ):
             facts.addRow(name, label)

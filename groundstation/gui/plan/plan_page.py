@@ -31,6 +31,7 @@ from groundstation.services.mission.readiness import findings_beside
 from groundstation.services.plan.plan_cache import ActivePlan
 from groundstation.services.project.document import Document, Item, ItemKind
 from groundstation.services.units import UnitSystem, distance_unit, length_unit, minutes_text, per_cent, sampling_unit
+from planning.base.effects import EffectSetting
 from planning.base.findings import Severity, is_flyable
 from planning.base.progress import QualityPoint
 from planning.insight.sections import PlanInsight, SectionState
@@ -393,7 +394,7 @@ class PlanPage(QObject):
         self.panel.pick_section(section)
         self._detail.setCurrentWidget(self.panel)
 
-    def _wish_changed(self, effect: str, wish: str) -> None:
+    def _wish_changed(self, effect: str, wish: EffectSetting) -> None:
         request: PlanRequest = self._workspace.document.request
         if effect == "occlusion":
             self.controller.set_request(replace(request, constraints=replace(request.constraints, occlusion=wish)))

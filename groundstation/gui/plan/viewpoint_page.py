@@ -235,8 +235,10 @@ class ViewpointEditor(QWidget):
         self._aim = QPushButton(self.tr("Aim at panel"))
         self._aim.setToolTip(self.tr("Turn towards the panel that was selected last"))
         self._lay_out()
-        for box in (*self._position, self._heading, self._pitch):
+        for box in self._position:
             box.valueChanged.connect(self._edited)
+        for angle in (self._heading, self._pitch):
+            angle.valueChanged.connect(self._edited)
         self._locked.toggled.connect(self._edited)
         for button, signal in (
             (self._add, self.addWanted),

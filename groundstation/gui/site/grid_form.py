@@ -71,8 +71,9 @@ class GridForm(QWidget):
         self._accept.setProperty("primary", True)
         self._cancel = QPushButton(self.tr("Cancel"))
         self._lay_out()
-        for box in (self._rows, self._columns, self._gap, self._tolerance, *self._corners):
-            box.valueChanged.connect(self._edited)
+        boxes = (self._rows, self._columns, self._gap, self._tolerance)
+        for changed in (*(box.valueChanged for box in boxes), *(corner.valueChanged for corner in self._corners)):
+            changed.connect(self._edited)
         self._pick.clicked.connect(self.pickAsked)
         self._accept.clicked.connect(self.accepted)
         self._cancel.clicked.connect(self.cancelled)
@@ -124,8 +125,8 @@ class GridForm(QWidget):
         self._gap.setValue(wish.gap_m)
         self._tolerance.setValue(wish.tolerance_m)
         self._has_rectangle = wish.rectangle_enu_m is not None
-        for box, corner in zip(self._corners, wish.rectangle_enu_m or (), strict=False):
-            box.setValue(corner)
+        for edit, corner in zip(self._corners, wish.rectangle_enu_m or (), strict=False):
+            edit.setValue(corner)
         self._show_size()
         self.show_state("", is_good=False)
 
@@ -141,8 +142,10 @@ class GridForm(QWidget):
     def set_units(self, units: UnitSystem) -> None:
         """Show the same wish in other units."""
         self._units = units
-        for box in (self._gap, self._tolerance, *self._corners):
-            box.set_units(units)
+        for length in (self._gap, self._tolerance):
+            length.set_units(units)
+        for corner in self._corners:
+            corner.set_units(units)
         self._show_size()
 
     def show_state(self, text: str, *, is_good: bool) -> None:

@@ -140,8 +140,8 @@ class ImportForm(QWidget):
     def _connect(self) -> None:
         for box in (self._building, self._unit, self._up, self._place, self._axis_order, self._heights):
             box.activated.connect(self._edited)
-        for box in (self._name, self._crs, self._ground, self._margin):
-            box.valueChanged.connect(self._edited)
+        for edit in (self._name, self._crs, self._ground, self._margin):
+            edit.valueChanged.connect(self._edited)
         self._origin.valueChanged.connect(self._origin_edited)
 
     def value(self) -> ImportOptions:
@@ -172,14 +172,14 @@ class ImportForm(QWidget):
         if options.origin is not None:
             self._origin.setValue(options.origin)
         place = ZERO_POINT if options.origin is not None else SYSTEM if options.crs is not None else FILE_SAYS
-        for box, wanted in (
+        for choice, wanted in (
             (self._unit, options.unit),
             (self._up, options.up or ""),
             (self._building, options.building or ""),
             (self._axis_order, options.axis_order),
             (self._heights, options.height_reference),
         ):
-            box.show_value(wanted)
+            choice.show_value(wanted)
         # A mesh says nothing itself.
         self._place.setCurrentIndex(max(0, self._place.findData(place)))
         self._show_place()
@@ -228,7 +228,7 @@ def _number(text: str) -> float | None:
     return float(text) if text.strip() else None
 
 
-def _combo(entries: Iterable[tuple[str, str]]) -> QComboBox:
+def _combo(entries: Iterable[tuple[str, str]]) -> ChoiceBox:
     """Box to choose from (value, text) pairs."""
     box = ChoiceBox()
     for value, text in entries:

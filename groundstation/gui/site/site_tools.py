@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from enum import Enum, auto
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QPushButton, QWidget
@@ -184,15 +184,15 @@ class SiteTools(QWidget):
         if tool is None:
             return
         self._set_active(None)
-        take = {
+        take: dict[SiteTool, Callable[[Any], None]] = {
             SiteTool.NO_FLY: self._add_zone,
             SiteTool.BOX: self._add_box,
             SiteTool.AIRSPACE: self._set_airspace,
             SiteTool.HOME: self._move_home,
             SiteTool.RALLY: self._add_rally_point,
             SiteTool.GRID: self._take_rectangle,
-        }[tool]
-        take(result)
+        }
+        take[tool](result)
 
     def _add_zone(self, drawn: DrawnPolygon) -> None:
         self._add(self.tr("Draw no-fly zone"), lambda model: add_zone(model, drawn.corners_enu_m), ItemKind.NO_FLY)

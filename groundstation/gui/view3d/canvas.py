@@ -94,7 +94,7 @@ class _Drawn:
         self.actor.SetPosition(*(self.nearer * eye_enu_m))
 
 
-class Canvas(QtInteractor):
+class Canvas(QtInteractor):  # type: ignore[misc]  # pyvistaqt has no types
     """Drawables by name, shown or hidden, seen through a pinhole.
 
     Multi-sampling, lamps and order-independent transparency are off: each costs a processor that draws in place of a
@@ -164,7 +164,7 @@ class Canvas(QtInteractor):
     def set_background_colour(self, colour: str) -> None:
         """Colour behind everything, `#rrggbb`."""
         if self.is_open:
-            self.renderer.SetBackground(*QColor(colour).getRgbF()[:3])
+            self.renderer.SetBackground(*_rgb(colour))
             self.update()
 
     def look_through(self, pinhole: Pinhole) -> None:
@@ -237,6 +237,11 @@ def image_array(image: QImage) -> NDArray[np.uint8]:
     return rows[:, : 3 * image.width()].reshape(image.height(), image.width(), 3).copy()
 
 
+def _rgb(colour: str) -> tuple[float, float, float]:
+    shown = QColor(colour)
+    return shown.redF(), shown.greenF(), shown.blueF()
+
+
 def _points(drawable: Drawable) -> NDArray[np.float32]:
     """Corners of all cells, shape (k c, 3).
 
@@ -271,7 +276,7 @@ def _actor(data: pv.PolyData, drawable: Drawable) -> vtkActor:
     look.SetLineWidth(drawable.width_px)
     look.SetPointSize(drawable.width_px)
     if drawable.edge_colour:
-        look.SetEdgeColor(*QColor(drawable.edge_colour).getRgbF()[:3])
+        look.SetEdgeColor(*_rgb(drawable.edge_colour))
     if drawable.depth_shift:
         mapper.SetResolveCoincidentTopologyToPolygonOffset()
         mapper.SetRelativeCoincidentTopologyLineOffsetParameters(0.0, drawable.depth_shift)

@@ -76,7 +76,8 @@ def triangle_normals(mesh: TriangleMesh) -> Array:
     a, b, c = (mesh.vertices_enu_m[mesh.triangles[:, i]] for i in range(3))
     normals = np.cross(b - a, c - a)
     lengths = np.linalg.norm(normals, axis=1, keepdims=True)
-    return np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0.0)
+    unit: Array = np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0.0)
+    return unit
 
 
 def arrows(path_enu_m: Array, length_m: float) -> Shape:

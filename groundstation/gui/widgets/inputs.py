@@ -9,6 +9,8 @@ does.
 from __future__ import annotations
 
 from collections.abc import Callable
+from datetime import UTC, datetime
+from typing import Any
 
 from PySide6.QtCore import QEvent, QLocale, QObject, QSignalBlocker, QSize, Qt, Signal
 from PySide6.QtGui import QHelpEvent, QKeyEvent, QKeySequence, QPaintEvent, QValidator
@@ -16,10 +18,10 @@ from PySide6.QtWidgets import (
     QAbstractSlider,
     QAbstractSpinBox,
     QComboBox,
+    QDateTimeEdit,
     QDoubleSpinBox,
     QFormLayout,
     QHBoxLayout,
-    QLayout,
     QStyle,
     QStyleOptionComboBox,
     QStylePainter,
@@ -166,13 +168,18 @@ class Form(QFormLayout):
         self.setFieldGrowthPolicy(QFormLayout.FieldGrowthPolicy.AllNonFixedFieldsGrow)
         self.setLabelAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
 
-    def addRow(self, *parts: QWidget | QLayout | str) -> None:  # type: ignore[override]  # noqa: N802
+    def addRow(self, *parts: Any) -> None:  # noqa: N802
         """As forms do; a list to choose from has room for its words."""
         field = parts[-1]
         if isinstance(field, ChoiceBox):
             field.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
             field.want_letters(N_LETTERS_IN_FORM)
         super().addRow(*parts)
+
+
+def moment_of(edit: QDateTimeEdit) -> datetime:
+    """The time that stands in a box, to the second, in this computer's time zone."""
+    return datetime.fromtimestamp(edit.dateTime().toSecsSinceEpoch(), tz=UTC).astimezone()
 
 
 class NumberBox(QDoubleSpinBox):
@@ -235,7 +242,7 @@ class NumberBox(QDoubleSpinBox):
         """Hold only what is shown, as if it had been typed."""
         self._held = None
 
-    def validate(self, text: str, position: int) -> object:
+    def validate(self, text: str, position: int) -> Any:
         """Take a comma for the decimal point too."""
         return super().validate(text.replace(",", "."), position)
 

@@ -239,7 +239,9 @@ class _PathDialog(QFileDialog):
     def _may_be_taken(self, text: str) -> None:
         """Qt 6.11 lets nothing be taken any more once the line was empty, whatever is typed then."""
         buttons = self.findChild(QDialogButtonBox)
-        for button in () if buttons is None else buttons.buttons():
+        if buttons is None:
+            return
+        for button in buttons.buttons():
             if buttons.buttonRole(button) == QDialogButtonBox.ButtonRole.AcceptRole:
                 button.setEnabled(bool(text.strip()))
 

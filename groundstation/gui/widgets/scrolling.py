@@ -72,7 +72,8 @@ class ShortText(QLabel):
         painter.end()
 
     def _lines(self) -> list[str]:
-        layout, lines, text = QTextLayout(self.text(), self.font()), [], self.text()
+        layout, text = QTextLayout(self.text(), self.font()), self.text()
+        lines: list[str] = []
         layout.beginLayout()
         while len(lines) < N_LINES:
             line = layout.createLine()

@@ -57,12 +57,12 @@ def _beside(stops: Sequence[QWidget], current: QWidget | None, forward: bool) ->
 
 
 def _stops_in(region: QWidget) -> Iterator[QWidget]:
-    widget = region
-    while True:
+    widget: QWidget | None = region
+    while widget is not None:
         if (region is widget or region.isAncestorOf(widget)) and _takes_tab(widget):
             yield widget
         widget = widget.nextInFocusChain()
-        if widget is None or widget is region:
+        if widget is region:
             return
 
 

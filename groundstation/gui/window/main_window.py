@@ -23,7 +23,7 @@ from PySide6.QtWidgets import (
 from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.application.interpreter import BackgroundImport
 from groundstation.gui.shared_view import Stage
-from groundstation.gui.tabs import Place, Tab, TabSpec, find_tabs
+from groundstation.gui.tabs import TABS, Place, Tab, TabSpec
 from groundstation.gui.widgets.job_bar import JobBar
 from groundstation.gui.widgets.scrolling import CurrentStack, scrolled
 from groundstation.gui.widgets.tab_order import first_in, next_in_order
@@ -54,7 +54,6 @@ class MainWindow(QMainWindow):
     def __init__(self, workspace: ApplicationContext) -> None:
         super().__init__()
         self._workspace = workspace
-        self._specs = find_tabs()
         self._tabs: dict[str, Tab] = {}
         self._shown: TabSpec | None = None
         self._was_shown = False
@@ -71,7 +70,7 @@ class MainWindow(QMainWindow):
         self._bar.setExpanding(False)
         self._bar.setDrawBase(False)
         self._bar.setUsesScrollButtons(True)
-        for number, spec in enumerate(self._specs):
+        for number, spec in enumerate(TABS):
             self._bar.addTab(spec.shown_title())
             self._bar.setTabToolTip(number, self.tr("{0} (Ctrl+{1})").format(spec.shown_tip(), number + 1))
         self._left, self._right, self._bottom = CurrentStack(), CurrentStack(), CurrentStack()
@@ -110,16 +109,12 @@ class MainWindow(QMainWindow):
 
     def tab_names(self) -> tuple[str, ...]:
         """Names of all tabs, in order."""
-        return tuple(spec.name for spec in self._specs)
-
-    def specs(self) -> tuple[TabSpec, ...]:
-        """All tabs, in order."""
-        return self._specs
+        return tuple(spec.name for spec in TABS)
 
     def tab(self, name: str) -> Tab:
         """A tab by its name; made when it was not yet."""
         if name not in self._tabs:
-            spec = next(spec for spec in self._specs if spec.name == name)
+            spec = next(spec for spec in TABS if spec.name == name)
             made = self._tabs[name] = spec.make(self._workspace, self.stage)
             if spec.place is Place.WHOLE_PAGE:
                 self._pages.addWidget(made.left)
@@ -144,7 +139,7 @@ class MainWindow(QMainWindow):
         return "" if self._shown is None else self._shown.name
 
     def _tab_chosen(self, index: int) -> None:
-        spec = self._specs[index]
+        spec = TABS[index]
         if spec is self._shown:
             return
         if self._shown is not None:
@@ -210,8 +205,8 @@ class MainWindow(QMainWindow):
         super().showEvent(event)
         if not self._was_shown:
             self._was_shown = True
-            modules = [spec.implementation for spec in self._specs if spec.implementation]
-            first = self._specs[max(0, self._bar.currentIndex())].implementation
+            modules = [spec.module for spec in TABS]
+            first = TABS[max(0, self._bar.currentIndex())].module
             modules.sort(key=lambda module: module != first)
             self._loading = BackgroundImport([*modules[:1], SCENE_MODULE, *modules[1:]], self)
             self._loading.imported.connect(self._imported)
@@ -263,6 +258,7 @@ def _splitter(
 
 
 def _scroll_area_of(widget: QWidget) -> QScrollArea:
-    area = widget.parentWidget().parentWidget()
+    viewport = widget.parentWidget()
+    area = None if viewport is None else viewport.parentWidget()
     assert isinstance(area, QScrollArea)
     return area

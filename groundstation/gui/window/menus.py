@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from functools import partial
 from html import escape
 from typing import Protocol
 
@@ -14,6 +15,7 @@ from groundstation import __version__
 from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.application.translate import shown_keys
 from groundstation.gui.shared_view import SharedViewPage
+from groundstation.gui.tabs import TABS
 from groundstation.gui.window.main_window import MainWindow
 from groundstation.services.plugins import plugin_rows
 from groundstation.services.settings import Language, Settings, Theme
@@ -26,19 +28,6 @@ from planning.base.plugins import PluginGroup
 
 Row = tuple[str, str]
 """Keys, and what they do."""
-
-VIEWS = {
-    "3-D view": ("view3d/navigator.py", "view3d/scene_view.py"),
-    "Tools in the 3-D view": ("view3d/tool_driver.py",),
-    "Map": ("map/map_canvas.py",),
-    "Camera preview": ("camera_preview/preview.py", "camera_preview/photo_box.py"),
-    "Tree of the site": ("site/site_tree.py",),
-    "Photo strip of a flight": ("fly/photo_strip.py",),
-    "Photos": ("photos/picture_view.py", "photos/grid_view.py"),
-    "Models": ("reconstruct/model_view.py",),
-    "Messages": ("window/message_area.py",),
-}
-"""Modules of the window that take keys by themselves, by the section that tells of them."""
 
 
 class ShortcutsDialog(QDialog):
@@ -72,7 +61,7 @@ def sections(window: MainWindow) -> list[tuple[str, list[Row]]]:
     always = [action for menu in menus if isinstance(menu, QMenu) for action in _all_of(menu) if action not in shown]
     found = [(translate("Shortcuts", "Everywhere"), _rows(always))]
     found[0][1].append(("Tab", translate("Shortcuts", "To the next part of the window; with Shift to the one before")))
-    for spec in window.specs():
+    for spec in TABS:
         rows = _rows(window.tab(spec.name).actions())
         if rows:
             found.append((translate("Shortcuts", "{0} tab").format(spec.shown_title()), rows))
@@ -80,7 +69,7 @@ def sections(window: MainWindow) -> list[tuple[str, list[Row]]]:
 
 
 def view_keys() -> list[tuple[str, list[Row]]]:
-    """Keys of views, while they have the keyboard; sections in the order of `VIEWS`."""
+    """Keys of views, while they have the keyboard; a section each."""
     translate = QCoreApplication.translate
     arrows, enter = translate("Shortcuts", "Arrows"), translate("Shortcuts", "Enter")
     names = ("Ins", "Del", "Space", "PgUp", "PgDown", "Backspace", "Home")
@@ -245,7 +234,7 @@ class Menus(QObject):
         menu: QMenu,
         text: str,
         shortcut: QKeySequence.StandardKey | str,
-        slot: Callable[[], None],
+        slot: Callable[[], object],
         *,
         group: QActionGroup | None = None,
         checked: bool | None = None,
@@ -286,7 +275,7 @@ class Menus(QObject):
             (SharedViewPage.MAP, self.tr("&Map"), "F6"),
             (SharedViewPage.CAMERA, self.tr("&Camera preview"), "F7"),
         ):
-            self._add(menu, text, key, lambda page=page: self._window.stage.show_page(page))
+            self._add(menu, text, key, partial(self._window.stage.show_page, page))
         menu.addSeparator()
         themes = {
             Theme.SYSTEM: self.tr("As the desktop"),
@@ -313,9 +302,9 @@ class Menus(QObject):
         self._add(menu, self.tr("&Full screen"), "F11", self._toggle_full_screen)
 
     def _go_menu(self, menu: QMenu) -> None:
-        for number, spec in enumerate(self._window.specs(), 1):
+        for number, spec in enumerate(TABS, 1):
             name = spec.name
-            self._add(menu, spec.shown_title(), f"Ctrl+{number}", lambda name=name: self._window.show_tab(name))
+            self._add(menu, spec.shown_title(), f"Ctrl+{number}", partial(self._window.show_tab, name))
 
     def _help_menu(self, menu: QMenu) -> None:
         self._add(menu, self.tr("&Shortcuts"), "F1", self.show_shortcuts)
@@ -324,7 +313,7 @@ class Menus(QObject):
     def _fill_tab_menu(self, name: str) -> None:
         tab = self._window.tab(name)
         self._tab_menu.clear()
-        self._tab_menu.setTitle(next(spec.shown_title() for spec in self._window.specs() if spec.name == name))
+        self._tab_menu.setTitle(next(spec.shown_title() for spec in TABS if spec.name == name))
         for action in tab.actions():
             self._tab_menu.addAction(action)
         self._tab_menu.menuAction().setVisible(bool(tab.actions()))
@@ -332,7 +321,7 @@ class Menus(QObject):
     def _list_recent(self) -> None:
         self._recent.clear()
         for folder in self._commands.settings().recent_projects:
-            self._add(self._recent, folder, "", lambda folder=folder: self._commands.open_recent(folder))
+            self._add(self._recent, folder, "", partial(self._commands.open_recent, folder))
         if self._recent.isEmpty():
             self._recent.addAction(self.tr("none yet")).setEnabled(False)
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 
-from PySide6.QtCore import QEvent, QObject, QPoint, Qt, QTimer, Signal
+from PySide6.QtCore import QEvent, QObject, QPoint, Qt, QTimer, Signal, SignalInstance
 from PySide6.QtGui import (
     QColor,
     QFont,
@@ -328,7 +328,8 @@ class MessageSheet(QFrame):
         self._list.addItem(row)
 
     def _message(self, row: QListWidgetItem | None) -> Message | None:
-        return None if row is None else row.data(Qt.ItemDataRole.UserRole)  # type: ignore[no-any-return]
+        message: Message | None = None if row is None else row.data(Qt.ItemDataRole.UserRole)
+        return message
 
     def _chosen(self) -> Message | None:
         return self._message(self._list.currentItem())
@@ -340,7 +341,7 @@ class MessageSheet(QFrame):
             any(message is chosen for message in self._standing) if chosen is not None else False
         )
 
-    def _ask(self, signal: Signal) -> None:
+    def _ask(self, signal: SignalInstance) -> None:
         chosen = self._chosen()
         if chosen is not None:
-            signal.emit(chosen)  # type: ignore[attr-defined]
+            signal.emit(chosen)

@@ -61,8 +61,7 @@ class ProjectController(QObject):
         self._settings = settings_at_start(settings_path(), self._settings_problems.append)
         self._translations = Translations(application)
         self._garbage = GarbageCollector(self, lambda: self.workspace.is_busy)
-        self._own_worker = Worker() if worker is None else None
-        self._worker = self._own_worker if worker is None else worker
+        self._owns_worker, self._worker = worker is None, worker or Worker()
         self._runner = JobRunner(worker=self._worker)
         self.keeper = ProjectSession(self.autosaveFailed.emit)
         self.workspace = ApplicationContext(Session(_first_document(self._settings)), self._runner, self)
@@ -232,7 +231,7 @@ class ProjectController(QObject):
 
         SiteOpener(self.workspace, self.window).open_site(path)
 
-    def save(self, then: Callable[[], None] | None = None) -> None:
+    def save(self, then: Callable[[], object] | None = None) -> None:
         """Save where the project is kept, or ask where."""
         folder = self.workspace.session.folder
         if folder is None or not self.keeper.may_save:
@@ -240,7 +239,7 @@ class ProjectController(QObject):
         else:
             self._save_in(folder, then)
 
-    def save_as(self, then: Callable[[], None] | None = None) -> None:
+    def save_as(self, then: Callable[[], object] | None = None) -> None:
         """Ask for a folder, and save there."""
         session = self.workspace.session
         site = session.document.site
@@ -250,11 +249,11 @@ class ProjectController(QObject):
         if folder is not None:
             self.save_in(folder, then)
 
-    def save_in(self, folder: Path, then: Callable[[], None] | None = None) -> None:
+    def save_in(self, folder: Path, then: Callable[[], object] | None = None) -> None:
         """Save as a new project in a folder."""
         self._save_in(folder, then)
 
-    def _save_in(self, folder: Path, then: Callable[[], None] | None) -> None:
+    def _save_in(self, folder: Path, then: Callable[[], object] | None) -> None:
         document = self.workspace.document
         is_new = folder != self.workspace.session.folder or not is_project(folder)
 
@@ -407,8 +406,8 @@ class ProjectController(QObject):
         QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete.value)
         self._translations.remove()
         self.keeper.close()
-        if self._own_worker is not None:
-            self._own_worker.close()
+        if self._owns_worker:
+            self._worker.close()
         self._runner.shutdown()
         self._garbage.close()
 

@@ -171,7 +171,7 @@ def test_facades_and_the_building_have_records_too(opened):
     panel = card.panels[2]
     opened.controller.select(panel.global_id)
     assert (records.title.text(), records.global_id.text()) == (panel.facade, panel.facade_id)
-    assert not records.size.isVisibleTo(opened.left)
+    assert not records.extent.isVisibleTo(opened.left)
     records.putAsked.emit(Document(panel.facade_id, "drawings of the posts", "plan", "posts.pdf"), None)
     assert any("drawings of the posts" in text for text in tree_texts(opened))
     # Another panel of the facade has the same; the panel itself has none of them.
@@ -179,7 +179,7 @@ def test_facades_and_the_building_have_records_too(opened):
     assert any("drawings of the posts" in text for text in tree_texts(opened))
     choose_level(opened, "panel")
     assert records.title.text() == card.panels[3].name
-    assert records.size.isVisibleTo(opened.left)
+    assert records.extent.isVisibleTo(opened.left)
     assert not any("drawings" in text for text in tree_texts(opened))
     opened.side.search.setText("posts")
     opened._search.timeout.emit()

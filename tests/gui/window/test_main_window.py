@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from groundstation.gui.shared_view import SharedViewPage
+from groundstation.gui.tabs import TABS
 from groundstation.gui.window import menus
-from groundstation.gui.window.menus import VIEWS
 from groundstation.services.project.document import Item, ItemKind
 from groundstation.services.settings import Language, Theme
 from groundstation.services.units import UnitSystem
@@ -197,7 +197,7 @@ def test_theme_units_and_language_change_at_once_and_are_kept(application, contr
     controller.choose(language=Language.GERMAN)
     turn_until(application, lambda: controller.window.stage.scene() is not None)
     assert controller.window.shown_tab() == "plan"
-    titles = [spec.shown_title() for spec in controller.window.specs()]
+    titles = [spec.shown_title() for spec in TABS]
     assert "Planung" in titles
     assert "roof" in controller.window.messages.texts(), "what was said before is still there"
     turn_until_idle(application, controller)
@@ -216,6 +216,22 @@ TOKENS = {
 """What keys are called in the list of all, where it is not Qt's own name."""
 
 
+SECTIONS = {
+    "view3d/navigator.py": ("3-D view",),
+    "view3d/scene_view.py": ("3-D view", "Tools in the 3-D view"),
+    "map/viewport.py": ("Map",),
+    "camera_preview/preview.py": ("Camera preview",),
+    "camera_preview/photo_box.py": ("Camera preview",),
+    "site/site_tree.py": ("Tree of the site",),
+    "fly/live_pictures.py": ("Photo strip of a flight",),
+    "photos/grid_picture.py": ("Photos",),
+    "photos/grid_view.py": ("Photos",),
+    "reconstruct/model_view.py": ("Models",),
+    "window/message_area.py": ("Messages",),
+}
+"""Sections of the list of keys that tell of the keys that a module takes by itself."""
+
+
 def keys_in(module):
     """Names of the keys that a module of the window handles by itself."""
     return set(re.findall(r"Qt\.Key\.Key_(\w+)", (GUI / module).read_text()))
@@ -224,13 +240,14 @@ def keys_in(module):
 def test_every_key_of_a_menu_tab_or_shortcut_is_in_the_list_and_none_twice(application, controller):
     from PySide6.QtGui import QAction, QKeySequence, QShortcut
 
-    from groundstation.gui.window.menus import ShortcutsDialog, sections
+    from groundstation.gui.window.menus import ShortcutsDialog, sections, view_keys
 
     for page in SharedViewPage:
         controller.window.stage.show_page(page)
     told = dict(sections(controller.window))
     dialog = ShortcutsDialog(controller.window)
-    listed = [keys for title, rows in told.items() if title not in VIEWS for keys, _ in rows]
+    of_views = dict(view_keys())
+    listed = [keys for title, rows in told.items() if title not in of_views for keys, _ in rows]
     assert len(listed) == len(set(listed))
     assert all(words for rows in told.values() for _, words in rows)
     everything = {key for rows in told.values() for keys, _ in rows for key in (keys, *keys.split(", "))}
@@ -254,18 +271,17 @@ def test_every_key_that_a_view_takes_by_itself_is_in_the_list(application):
         path.relative_to(GUI).as_posix()
         for path in GUI.rglob("*.py")
         if "Qt.Key.Key_" in path.read_text()
-        and path.parent.name != "screenshots"
+        and path.name != "screenshots.py"
         # Boxes take no key: they hear which may be a shortcut.
         and path.name != "inputs.py"
     }
-    assert taking == {module for modules in VIEWS.values() for module in modules}
+    assert taking == set(SECTIONS)
     told = dict(view_keys())
-    assert set(told) == set(VIEWS)
-    for title, modules in VIEWS.items():
-        words = " ".join(keys for keys, _ in told[title])
-        for module in modules:
-            missing = {key for key in keys_in(module) if TOKENS.get(key, key) not in words}
-            assert not missing, module
+    assert set(told) == {title for titles in SECTIONS.values() for title in titles}
+    for module, titles in SECTIONS.items():
+        words = " ".join(keys for title in titles for keys, _ in told[title])
+        missing = {key for key in keys_in(module) if TOKENS.get(key, key) not in words}
+        assert not missing, module
 
 
 def test_the_list_of_keys_is_shown_and_scrolls(application, controller):
@@ -351,8 +367,8 @@ def test_modules_that_are_half_imported_are_asked_for_nothing(tmp_path, is_left_
     lines = (
         "import sys",
         f"sys.path.insert(0, {str(tmp_path)!r})",
-        "from groundstation.gui.application import loading",
+        "from groundstation.gui.application import interpreter",
     )
-    code = "\n".join((*lines, "loading.leave_modules_alone()" * is_left_alone, "import half_imported"))
+    code = "\n".join((*lines, "interpreter.leave_modules_alone()" * is_left_alone, "import half_imported"))
     made = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert (made.returncode == 0) is is_left_alone, made.stderr

@@ -1,1 +1,0 @@
-"""Pictures of the real window in every tab and state."""
