@@ -158,7 +158,7 @@ class _Tour(QObject):
         self._folder, self._scratch = folder, scratch
         self._site = write_scene("library", scratch) if site is None else site
         self._controller = ProjectController(application, _NoQuestions())
-        self._context = self._controller.workspace
+        self._context = self._controller.context
         self._size_px = size_px
         self._n_pictures = 0
 
@@ -166,7 +166,7 @@ class _Tour(QObject):
         """All pictures; returns their number."""
         self._controller.show()
         self._window.setGeometry(0, 0, *self._size_px)
-        self._wait_for(lambda: self._window.stage.scene() is not None)
+        self._wait_for(lambda: self._window.shared_view.scene() is not None)
         self._controller.choose(theme=Theme.LIGHT, language=Language.ENGLISH)
         self._empty()
         self._site_states()
@@ -250,7 +250,7 @@ class _Tour(QObject):
         viewpoint = entry.plan.viewpoints[len(entry.plan.viewpoints) // 2]
         self._context.jump_to(Item(ItemKind.VIEWPOINT, viewpoint.id))
         self._take("plan-viewpoint")
-        self._window.stage.show_page(SharedViewPage.CAMERA)
+        self._window.shared_view.show_page(SharedViewPage.CAMERA)
         self._take("plan-camera")
         self._camera()
         panels = self._opened_site().site.panels
@@ -263,10 +263,10 @@ class _Tour(QObject):
 
     def _camera(self) -> None:
         """The photo of the selected viewpoint: with outlines, as it is, its effects, at another time of the day."""
-        stage = self._window.stage
+        shared_view = self._window.shared_view
         self._rendered_photo("plan-photo-outlines")
-        stage.show_page(SharedViewPage.CAMERA)
-        box, photos = stage.camera_page().box, stage.photo_controller
+        shared_view.show_page(SharedViewPage.CAMERA)
+        box, photos = shared_view.camera_page().box, shared_view.photo_controller
         assert photos is not None
         box.photo.click()
         self._rest_until(photos.is_at_rest)
@@ -282,13 +282,13 @@ class _Tour(QObject):
         self._take("plan-photo-by-time")
         box.light.setValue(usual)
         box.lines.click()
-        stage.show_page(SharedViewPage.SCENE)
+        shared_view.show_page(SharedViewPage.SCENE)
 
     def _rendered_photo(self, name: str) -> None:
         """A picture of the selected viewpoint's photo with the panels' outlines; the scene is shown again after it."""
-        stage = self._window.stage
-        stage.show_page(SharedViewPage.CAMERA)
-        box, photos = stage.camera_page().box, stage.photo_controller
+        shared_view = self._window.shared_view
+        shared_view.show_page(SharedViewPage.CAMERA)
+        box, photos = shared_view.camera_page().box, shared_view.photo_controller
         assert photos is not None
         box.photo.click()
         box.outlines.setChecked(True)
@@ -296,7 +296,7 @@ class _Tour(QObject):
         self._take(name)
         box.outlines.setChecked(False)
         box.lines.click()
-        stage.show_page(SharedViewPage.SCENE)
+        shared_view.show_page(SharedViewPage.SCENE)
 
     def _mission(self) -> None:
         self._window.show_tab("mission")
@@ -310,9 +310,9 @@ class _Tour(QObject):
             bottom.setCurrentIndex(page)
             self._wait_until_idle()
             self._take(f"mission-{page + 1}")
-        self._window.stage.show_page(SharedViewPage.MAP)
+        self._window.shared_view.show_page(SharedViewPage.MAP)
         self._take("mission-map")
-        self._window.stage.show_page(SharedViewPage.SCENE)
+        self._window.shared_view.show_page(SharedViewPage.SCENE)
 
     def _fly(self) -> None:
         """A simulated flight that is broken off, from connecting to the top-up that closes what it missed."""
@@ -321,7 +321,7 @@ class _Tour(QObject):
         page = self._page("fly", FlyPage)
         page.questions = _ReadyToFly()
         self._context.select(None)
-        scene = window.stage.scene()
+        scene = window.shared_view.scene()
         assert scene is not None
         scene.look_at_all()
         self._wait_until_idle()
@@ -334,9 +334,9 @@ class _Tour(QObject):
             self._take(name)
             button.click()
         self._wait_for(lambda: page.n_photos() >= FLY_PHOTOS // 2)
-        window.stage.show_page(SharedViewPage.MAP)
+        window.shared_view.show_page(SharedViewPage.MAP)
         self._take("fly-map")
-        window.stage.show_page(SharedViewPage.SCENE)
+        window.shared_view.show_page(SharedViewPage.SCENE)
         self._wait_for(lambda: page.n_photos() >= FLY_PHOTOS)
         page.buttons.button(Request.PAUSE).click()
         self._wait_for(page.buttons.button(Request.RESUME).isEnabled)
@@ -360,7 +360,7 @@ class _Tour(QObject):
 
     def _other_looks(self) -> None:
         for name in self._in_each_look():
-            self._wait_for(lambda: self._window.stage.scene() is not None)
+            self._wait_for(lambda: self._window.shared_view.scene() is not None)
             for tab in ("site", "plan", "mission", "fly"):
                 self._window.show_tab(tab)
                 self._wait_until_idle()

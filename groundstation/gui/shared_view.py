@@ -29,14 +29,14 @@ if TYPE_CHECKING:
 
 
 class SharedViewPage(StrEnum):
-    """What the stage shows."""
+    """What it shows."""
 
     SCENE = "scene"
     MAP = "map"
     CAMERA = "camera"
 
 
-class Stage(QWidget):
+class SharedView(QWidget):
     """Shows the document's site and current plan, and the selection, in the way the user chose.
 
     Signals
@@ -56,9 +56,9 @@ class Stage(QWidget):
     tabRequested = Signal(str)  # noqa: N815
     closing = Signal(object)
 
-    def __init__(self, workspace: ApplicationContext, parent: QWidget | None = None) -> None:
+    def __init__(self, context: ApplicationContext, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._workspace = workspace
+        self._context = context
         self._scene: SceneView | None = None
         self._map: MapView | None = None
         self._tiles: Path | None = None
@@ -80,10 +80,10 @@ class Stage(QWidget):
         layout.setSpacing(2)
         layout.addLayout(self._bar)
         layout.addWidget(self._pages, 1)
-        workspace.documentChanged.connect(self._document_changed)
-        workspace.selectionChanged.connect(self._show_selection)
-        workspace.lookAtRequested.connect(self._look_at)
-        workspace.unitsChanged.connect(self._units_changed)
+        context.documentChanged.connect(self._document_changed)
+        context.selectionChanged.connect(self._show_selection)
+        context.lookAtRequested.connect(self._look_at)
+        context.unitsChanged.connect(self._units_changed)
 
     def _add_buttons(self) -> None:
         for page, text, tip in (
@@ -140,9 +140,9 @@ class Stage(QWidget):
             from groundstation.gui.map.map_view import MapView
 
             self._map = MapView(self)
-            self._map.set_units(self._workspace.units)
-            self._map.picked.connect(self._workspace.select)
-            self._map.refused.connect(lambda text: self._workspace.say(Severity.ERROR, text))
+            self._map.set_units(self._context.units)
+            self._map.picked.connect(self._context.select)
+            self._map.refused.connect(lambda text: self._context.say(Severity.ERROR, text))
             if self._tiles is not None:
                 self._map.open_map(self._tiles)
             self._map.mapChanged.connect(lambda path: self.tilesChanged.emit(str(path)))
@@ -165,8 +165,8 @@ class Stage(QWidget):
             from groundstation.gui.camera_preview.preview import CameraPreview
 
             self._camera = CameraPreview(self)
-            self.photo_controller = PhotoController(self._workspace, self._camera, self)
-            self._camera.set_units(self._workspace.units)
+            self.photo_controller = PhotoController(self._context, self._camera, self)
+            self._camera.set_units(self._context.units)
             self._camera.viewpointShown.connect(self._follow_camera)
             self._pages.addWidget(self._camera)
         return self._camera
@@ -179,12 +179,12 @@ class Stage(QWidget):
 
         scene = self._scene = SceneView(self)
         self._pages.addWidget(scene)
-        scene.set_units(self._workspace.units)
-        scene.picked.connect(lambda item, _modifiers: self._workspace.select(item))
-        document = self._workspace.document
+        scene.set_units(self._context.units)
+        scene.picked.connect(lambda item, _modifiers: self._context.select(item))
+        document = self._context.document
         scene.set_site(document.site)
         scene.set_plan(_plan_of(document), _locked_in(document))
-        self._show_selection(self._workspace.selection)
+        self._show_selection(self._context.selection)
         if self.page() is SharedViewPage.SCENE:
             self._pages.setCurrentWidget(scene)
         self._bring_in_first_plan(scene, document)
@@ -222,7 +222,7 @@ class Stage(QWidget):
 
     def _update_pages(self) -> None:
         """Bring the page that is shown up to date; the others wait until they are."""
-        document, selection = self._workspace.document, self._workspace.selection
+        document, selection = self._context.document, self._context.selection
         if self._map is not None and self.page() is SharedViewPage.MAP:
             self._map.set_document(document)
             self._map.set_selection(selection)
@@ -238,7 +238,7 @@ class Stage(QWidget):
     def _follow_camera(self, viewpoint_id: str) -> None:
         """Select the viewpoint that a fly-through has come to, and let it fly on."""
         self._follows_camera = True
-        self._workspace.select(Item(ItemKind.VIEWPOINT, viewpoint_id))
+        self._context.select(Item(ItemKind.VIEWPOINT, viewpoint_id))
         self._follows_camera = False
 
     def _show_selection(self, item: Item | None) -> None:

@@ -19,7 +19,7 @@ from groundstation.gui.application.translate import QT_TRANSLATE_NOOP
 
 if TYPE_CHECKING:
     from groundstation.gui.application.context import ApplicationContext
-    from groundstation.gui.shared_view import Stage
+    from groundstation.gui.shared_view import SharedView
 
 CONTEXT = "Tabs"
 """Translation context of the titles and tips of all tabs."""
@@ -74,7 +74,7 @@ class TabSpec:
     module: str
     class_name: str
 
-    def make(self, context: ApplicationContext, view: Stage) -> Tab:
+    def make(self, context: ApplicationContext, view: SharedView) -> Tab:
         """The tab itself, when it is first shown."""
         tab: Tab = getattr(importlib.import_module(self.module), self.class_name)(context, view)
         return tab

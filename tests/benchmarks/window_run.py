@@ -41,9 +41,9 @@ def _turn_until(application: Any, condition: Callable[[], bool], timeout_s: floa
 
 def _turn_until_idle(application: Any, controller: Any) -> None:
     for _ in range(2):
-        _turn_until(application, lambda: not controller.workspace.jobs())
+        _turn_until(application, lambda: not controller.context.jobs())
         _turn_for(application, 0.5)
-    _turn_until(application, lambda: not controller.workspace.jobs())
+    _turn_until(application, lambda: not controller.context.jobs())
 
 
 def _turn_for(application: Any, duration_s: float) -> None:
@@ -65,7 +65,7 @@ def startup(*, eager: bool) -> dict[str, float]:
     controller.show()
     application.processEvents()
     painted_s = time.time() - started_s
-    _turn_until(application, lambda: controller.window.stage.scene() is not None)
+    _turn_until(application, lambda: controller.window.shared_view.scene() is not None)
     application.processEvents()
     ready_s = time.time() - started_s
     controller.window.close()
@@ -109,7 +109,7 @@ def planning() -> dict[str, Any]:
     controller = ProjectController(application)
     controller.show()
     controller.window.setGeometry(0, 0, 1280, 720)
-    _turn_until(application, lambda: controller.window.stage.scene() is not None)
+    _turn_until(application, lambda: controller.window.shared_view.scene() is not None)
     controller.window.tab("site").left.opener.open_bundled("office")
     controller.window.show_tab("plan")
     page = controller.window.tab("plan")
@@ -126,14 +126,14 @@ def planning() -> dict[str, Any]:
         _turn_until(application, lambda: not page.controller.is_planning)
         planning_ms.append(gaps.gaps_ms[:-1])  # the last one shows the result
         _turn_until_idle(application, controller)
-    plan = controller.workspace.document.current.plan
+    plan = controller.context.document.current.plan
     shown_ms, pure_ms = [], []
     for number in range(N_EDITS):
         viewpoint = plan.viewpoints[(37 * number) % len(plan.viewpoints)]
         x, y, z = viewpoint.position_enu_m
-        controller.workspace.select(Item(ItemKind.VIEWPOINT, viewpoint.id))
+        controller.context.select(Item(ItemKind.VIEWPOINT, viewpoint.id))
         application.processEvents()
-        before = page.controller.in_hand.revision
+        before = page.controller.active.revision
         moved = replace(viewpoint, position_enu_m=(x + 0.3, y - 0.3, z + 0.2))
         began_s = time.perf_counter()
         edits.move(before, moved.id, moved.position_enu_m, moved.heading_deg, moved.gimbal_pitch_deg)
@@ -157,7 +157,7 @@ def training(dataset: Path, out: Path) -> dict[str, Any]:
     controller = ProjectController(application)
     controller.show()
     controller.window.setGeometry(0, 0, 1280, 720)
-    _turn_until(application, lambda: controller.window.stage.scene() is not None)
+    _turn_until(application, lambda: controller.window.shared_view.scene() is not None)
     controller.window.show_tab("reconstruct")
     page = controller.window.tab("reconstruct")
     page.controller.read(dataset)

@@ -356,11 +356,11 @@ def turn_until_idle(application, controller, timeout_s: float = PATIENCE_S) -> f
     longest, quiet_since = 0.0, time.perf_counter()
     end = quiet_since + timeout_s
     while (quiet_s := time.perf_counter() - quiet_since) < CALM_S or (quiet_s < SETTLE_S and _waits(controller)):
-        longest = max(longest, turn_until(application, lambda: not controller.workspace.jobs(), timeout_s))
+        longest = max(longest, turn_until(application, lambda: not controller.context.jobs(), timeout_s))
         started = time.perf_counter()
         application.processEvents()
         longest = max(longest, time.perf_counter() - started)
-        if controller.workspace.jobs() or (_is_due(controller) and started < end):
+        if controller.context.jobs() or (_is_due(controller) and started < end):
             quiet_since = time.perf_counter()
         time.sleep(0.005)
     return longest

@@ -49,7 +49,7 @@ def shown(application, worker, tmp_path_factory):
         controller = ProjectController(application, worker=worker)
         controller.show()
         controller.window.setGeometry(0, 0, 1400, 900)
-        turn_until(application, lambda: controller.window.stage.scene() is not None)
+        turn_until(application, lambda: controller.window.shared_view.scene() is not None)
         yield controller
         close_controller(controller)
 
@@ -58,7 +58,7 @@ def shown(application, worker, tmp_path_factory):
 def controller(application, shown, planned):
     """The window with a site and a plan that are saved nowhere and not changed."""
     model, plan = planned
-    shown.workspace.session.open(Document(model, (PlanEntry("plan-1", "First", plan),), "plan-1"), None)
+    shown.context.session.open(Document(model, (PlanEntry("plan-1", "First", plan),), "plan-1"), None)
     turn_until_idle(application, shown)
     return shown
 
@@ -117,9 +117,9 @@ def open_map(application, controller):
     from groundstation.gui.shared_view import SharedViewPage
 
     controller.window.show_tab("site")
-    controller.window.stage.show_page(SharedViewPage.MAP)
+    controller.window.shared_view.show_page(SharedViewPage.MAP)
     turn_until_idle(application, controller)
-    press_in(controller.window.stage, "Map file")
+    press_in(controller.window.shared_view, "Map file")
 
 
 ASKING = {
@@ -142,12 +142,12 @@ ASKING = {
 
 @pytest.mark.parametrize("name", ASKING)
 def test_nothing_happens_when_the_user_thinks_better_of_it(application, controller, name):
-    before, told = controller.workspace.document, controller.window.messages.texts()
+    before, told = controller.context.document, controller.window.messages.texts()
     for no in NO:
         with clicked(no):
             ASKING[name](application, controller)
         turn_until_idle(application, controller)
-    assert controller.workspace.document is before
+    assert controller.context.document is before
     assert controller.window.messages.texts() == told
 
 
@@ -163,10 +163,10 @@ def test_a_plan_gets_the_name_that_is_typed(application, controller):
 
     with clicked(name_it("Second", "Cancel")):
         rename(application, controller)
-    assert controller.workspace.document.current.title == "First"
+    assert controller.context.document.current.title == "First"
     with clicked(name_it("South side", "OK")):
         rename(application, controller)
-    assert controller.workspace.document.current.title == "South side"
+    assert controller.context.document.current.title == "South side"
 
 
 def test_a_plan_an_aircraft_and_a_mesh_are_opened_from_files(application, controller, planned, tmp_path):
@@ -174,14 +174,14 @@ def test_a_plan_an_aircraft_and_a_mesh_are_opened_from_files(application, contro
     with clicked(choose(tmp_path / "other.json")):
         open_plan(application, controller)
     turn_until_idle(application, controller)
-    assert len(controller.workspace.document.plans) == 2
+    assert len(controller.context.document.plans) == 2
     path = tmp_path / "pole.ply"
     trimesh.creation.box((1.0, 1.0, 3.0)).export(path)
-    n_before = len(controller.workspace.document.site.site.obstacles)
+    n_before = len(controller.context.document.site.site.obstacles)
     with clicked(choose(path)):
         obstacle_mesh(application, controller)
     turn_until_idle(application, controller)
-    assert len(controller.workspace.document.site.site.obstacles) == n_before + 1
+    assert len(controller.context.document.site.site.obstacles) == n_before + 1
     (tmp_path / "bad.toml").write_text("= no aircraft")
     before = controller.window.tab("plan").form.aircraft.value()
     with clicked(choose(tmp_path / "bad.toml")):
@@ -223,7 +223,7 @@ def test_files_of_further_sorties_are_replaced_after_a_yes_only(application, con
     request = PlanRequest(n_views=10, greedy=QUICK, rules=FlightRules(settle_s=250.0))
     plan = plan_flight(model, request).plan
     assert len(plan.sorties) == 2
-    controller.workspace.session.open(Document(model, (PlanEntry("plan-1", "Slow", plan),), "plan-1"), None)
+    controller.context.session.open(Document(model, (PlanEntry("plan-1", "Slow", plan),), "plan-1"), None)
     controller.window.show_tab("mission")
     turn_until_idle(application, controller)
     trigger(controller.window, "Export mission files ...")

@@ -18,7 +18,7 @@ def controller(application, worker, tmp_path, monkeypatch):
     controller = ProjectController(application, worker=worker)
     controller.show()
     controller.window.setGeometry(0, 0, 1280, 720)
-    turn_until(application, lambda: controller.window.stage.scene() is not None)
+    turn_until(application, lambda: controller.window.shared_view.scene() is not None)
     yield controller
     close_controller(controller)
 
@@ -28,32 +28,32 @@ def entry(name):
 
 
 def test_the_first_plan_of_a_site_is_brought_in_once(controller):
-    workspace, view = controller.workspace, controller.window.stage.scene()
-    workspace.session.open(Document(scene("single-panel")), None)
+    context, view = controller.context, controller.window.shared_view.scene()
+    context.session.open(Document(scene("single-panel")), None)
     near = view.orbit().zoomed(8.0)
     view.set_orbit(near)
-    workspace.change("Plan", workspace.document.with_plan(entry("first")))
+    context.change("Plan", context.document.with_plan(entry("first")))
     assert view.orbit() != near
     view.set_orbit(near)
-    workspace.change("Plan", workspace.document.with_plan(entry("second")))
+    context.change("Plan", context.document.with_plan(entry("second")))
     assert view.orbit() == near, "the second plan leaves the view alone"
-    workspace.session.undo()
-    workspace.session.undo()
-    workspace.session.redo()
+    context.session.undo()
+    context.session.undo()
+    context.session.redo()
     assert view.orbit() == near, "so does the first one when it comes back"
 
 
 def test_an_edited_site_is_the_same_one_and_another_building_is_not(controller):
-    workspace, view = controller.workspace, controller.window.stage.scene()
+    context, view = controller.context, controller.window.shared_view.scene()
     model = scene("single-panel")
-    workspace.session.open(Document(model).with_plan(entry("first")), None)
+    context.session.open(Document(model).with_plan(entry("first")), None)
     near = view.orbit().zoomed(8.0)
     view.set_orbit(near)
     edited = replace(model, site=replace(model.site, home_enu_m=model.site.home_enu_m))
-    workspace.change("Edit", replace(workspace.document, site=edited))
-    workspace.change("Plan", workspace.document.with_plan(entry("second")))
+    context.change("Edit", replace(context.document, site=edited))
+    context.change("Plan", context.document.with_plan(entry("second")))
     assert view.orbit() == near
-    workspace.session.open(Document(SCENES["office"]()), None)
+    context.session.open(Document(SCENES["office"]()), None)
     view.set_orbit(near)
-    workspace.change("Plan", workspace.document.with_plan(entry("third")))
+    context.change("Plan", context.document.with_plan(entry("third")))
     assert view.orbit() != near

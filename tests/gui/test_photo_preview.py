@@ -12,7 +12,7 @@ from PySide6.QtTest import QTest
 from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.camera_preview.photo_box import LightBox
 from groundstation.gui.camera_preview.preview import panel_lines
-from groundstation.gui.shared_view import SharedViewPage, Stage
+from groundstation.gui.shared_view import SharedView, SharedViewPage
 from groundstation.gui.view3d.orbit import pinhole_at
 from groundstation.services.jobs.runner import JobRunner
 from groundstation.services.project.document import Document, Item, ItemKind, PlanEntry
@@ -41,32 +41,32 @@ class Hands:
 
     def __init__(self, application, runner):
         self.application = application
-        self.workspace = ApplicationContext(
+        self.context = ApplicationContext(
             Session(Document(site=office()).with_plan(PlanEntry("p", "P", plan()))), runner
         )
-        self.stage = Stage(self.workspace)
-        self.stage.resize(420, 240)
-        self.stage.show()
-        QTest.qWaitForWindowExposed(self.stage)
-        self.stage.show_page(SharedViewPage.CAMERA)
-        self.preview, self.controller = self.stage.camera_page(), self.stage.photo_controller
+        self.shared_view = SharedView(self.context)
+        self.shared_view.resize(420, 240)
+        self.shared_view.show()
+        QTest.qWaitForWindowExposed(self.shared_view)
+        self.shared_view.show_page(SharedViewPage.CAMERA)
+        self.preview, self.controller = self.shared_view.camera_page(), self.shared_view.photo_controller
         self.preview.box.light.setValue(ALONE)
         self.asked, self.names = [], []
-        self.workspace.jobsChanged.connect(lambda: self.names.extend(job.name for job in self.workspace.jobs()))
+        self.context.jobsChanged.connect(lambda: self.names.extend(job.name for job in self.context.jobs()))
 
     def select(self, viewpoint_id):
-        self.workspace.select(Item(ItemKind.VIEWPOINT, viewpoint_id))
+        self.context.select(Item(ItemKind.VIEWPOINT, viewpoint_id))
 
     def change(self, found):
-        document = self.workspace.document
-        self.workspace.change("edit", document.with_plan(replace(document.current, plan=found)))
+        document = self.context.document
+        self.context.change("edit", document.with_plan(replace(document.current, plan=found)))
 
     def until_photo(self, is_fine=True):
         turn_until(self.application, lambda: self.is_shown(is_fine))
         return self.controller.shown()
 
     def until_rest(self):
-        turn_until(self.application, lambda: self.controller.is_at_rest() and not self.workspace.jobs())
+        turn_until(self.application, lambda: self.controller.is_at_rest() and not self.context.jobs())
 
     def is_shown(self, is_fine):
         shown = self.controller.shown()
@@ -76,9 +76,9 @@ class Hands:
         return not shown.request.is_quick and self.controller.is_at_rest()
 
     def close(self):
-        self.workspace.close()
-        self.stage.close_views()
-        self.stage.deleteLater()
+        self.context.close()
+        self.shared_view.close_views()
+        self.shared_view.deleteLater()
         self.application.processEvents()
 
 
@@ -126,7 +126,7 @@ def test_a_coarse_picture_comes_first_then_a_fine_one_with_its_effects(hands):
 
 def test_a_newer_viewpoint_takes_the_place_of_an_older_one(hands):
     hands.preview.box.photo.click()
-    turn_until(hands.application, lambda: bool(hands.workspace.jobs()))
+    turn_until(hands.application, lambda: bool(hands.context.jobs()))
     hands.select("v0001")
     assert hands.controller.shown() is None
     hands.select("v0002")
@@ -142,7 +142,7 @@ def test_edits_undo_and_the_light_are_followed(hands):
     hands.change(replace(found, viewpoints=(found.viewpoints[0], moved, found.viewpoints[2])))
     assert hands.controller.shown() is None
     assert east_of(hands.until_photo(is_fine=False)) == 11.0
-    hands.workspace.session.undo()
+    hands.context.session.undo()
     assert hands.controller.shown() is before
     hands.preview.box.light._heading.setValue(100.0)
     turned = hands.until_photo()
@@ -151,7 +151,7 @@ def test_edits_undo_and_the_light_are_followed(hands):
     hands.until_rest()
     n_jobs = len(hands.names)
     hands.change(replace(plan(), seed=7))
-    hands.workspace.set_units(UnitSystem.IMPERIAL)
+    hands.context.set_units(UnitSystem.IMPERIAL)
     hands.until_rest()
     assert hands.controller.shown() is turned
     assert len(hands.names) == n_jobs
@@ -159,11 +159,11 @@ def test_edits_undo_and_the_light_are_followed(hands):
 
 def test_nothing_is_rendered_while_nobody_looks_or_a_flight_plays(hands):
     hands.preview.box.photo.click()
-    hands.stage.show_page(SharedViewPage.MAP)
+    hands.shared_view.show_page(SharedViewPage.MAP)
     hands.select("v0001")
     hands.until_rest()
     assert hands.names == []
-    hands.stage.show_page(SharedViewPage.CAMERA)
+    hands.shared_view.show_page(SharedViewPage.CAMERA)
     hands.until_photo(is_fine=False)
     hands.preview.play(20)
     assert hands.controller.shown() is None
@@ -174,22 +174,22 @@ def test_nothing_is_rendered_while_nobody_looks_or_a_flight_plays(hands):
     hands.preview.pause()
     at = hands.until_photo(is_fine=False).request.view.position_enu_m
     assert at == pytest.approx(tuple(hands.preview.pinhole().eye_enu_m))
-    hands.stage.hide()
+    hands.shared_view.hide()
     hands.until_rest()
     assert hands.controller.shown() is None
 
 
 def test_other_work_comes_first(hands):
     gate = Gate()
-    hands.workspace.start("Something else", gate)
+    hands.context.start("Something else", gate)
     hands.preview.box.photo.click()
     turn_until(hands.application, lambda: "Something else" in hands.preview.note())
-    assert [job.name for job in hands.workspace.jobs()] == ["Something else"]
+    assert [job.name for job in hands.context.jobs()] == ["Something else"]
     gate.open.set()
     hands.until_photo(is_fine=False)
     # What the user starts meanwhile need not wait for the fine picture.
     order = []
-    hands.workspace.start("An edit", lambda _context: None, lambda _result: order.append(hands.is_shown(True)))
+    hands.context.start("An edit", lambda _context: None, lambda _result: order.append(hands.is_shown(True)))
     hands.until_photo()
     assert order == [False]
 
@@ -217,7 +217,7 @@ def test_a_photo_that_was_cancelled_stays_away_until_it_is_asked_for(hands, monk
         )
         hands.preview.box.photo.click()
         turn_until(hands.application, gate.begun.is_set)
-        hands.workspace.cancel(hands.workspace.jobs()[0])
+        hands.context.cancel(hands.context.jobs()[0])
         turn_until(hands.application, lambda: "cancelled" in hands.preview.note())
         hands.until_rest()
     assert hands.controller.shown() is None
@@ -227,9 +227,9 @@ def test_a_photo_that_was_cancelled_stays_away_until_it_is_asked_for(hands, monk
 
 def test_a_site_that_has_lost_its_panels_says_so_and_renders_nothing(hands):
     hands.preview.box.photo.click()
-    model = hands.workspace.document.site
+    model = hands.context.document.site
     bare = SiteModel(replace(model.site, facades=()), model.building, model.obstacles)
-    hands.workspace.change("edit", replace(hands.workspace.document, site=bare))
+    hands.context.change("edit", replace(hands.context.document, site=bare))
     turn_until(hands.application, lambda: "no panels yet" in hands.preview.note())
     hands.until_rest()
     assert hands.controller.shown() is None
@@ -313,22 +313,23 @@ def test_the_window_answers_within_50_ms_while_photos_are_rendered(application, 
 
     opened(application, controller, "office")
     planned(application, controller, QUICK)
-    views = controller.workspace.document.current.plan.viewpoints
-    stage = controller.window.stage
-    stage.show_page(SharedViewPage.CAMERA)
+    views = controller.context.document.current.plan.viewpoints
+    shared_view = controller.window.shared_view
+    shared_view.show_page(SharedViewPage.CAMERA)
     ticks = []
     timer = QTimer()
     timer.setTimerType(Qt.TimerType.PreciseTimer)
     timer.timeout.connect(lambda: ticks.append(time.perf_counter()))
     timer.start(2)
     longest_ms = []
-    stage.camera_page().box.photo.click()
+    shared_view.camera_page().box.photo.click()
     for view in views[:6]:
-        controller.workspace.select(Item(ItemKind.VIEWPOINT, view.id))
+        controller.context.select(Item(ItemKind.VIEWPOINT, view.id))
         application.processEvents()
         ticks.clear()
         turn_until(
-            application, lambda: stage.photo_controller.shown() is not None and stage.photo_controller.is_at_rest()
+            application,
+            lambda: shared_view.photo_controller.shown() is not None and shared_view.photo_controller.is_at_rest(),
         )
         longest_ms.append(1e3 * float(np.diff(ticks[:-1]).max()))
         assert len(ticks) > 50

@@ -125,7 +125,7 @@ def test_effects_say_state_reason_size_and_cost_and_take_a_wish(application):
     from groundstation.gui.widgets.effects_panel import EffectsPanel
 
     panel, heard = EffectsPanel(), []
-    panel.wishChanged.connect(lambda name, wish: heard.append((name, wish)))
+    panel.settingChanged.connect(lambda name, wish: heard.append((name, wish)))
     panel.set_effects(
         (EffectChoice(decision(True, 7.5), "auto"), EffectChoice(replace(decision(False, 0.0), effect="x"), None))
     )

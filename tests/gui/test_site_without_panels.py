@@ -40,15 +40,15 @@ class Window:
         self.application = application
         self.controller = ProjectController(application, worker=worker)
         self.controller.show()
-        self.window, self.workspace = self.controller.window, self.controller.workspace
+        self.window, self.context = self.controller.window, self.controller.context
         self.window.setGeometry(0, 0, 1280, 720)
         self.messages = []
-        self.workspace.messageShown.connect(self.messages.append)
-        turn_until(application, lambda: self.window.stage.scene() is not None)
+        self.context.messageShown.connect(self.messages.append)
+        turn_until(application, lambda: self.window.shared_view.scene() is not None)
 
     @property
     def site(self):
-        return self.workspace.document.site.site
+        return self.context.document.site.site
 
     def idle(self):
         turn_until_idle(self.application, self.controller)
@@ -61,7 +61,7 @@ class Window:
     def look_everywhere(self):
         """Every tab, and every way to look at the site."""
         for page in SharedViewPage:
-            self.window.stage.show_page(page)
+            self.window.shared_view.show_page(page)
             for name in TABS:
                 self.show(name)
                 self.window.grab()
@@ -100,7 +100,7 @@ def test_a_coarse_model_is_imported_kept_filled_from_photos_and_planned(opened, 
     dialog.accept()
     opened.idle()
     assert opened.site.n_panels == 0
-    assert len(opened.window.stage.scene()._site.drawables[Layer.BUILDING]) == 1
+    assert len(opened.window.shared_view.scene()._site.drawables[Layer.BUILDING]) == 1
     plan = opened.show("plan")
     assert "No panels yet: find them in photos (Photos tab), or draw them" in plan.verdict()
     assert not plan._plan_button.isEnabled()
@@ -119,24 +119,24 @@ def test_a_coarse_model_is_imported_kept_filled_from_photos_and_planned(opened, 
     opened.idle()
     assert opened.site.n_panels == len(made[0].panels)
     request = PlanRequest(n_views=4, greedy=QUICK, time_budget_s=1.0)
-    opened.workspace.amend(replace(opened.workspace.document, request=request))
+    opened.context.amend(replace(opened.context.document, request=request))
     plan = opened.show("plan")
     QTest.mouseClick(plan._plan_button, Qt.MouseButton.LeftButton)
     opened.idle()
-    assert opened.workspace.document.current.plan.coverage.covered > 0
+    assert opened.context.document.current.plan.coverage.covered > 0
     assert opened.errors() == []
 
 
 def test_every_tab_shows_a_site_without_panels(opened):
     model = roof()
     emptied = tuple(replace(facade, panels=()) for facade in model.site.facades)
-    opened.workspace.session.open(Document(replace(model, site=replace(model.site, facades=emptied))), None)
+    opened.context.session.open(Document(replace(model, site=replace(model.site, facades=emptied))), None)
     opened.show("site")
-    opened.workspace.jump_to(Item(ItemKind.FACADE, "A"))
+    opened.context.jump_to(Item(ItemKind.FACADE, "A"))
     opened.idle()
-    opened.workspace.session.open(Document(bare_roof()), None)
+    opened.context.session.open(Document(bare_roof()), None)
     opened.look_everywhere()
-    opened.workspace.jump_to(Item(ItemKind.BUILDING))
+    opened.context.jump_to(Item(ItemKind.BUILDING))
     opened.idle()
     assert opened.errors() == []
     findings = opened.show("site").detail.findings
@@ -148,13 +148,13 @@ def test_every_tab_shows_a_site_without_panels(opened):
 def test_a_plan_stays_when_the_panels_go_and_says_what_it_lacks(opened):
     model = roof()
     entry = PlanEntry("plan-1", "First", plan_flight(model, PlanRequest(n_views=4, greedy=QUICK)).plan)
-    opened.workspace.session.open(Document(model).with_plan(entry), None)
+    opened.context.session.open(Document(model).with_plan(entry), None)
     opened.show("plan")
-    opened.workspace.select(Item(ItemKind.PANEL, "A-0003"))
-    opened.workspace.change("Remove A", replace(opened.workspace.document, site=bare_roof()))
+    opened.context.select(Item(ItemKind.PANEL, "A-0003"))
+    opened.context.change("Remove A", replace(opened.context.document, site=bare_roof()))
     opened.look_everywhere()
     assert "This plan cannot be judged. site 'roof' has no panels yet" in opened.show("plan").verdict()
-    opened.workspace.session.undo()
+    opened.context.session.undo()
     opened.idle()
     assert "covered" in opened.show("plan").verdict()
     assert opened.errors() != []

@@ -217,35 +217,35 @@ def looks(application, worker, tmp_path, monkeypatch, request):
     language, scale = request.param
     controller = ProjectController(application, worker=worker)
     controller.show()
-    turn_until(application, lambda: controller.window.stage.scene() is not None)
+    turn_until(application, lambda: controller.window.shared_view.scene() is not None)
     controller.choose(language=language, text_scale=scale)
-    turn_until(application, lambda: controller.window.stage.scene() is not None)
+    turn_until(application, lambda: controller.window.shared_view.scene() is not None)
     controller.window.setGeometry(SCREEN)
     yield Looks(application, controller)
     # What follows is in English and of usual size, in a window that is there no longer.
     controller.choose(language=Language.ENGLISH, text_scale=1.0)
-    turn_until(application, lambda: controller.window.stage.scene() is not None)
+    turn_until(application, lambda: controller.window.shared_view.scene() is not None)
     close_controller(controller)
 
 
 def test_everything_can_be_reached_in_every_tab_phase_and_dialog(looks):
     controller, window = looks.controller, looks.controller.window
-    controller.workspace.say(Severity.WARNING, "a warning of many words " * 15, about="plan.long")
+    controller.context.say(Severity.WARNING, "a warning of many words " * 15, about="plan.long")
     looks.at("nothing open")
-    window.stage.show_page(SharedViewPage.MAP)
+    window.shared_view.show_page(SharedViewPage.MAP)
     looks.at("nothing open, map")
     model, plan = planned()
-    controller.workspace.session.open(Document(model, (PlanEntry("plan-1", "First", plan),), "plan-1"), None)
+    controller.context.session.open(Document(model, (PlanEntry("plan-1", "First", plan),), "plan-1"), None)
     for page in SharedViewPage:
-        window.stage.show_page(page)
+        window.shared_view.show_page(page)
         for item in (None, *(Item(kind, name) for kind, name in THINGS)):
-            controller.workspace.select(item)
+            controller.context.select(item)
             looks.at(f"site, {page.name}, {item}")
-        controller.workspace.select(Item(ItemKind.VIEWPOINT, plan.viewpoints[0].id))
+        controller.context.select(Item(ItemKind.VIEWPOINT, plan.viewpoints[0].id))
         window.show_tab("plan")
         looks.at(f"plan, {page.name}")
         window.show_tab("site")
-    window.stage.show_page(SharedViewPage.SCENE)
+    window.shared_view.show_page(SharedViewPage.SCENE)
     _in_the_plan_tab(looks, window.tab("plan"), window)
     _in_the_mission_tab(looks, window)
     _in_the_fly_tab(looks, window)

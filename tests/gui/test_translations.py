@@ -141,11 +141,11 @@ def controller(application, worker, tmp_path, monkeypatch):
 
     controller = ProjectController(application, worker=worker)
     controller.show()
-    turn_until(application, lambda: controller.window.stage.scene() is not None)
+    turn_until(application, lambda: controller.window.shared_view.scene() is not None)
 
     def speak(language):
         controller.choose(language=language)
-        turn_until(application, lambda: controller.window.stage.scene() is not None)
+        turn_until(application, lambda: controller.window.shared_view.scene() is not None)
 
     speak(Language.GERMAN)
     yield controller

@@ -211,7 +211,7 @@ class ApplicationContext(QObject):
         return tuple(waiting.job for waiting in self._waiting.values())
 
     def count_as_busy(self, is_busy: Callable[[], bool]) -> None:
-        """Ask this, too, whether anything goes on: for work that is no job, and lasts as long as the workspace."""
+        """Ask this, too, whether anything goes on: for work that is no job, and lasts as long as the context."""
         self._busy.append(is_busy)
 
     @property
@@ -231,7 +231,7 @@ class ApplicationContext(QObject):
         for job in reversed(jobs):
             self.cancel(job)
         self.bridge.close()
-        # News that Qt has queued already would reach widgets that are going.
+        # Events that Qt has queued already would reach widgets that are going.
         self._waiting.clear()
         return all(job.wait(timeout_s) for job in jobs)
 
@@ -243,7 +243,7 @@ class ApplicationContext(QObject):
     def _job_changed(self, event: JobStateChanged) -> None:
         if event.state not in ENDED:
             return
-        # Jobs end on another thread, so that Qt brings the news after `start` has noted the job.
+        # Jobs end on another thread, so that Qt brings the event after `start` has noted the job.
         waiting = self._waiting.pop(event.job_id, None)
         if waiting is None:
             return

@@ -122,7 +122,7 @@ AFTER_MS = 80
 WIDE_ENOUGH = 0.8
 """Share of the wanted width with which a picture does: windows change their size by pixels, pictures need not."""
 
-MAX_KEPT = 6
+MAX_CACHED = 6
 """Fine pictures of up to 9 MB each, for going back and forth."""
 
 SEED = 0
@@ -145,9 +145,9 @@ class _Wanted:
 class PhotoController(QObject):
     """Keeps the photo of a camera preview in step with everything that it depends on."""
 
-    def __init__(self, workspace: ApplicationContext, preview: CameraPreview, parent: QObject) -> None:
+    def __init__(self, context: ApplicationContext, preview: CameraPreview, parent: QObject) -> None:
         super().__init__(parent)
-        self._workspace, self._preview = workspace, preview
+        self._context, self._preview = context, preview
         self._wanted: _Wanted | None = None
         self._refused: _Wanted | None = None
         """The view of what failed or was cancelled."""
@@ -155,7 +155,7 @@ class PhotoController(QObject):
         self._job_view: _Wanted | None = None
         self._is_given_up = False
         self._shown: SeenPhoto | None = None
-        self._kept: OrderedDict[_Wanted, tuple[SeenPhoto, QImage]] = OrderedDict()
+        self._cached: OrderedDict[_Wanted, tuple[SeenPhoto, QImage]] = OrderedDict()
         self._key: tuple[SiteModel, str] | None = None
         self._seconds_per_px: float | None = None
         self._effects: EffectsWindow | None = None
@@ -166,9 +166,9 @@ class PhotoController(QObject):
         preview.box.valueChanged.connect(self._try_again)
         preview.box.light.valueChanged.connect(self.look)
         preview.box.effects.clicked.connect(self.show_effects)
-        workspace.jobsChanged.connect(self._jobs_changed)
-        workspace.bridge.progressed.connect(self._show_progress)
-        workspace.unitsChanged.connect(self._show_units)
+        context.jobsChanged.connect(self._jobs_changed)
+        context.bridge.progressed.connect(self._show_progress)
+        context.unitsChanged.connect(self._show_units)
 
     def shown(self) -> SeenPhoto | None:
         """The photo that is shown, coarse or fine; None while lines are."""
@@ -186,7 +186,7 @@ class PhotoController(QObject):
         """The table; made when it is first wanted."""
         if self._effects is None:
             self._effects = EffectsWindow(self._preview)
-            self._effects.set_units(self._workspace.units)
+            self._effects.set_units(self._context.units)
             self._effects.set_photo(self._shown)
         return self._effects
 
@@ -199,7 +199,7 @@ class PhotoController(QObject):
             return
         self._wanted = wanted
         if wanted is None or before is None or wanted.view != before.view:
-            self._show(*((None, None) if wanted is None else self._kept.get(wanted.view, (None, None))))
+            self._show(*((None, None) if wanted is None else self._cached.get(wanted.view, (None, None))))
         self._timer.start(AFTER_MS)
 
     def _try_again(self) -> None:
@@ -225,11 +225,11 @@ class PhotoController(QObject):
         """Do what comes next for the photo that is wanted."""
         wanted = self._wanted
         view = None if wanted is None else wanted.view
-        others = [job for job in self._workspace.jobs() if job is not self._job]
+        others = [job for job in self._context.jobs() if job is not self._job]
         if self._job is not None:
             if others or view != self._job_view:
                 self._is_given_up = True
-                self._workspace.cancel(self._job, quietly=True)
+                self._context.cancel(self._job, quietly=True)
         elif wanted is None or view == self._refused or self._is_fine(wanted):
             return
         elif wanted.model.site.n_panels == 0:
@@ -264,7 +264,7 @@ class PhotoController(QObject):
             return photo, painted(photo.picture)
 
         self._job_view, self._is_given_up = wanted.view, False
-        self._job = self._workspace.start(
+        self._job = self._context.start(
             self.tr("Render the photo"), work, lambda found: self._done(wanted, *found), self._failed
         )
 
@@ -272,22 +272,22 @@ class PhotoController(QObject):
         self._key = wanted.model, photo.request.site_key
         self._seconds_per_px = photo.seconds / (photo.picture.shape[0] * photo.picture.shape[1])
         if not photo.request.is_quick:
-            self._kept[wanted.view] = photo, image
-            self._kept.move_to_end(wanted.view)
-            while len(self._kept) > MAX_KEPT:
-                self._kept.popitem(last=False)
+            self._cached[wanted.view] = photo, image
+            self._cached.move_to_end(wanted.view)
+            while len(self._cached) > MAX_CACHED:
+                self._cached.popitem(last=False)
         if self._wanted is not None and self._wanted.view == wanted.view:
             self._show(photo, image)
 
     def _failed(self, error: BaseException) -> None:
         self._refused = self._job_view
         if self._wanted is not None and self._wanted.view == self._refused:
-            words = self._workspace.words(str(error))
+            words = self._context.words(str(error))
             self._preview.show_note(self.tr("The photo could not be rendered: {0}").format(words))
 
     def _jobs_changed(self) -> None:
         job = self._job
-        if job is not None and job.state is not JobState.QUEUED and job not in self._workspace.jobs():
+        if job is not None and job.state is not JobState.QUEUED and job not in self._context.jobs():
             self._job = None
             if job.state is JobState.CANCELLED and not self._is_given_up:
                 self._refused = self._job_view
@@ -316,7 +316,7 @@ class PhotoController(QObject):
     def _show_progress(self, event: JobProgress) -> None:
         if self._job is None or event.job_id != self._job.id or self._job.cancel_requested:
             return
-        words = self._workspace.words(event.stage)
+        words = self._context.words(event.stage)
         if event.total > 1:
             words = self.tr("{0} ({1:.0f} %)").format(words, 100.0 * event.done / event.total)
         warning = "" if self._shown is None or not self._shown.is_walled_in else self._note(self._shown) + "\n"

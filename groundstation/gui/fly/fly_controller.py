@@ -148,9 +148,9 @@ class AfterFlight(QObject):
 
     restFound = Signal(object)  # noqa: N815  (Qt's own way of naming)
 
-    def __init__(self, workspace: ApplicationContext, parent: QObject) -> None:
+    def __init__(self, context: ApplicationContext, parent: QObject) -> None:
         super().__init__(parent)
-        self._workspace = workspace
+        self._context = context
         self._flown: dict[int, tuple[Plan, tuple[FlightRecord, ...]]] = {}
         self._last: tuple[Plan, SiteModel] | None = None
         self._battery: float | None = None
@@ -194,15 +194,15 @@ class AfterFlight(QObject):
         def done(result: tuple[TopUp, tuple[Finding, ...]]) -> None:
             found, findings = result
             for finding in findings:
-                self._workspace.say(finding.severity, self._workspace.words(finding.message))
+                self._context.say(finding.severity, self._context.words(finding.message))
             if found.wanted == 0:
-                self._workspace.say(Severity.OK, self.tr("Nothing is missing: the photos show all that was planned."))
+                self._context.say(Severity.OK, self.tr("Nothing is missing: the photos show all that was planned."))
             elif found.is_negligible and found.plan is not None:
                 self.restFound.emit(found)
             else:
                 self.take(found)
 
-        self._workspace.start(self.tr("Top-up flight"), work, done)
+        self._context.start(self.tr("Top-up flight"), work, done)
 
     def take(self, found: TopUp) -> None:
         """Make a top-up a plan of the project."""
@@ -240,25 +240,25 @@ class AfterFlight(QObject):
             )
             self._add_plan(self.tr("Rest of sortie {0}").format(rest.mission.number), rest.plan, text)
 
-        self._workspace.start(self.tr("Resume sortie"), work, done)
+        self._context.start(self.tr("Resume sortie"), work, done)
 
     def _flown_here(self) -> tuple[Plan, SiteModel, tuple[FlightRecord, ...]] | None:
         """The plan that was flown last, the site as it is now, and all that was flown of the plan."""
-        site_model = self._workspace.document.site
+        site_model = self._context.document.site
         if self._last is None or site_model is None:
             return None
         plan, flown_over = self._last
         if not is_same_place(flown_over.site, site_model.site):
             text = self.tr("This flight was over the site {0}: open its project first.").format(flown_over.site.name)
-            self._workspace.say(Severity.WARNING, text)
+            self._context.say(Severity.WARNING, text)
             return None
         return plan, site_model, self.flown(plan)
 
     def _add_plan(self, title: str, plan: Plan, text: str) -> None:
-        document: Document = self._workspace.document
+        document: Document = self._context.document
         entry = PlanEntry(document.free_plan_id(), title, plan)
-        self._workspace.change(title, document.with_plan(entry))
-        self._workspace.say(Severity.OK, text)
+        self._context.change(title, document.with_plan(entry))
+        self._context.say(Severity.OK, text)
 
 
 # Plans with more photos in a sortie than the autopilot keeps items for: found, and shared out anew as a plan.
@@ -267,13 +267,13 @@ class AfterFlight(QObject):
 class ItemLimit(QObject):
     """Works on the current plan of the document."""
 
-    def __init__(self, workspace: ApplicationContext, parent: QObject) -> None:
+    def __init__(self, context: ApplicationContext, parent: QObject) -> None:
         super().__init__(parent)
-        self._workspace = workspace
+        self._context = context
 
     def exceeded(self, choice: ConnectionChoice) -> TooLong | None:
         """Whether a sortie has more photos than the autopilot, or any that may answer at a link, has room for."""
-        entry = self._workspace.document.current
+        entry = self._context.document.current
         if entry is None:
             return None
         is_simulation = choice.kind is LinkKind.SIMULATION
@@ -287,7 +287,7 @@ class ItemLimit(QObject):
         then
             Called once that is the current plan.
         """
-        site_model, entry = self._workspace.document.site, self._workspace.document.current
+        site_model, entry = self._context.document.site, self._context.document.current
         if site_model is None or entry is None:
             return 0
 
@@ -295,17 +295,17 @@ class ItemLimit(QObject):
             return shared_out(entry.plan, site_model, found, context)
 
         def done(anew: Plan) -> None:
-            document = self._workspace.document
+            document = self._context.document
             if document.site is not site_model:
                 return
             title = self.tr("{0}, shared out").format(entry.title)
             added = document.with_plan(PlanEntry(document.free_plan_id(), title, anew))
-            self._workspace.change(self.tr("Share views out"), added)
+            self._context.change(self.tr("Share views out"), added)
             text = self.tr("Views shared out anew, sorties: {0}").format(len(anew.sorties))
-            self._workspace.say(Severity.OK, text)
+            self._context.say(Severity.OK, text)
             then()
 
-        job_id: int = self._workspace.start(self.tr("Share views out"), work, done).id
+        job_id: int = self._context.start(self.tr("Share views out"), work, done).id
         return job_id
 
 
@@ -336,9 +336,9 @@ class FlyController(QObject):
     noted = Signal(object, object, str)
     _published = Signal(int, object)
 
-    def __init__(self, workspace: ApplicationContext) -> None:
-        super().__init__(workspace)
-        self._workspace = workspace
+    def __init__(self, context: ApplicationContext) -> None:
+        super().__init__(context)
+        self._context = context
         self._flight: LiveFlight | None = None
         self._ids = itertools.count(1)
         self._flight_id = 0
@@ -346,25 +346,25 @@ class FlyController(QObject):
         self._preparing_id = 0
         self.choice = read_choice(choice_path(), self._say_soon)
         self.settings = read_flight_settings(flight_settings_path(), self._say_soon)
-        self.simulation, self.limit = SimulationController(workspace, self), ItemLimit(workspace, self)
+        self.simulation, self.limit = SimulationController(context, self), ItemLimit(context, self)
         self.number = 1
-        self.in_hand: ActiveFlight | None = None
-        self.after, self.signing = AfterFlight(workspace, self), SigningController(workspace, self)
+        self.active: ActiveFlight | None = None
+        self.after, self.signing = AfterFlight(context, self), SigningController(context, self)
         self._published.connect(self._take)
-        workspace.count_as_busy(lambda: self.is_in_flight)
+        context.count_as_busy(lambda: self.is_in_flight)
 
     @classmethod
-    def of(cls, workspace: ApplicationContext) -> FlyController:
-        """The controller of a workspace: windows come and go, the flight goes on."""
-        known = workspace.findChild(cls)
-        return cls(workspace) if known is None else known
+    def of(cls, context: ApplicationContext) -> FlyController:
+        """The controller of a context: windows come and go, the flight goes on."""
+        known = context.findChild(cls)
+        return cls(context) if known is None else known
 
     # What there is
 
     @property
     def plan(self) -> Plan | None:
         """The current plan, where there is a site to fly it on."""
-        document = self._workspace.document
+        document = self._context.document
         return None if document.site is None or document.current is None else document.current.plan
 
     @property
@@ -375,7 +375,7 @@ class FlyController(QObject):
     @property
     def is_for_shown_plan(self) -> bool:
         """Whether the connection was made for the plan that is shown; only that one may be uploaded and started."""
-        return self.in_hand is not None and self.in_hand.sortie.case.plan is self.plan
+        return self.active is not None and self.active.sortie.case.plan is self.plan
 
     @property
     def is_preparing(self) -> bool:
@@ -409,8 +409,8 @@ class FlyController(QObject):
 
     def parameter_changes(self) -> tuple[ParameterChange, ...]:
         """What differs on the vehicle from what the plan needs."""
-        in_hand = self.in_hand
-        return () if in_hand is None or in_hand.view is None else in_hand.view.on_board.changes or ()
+        active = self.active
+        return () if active is None or active.view is None else active.view.on_board.changes or ()
 
     def set_parameters(self, changes: tuple[ParameterChange, ...]) -> None:
         """The pilot agrees that these are set."""
@@ -424,16 +424,16 @@ class FlyController(QObject):
 
     def raise_flight(self, by_m: float) -> None:
         """Fly the same places from a take-off that lies so much lower; to be uploaded again."""
-        in_hand = self.in_hand
-        if self._flight is not None and in_hand is not None and self.is_for_shown_plan:
-            self._prepare(self._take_on, in_hand.sortie.orders.raised_m + by_m)
+        active = self.active
+        if self._flight is not None and active is not None and self.is_for_shown_plan:
+            self._prepare(self._take_on, active.sortie.orders.raised_m + by_m)
 
     def plan_from_here(self) -> None:
         """Make the place where the aircraft stands the site's home."""
-        in_hand, document = self.in_hand, self._workspace.document
-        if in_hand is None or in_hand.view is None or document.site is None:
+        active, document = self.active, self._context.document
+        if active is None or active.view is None or document.site is None:
             return
-        place = stands_enu_m(in_hand.view.state, in_hand.sortie.orders)
+        place = stands_enu_m(active.view.state, active.sortie.orders)
         if place is None:
             return
         try:
@@ -441,8 +441,8 @@ class FlyController(QObject):
         except InputError as error:
             self._say(Severity.ERROR, str(error))
             return
-        self._workspace.change(self.tr("Home to the aircraft"), replace(document, site=model))
-        self._workspace.say(Severity.NOTE, self.tr("Home is where the aircraft stands: plan again, then connect anew."))
+        self._context.change(self.tr("Home to the aircraft"), replace(document, site=model))
+        self._context.say(Severity.NOTE, self.tr("Home is where the aircraft stands: plan again, then connect anew."))
 
     def set_sortie(self, number: int) -> None:
         """Fly another sortie of the plan, from 1; connected, it becomes the next one."""
@@ -483,7 +483,7 @@ class FlyController(QObject):
         QTimer.singleShot(0, self, lambda: self._say(Severity.WARNING, text))
 
     def _prepare(self, then: Callable[[LiveSortie], None], raised_m: float = 0.0) -> None:
-        plan, site_model, number, known = self.plan, self._workspace.document.site, self.number, self._case
+        plan, site_model, number, known = self.plan, self._context.document.site, self.number, self._case
         if plan is None or site_model is None or self.is_preparing:
             return
 
@@ -495,18 +495,18 @@ class FlyController(QObject):
             then(sortie)
             self.stateChanged.emit()
 
-        self._preparing_id = self._workspace.start(self.tr("Prepare the flight"), work, done).id
+        self._preparing_id = self._context.start(self.tr("Prepare the flight"), work, done).id
         self.stateChanged.emit()
 
     def _runs(self, job_id: int) -> bool:
-        return any(job.id == job_id for job in self._workspace.jobs())
+        return any(job.id == job_id for job in self._context.jobs())
 
     def _take_on(self, sortie: LiveSortie) -> None:
-        in_hand = self.in_hand
-        is_free = in_hand is not None and in_hand.view is not None and in_hand.view.phase in BEFORE_TAKE_OFF
+        active = self.active
+        is_free = active is not None and active.view is not None and active.view.phase in BEFORE_TAKE_OFF
         if self._flight is not None and is_free and not self.is_in_flight and self.is_for_shown_plan:
             self._flight.take_on(sortie)
-            self.in_hand = ActiveFlight(sortie)
+            self.active = ActiveFlight(sortie)
 
     def _connect(self, sortie: LiveSortie) -> None:
         if self._flight is not None:
@@ -515,13 +515,13 @@ class FlyController(QObject):
         charge = self.after.charge(plan, sortie.orders.number)
         self._flight_id = flight_id = next(self._ids)
         for topic in ("link", "flight."):
-            self._workspace.settle(topic)
-        self.in_hand = ActiveFlight(sortie)
+            self._context.settle(topic)
+        self.active = ActiveFlight(sortie)
         self._flight = LiveFlight(
             sortie,
             self._connection(sortie, charge),
             lambda event: self._published.emit(flight_id, event),
-            flights_folder(self._workspace.session.folder),
+            flights_folder(self._context.session.folder),
             flown=self.after.flown(plan),
             settings=self.settings,
         )
@@ -540,30 +540,30 @@ class FlyController(QObject):
     # Events
 
     def _take(self, flight_id: int, event: LiveEvent) -> None:
-        in_hand = self.in_hand
-        if flight_id != self._flight_id or in_hand is None:
+        active = self.active
+        if flight_id != self._flight_id or active is None:
             return
         match event:
             case FlightChanged():
-                self._take_view(in_hand, event.view)
+                self._take_view(active, event.view)
             case PhotoCounted():
-                in_hand.take_photo(event)
+                active.take_photo(event)
                 self.photoCounted.emit(event)
             case LinkChanged():
-                self._take_link(in_hand, event)
+                self._take_link(active, event)
             case Answered():
                 self._note(Severity.OK if event.is_accepted else Severity.ERROR, self._words(event.text))
                 if event.is_accepted:
-                    self._workspace.settle("order")
+                    self._context.settle("order")
                 else:
                     self._say(Severity.ERROR, event.text, "order")
             case WarningRaised():
                 self._note(event.warning.severity, self._words(event.warning.text))
                 self._say(event.warning.severity, event.warning.text, f"flight.warning.{event.warning.code}")
             case WarningCleared():
-                self._workspace.settle(f"flight.warning.{event.code}")
+                self._context.settle(f"flight.warning.{event.code}")
             case LinkProblem():
-                in_hand.link_problem = event.text
+                active.link_problem = event.text
                 self._note(Severity.ERROR, self._words(event.text))
                 self._say(Severity.ERROR, event.text, "link")
                 self.stateChanged.emit()
@@ -571,41 +571,41 @@ class FlyController(QObject):
                 self._note(Severity.WARNING, self._words(event.text))
                 self._say(Severity.WARNING, event.text, "flight.log")
             case FlightEnded():
-                self._take_end(in_hand, event)
+                self._take_end(active, event)
 
-    def _take_view(self, in_hand: ActiveFlight, view: LiveView) -> None:
-        for text in in_hand.take_view(view):
+    def _take_view(self, active: ActiveFlight, view: LiveView) -> None:
+        for text in active.take_view(view):
             severity = (
                 Severity.ERROR if text.severity <= 3 else Severity.WARNING if text.severity == 4 else Severity.NOTE
             )
             self._note(severity, self.tr("autopilot: {0}").format(text.text))
         self.viewChanged.emit(view)
 
-    def _take_link(self, in_hand: ActiveFlight, event: LinkChanged) -> None:
-        before, in_hand.link = in_hand.link, event.link
+    def _take_link(self, active: ActiveFlight, event: LinkChanged) -> None:
+        before, active.link = active.link, event.link
         text = self._words(event.text)
         if event.link is LinkState.LOST:
             self._note(Severity.ERROR, self.tr("link lost") if not text else self.tr("link lost: {0}").format(text))
         elif event.link is LinkState.ALIVE:
-            self._workspace.settle("link")
+            self._context.settle("link")
             self._note(
                 Severity.OK, self.tr("link alive") if before is not LinkState.LOST else self.tr("link found again")
             )
         elif event.link is LinkState.CLOSED:
             self._note(Severity.NOTE, self.tr("disconnected"))
             for topic in ("order", "flight.warning.", "flight.log"):
-                self._workspace.settle(topic)
+                self._context.settle(topic)
             if text:
                 self._say(Severity.ERROR, event.text, "link")
             self._flight = None
             self.stateChanged.emit()
         self.linkChanged.emit(event.link)
 
-    def _take_end(self, in_hand: ActiveFlight, event: FlightEnded) -> None:
-        in_hand.ended = event
+    def _take_end(self, active: ActiveFlight, event: FlightEnded) -> None:
+        active.ended = event
         if event.record is not None:
-            case = in_hand.sortie.case
-            self.after.add(case.plan, case.site_model, event.record, in_hand.battery)
+            case = active.sortie.case
+            self.after.add(case.plan, case.site_model, event.record, active.battery)
         if event.error is not None:
             self._note(Severity.ERROR, self._words(str(event.error)))
             self._say(Severity.ERROR, str(event.error), "flight.ended")
@@ -613,20 +613,20 @@ class FlyController(QObject):
             self._note(Severity.OK, self.tr("landed"))
         if event.problem:
             self._say(Severity.WARNING, event.problem, "flight.kept")
-        in_hand.took_off_s = None
+        active.took_off_s = None
         self.flightEnded.emit(event)
 
     def _note(self, severity: Severity, text: str) -> None:
-        in_hand = self.in_hand
-        view = None if in_hand is None else in_hand.view
-        when = None if in_hand is None or view is None else in_hand.since_take_off_s(view)
-        if in_hand is not None:
-            in_hand.notes.append((when, severity, text))
+        active = self.active
+        view = None if active is None else active.view
+        when = None if active is None or view is None else active.since_take_off_s(view)
+        if active is not None:
+            active.notes.append((when, severity, text))
         self.noted.emit(when, severity, text)
 
     def _say(self, severity: Severity, text: str, about: str = "") -> None:
-        self._workspace.say(severity, self._words(text), about=about)
+        self._context.say(severity, self._words(text), about=about)
 
     def _words(self, text: str) -> str:
-        words: str = self._workspace.words(text)
+        words: str = self._context.words(text)
         return words

@@ -24,7 +24,7 @@ from groundstation.gui.fly.live_pictures import LivePictures, PhotoStrip, Scroll
 from groundstation.gui.fly.questions import FlightQuestions
 from groundstation.gui.fly.readouts_view import ReadoutsView, ReportView
 from groundstation.gui.fly.simulation_controller import SimulationPage
-from groundstation.gui.shared_view import Stage
+from groundstation.gui.shared_view import SharedView
 from groundstation.gui.widgets.findings_list import FindingsList
 from groundstation.gui.widgets.inputs import ChoiceBox
 from groundstation.gui.widgets.scrolling import scrolled
@@ -48,9 +48,9 @@ from planning.revision.top_up import TopUp
 class FlightWords(QObject):
     """Says what a controller is doing."""
 
-    def __init__(self, workspace: ApplicationContext, controller: FlyController, parent: QObject) -> None:
+    def __init__(self, context: ApplicationContext, controller: FlyController, parent: QObject) -> None:
         super().__init__(parent)
-        self._workspace, self._controller = workspace, controller
+        self._context, self._controller = context, controller
 
     def connected_to(self) -> str:
         """The other end of the link; empty where there is none."""
@@ -64,22 +64,22 @@ class FlightWords(QObject):
 
     def where_it_stands(self) -> str:
         """What is going on, or what to do first."""
-        controller, in_hand = self._controller, self._controller.in_hand
-        if self._workspace.document.site is None and not controller.is_connected:
+        controller, active = self._controller, self._controller.active
+        if self._context.document.site is None and not controller.is_connected:
             return self.tr("Open or import a site first, on the Site tab.")
         if (controller.plan is None or not controller.plan.sorties) and not controller.is_connected:
             return self.tr("Plan a flight first, on the Plan tab.")
         if controller.is_preparing:
             return self.tr("The flight is being prepared ...")
-        if not controller.is_connected or in_hand is None:
+        if not controller.is_connected or active is None:
             return self.tr("Not connected.")
-        if in_hand.link is LinkState.OPENING or in_hand.view is None:
+        if active.link is LinkState.OPENING or active.view is None:
             return self.tr("The link is being opened ...")
-        if in_hand.link is LinkState.SILENT:
-            if in_hand.link_problem:
-                return str(self._workspace.words(in_hand.link_problem))
+        if active.link is LinkState.SILENT:
+            if active.link_problem:
+                return str(self._context.words(active.link_problem))
             return self.tr("The link is open; no vehicle was heard yet.")
-        return self._phase_text(in_hand.view)
+        return self._phase_text(active.view)
 
     def _phase_text(self, view: LiveView) -> str:
         texts = {
@@ -98,7 +98,7 @@ class FlightWords(QObject):
             return self.tr("This connection is for another plan. Disconnect, and connect for the plan that is shown.")
         what, done, total = view.doing
         if view.phase is Phase.UPLOADING and total > 0.0:
-            return self.tr("{0} {1} ({2:.0f} of {3:.0f})").format(text, self._workspace.words(what), done, total)
+            return self.tr("{0} {1} ({2:.0f} of {3:.0f})").format(text, self._context.words(what), done, total)
         if view.phase is Phase.FLYING and view.state.mode is not None:
             return self.tr("{0} Mode: {1}").format(text, view.state.mode.value)
         return text
@@ -277,30 +277,30 @@ class SettingsPage(QWidget):
 class FlyPage(QObject):
     """The tab."""
 
-    def __init__(self, workspace: ApplicationContext, stage: Stage) -> None:
-        super().__init__(stage)
-        self._workspace, self._stage = workspace, stage
-        self.controller, self.questions = FlyController.of(workspace), FlightQuestions()
-        self._words = FlightWords(workspace, self.controller, self)
+    def __init__(self, context: ApplicationContext, shared_view: SharedView) -> None:
+        super().__init__(shared_view)
+        self._context, self._shared_view = context, shared_view
+        self.controller, self.questions = FlyController.of(context), FlightQuestions()
+        self._words = FlightWords(context, self.controller, self)
         self.connection, self.sortie = ConnectionBox(), ChoiceBox()
         self.buttons, self.checks = FlightButtons(), PreflightList()
         self.readouts, self.warnings = ReadoutsView(), WarningsView()
         self.simulation, self.settings, self.strip = SimulationPage(), SettingsPage(), PhotoStrip()
         self.findings = FindingsList()
         self.notes, self.report, self.band = FlightNotes(), ReportView(), LinkBand()
-        self.pictures = LivePictures(stage, self)
+        self.pictures = LivePictures(shared_view, self)
         self._phase = QLabel()
         self._phase.setWordWrap(True)
         self._phase.setProperty("role", "heading")
         self.left = self._make_left()
         self.right: QWidget | None = self._make_right()
         self.bottom: QWidget | None = self._make_bottom()
-        self.band.put_into(stage.window())
+        self.band.put_into(shared_view.window())
         self._connect()
         self.connection.setValue(self.controller.choice)
-        self.simulation.setValue(self.controller.simulation.conditions, self.controller.simulation.wishes)
+        self.simulation.setValue(self.controller.simulation.conditions, self.controller.simulation.effect_settings)
         self.settings.setValue(self.controller.settings)
-        self._show_units(workspace.units)
+        self._show_units(context.units)
         self._show_document()
         self._show_all()
 
@@ -322,7 +322,7 @@ class FlyPage(QObject):
 
     def n_photos(self) -> int:
         """Views of the sortie that have a photo."""
-        return 0 if self.controller.in_hand is None else len(self.controller.in_hand.photos)
+        return 0 if self.controller.active is None else len(self.controller.active.photos)
 
     # How it is put together
 
@@ -371,10 +371,10 @@ class FlyPage(QObject):
         return self._lists
 
     def _connect(self) -> None:
-        controller, workspace = self.controller, self._workspace
+        controller, context = self.controller, self._context
         self.connection.valueChanged.connect(controller.set_choice)
         self.connection.valueChanged.connect(controller.signing.look)
-        controller.signing.serve(self.connection, self._stage.window())
+        controller.signing.serve(self.connection, self._shared_view.window())
         self.connection.connectRequested.connect(self._connect_vehicle)
         self.connection.disconnectRequested.connect(self._disconnect)
         self.sortie.activated.connect(lambda index: controller.set_sortie(index + 1))
@@ -395,15 +395,15 @@ class FlyPage(QObject):
         controller.flightEnded.connect(self._show_end)
         controller.simulation.effectsChanged.connect(self.simulation.set_effects)
         controller.noted.connect(self.notes.add)
-        workspace.documentChanged.connect(self._document_changed)
-        workspace.unitsChanged.connect(self._show_units)
-        workspace.jobsChanged.connect(self._show_state)
-        self._stage.closing.connect(self._window_closing)
+        context.documentChanged.connect(self._document_changed)
+        context.unitsChanged.connect(self._show_units)
+        context.jobsChanged.connect(self._show_state)
+        self._shared_view.closing.connect(self._window_closing)
 
     # What the user does
 
     def _rest_found(self, found: TopUp) -> None:
-        if self.questions.close_rest(self._stage.window(), found):
+        if self.questions.close_rest(self._shared_view.window(), found):
             self.controller.after.take(found)
 
     def _request(self, request: Request) -> None:
@@ -412,7 +412,7 @@ class FlyPage(QObject):
 
     def _mend(self, mend: Mend, check: PreflightCheck) -> None:
         """Do something about a check before take-off, once the pilot agrees."""
-        controller, ask, window = self.controller, self.questions, self._stage.window()
+        controller, ask, window = self.controller, self.questions, self._shared_view.window()
         match mend:
             case Mend.SET_PARAMETERS:
                 changes = controller.parameter_changes()
@@ -420,52 +420,52 @@ class FlyPage(QObject):
                     controller.set_parameters(changes)
             case Mend.RAISE:
                 by_m = -round(check.value or 0.0, 1)
-                if ask.raise_flight(window, by_m, self._workspace.units):
+                if ask.raise_flight(window, by_m, self._context.units):
                     controller.raise_flight(by_m)
             case Mend.PLAN_FROM_HERE:
                 if ask.plan_from_here(window):
                     controller.plan_from_here()
             case Mend.OVERRULE:
-                if ask.overrule(window, self._workspace.words(check.text), check.code.upper()):
+                if ask.overrule(window, self._context.words(check.text), check.code.upper()):
                     controller.overrule(check.code)
 
     def _connect_vehicle(self) -> None:
         found = self.controller.limit.exceeded(self.controller.choice)
         if found is None:
             self.controller.connect_vehicle()
-        elif self.questions.share_out(self._stage.window(), found):
+        elif self.questions.share_out(self._shared_view.window(), found):
             self.controller.share_out(found)
 
     def _simulation_chosen(self) -> None:
         self.controller.simulation.choose(*self.simulation.value(), self.controller.plan, self.controller.number)
 
     def _may_start(self) -> bool:
-        in_hand = self.controller.in_hand
-        if in_hand is None:
+        active = self.controller.active
+        if active is None:
             return False
-        autopilot = None if in_hand.view is None else in_hand.view.state.autopilot
-        take_off = take_off_of(in_hand.sortie, autopilot)
-        return self.questions.start(self._stage.window(), take_off, self._workspace.units)
+        autopilot = None if active.view is None else active.view.state.autopilot
+        take_off = take_off_of(active.sortie, autopilot)
+        return self.questions.start(self._shared_view.window(), take_off, self._context.units)
 
     def _disconnect(self) -> None:
-        if not self.controller.is_in_flight or self.questions.leave_in_flight(self._stage.window()):
+        if not self.controller.is_in_flight or self.questions.leave_in_flight(self._shared_view.window()):
             self.controller.disconnect_vehicle()
 
     def _window_closing(self, event: QCloseEvent) -> None:
         if not event.isAccepted() or not self.controller.is_connected:
             return
-        if self.controller.is_in_flight and not self.questions.leave_in_flight(self._stage.window()):
+        if self.controller.is_in_flight and not self.questions.leave_in_flight(self._shared_view.window()):
             event.ignore()
             return
         self.controller.close()
 
     def _go_to(self, view_id: str) -> None:
-        self._workspace.jump_to(Item(ItemKind.VIEWPOINT, view_id))
+        self._context.jump_to(Item(ItemKind.VIEWPOINT, view_id))
 
     def _go_to_place(self, place: str) -> None:
-        item = item_of_place(place, self._workspace.document)
+        item = item_of_place(place, self._context.document)
         if item is not None:
-            self._workspace.jump_to(item)
+            self._context.jump_to(item)
 
     # What changes
 
@@ -475,10 +475,10 @@ class FlyPage(QObject):
 
     def _pictured(self) -> ActiveFlight | None:
         """The flight, where it is over the site that is shown."""
-        in_hand, shown = self.controller.in_hand, self._workspace.document.site
-        if in_hand is None or shown is None:
+        active, shown = self.controller.active, self._context.document.site
+        if active is None or shown is None:
             return None
-        return in_hand if is_same_place(in_hand.sortie.case.site_model.site, shown.site) else None
+        return active if is_same_place(active.sortie.case.site_model.site, shown.site) else None
 
     def _show_document(self) -> None:
         """Offer the sorties of the current plan."""
@@ -495,23 +495,23 @@ class FlyPage(QObject):
             if self.controller.number > len(texts):
                 self.controller.number = 1
         self.sortie.setCurrentIndex(min(self.controller.number, len(texts)) - 1)
-        in_hand = self.controller.in_hand
-        if in_hand is not None and in_hand.view is not None:
-            self._show_view(in_hand.view)
+        active = self.controller.active
+        if active is not None and active.view is not None:
+            self._show_view(active.view)
         self._show_state()
 
     def _show_all(self) -> None:
-        """Show the flight in hand from its beginning: a new one, or this page is new."""
-        in_hand = self.controller.in_hand
+        """Show the active flight from its beginning: a new one, or this page is new."""
+        active = self.controller.active
         self.notes.clear()
-        for note in () if in_hand is None else in_hand.notes:
+        for note in () if active is None else active.notes:
             self.notes.add(*note)
-        self.strip.set_photos({} if in_hand is None else in_hand.photos)
-        self.readouts.set_counted(None if in_hand is None else in_hand.counted)
-        self._show_report(None if in_hand is None else in_hand.ended)
+        self.strip.set_photos({} if active is None else active.photos)
+        self.readouts.set_counted(None if active is None else active.counted)
+        self._show_report(None if active is None else active.ended)
         self.pictures.set_flight(self._pictured())
-        if in_hand is not None and in_hand.view is not None:
-            self._show_view(in_hand.view)
+        if active is not None and active.view is not None:
+            self._show_view(active.view)
         else:
             self._clear_view()
         self._show_state()
@@ -564,10 +564,10 @@ class FlyPage(QObject):
         self.pictures.take_view(view)
 
     def _show_photo(self, counted: PhotoCounted) -> None:
-        in_hand = self.controller.in_hand
+        active = self.controller.active
         self.readouts.set_counted(counted)
-        if in_hand is not None:
-            self.strip.set_photos(in_hand.photos)
+        if active is not None:
+            self.strip.set_photos(active.photos)
         self.pictures.take_photo(counted)
 
     def _show_link(self, link: LinkState) -> None:

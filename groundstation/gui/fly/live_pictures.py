@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QFrame, QScrollArea, QSizePolicy, QToolTip, QWidge
 
 from groundstation.gui.fly.fly_controller import ActiveFlight
 from groundstation.gui.map.map_view import MapView
-from groundstation.gui.shared_view import SharedViewPage, Stage
+from groundstation.gui.shared_view import SharedView, SharedViewPage
 from groundstation.gui.view3d.drawables import ON_TOP, Drawable, frusta, joined, polyline
 from groundstation.gui.view3d.paint import ColourScale, flat
 from groundstation.gui.view3d.scene_view import SceneView
@@ -435,11 +435,11 @@ MAX_TRACK_POINTS = 4000
 
 
 class LivePictures(QObject):
-    """Draws the flight in hand while it is shown."""
+    """Draws the active flight while it is shown."""
 
-    def __init__(self, stage: Stage, parent: QObject) -> None:
+    def __init__(self, shared_view: SharedView, parent: QObject) -> None:
         super().__init__(parent)
-        self._stage = stage
+        self._shared_view = shared_view
         self._flight: ActiveFlight | None = None
         self._scene: LiveScene | None = None
         self._map: LiveMap | None = None
@@ -458,7 +458,7 @@ class LivePictures(QObject):
         """Draw, and go on drawing."""
         self._is_shown = True
         self.set_flight(flight)
-        self._stage.with_scene(self._scene_is_there)
+        self._shared_view.with_scene(self._scene_is_there)
         self._timer.start()
         self.draw()
 
@@ -482,9 +482,9 @@ class LivePictures(QObject):
         if not self._is_shown or not self._is_stale or flight is None or flight.view is None:
             return
         self._is_stale = False
-        if self._stage.page() is SharedViewPage.MAP:
+        if self._shared_view.page() is SharedViewPage.MAP:
             self._draw_map(flight, flight.view)
-        elif self._stage.page() is SharedViewPage.SCENE and self._scene is not None:
+        elif self._shared_view.page() is SharedViewPage.SCENE and self._scene is not None:
             self._draw_scene(self._scene, flight, flight.view)
 
     def _scene_is_there(self, scene: SceneView) -> None:
@@ -501,7 +501,7 @@ class LivePictures(QObject):
             self._paint_coverage(flight, flight.counted)
 
     def _paint_coverage(self, flight: ActiveFlight, counted: PhotoCounted) -> None:
-        view = self._stage.scene()
+        view = self._shared_view.scene()
         site = flight.sortie.case.site_model.site
         if view is None or counted.counts.shape[0] != site.n_panels:
             return
@@ -512,7 +512,7 @@ class LivePictures(QObject):
         view.set_panel_values(ColourScale(self.tr("Flown of what is planned"), "%", 0.0, 100.0), share)
 
     def _draw_map(self, flight: ActiveFlight, view: LiveView) -> None:
-        map_view = self._stage.findChild(MapView)
+        map_view = self._shared_view.findChild(MapView)
         if map_view is None:
             return
         if self._map is None:
@@ -527,7 +527,7 @@ class LivePictures(QObject):
     def _clear(self) -> None:
         if self._scene is not None:
             self._scene.clear()
-        scene = self._stage.scene()
+        scene = self._shared_view.scene()
         if scene is not None:
             scene.set_panel_values(None)
         if self._map is not None:

@@ -1,4 +1,4 @@
-"""What becomes of the pilot's wishes for the signing key: asked about, done as jobs, and told."""
+"""What the pilot does with the signing key: asked about, done as jobs, and told."""
 
 from __future__ import annotations
 
@@ -137,9 +137,9 @@ class SigningController(QObject):
     keyChanged = Signal(bool)  # noqa: N815  (Qt's own way of naming)
     vehicleChanged = Signal(str, bool)  # noqa: N815
 
-    def __init__(self, workspace: ApplicationContext, parent: QObject) -> None:
+    def __init__(self, context: ApplicationContext, parent: QObject) -> None:
         super().__init__(parent)
-        self._workspace = workspace
+        self._context = context
         self._job_id = 0
         self.questions = SigningQuestions(self)
 
@@ -152,7 +152,7 @@ class SigningController(QObject):
     @property
     def is_busy(self) -> bool:
         """Whether something is being done with the key."""
-        return any(job.id == self._job_id for job in self._workspace.jobs())
+        return any(job.id == self._job_id for job in self._context.jobs())
 
     def look(self, choice: ConnectionChoice) -> None:
         """Find out whether there is a key, where one counts: the system's key store may take its time."""
@@ -183,20 +183,20 @@ class SigningController(QObject):
                     )
 
     def _start(self, name: str, work: Callable[[], object], done: Callable[[object], None]) -> None:
-        self._job_id = self._workspace.start(name, lambda _context: work(), done).id
+        self._job_id = self._context.start(name, lambda _context: work(), done).id
 
     def _was_set(self, _result: object) -> None:
         self.keyChanged.emit(True)
-        self._workspace.say(Severity.OK, self.tr("Key kept. Give it to the vehicle over a cable."))
+        self._context.say(Severity.OK, self.tr("Key kept. Give it to the vehicle over a cable."))
 
     def _was_forgotten(self, _result: object) -> None:
         self.keyChanged.emit(False)
-        self._workspace.say(Severity.OK, self.tr("There is no key on this computer any more."))
+        self._context.say(Severity.OK, self.tr("There is no key on this computer any more."))
 
     def _was_given(self, url: str) -> None:
         self.vehicleChanged.emit(url, True)
-        self._workspace.say(Severity.OK, self.tr("The vehicle at {0} has the key, and signs with it.").format(url))
+        self._context.say(Severity.OK, self.tr("The vehicle at {0} has the key, and signs with it.").format(url))
 
     def _was_withdrawn(self, url: str) -> None:
         self.vehicleChanged.emit(url, False)
-        self._workspace.say(Severity.OK, self.tr("The vehicle at {0} was told to sign no more.").format(url))
+        self._context.say(Severity.OK, self.tr("The vehicle at {0} was told to sign no more.").format(url))

@@ -24,7 +24,7 @@ from planning.plan import Plan
 
 
 class SimulationPage(QWidget):
-    """Edits `Conditions` and the wishes for effects.
+    """Edits `Conditions` and the settings of effects.
 
     Signals
     -------
@@ -36,7 +36,7 @@ class SimulationPage(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._conditions = Conditions()
-        self._wishes: dict[str, EffectSetting] = {}
+        self._effect_settings: dict[str, EffectSetting] = {}
         self.rows = rows_of(declared(Conditions))
         self.effects = EffectsPanel()
         form = Form()
@@ -51,16 +51,16 @@ class SimulationPage(QWidget):
         layout.addWidget(self.effects, 1)
         for row in self.rows.values():
             row.valueChanged.connect(self._edited)
-        self.effects.wishChanged.connect(self._wished)
+        self.effects.settingChanged.connect(self._effect_set)
         self.setValue(self._conditions, {})
 
     def value(self) -> tuple[Conditions, dict[str, EffectSetting]]:
-        """Conditions, and wishes by the name of an effect."""
-        return self._conditions, dict(self._wishes)
+        """Conditions, and settings by the name of an effect."""
+        return self._conditions, dict(self._effect_settings)
 
-    def setValue(self, conditions: Conditions, wishes: dict[str, EffectSetting]) -> None:  # noqa: N802
+    def setValue(self, conditions: Conditions, effect_settings: dict[str, EffectSetting]) -> None:  # noqa: N802
         """Show other conditions."""
-        self._conditions, self._wishes = conditions, dict(wishes)
+        self._conditions, self._effect_settings = conditions, dict(effect_settings)
         blockers = [QSignalBlocker(row) for row in self.rows.values()]
         for row in self.rows.values():
             row.setValue(row.declared.value_in(conditions))
@@ -81,13 +81,13 @@ class SimulationPage(QWidget):
         self._conditions = with_values(self._conditions, values)
         self.valueChanged.emit()
 
-    def _wished(self, effect: str, wish: EffectSetting) -> None:
-        self._wishes[effect] = wish
+    def _effect_set(self, effect: str, setting: EffectSetting) -> None:
+        self._effect_settings[effect] = setting
         self.valueChanged.emit()
 
 
 class SimulationController(QObject):
-    """Conditions and wishes of the next simulation.
+    """Conditions and settings of effects of the next simulation.
 
     Signals
     -------
@@ -97,12 +97,12 @@ class SimulationController(QObject):
 
     effectsChanged = Signal(object)  # noqa: N815  (Qt's own way of naming)
 
-    def __init__(self, workspace: ApplicationContext, parent: QObject) -> None:
+    def __init__(self, context: ApplicationContext, parent: QObject) -> None:
         super().__init__(parent)
-        self._workspace = workspace
+        self._context = context
         self._looking_id = 0
         self.conditions: Conditions = CALM
-        self.wishes: dict[str, EffectSetting] = {}
+        self.effect_settings: dict[str, EffectSetting] = {}
 
     def connection(self, sortie: LiveSortie, choice: ConnectionChoice, charge: float) -> Simulation:
         """The simulation of a sortie, as it was chosen; `charge` of the battery that it begins with, 1 full."""
@@ -112,31 +112,33 @@ class SimulationController(QObject):
             autopilot=choice.autopilot,
             speed_up=choice.speed_up,
             conditions=self.conditions,
-            wishes=dict(self.wishes),
+            wishes=dict(self.effect_settings),
             charge=charge,
         )
 
-    def choose(self, conditions: Conditions, wishes: dict[str, EffectSetting], plan: Plan | None, number: int) -> None:
+    def choose(
+        self, conditions: Conditions, effect_settings: dict[str, EffectSetting], plan: Plan | None, number: int
+    ) -> None:
         """Simulate this sortie in other conditions the next time."""
-        self.conditions, self.wishes = conditions, wishes
+        self.conditions, self.effect_settings = conditions, effect_settings
         self.look(plan, number)
 
     def look(self, plan: Plan | None, number: int) -> None:
         """Find out what the simulation of a sortie, counted from 1, takes into account."""
-        site_model = self._workspace.document.site
-        is_busy = any(job.id == self._looking_id for job in self._workspace.jobs())
+        site_model = self._context.document.site
+        is_busy = any(job.id == self._looking_id for job in self._context.jobs())
         if plan is None or site_model is None or number > len(plan.sorties) or is_busy:
             return
         if site_model.site.n_panels == 0:
             return
-        asked = (number, self.conditions, dict(self.wishes))
+        asked = (number, self.conditions, dict(self.effect_settings))
 
         def work(_context: JobContext) -> tuple[EffectChoice, ...]:
             return simulation_effects(plan, site_model, *asked)
 
         def done(choices: tuple[EffectChoice, ...]) -> None:
             self.effectsChanged.emit(choices)
-            if asked != (number, self.conditions, self.wishes):
+            if asked != (number, self.conditions, self.effect_settings):
                 self.look(plan, number)
 
-        self._looking_id = self._workspace.start(self.tr("Look at the flight"), work, done).id
+        self._looking_id = self._context.start(self.tr("Look at the flight"), work, done).id

@@ -12,7 +12,7 @@ from PySide6.QtGui import QImage, QImageReader
 from groundstation.services.map.tiles import MapTiles
 from groundstation.services.map.web_mercator import Tile
 
-MAX_KEPT = 400
+MAX_CACHED = 400
 """Of 256 KiB each at the usual 256 x 256: about 100 MB, ten screens full at 1920 x 1080."""
 
 MAX_SIDE_PX = 1024
@@ -34,7 +34,7 @@ class TileStore(QObject):
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self._source: MapTiles | None = None
-        self._kept: OrderedDict[Tile, QImage | None] = OrderedDict()
+        self._cached: OrderedDict[Tile, QImage | None] = OrderedDict()
         self._wanted: list[Tile] = []
         self._lock = threading.Lock()
         self._worker: threading.Thread | None = None
@@ -50,23 +50,23 @@ class TileStore(QObject):
             old, self._source, self._wanted = self._source, source, []
         if old is not None:
             old.close()
-        self._kept.clear()
+        self._cached.clear()
 
     def knows(self, tile: Tile) -> bool:
         """Whether it is known what a tile shows, or that it shows nothing."""
-        return tile in self._kept
+        return tile in self._cached
 
     def picture(self, tile: Tile) -> QImage | None:
         """A decoded tile; None while it is not, and where the map has none."""
-        found = self._kept.get(tile)
+        found = self._cached.get(tile)
         if found is not None:
-            self._kept.move_to_end(tile)
+            self._cached.move_to_end(tile)
         return found
 
     def want(self, tiles: Sequence[Tile]) -> None:
         """Read these next, in this order; what was wanted before and is not now is forgotten."""
         with self._lock:
-            self._wanted = [tile for tile in tiles if tile not in self._kept]
+            self._wanted = [tile for tile in tiles if tile not in self._cached]
             if self._source is None or not self._wanted or self._worker is not None:
                 return
             self._worker = threading.Thread(target=self._work, name="map-tiles", daemon=True)
@@ -98,9 +98,9 @@ class TileStore(QObject):
     def _keep(self, source: MapTiles, tile: Tile, picture: QImage | None) -> None:
         if source is not self._source:
             return
-        self._kept[tile] = picture
-        while len(self._kept) > MAX_KEPT:
-            self._kept.popitem(last=False)
+        self._cached[tile] = picture
+        while len(self._cached) > MAX_CACHED:
+            self._cached.popitem(last=False)
         self.tilesReady.emit()
 
 

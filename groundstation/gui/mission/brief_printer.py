@@ -301,7 +301,7 @@ class BriefDialog(QDialog):
 
     def __init__(
         self,
-        workspace: ApplicationContext,
+        context: ApplicationContext,
         checked: Preflight,
         tiles: Path | None,
         folder: Path,
@@ -312,12 +312,12 @@ class BriefDialog(QDialog):
         self.finished.connect(self._let_go)
         self.setWindowTitle(self.tr("Flight brief"))
         plan, site_model = checked.plan, checked.site_model
-        self._workspace, self._folder, self._name = workspace, folder, site_model.site.name
-        self._units = workspace.units
+        self._context, self._folder, self._name = context, folder, site_model.site.name
+        self._units = context.units
         self._html = ""
         self._pictures: dict[str, str | QImage] = {}
         self._document: BriefDocument | None = None
-        entry = workspace.document.current
+        entry = context.document.current
         today = QLocale().toString(QDate.currentDate(), QLocale.FormatType.LongFormat)
         title = entry.title if entry is not None and entry.plan is plan else ""
         found = flight_brief(site_model, plan, checked.findings, today, title, day=checked.day)
@@ -328,7 +328,7 @@ class BriefDialog(QDialog):
         self._page.setStyleSheet("QTextBrowser { background: #ffffff; color: #000000; }")
         self._paper.addItem(self.tr("A4"), False)
         self._paper.addItem(self.tr("US Letter"), True)
-        self._paper.setCurrentIndex(int(is_letter_usual(workspace.units)))
+        self._paper.setCurrentIndex(int(is_letter_usual(context.units)))
         self._save = QPushButton(self.tr("Save as PDF ..."))
         self._save.setProperty("primary", True)
         self._print = QPushButton(self.tr("Print ..."))
@@ -341,7 +341,7 @@ class BriefDialog(QDialog):
             bar.addWidget(button)
         layout = QVBoxLayout(self)
         layout.addWidget(self._page, 1)
-        layout.addWidget(DialogFoot(workspace))
+        layout.addWidget(DialogFoot(context))
         layout.addLayout(bar)
         self.resize(760, 620)
         self._paper.currentIndexChanged.connect(self._lay_out)
@@ -365,9 +365,9 @@ class BriefDialog(QDialog):
         try:
             write_pdf(self._fresh(), path, bool(self._paper.currentData()))
         except InputError as error:
-            self._workspace.say(Severity.ERROR, self._workspace.words(str(error)))
+            self._context.say(Severity.ERROR, self._context.words(str(error)))
             return False
-        self._workspace.say(Severity.OK, self.tr("Written: {0}").format(path))
+        self._context.say(Severity.OK, self.tr("Written: {0}").format(path))
         return True
 
     def _draw(self, site_model: SiteModel, plan: Plan, tiles: Path | None) -> None:
@@ -383,14 +383,14 @@ class BriefDialog(QDialog):
                 return pictures, str(error)
             return pictures, ""
 
-        self._workspace.start(self.tr("Flight brief"), work, self._when_drawn)
+        self._context.start(self.tr("Flight brief"), work, self._when_drawn)
 
     def _when_drawn(self, result: tuple[dict[str, str | QImage], str]) -> None:
         if self._is_closed:
             return
         self._pictures, objection = result
         if objection:
-            self._workspace.say(Severity.WARNING, self._workspace.words(objection))
+            self._context.say(Severity.WARNING, self._context.words(objection))
         self._lay_out()
 
     def _let_go(self) -> None:
@@ -432,7 +432,7 @@ class BriefDialog(QDialog):
             try:
                 print_pages(self._fresh(), printer, printer.printerName())
             except InputError as error:
-                self._workspace.say(Severity.ERROR, self._workspace.words(str(error)))
+                self._context.say(Severity.ERROR, self._context.words(str(error)))
 
 
 def is_letter_usual(units: UnitSystem) -> bool:

@@ -162,7 +162,7 @@ class ExportDialog(QDialog):
 
     def __init__(
         self,
-        workspace: ApplicationContext,
+        context: ApplicationContext,
         plan: Plan,
         site_model: SiteModel,
         folder: Path,
@@ -172,14 +172,14 @@ class ExportDialog(QDialog):
         self._is_writing = False
         self.finished.connect(self._let_go)
         self.setWindowTitle(self.tr("Export mission files"))
-        self._workspace, self._plan, self._site_model, self._folder = workspace, plan, site_model, folder
+        self._context, self._plan, self._site_model, self._folder = context, plan, site_model, folder
         self._prepared: PreparedExport | None = None
         self._asked = 0
-        self._form = ExportForm(workspace.units)
+        self._form = ExportForm(context.units)
         self._state = QLabel()
         self._state.setWordWrap(True)
         self._findings = FindingsList()
-        self._findings.set_units(workspace.units)
+        self._findings.set_units(context.units)
         self._write = QPushButton(self.tr("Write ..."))
         self._write.setProperty("primary", True)
         self._write.setDefault(True)
@@ -202,13 +202,13 @@ class ExportDialog(QDialog):
         buttons.addWidget(self._write)
         layout = QVBoxLayout(self)
         layout.addLayout(columns, 1)
-        layout.addWidget(DialogFoot(workspace))
+        layout.addWidget(DialogFoot(context))
         layout.addLayout(buttons)
         self.resize(820, 460)
         # Turning a wheel through the choices makes one set of files, not one for each.
         self._prepare_soon = QTimer(self, interval=REST_MS, singleShot=True)
         self._prepare_soon.timeout.connect(self._prepare)
-        self._form.valueChanged.connect(self._wishes_changed)
+        self._form.valueChanged.connect(self._options_changed)
         self._write.clicked.connect(self._choose_file)
         close.clicked.connect(self.reject)
         self._prepare()
@@ -244,16 +244,16 @@ class ExportDialog(QDialog):
             return write_export(prepared, path)
 
         self._is_writing = True
-        self._workspace.start(self.tr("Export"), work, self._when_written, self._when_failed)
+        self._context.start(self.tr("Export"), work, self._when_written, self._when_failed)
 
-    def _wishes_changed(self) -> None:
+    def _options_changed(self) -> None:
         self._asked += 1
         self._prepared = None
         self._write.setEnabled(False)
         self._prepare_soon.start()
 
     def _prepare(self) -> None:
-        """Make the files in memory; an answer to an older wish is not shown."""
+        """Make the files in memory; an answer to older options is not shown."""
         file_format, options = self._form.value()
         plan, site_model = self._plan, self._site_model
         self._asked += 1
@@ -268,7 +268,7 @@ class ExportDialog(QDialog):
             if asked == self._asked:
                 self._show(prepared)
 
-        self._workspace.start(self.tr("Prepare export"), work, done)
+        self._context.start(self.tr("Prepare export"), work, done)
 
     def _show(self, prepared: PreparedExport) -> None:
         self._prepared = prepared
@@ -312,17 +312,17 @@ class ExportDialog(QDialog):
 
     def _when_written(self, paths: tuple[Path, ...]) -> None:
         self._is_writing = False
-        self._workspace.say(Severity.OK, self.tr("Written: {0}").format(", ".join(str(path) for path in paths)))
+        self._context.say(Severity.OK, self.tr("Written: {0}").format(", ".join(str(path) for path in paths)))
         self.written.emit(paths)
         self.accept()
 
     def _when_failed(self, error: BaseException) -> None:
         self._is_writing = False
-        text = self.tr("Not written: {0}").format(self._workspace.words(str(error)))
+        text = self.tr("Not written: {0}").format(self._context.words(str(error)))
         if self.isVisible():
             self._say("error", text)
         else:
-            self._workspace.say(Severity.WARNING, text)
+            self._context.say(Severity.WARNING, text)
             self._let_go()
 
     def _let_go(self) -> None:

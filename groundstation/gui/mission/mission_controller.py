@@ -37,43 +37,43 @@ class MissionController(QObject):
     checked = Signal(object)
     compared = Signal(object, str)
 
-    def __init__(self, workspace: ApplicationContext, parent: QObject | None = None) -> None:
+    def __init__(self, context: ApplicationContext, parent: QObject | None = None) -> None:
         super().__init__(parent)
-        self._workspace = workspace
+        self._context = context
         self._check_id = 0
         self.day = UNKNOWN_DAY
 
     @property
     def plan(self) -> Plan | None:
         """The current plan, where there is a site to fly it on."""
-        document = self._workspace.document
+        document = self._context.document
         return None if document.site is None or document.current is None else document.current.plan
 
     @property
     def can_check(self) -> bool:
         """Whether there is a plan, and panels that it is to photograph: a bare site has none."""
-        site_model = self._workspace.document.site
+        site_model = self._context.document.site
         return self.plan is not None and site_model is not None and site_model.site.n_panels > 0
 
     @property
     def is_checking(self) -> bool:
         """Whether a check runs or waits."""
-        return any(job.id == self._check_id for job in self._workspace.jobs())
+        return any(job.id == self._check_id for job in self._context.jobs())
 
     def check(self) -> None:
         """Check the current plan; one check at a time."""
-        plan, site_model, day = self.plan, self._workspace.document.site, self.day
+        plan, site_model, day = self.plan, self._context.document.site, self.day
         if plan is None or site_model is None or not self.can_check or self.is_checking:
             return
 
         def work(context: JobContext) -> Preflight:
             return preflight(plan, site_model, day, context)
 
-        self._check_id = self._workspace.start(self.tr("Check"), work, self.checked.emit).id
+        self._check_id = self._context.start(self.tr("Check"), work, self.checked.emit).id
 
     def import_files(self, paths: Sequence[Path]) -> None:
         """Take mission files of one flight over as a plan of the project; without a site they get a bare one."""
-        document = self._workspace.document
+        document = self._context.document
         site_model, request, paths = document.site, document.request, tuple(paths)
         if not paths:
             return
@@ -90,17 +90,17 @@ class MissionController(QObject):
 
         def done(result: tuple[SiteModel | None, Plan, tuple[Finding, ...]]) -> None:
             bare, plan, findings = result
-            now = self._workspace.document
+            now = self._context.document
             if now.site is not site_model:
-                self._workspace.say(
+                self._context.say(
                     Severity.WARNING, self.tr("{0} was read for a site that has changed; import again").format(name)
                 )
                 return
             if bare is not None:
                 now = with_new_site(now, bare)
             entry = PlanEntry(now.free_plan_id(), name, plan)
-            self._workspace.change(self.tr("Import {0}").format(name), now.with_plan(entry))
-            self._workspace.say(
+            self._context.change(self.tr("Import {0}").format(name), now.with_plan(entry))
+            self._context.say(
                 Severity.OK,
                 self.tr("{0} imported, photos: {1}, sorties: {2}").format(
                     name, len(plan.viewpoints), len(plan.sorties)
@@ -108,11 +108,11 @@ class MissionController(QObject):
             )
             self._say_findings(name, findings)
 
-        self._workspace.start(self.tr("Import mission"), work, done)
+        self._context.start(self.tr("Import mission"), work, done)
 
     def compare_files(self, paths: Sequence[Path]) -> None:
         """Read mission files back and compare them with the current plan."""
-        plan, site_model, paths = self.plan, self._workspace.document.site, tuple(paths)
+        plan, site_model, paths = self.plan, self._context.document.site, tuple(paths)
         if plan is None or site_model is None or not paths:
             return
         site = site_model.site
@@ -125,19 +125,19 @@ class MissionController(QObject):
             self.compared.emit(comparison, names)
             self._say_findings(names, comparison.findings)
 
-        self._workspace.start(self.tr("Compare"), work, done)
+        self._context.start(self.tr("Compare"), work, done)
 
     def _say_findings(self, names: str, findings: Sequence[Finding]) -> None:
         """Say what there is to say of the files of these names; what holds of several sorties once."""
-        self._workspace.settle("plan.file.")
+        self._context.settle("plan.file.")
         told = {found.message: found for found in reversed(findings) if found.severity is not Severity.OK}
         for found in list(reversed(told.values()))[:MAX_SAID]:
-            item = item_of_place(found.place, self._workspace.document)
-            self._workspace.say(
+            item = item_of_place(found.place, self._context.document)
+            self._context.say(
                 found.severity,
-                self.tr("{0}: {1}").format(names, self._workspace.words(found.message)),
+                self.tr("{0}: {1}").format(names, self._context.words(found.message)),
                 item,
                 f"plan.file.{found.message}",
             )
         if len(told) > MAX_SAID:
-            self._workspace.say(Severity.NOTE, self.tr("{0} more findings like these").format(len(told) - MAX_SAID))
+            self._context.say(Severity.NOTE, self.tr("{0} more findings like these").format(len(told) - MAX_SAID))

@@ -24,7 +24,7 @@ from groundstation.gui.map.map_view import MapView
 from groundstation.gui.mission.export_dialog import ExportDialog
 from groundstation.gui.mission.mission_controller import MissionController
 from groundstation.gui.mission.mission_lists import MissionLists, SortieTable
-from groundstation.gui.shared_view import Stage
+from groundstation.gui.shared_view import SharedView
 from groundstation.gui.widgets.findings_list import SIZE_PX, FindingsList, severity_icon
 from groundstation.gui.widgets.inputs import NumberBox, calm, moment_of
 from groundstation.gui.widgets.questions import choose_files
@@ -257,14 +257,14 @@ READABLE = "*.kmz *.plan *.waypoints *.txt *.kml *.csv"
 class MissionPage(QObject):
     """The tab."""
 
-    def __init__(self, workspace: ApplicationContext, stage: Stage) -> None:
-        super().__init__(stage)
-        self._workspace, self._stage = workspace, stage
+    def __init__(self, context: ApplicationContext, shared_view: SharedView) -> None:
+        super().__init__(shared_view)
+        self._context, self._shared_view = context, shared_view
         self._is_shown = False
         self._drawn: Document | None = None
         self._preflight: Preflight | None = None
         self._folder: Path | None = None
-        self.controller = MissionController(workspace, self)
+        self.controller = MissionController(context, self)
         self.findings, self.lists, self.sorties = FindingsView(), MissionLists(), SortieTable()
         self._title, self._summary = QLabel(), QLabel()
         self._make_actions()
@@ -274,7 +274,7 @@ class MissionPage(QObject):
         self._check_soon = QTimer(self, interval=REST_MS, singleShot=True)
         self._check_soon.timeout.connect(self.controller.check)
         self._connect()
-        self._show_units(workspace.units)
+        self._show_units(context.units)
         self._say_summary()
 
     # A tab
@@ -283,7 +283,7 @@ class MissionPage(QObject):
         """Bring everything up to date, and check a plan that was changed elsewhere."""
         self._is_shown = True
         self._show_document()
-        self._show_selection(self._workspace.selection)
+        self._show_selection(self._context.selection)
 
     def hidden(self) -> None:
         """Nothing of the shared view was taken."""
@@ -298,11 +298,11 @@ class MissionPage(QObject):
 
     def export(self) -> ExportDialog | None:
         """Ask how to export the current plan; None where there is none."""
-        plan, site_model = self.controller.plan, self._workspace.document.site
+        plan, site_model = self.controller.plan, self._context.document.site
         if plan is None or site_model is None:
             return None
-        dialog = ExportDialog(self._workspace, plan, site_model, self._export_folder(), self._stage.window())
-        self._workspace.tell_of_plugins()
+        dialog = ExportDialog(self._context, plan, site_model, self._export_folder(), self._shared_view.window())
+        self._context.tell_of_plugins()
         dialog.written.connect(self._note_folder)
         dialog.open()
         return dialog
@@ -314,11 +314,11 @@ class MissionPage(QObject):
         from groundstation.gui.mission.brief_printer import BriefDialog
 
         folder = self._export_folder()
-        BriefDialog(self._workspace, self._preflight, self._tiles(), folder, self._stage.window()).open()
+        BriefDialog(self._context, self._preflight, self._tiles(), folder, self._shared_view.window()).open()
 
     def _tiles(self) -> Path | None:
-        """The map file that the stage shows; a map that was never looked at has none."""
-        map_view = self._stage.findChild(MapView)
+        """The map file that the shared view shows; a map that was never looked at has none."""
+        map_view = self._shared_view.findChild(MapView)
         return None if map_view is None else map_view.map_file()
 
     def _choose_import(self) -> None:
@@ -329,7 +329,7 @@ class MissionPage(QObject):
 
     def _ask_for_files(self, title: str) -> tuple[Path, ...]:
         kinds = self.tr("Missions ({0});;All files (*)").format(READABLE)
-        paths = choose_files(self._stage.window(), title, kinds, self._export_folder())
+        paths = choose_files(self._shared_view.window(), title, kinds, self._export_folder())
         if paths:
             self._folder = paths[0].parent
         return in_order_of_sorties(list(paths))
@@ -338,7 +338,7 @@ class MissionPage(QObject):
         """Where files went last; else the project's folder for missions."""
         if self._folder is not None:
             return self._folder
-        project = self._workspace.session.folder
+        project = self._context.session.folder
         if project is None:
             return Path.home()
         return project / "missions" if (project / "missions").is_dir() else project
@@ -393,19 +393,19 @@ class MissionPage(QObject):
         return left
 
     def _connect(self) -> None:
-        workspace = self._workspace
+        context = self._context
         self.findings.checkRequested.connect(self.controller.check)
         self.findings.dayChanged.connect(self._day_changed)
         self.findings.placePicked.connect(self._go_to)
-        self.lists.picked.connect(workspace.select)
-        self.lists.activated.connect(workspace.jump_to)
-        self.sorties.picked.connect(workspace.jump_to)
+        self.lists.picked.connect(context.select)
+        self.lists.activated.connect(context.jump_to)
+        self.sorties.picked.connect(context.jump_to)
         self.controller.checked.connect(self._take_preflight)
         self.controller.compared.connect(self.lists.show_comparison)
-        workspace.documentChanged.connect(self._document_changed)
-        workspace.selectionChanged.connect(self._show_selection)
-        workspace.unitsChanged.connect(self._show_units)
-        workspace.jobsChanged.connect(self._show_freshness)
+        context.documentChanged.connect(self._document_changed)
+        context.selectionChanged.connect(self._show_selection)
+        context.unitsChanged.connect(self._show_units)
+        context.jobsChanged.connect(self._show_freshness)
 
     # What changes
 
@@ -415,7 +415,7 @@ class MissionPage(QObject):
 
     def _show_document(self) -> None:
         """Draw what changed since it was last drawn; hidden tabs wait."""
-        document, drawn = self._workspace.document, self._drawn
+        document, drawn = self._context.document, self._drawn
         plan, site_model = self.controller.plan, document.site
         is_new = drawn is None or drawn.site is not site_model or drawn.current is not document.current
         self._drawn = document
@@ -428,7 +428,7 @@ class MissionPage(QObject):
             self._check_soon.start()
 
     def _is_fresh(self) -> bool:
-        found, plan, site_model = self._preflight, self.controller.plan, self._workspace.document.site
+        found, plan, site_model = self._preflight, self.controller.plan, self._context.document.site
         return found is not None and found.is_of(plan, site_model) and found.day == self.controller.day
 
     def _show_freshness(self) -> None:
@@ -459,7 +459,7 @@ class MissionPage(QObject):
         self._show_freshness()
 
     def _say_summary(self) -> None:
-        document, plan = self._workspace.document, self.controller.plan
+        document, plan = self._context.document, self.controller.plan
         if document.site is None:
             self._title.setText(self.tr("No site"))
             self._summary.setText(self.tr("Open or import a site first, on the Site tab."))
@@ -483,13 +483,11 @@ class MissionPage(QObject):
         self._check_soon.start()
 
     def _go_to(self, place: str) -> None:
-        item = item_of_place(place, self._workspace.document)
+        item = item_of_place(place, self._context.document)
         if item is None:
-            self._workspace.say(
-                Severity.NOTE, self.tr("{0} is not shown in the view").format(self._workspace.words(place))
-            )
+            self._context.say(Severity.NOTE, self.tr("{0} is not shown in the view").format(self._context.words(place)))
         else:
-            self._workspace.jump_to(item)
+            self._context.jump_to(item)
 
     def _show_selection(self, item: Item | None) -> None:
         if self._is_shown:

@@ -76,9 +76,9 @@ class ModelController(QObject):
     probed = Signal(object)
     _came = Signal(object)
 
-    def __init__(self, workspace: ApplicationContext, parent: QObject | None = None) -> None:
+    def __init__(self, context: ApplicationContext, parent: QObject | None = None) -> None:
         super().__init__(parent)
-        self._workspace = workspace
+        self._context = context
         self._process = ModelProcess(self._came.emit)
         self._came.connect(self._take)
         self.card: SceneCard | None = None
@@ -92,10 +92,10 @@ class ModelController(QObject):
         self.is_reading = False
 
     @classmethod
-    def of(cls, workspace: ApplicationContext) -> ModelController:
-        """The one of a workspace: it stays when the window is made anew."""
-        found = workspace.findChild(ModelController)
-        return cls(workspace, workspace) if found is None else found
+    def of(cls, context: ApplicationContext) -> ModelController:
+        """The one of a context: it stays when the window is made anew."""
+        found = context.findChild(ModelController)
+        return cls(context, context) if found is None else found
 
     # The scene
 
@@ -114,13 +114,13 @@ class ModelController(QObject):
         def work(_context: JobContext) -> tuple[SceneCard, tuple[Path, ...]]:
             return read_card(folder), scenes_beside(folder)
 
-        self._workspace.start(self.tr("Open the model"), work, self._opened, self._not_opened)
+        self._context.start(self.tr("Open the model"), work, self._opened, self._not_opened)
 
     def _take_scene(self, made: SceneMade) -> None:
         if made.folder is not None:
             self._read(made.folder)
             return
-        self._workspace.say(Severity.ERROR, self._workspace.words(made.problem))
+        self._context.say(Severity.ERROR, self._context.words(made.problem))
         self._not_opened(None)
 
     def _opened(self, found: tuple[SceneCard, tuple[Path, ...]]) -> None:
@@ -143,7 +143,7 @@ class ModelController(QObject):
             return
         self.beside = None
         if folder is not None:
-            self._workspace.start(self.tr("Open the model beside it"), lambda _context: read_card(folder), self._stands)
+            self._context.start(self.tr("Open the model beside it"), lambda _context: read_card(folder), self._stands)
 
     def _stands(self, card: SceneCard) -> None:
         if card.folder == self._wanted_beside:
@@ -187,12 +187,12 @@ class ModelController(QObject):
             finally:
                 worker.close()
 
-        self._workspace.start(self.tr("Export the model"), work, self._exported)
+        self._context.start(self.tr("Export the model"), work, self._exported)
 
     def _exported(self, done: WrittenModel) -> None:
         said = self.tr("The model is written: {0}, {1} MB").format(done.path, f"{done.n_bytes / 1e6:.3g}")
-        notes = [str(self._workspace.words(note)) for note in done.notes]
-        self._workspace.say(Severity.NOTE, "; ".join([said, *notes]))
+        notes = [str(self._context.words(note)) for note in done.notes]
+        self._context.say(Severity.NOTE, "; ".join([said, *notes]))
 
     # Panels
 
@@ -292,7 +292,7 @@ class ModelController(QObject):
         def work(context: JobContext) -> dict[str, Attachment]:
             return attachments_of(card.folder, entries, longest_px, context)
 
-        self._workspace.start(self.tr("Read what is attached to records"), work, when_done, when_failed)
+        self._context.start(self.tr("Read what is attached to records"), work, when_done, when_failed)
 
     def attribute_names(self) -> tuple[str, ...]:
         """Attributes that panels can be coloured by."""
@@ -384,7 +384,7 @@ class ModelController(QObject):
             case Lost(status):
                 if self.is_reading:
                     self._not_opened(None)
-                self._workspace.say(
+                self._context.say(
                     Severity.ERROR,
                     self.tr("The process that shows models has ended (exit status {0}); it starts anew.").format(
                         status
@@ -393,4 +393,4 @@ class ModelController(QObject):
                 self.seen.emit(None)
 
     def _say(self, error: GroundStationError) -> None:
-        self._workspace.say(Severity.ERROR, self._workspace.words(str(error)))
+        self._context.say(Severity.ERROR, self._context.words(str(error)))

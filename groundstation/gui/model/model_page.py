@@ -36,7 +36,7 @@ from groundstation.gui.model.model_controller import ModelController
 from groundstation.gui.model.record_side import KIND_TITLES, RecordSide
 from groundstation.gui.model.report_maker import ReportMaker
 from groundstation.gui.model.scene_pane import ScenePane
-from groundstation.gui.shared_view import Stage
+from groundstation.gui.shared_view import SharedView
 from groundstation.gui.widgets.inputs import ChoiceBox
 from groundstation.gui.widgets.questions import Questions, choose_new_file, file_name
 from groundstation.services.model.export import model_exporter, with_ending
@@ -242,12 +242,12 @@ SEARCH_MS = 200
 class ModelPage(QObject):
     """The tab."""
 
-    def __init__(self, workspace: ApplicationContext, stage: Stage) -> None:
-        super().__init__(stage)
-        self._workspace, self._stage = workspace, stage
-        self.controller, self.questions = ModelController.of(workspace), Questions()
-        self.side, self.pane = PanelSide(), ScenePane(workspace, self.controller)
-        self.records, self.report = RecordSide(workspace.words), ReportMaker(self.controller, self)
+    def __init__(self, context: ApplicationContext, shared_view: SharedView) -> None:
+        super().__init__(shared_view)
+        self._context, self._shared_view = context, shared_view
+        self.controller, self.questions = ModelController.of(context), Questions()
+        self.side, self.pane = PanelSide(), ScenePane(context, self.controller)
+        self.records, self.report = RecordSide(context.words), ReportMaker(self.controller, self)
         self.left = self._make_page()
         self.right: QWidget | None = None
         self.bottom: QWidget | None = None
@@ -255,7 +255,7 @@ class ModelPage(QObject):
         self._search.setSingleShot(True)
         self._search.setInterval(SEARCH_MS)
         self._connect()
-        self._units_changed(workspace.units)
+        self._units_changed(context.units)
         self._show_scene()
 
     # A tab
@@ -307,19 +307,19 @@ class ModelPage(QObject):
         controller.subjectChanged.connect(self._show_subject)
         controller.recordsChanged.connect(self._show_records)
         controller.coloursChanged.connect(self._show_colours)
-        self._workspace.unitsChanged.connect(self._units_changed)
-        self._stage.closing.connect(self._window_closing)
+        self._context.unitsChanged.connect(self._units_changed)
+        self._shared_view.closing.connect(self._window_closing)
 
     # What the user does
 
     def _open(self) -> None:
-        card, project = self.controller.card, self._workspace.session.folder
+        card, project = self.controller.card, self._context.session.folder
         places = (
             None if project is None else project / MODELS_FOLDER,
             None if card is None else card.folder.parent,
             project,
         )
-        folder = self.questions.folder(self._stage.window(), self.tr("Folder of a model"), *places)
+        folder = self.questions.folder(self._shared_view.window(), self.tr("Folder of a model"), *places)
         if folder is not None:
             self.controller.open(folder)
 
@@ -328,7 +328,7 @@ class ModelPage(QObject):
 
     def _save_picture(self) -> None:
         title, kinds = self.tr("Save the picture"), self.tr("Pictures (*.png)")
-        path = choose_new_file(self._stage.window(), title, self._proposed(".png"), kinds, ".png", PICTURES)
+        path = choose_new_file(self._shared_view.window(), title, self._proposed(".png"), kinds, ".png", PICTURES)
         if path is not None:
             self.save_picture(path)
 
@@ -336,16 +336,16 @@ class ModelPage(QObject):
         """Keep what is shown, with what is drawn over it."""
         path = path if path.suffix else path.with_suffix(".png")
         if self.pane.picture().save(str(path)):
-            self._workspace.say(Severity.NOTE, self.tr("The picture is written: {0}").format(path))
+            self._context.say(Severity.NOTE, self.tr("The picture is written: {0}").format(path))
         else:
-            self._workspace.say(Severity.ERROR, self.tr("{0} cannot be written; choose another place").format(path))
+            self._context.say(Severity.ERROR, self.tr("{0} cannot be written; choose another place").format(path))
 
     def _export(self) -> None:
         card = self.controller.card
         if card is None:
             return
-        dialog = ExportDialog(tuple(dict.fromkeys(panel.facade for panel in card.panels)), self._stage.window())
-        self._workspace.tell_of_plugins()
+        dialog = ExportDialog(tuple(dict.fromkeys(panel.facade for panel in card.panels)), self._shared_view.window())
+        self._context.tell_of_plugins()
         if dialog.exec() == QDialog.DialogCode.Accepted:
             out = self._place_for(dialog.wanted().format, card.name)
             if out is not None:
@@ -356,15 +356,17 @@ class ModelPage(QObject):
         """Where a file or folder is to be."""
         title, endings = self.tr("Export the model"), model_exporter(kind).endings
         if not endings:
-            return self.questions.new_folder(self._stage.window(), title, Path.home() / file_name(name))
+            return self.questions.new_folder(self._shared_view.window(), title, Path.home() / file_name(name))
         ending, *others = endings
         kinds = " ".join(f"*{each}" for each in endings)
-        found = choose_new_file(self._stage.window(), title, Path(f"{file_name(name)}{ending}"), kinds, ending, others)
+        found = choose_new_file(
+            self._shared_view.window(), title, Path(f"{file_name(name)}{ending}"), kinds, ending, others
+        )
         return None if found is None else with_ending(found, kind)
 
     def _make_report(self) -> None:
         title, kinds = self.tr("Save the report"), self.tr("Documents (*.pdf)")
-        path = choose_new_file(self._stage.window(), title, self._proposed(".pdf"), kinds, ".pdf")
+        path = choose_new_file(self._shared_view.window(), title, self._proposed(".pdf"), kinds, ".pdf")
         if path is not None:
             self.make_report(path)
 
@@ -392,15 +394,15 @@ class ModelPage(QObject):
             panels = tuple(each for each in facades if known[each.global_id])
             if subject.panel is not None:
                 panels = (subject.panel,)
-        is_letter = self._workspace.units is UnitSystem.IMPERIAL
+        is_letter = self._context.units is UnitSystem.IMPERIAL
         path = path if path.suffix else path.with_suffix(".pdf")
-        self.report.make(panels, path, self._workspace.units, is_letter, facades)
+        self.report.make(panels, path, self._context.units, is_letter, facades)
 
     def _report_done(self, path: Path) -> None:
-        self._workspace.say(Severity.NOTE, self.tr("The report is written: {0}").format(path))
+        self._context.say(Severity.NOTE, self.tr("The report is written: {0}").format(path))
 
     def _report_failed(self, problem: str) -> None:
-        self._workspace.say(Severity.ERROR, self._workspace.words(problem))
+        self._context.say(Severity.ERROR, self._context.words(problem))
 
     def _window_closing(self, event: QCloseEvent) -> None:
         if event.isAccepted():
@@ -448,7 +450,7 @@ class ModelPage(QObject):
         self._show_subject()
 
     def _show_subject(self) -> None:
-        self.records.show_subject(self.controller.level, self.controller.subject, self._workspace.units)
+        self.records.show_subject(self.controller.level, self.controller.subject, self._context.units)
         self._show_entries()
 
     def _show_records(self) -> None:

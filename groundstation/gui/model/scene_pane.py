@@ -49,11 +49,9 @@ class ScenePane(QWidget):
 
     saveAsked = Signal()  # noqa: N815  (Qt's own way of naming)
 
-    def __init__(
-        self, workspace: ApplicationContext, controller: ModelController, parent: QWidget | None = None
-    ) -> None:
+    def __init__(self, context: ApplicationContext, controller: ModelController, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._workspace, self._controller = workspace, controller
+        self._context, self._controller = context, controller
         self.view, self.layer, self.compare = ModelView(), ChoiceBox(), ChoiceBox()
         self.home, self.measure = QPushButton(self.tr("Facade")), QPushButton(self.tr("Measure"))
         self.front, self.save = QPushButton(self.tr("Panel")), QPushButton(self.tr("Save ..."))
@@ -296,7 +294,7 @@ class ScenePane(QWidget):
         if self._controller.card is None:
             return self.tr("Open a model: the folder of a training that is finished.")
         if self._problem:
-            return str(self._workspace.words(self._problem))
+            return str(self._context.words(self._problem))
         if not self.measure.isChecked():
             return ""
         return self._length_words() or self.tr("Click two places.")

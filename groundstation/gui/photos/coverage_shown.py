@@ -296,23 +296,23 @@ class CoverageShown(QObject):
 
     def __init__(
         self,
-        workspace: ApplicationContext,
+        context: ApplicationContext,
         controller: PhotosController,
         scene: CoverageScene,
         panel: PanelSightings,
         parent: QObject,
     ) -> None:
         super().__init__(parent)
-        self._workspace, self._controller, self._scene, self._panel = workspace, controller, scene, panel
+        self._context, self._controller, self._scene, self._panel = context, controller, scene, panel
         self._is_in_front = False
-        scene.picked.connect(workspace.select)
+        scene.picked.connect(context.select)
         controller.stateChanged.connect(self.show_all)
         controller.photosChanged.connect(self.show_all)
         controller.coverageChanged.connect(self.show_all)
-        workspace.selectionChanged.connect(self._select)
-        workspace.unitsChanged.connect(self._set_units)
-        self._set_units(workspace.units)
-        self._select(workspace.selection)
+        context.selectionChanged.connect(self._select)
+        context.unitsChanged.connect(self._set_units)
+        self._set_units(context.units)
+        self._select(context.selection)
         self.show_all()
 
     def set_in_front(self, is_in_front: bool) -> None:
@@ -326,7 +326,7 @@ class CoverageShown(QObject):
             self._controller.count()
         coverage = self._controller.coverage
         self._panel.set_coverage(coverage)
-        self._scene.set_coverage(self._workspace.document.site, coverage, self._why_nothing())
+        self._scene.set_coverage(self._context.document.site, coverage, self._why_nothing())
 
     def words(self) -> str:
         """How much the photos show; empty before photos are read."""
@@ -350,7 +350,7 @@ class CoverageShown(QObject):
 
     def _why_nothing(self) -> str:
         """Why no coverage is shown; empty where it is."""
-        model = self._workspace.document.site
+        model = self._context.document.site
         if model is None:
             return self.tr("Open or import a site first: photos are placed on it.")
         if self._controller.intake is None:

@@ -223,7 +223,7 @@ Entry = tuple[QColor | QPen, str]
 
 
 class GridPicture(PictureView):
-    """Draws grids over a picture, of which one is in hand, and the outlines of panels that are known from elsewhere."""
+    """Draws grids over a picture, of which one is active, and the outlines of panels that are known from elsewhere."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -235,9 +235,9 @@ class GridPicture(PictureView):
         self._held_px: float | None = None
         self._cell: tuple[int, int] | None = None
 
-    def set_grids(self, grids: tuple[FacadeGrid, ...], in_hand: FacadeGrid | None, *, is_rectified: bool) -> None:
-        """Draw these grids, of which one is in hand; the picture is the rectified view of that, or the photo."""
-        self._grids, self._grid, self._is_rectified = grids, in_hand, is_rectified
+    def set_grids(self, grids: tuple[FacadeGrid, ...], active: FacadeGrid | None, *, is_rectified: bool) -> None:
+        """Draw these grids, of which one is active; the picture is the rectified view of that, or the photo."""
+        self._grids, self._grid, self._is_rectified = grids, active, is_rectified
         self._make_room()
 
     def set_outlines(self, outlines: tuple[Array, ...]) -> None:
@@ -246,7 +246,7 @@ class GridPicture(PictureView):
         self._make_room()
 
     def place_of(self, point_px: tuple[float, float]) -> QPointF:
-        """Point of the widget, of a point of the rectified view of the grid in hand."""
+        """Point of the widget, of a point of the rectified view of the active grid."""
         assert self._grid is not None
         x, y = self._in_picture(self._grid, np.array([point_px]))[0]
         return self.to_widget(QPointF(float(x), float(y)))
@@ -269,17 +269,17 @@ class GridPicture(PictureView):
                 painter.drawPolygon(self._polygon(outline))
             for grid in self._grids:
                 if grid is not self._grid:
-                    self._paint_grid(painter, grid, is_in_hand=False)
+                    self._paint_grid(painter, grid, is_active=False)
         if self._grid is not None:
-            self._paint_grid(painter, self._grid, is_in_hand=True)
+            self._paint_grid(painter, self._grid, is_active=True)
             self._paint_chosen(painter, self._grid)
         self._paint_legend(painter)
 
-    def _paint_grid(self, painter: QPainter, grid: FacadeGrid, *, is_in_hand: bool) -> None:
+    def _paint_grid(self, painter: QPainter, grid: FacadeGrid, *, is_active: bool) -> None:
         painter.setPen(Qt.PenStyle.NoPen)
         for panel in grid.panels:
             colour = confidence_colour(panel.confidence)
-            colour.setAlpha(90 if is_in_hand else 45)
+            colour.setAlpha(90 if is_active else 45)
             painter.setBrush(colour)
             painter.drawPolygon(self._polygon(self._corners(grid, panel)))
         painter.setBrush(Qt.BrushStyle.NoBrush)
@@ -287,16 +287,16 @@ class GridPicture(PictureView):
         for row, column in grid.missing:
             for points in _crossed(grid, row, column):
                 painter.drawPolyline(self._polygon(self._in_picture(grid, points)))
-        painter.setPen(QPen(QColor(LINE_COLOUR), 1.0 if is_in_hand else 0.5))
+        painter.setPen(QPen(QColor(LINE_COLOUR), 1.0 if is_active else 0.5))
         for panel in grid.panels:
             # The edges of whole cells are the lines.
             if panel.part > 0:
                 painter.drawPolygon(self._polygon(self._corners(grid, panel)))
         for axis in ("column", "row"):
             for index, line in enumerate(lines_of(grid, axis)):
-                if is_in_hand and self._line == (axis, index):
+                if is_active and self._line == (axis, index):
                     continue
-                painter.setPen(_pen(line, 1.6 if is_in_hand else 0.8))
+                painter.setPen(_pen(line, 1.6 if is_active else 0.8))
                 painter.drawPolyline(self._polygon(self._course(grid, axis, line.position_px)))
 
     def _paint_chosen(self, painter: QPainter, grid: FacadeGrid) -> None:

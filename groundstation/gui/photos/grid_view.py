@@ -54,7 +54,7 @@ class Tool(Enum):
 
 
 class GridView(GridPicture):
-    """Lets the grid in hand be corrected, by pointer, finger and keys.
+    """Lets the active grid be corrected, by pointer, finger and keys.
 
     A press or Tab chooses a line; arrows move it by a pixel of the rectified view, with Shift by ten; Delete removes
     it, Insert adds one beside it, Esc lets go of it. With the tool for panels, arrows choose a panel, Delete takes it
@@ -84,16 +84,16 @@ class GridView(GridPicture):
             self.tr("Tab chooses a line, arrows move it, Shift by ten pixels; Delete removes it, Insert adds one.")
         )
 
-    def set_grids(self, grids: tuple[FacadeGrid, ...], in_hand: FacadeGrid | None, *, is_rectified: bool) -> None:
-        """Draw these grids, of which one is in hand; the picture is the rectified view of that, or the photo."""
+    def set_grids(self, grids: tuple[FacadeGrid, ...], active: FacadeGrid | None, *, is_rectified: bool) -> None:
+        """Draw these grids, of which one is active; the picture is the rectified view of that, or the photo."""
         before = self._grid
-        is_same = before is not None and in_hand is not None and before.rectification is in_hand.rectification
+        is_same = before is not None and active is not None and before.rectification is active.rectification
         if not is_same or is_rectified is not self._is_rectified:
             self._let_go()
-        if before is not in_hand:
+        if before is not active:
             self._held_px, self._is_dragging = None, False
             self._rest.stop()
-        super().set_grids(grids, in_hand, is_rectified=is_rectified)
+        super().set_grids(grids, active, is_rectified=is_rectified)
         self._keep_within()
 
     def set_tool(self, tool: Tool) -> None:

@@ -109,7 +109,7 @@ class PhotoPane(QWidget):
     refused(str)
         The photo cannot be shown, and why.
     placeChanged()
-        Another grid is in hand, or none.
+        Another grid is active, or none.
     coverageShown(bool)
         The coverage in 3-D came into the place of the photo, or went.
     """
@@ -194,7 +194,7 @@ class PhotoPane(QWidget):
         return found[index] if 0 <= index < len(found) else None
 
     def show_facade(self, facade_id: str) -> None:
-        """Take the grid of this facade in hand, where the photo has one."""
+        """Make the grid of this facade active, where the photo has one."""
         names = [place.facade for place in self._places()]
         if facade_id in names:
             self.facade.setCurrentIndex(names.index(facade_id))

@@ -21,7 +21,7 @@ from reconstruction.photos.decode import colour_picture
 THUMBNAIL_PX = 144
 """Longest side of a small picture; 1/8 of a photo is four times that, and is shrunk before it is kept."""
 
-MAX_KEPT = 1000
+MAX_CACHED = 1000
 """Of some 60 KiB each: 60 MB at most, however many photos there are."""
 
 MAX_WANTED = 80
@@ -65,7 +65,7 @@ class PhotoStore(QObject):
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
-        self._kept: OrderedDict[Path, QImage | None] = OrderedDict()
+        self._cached: OrderedDict[Path, QImage | None] = OrderedDict()
         self._wanted: OrderedDict[Path, PhotoMetadata] = OrderedDict()
         self._large: tuple[PhotoMetadata, Rectification | None] | None = None
         self._last: tuple[Path, NDArray[np.uint8]] | None = None
@@ -78,9 +78,9 @@ class PhotoStore(QObject):
 
     def thumbnail(self, photo: PhotoMetadata) -> QImage | None:
         """A small picture; None while it is decoded, and where the file is damaged."""
-        if photo.path in self._kept:
-            self._kept.move_to_end(photo.path)
-            return self._kept[photo.path]
+        if photo.path in self._cached:
+            self._cached.move_to_end(photo.path)
+            return self._cached[photo.path]
         with self._lock:
             self._wanted[photo.path] = photo
             self._wanted.move_to_end(photo.path)
@@ -151,9 +151,9 @@ class PhotoStore(QObject):
         return LargePicture(photo.path, view, _levels(picture))
 
     def _keep(self, path: Path, picture: QImage | None) -> None:
-        self._kept[path] = picture
-        while len(self._kept) > MAX_KEPT:
-            self._kept.popitem(last=False)
+        self._cached[path] = picture
+        while len(self._cached) > MAX_CACHED:
+            self._cached.popitem(last=False)
         self.thumbnailReady.emit(path)
 
     def _pass_on(self, picture: LargePicture) -> None:

@@ -73,9 +73,9 @@ class PhotosController(QObject):
     trialsChanged = Signal()  # noqa: N815
     stateChanged = Signal()  # noqa: N815
 
-    def __init__(self, workspace: ApplicationContext, parent: QObject | None = None) -> None:
+    def __init__(self, context: ApplicationContext, parent: QObject | None = None) -> None:
         super().__init__(parent)
-        self._workspace = workspace
+        self._context = context
         self.folder: Path | None = None
         self.intake: PhotoIntake | None = None
         self.cards: tuple[PhotoCard, ...] = ()
@@ -85,14 +85,14 @@ class PhotosController(QObject):
         self._counted: _Basis = ((), None)
         self._counting: _Basis = ((), None)
         self._coverage: PhotoCoverage | None = None
-        workspace.documentChanged.connect(self._document_changed)
-        workspace.jobsChanged.connect(self._jobs_changed)
+        context.documentChanged.connect(self._document_changed)
+        context.jobsChanged.connect(self._jobs_changed)
 
     @classmethod
-    def of(cls, workspace: ApplicationContext) -> PhotosController:
-        """The one of a workspace: it stays when the window is made anew."""
-        found = workspace.findChild(PhotosController)
-        return cls(workspace, workspace) if found is None else found
+    def of(cls, context: ApplicationContext) -> PhotosController:
+        """The one of a context: it stays when the window is made anew."""
+        found = context.findChild(PhotosController)
+        return cls(context, context) if found is None else found
 
     @property
     def is_coverage_current(self) -> bool:
@@ -102,7 +102,7 @@ class PhotosController(QObject):
     @property
     def coverage(self) -> PhotoCoverage | None:
         """What the photos show of the site's panels; None where that is not known, or has not been counted yet."""
-        model = self._workspace.document.site
+        model = self._context.document.site
         if self._coverage is None and self.intake is not None and model is not None and self.is_coverage_current:
             self._coverage = photo_coverage(self.intake, model.site)
         return self._coverage if self.is_coverage_current else None
@@ -129,16 +129,16 @@ class PhotosController(QObject):
 
     def usual_folder(self) -> Path | None:
         """The folder of photos that was chosen, or the project's."""
-        project = self._workspace.session.folder
+        project = self._context.session.folder
         if self.folder is not None:
             return self.folder
         return None if project is None else project / PHOTOS_FOLDER
 
     def read(self, folder: Path) -> None:
         """Read a folder of photos over the site."""
-        model, basis = self._workspace.document.site, self._basis()
+        model, basis = self._context.document.site, self._basis()
         if model is None:
-            self._workspace.say(Severity.ERROR, self.tr("Open or import a site first: photos are placed on it."))
+            self._context.say(Severity.ERROR, self.tr("Open or import a site first: photos are placed on it."))
             return
         flown = basis[1]
         self.folder = folder
@@ -147,14 +147,14 @@ class PhotosController(QObject):
             return take_in_photos(folder, model, flown, monitor=context)
 
         def done(intake: PhotoIntake) -> None:
-            if _is_same_place(model, self._workspace.document.site):
+            if _is_same_place(model, self._context.document.site):
                 self._taken_in(intake, basis)
 
         self._start(self.tr("Read photos"), work, done)
 
     def make_data_set(self, folder: Path) -> None:
         """Write what a model is trained on: these photos, their poses, and the panels of the site."""
-        model, intake = self._workspace.document.site, self.intake
+        model, intake = self._context.document.site, self.intake
         if model is None or intake is None:
             return
 
@@ -165,15 +165,15 @@ class PhotosController(QObject):
 
         def done(prepared: PreparedData) -> None:
             for found in prepared.findings:
-                self._workspace.say(found.severity, f"{found.place}: {self._workspace.words(found.message)}")
+                self._context.say(found.severity, f"{found.place}: {self._context.words(found.message)}")
             text = self.tr("The data set is written, photos: {0}. Train a model of it on the Reconstruct tab: {1}")
-            self._workspace.say(Severity.OK, text.format(len(prepared.photos), folder))
+            self._context.say(Severity.OK, text.format(len(prepared.photos), folder))
 
         self._start(self.tr("Make the data set"), work, done)
 
     def count(self) -> None:
         """Count the coverage again where the panels or the plan are others now; once for each, should it fail."""
-        model, intake, basis = self._workspace.document.site, self.intake, self._basis()
+        model, intake, basis = self._context.document.site, self.intake, self._basis()
         if model is None or intake is None or self.is_busy or basis in (self._counted, self._counting):
             return
         if model.site.n_panels == 0:
@@ -192,7 +192,7 @@ class PhotosController(QObject):
 
     def change_poses(self, label: str, poses: Callable[[JobContext], BetterPoses]) -> None:
         """Go on with other poses of the same photos; panels that were found stay, and are solved with them."""
-        model, intake, draft, basis = self._workspace.document.site, self.intake, self.draft, self._basis()
+        model, intake, draft, basis = self._context.document.site, self.intake, self.draft, self._basis()
         if model is None or intake is None:
             return
 
@@ -209,7 +209,7 @@ class PhotosController(QObject):
 
     def find(self) -> None:
         """Search the photos for panels."""
-        model, intake = self._workspace.document.site, self.intake
+        model, intake = self._context.document.site, self.intake
         if model is None or intake is None:
             return
 
@@ -246,7 +246,7 @@ class PhotosController(QObject):
         try:
             draft = edit(self._history.value)
         except GroundStationError as error:
-            self._workspace.say(Severity.ERROR, self._workspace.words(str(error)))
+            self._context.say(Severity.ERROR, self._context.words(str(error)))
             return
         self._history.change(label, draft)
         self._changed()
@@ -265,20 +265,20 @@ class PhotosController(QObject):
 
     def use(self) -> bool:
         """Put the panels into the site in the place of its own; False where that cannot be done now."""
-        document, draft = self._workspace.document, self.draft
+        document, draft = self._context.document, self.draft
         if document.site is None or draft is None or draft.unsolved:
             return False
         try:
             model = with_found_panels(document.site, draft)
         except GroundStationError as error:
-            self._workspace.say(Severity.ERROR, self._workspace.words(str(error)))
+            self._context.say(Severity.ERROR, self._context.words(str(error)))
             return False
         facades = found_facades(draft.found, draft.photos)
-        self._workspace.change(self.tr("Use found panels"), replace(document, site=model, found_facades=facades))
+        self._context.change(self.tr("Use found panels"), replace(document, site=model, found_facades=facades))
         return True
 
     def _basis(self) -> _Basis:
-        model, entry = self._workspace.document.site, self._workspace.document.current
+        model, entry = self._context.document.site, self._context.document.current
         return (() if model is None else model.site.facades), (None if entry is None else entry.plan)
 
     def _taken_in(self, intake: PhotoIntake, basis: _Basis) -> None:
@@ -315,11 +315,11 @@ class PhotosController(QObject):
         self._start(self.tr("Solve panels"), work, done)
 
     def _start(self, name: str, work: Callable[[JobContext], object], done: Callable[..., None]) -> None:
-        self._busy.add(self._workspace.start(name, work, done).id)
+        self._busy.add(self._context.start(name, work, done).id)
         self.stateChanged.emit()
 
     def _jobs_changed(self) -> None:
-        running = {job.id for job in self._workspace.jobs()}
+        running = {job.id for job in self._context.jobs()}
         if not self._busy <= running:
             self._busy &= running
             self.stateChanged.emit()

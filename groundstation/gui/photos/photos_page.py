@@ -32,7 +32,7 @@ from groundstation.gui.photos.grid_view import Tool, ToolBox
 from groundstation.gui.photos.photo_pane import PhotoPane, ThumbnailStrip
 from groundstation.gui.photos.photo_store import PhotoStore
 from groundstation.gui.photos.photos_controller import PhotosController
-from groundstation.gui.shared_view import Stage
+from groundstation.gui.shared_view import SharedView
 from groundstation.gui.widgets.findings_list import FindingsList
 from groundstation.gui.widgets.questions import Questions
 from groundstation.gui.widgets.scrolling import scrolled
@@ -124,7 +124,7 @@ class FacadeTable(QTableWidget):
 
 
 class Corrections(QObject):
-    """Turns what a pane's view says into edits of the grid that is in hand."""
+    """Turns what a pane's view says into edits of the active grid."""
 
     def __init__(self, controller: PhotosController, pane: PhotoPane, parent: QObject) -> None:
         super().__init__(parent)
@@ -238,10 +238,10 @@ SIDE_PX, DETAIL_PX = 250, 320
 class PhotosPage(QObject):
     """The tab."""
 
-    def __init__(self, workspace: ApplicationContext, stage: Stage) -> None:
-        super().__init__(stage)
-        self._workspace, self._stage = workspace, stage
-        self.controller, self.questions = PhotosController.of(workspace), Questions()
+    def __init__(self, context: ApplicationContext, shared_view: SharedView) -> None:
+        super().__init__(shared_view)
+        self._context, self._shared_view = context, shared_view
+        self.controller, self.questions = PhotosController.of(context), Questions()
         self.store = PhotoStore(self)
         self.strip, self.map, self.pane = ThumbnailStrip(self.store), PlaceMap(), PhotoPane(self.store)
         self.findings, self.table, self.tools = FindingsList(), FacadeTable(), ToolBox()
@@ -250,12 +250,12 @@ class PhotosPage(QObject):
         self.find, self.use = QPushButton(self.tr("Find panels")), QPushButton(self.tr("Use these panels"))
         self.data_set = QPushButton(self.tr("Make data set ..."))
         self.folder, self.coverage, self.state = QLabel(), QLabel(), QLabel()
-        self.coverage_shown = CoverageShown(workspace, self.controller, self.pane.scene, self.sightings, self)
+        self.coverage_shown = CoverageShown(context, self.controller, self.pane.scene, self.sightings, self)
         self.left = self._make_page()
         self.right: QWidget | None = None
         self.bottom: QWidget | None = None
         self._connect()
-        self._units_changed(workspace.units)
+        self._units_changed(context.units)
         self._show_trials()
         self._show_photos()
 
@@ -336,7 +336,7 @@ class PhotosPage(QObject):
         return self.details
 
     def _connect(self) -> None:
-        controller, workspace, view = self.controller, self._workspace, self.pane.view
+        controller, context, view = self.controller, self._context, self.pane.view
         self.choose.clicked.connect(self._choose_folder)
         self.read.clicked.connect(self._read)
         self.find.clicked.connect(controller.find)
@@ -357,22 +357,22 @@ class PhotosPage(QObject):
         controller.trialsChanged.connect(self._show_trials)
         self.tools.undo.clicked.connect(controller.undo)
         self.tools.redo.clicked.connect(controller.redo)
-        self.pane.refused.connect(lambda text: workspace.say(Severity.ERROR, workspace.words(text)))
+        self.pane.refused.connect(lambda text: context.say(Severity.ERROR, context.words(text)))
         self.pane.placeChanged.connect(self._show_state)
         self.corrections = Corrections(controller, self.pane, self)
         controller.photosChanged.connect(self._show_photos)
         controller.draftChanged.connect(self._show_draft)
         controller.stateChanged.connect(self._show_state)
-        workspace.unitsChanged.connect(self._units_changed)
-        workspace.documentChanged.connect(self._document_changed)
-        self._stage.with_scene(lambda _scene: self.pane.scene.let_open())
-        self._stage.closing.connect(self._window_closing)
+        context.unitsChanged.connect(self._units_changed)
+        context.documentChanged.connect(self._document_changed)
+        self._shared_view.with_scene(lambda _scene: self.pane.scene.let_open())
+        self._shared_view.closing.connect(self._window_closing)
 
     # What the user does
 
     def _choose_folder(self) -> None:
-        places = (self.controller.usual_folder(), self._workspace.session.folder)
-        folder = self.questions.folder(self._stage.window(), self.tr("Folder of photos"), *places)
+        places = (self.controller.usual_folder(), self._context.session.folder)
+        folder = self.questions.folder(self._shared_view.window(), self.tr("Folder of photos"), *places)
         if folder is not None:
             self.controller.read(folder)
 
@@ -385,17 +385,17 @@ class PhotosPage(QObject):
         """Take the panels over, and show them in the shared view."""
         draft = self.controller.draft
         if self.controller.use() and draft is not None:
-            self._stage.tabRequested.emit("site")
+            self._shared_view.tabRequested.emit("site")
             first = next(facade.id for facade in draft.found.facades if facade.panels)
-            self._workspace.jump_to(Item(ItemKind.FACADE, first))
+            self._context.jump_to(Item(ItemKind.FACADE, first))
 
     def _make_data_set(self) -> None:
-        photos, project = self.controller.usual_folder(), self._workspace.session.folder
+        photos, project = self.controller.usual_folder(), self._context.session.folder
         if photos is None:
             return
         proposed = photos.with_name(f"{photos.name}-dataset") if project is None else project / "dataset"
         title = self.tr("Folder for the data set")
-        folder = self.questions.new_folder(self._stage.window(), title, proposed)
+        folder = self.questions.new_folder(self._shared_view.window(), title, proposed)
         if folder is not None:
             self.controller.make_data_set(folder)
 
@@ -436,7 +436,7 @@ class PhotosPage(QObject):
     # What is shown
 
     def _show_photos(self) -> None:
-        controller, model = self.controller, self._workspace.document.site
+        controller, model = self.controller, self._context.document.site
         self.strip.set_cards(controller.cards)
         self.map.set_photos(controller.cards)
         self.map.set_site(None if model is None else model.site)
@@ -457,7 +457,7 @@ class PhotosPage(QObject):
 
     def _show_outlines(self) -> None:
         """Draw the panels that are known into a photo in which they were not looked for."""
-        card, intake, model = self.pane.card(), self.controller.intake, self._workspace.document.site
+        card, intake, model = self.pane.card(), self.controller.intake, self._context.document.site
         outlines: tuple[NDArray[np.float64], ...] = ()
         if card is not None and card.posed is not None and intake is not None and model is not None:
             known = known_panels(self.controller.draft, model.site, card.posed)
@@ -479,7 +479,7 @@ class PhotosPage(QObject):
         self.trials.set_trials(self.controller.trials)
 
     def _show_state(self) -> None:
-        controller, has_site = self.controller, self._workspace.document.site is not None
+        controller, has_site = self.controller, self._context.document.site is not None
         folder = controller.usual_folder()
         self.folder.setText("" if folder is None else self.tr("Folder: {0}").format(_short(folder)))
         self.folder.setToolTip("" if folder is None else str(folder))
@@ -493,7 +493,7 @@ class PhotosPage(QObject):
         )
         self.trials.measure.setEnabled(self.pane.place() is not None and not controller.is_busy)
         draft = controller.draft
-        model = self._workspace.document.site
+        model = self._context.document.site
         has_panels = model is not None and model.site.n_panels > 0
         self.data_set.setEnabled(self.find.isEnabled() and has_panels)
         self.use.setEnabled(draft is not None and not draft.unsolved)
@@ -502,7 +502,7 @@ class PhotosPage(QObject):
 
     def _where_it_stands(self) -> str:
         controller = self.controller
-        if self._workspace.document.site is None:
+        if self._context.document.site is None:
             return self.tr("Open or import a site first: photos are placed on it.")
         if controller.intake is None:
             return self.tr("Read the photos of the flight.")

@@ -43,7 +43,7 @@ def method_name(method: str) -> str:
 # Finds out which effects the scene and the current plan call for, while somebody looks. It shows nothing.
 
 AFTER_MS = 300
-"""Wishes change several times in a row while somebody types; the scene is looked at when that is over."""
+"""The request changes several times in a row while somebody types; the scene is looked at when that is over."""
 
 Found = tuple[SceneEffects, Plan | None, tuple[EffectChoice, ...]]
 
@@ -61,13 +61,13 @@ class EffectsController(QObject):
 
     def __init__(
         self,
-        workspace: ApplicationContext,
+        context: ApplicationContext,
         is_wanted: Callable[[], bool],
         is_planning: Callable[[], bool],
         parent: QObject,
     ) -> None:
         super().__init__(parent)
-        self._workspace, self._is_wanted, self._is_planning = workspace, is_wanted, is_planning
+        self._context, self._is_wanted, self._is_planning = context, is_wanted, is_planning
         self._scene: SceneEffects | None = None
         self._plan: Plan | None = None
         self._job: Job[Found] | None = None
@@ -75,12 +75,12 @@ class EffectsController(QObject):
         self._timer.setSingleShot(True)
         self._timer.setInterval(AFTER_MS)
         self._timer.timeout.connect(self.look)
-        workspace.documentChanged.connect(self._document_changed)
-        workspace.jobsChanged.connect(self._forget_ended)
+        context.documentChanged.connect(self._document_changed)
+        context.jobsChanged.connect(self._forget_ended)
 
     def look(self) -> None:
         """Look at the scene and the plan, unless what is known still holds."""
-        document = self._workspace.document
+        document = self._context.document
         site, request, plan = document.site, document.request, _plan_of(document)
         if site is None or self._job is not None or not self._is_wanted():
             return
@@ -96,18 +96,18 @@ class EffectsController(QObject):
             scene = scene_effects(site, request) if known is None else known
             return scene, plan, scene.choices + (() if plan is None else plan_effects(plan))
 
-        self._job = self._workspace.start(self.tr("Look at the scene"), work, self._found)
+        self._job = self._context.start(self.tr("Look at the scene"), work, self._found)
 
     def _found(self, found: Found) -> None:
         scene, plan, choices = found
-        if scene.site_model is self._workspace.document.site:
+        if scene.site_model is self._context.document.site:
             self._scene, self._plan = scene, plan
             self.effectsChanged.emit(choices)
         self.look()
 
     def _forget_ended(self) -> None:
         """Also a job that failed or was cancelled is over."""
-        if self._job is not None and self._job not in self._workspace.jobs():
+        if self._job is not None and self._job not in self._context.jobs():
             self._job = None
 
     def _document_changed(self, before: Document, after: Document) -> None:
@@ -123,14 +123,14 @@ def _plan_of(document: Document) -> Plan | None:
 
 
 class PlanController(QObject):
-    """Plans, and keeps the current plan in hand.
+    """Plans, and keeps the current plan active.
 
     Signals
     -------
     planningStarted(Job, float), planningEnded()
         With the time budget in seconds.
     inHandChanged(ActivePlan or None)
-        The current plan can be looked at and edited; None while it is not in hand, or there is none.
+        The current plan can be looked at and edited; None while it is not active, or there is none.
     refused(str)
         Why an edit was not carried out.
     """
@@ -140,21 +140,21 @@ class PlanController(QObject):
     inHandChanged = Signal(object)  # noqa: N815
     refused = Signal(str)
 
-    def __init__(self, workspace: ApplicationContext, parent: QObject | None = None) -> None:
+    def __init__(self, context: ApplicationContext, parent: QObject | None = None) -> None:
         super().__init__(parent)
-        self._workspace = workspace
-        self._bench = PlanCache()
-        self._in_hand: ActivePlan | None = None
+        self._context = context
+        self._plan_cache = PlanCache()
+        self._active: ActivePlan | None = None
         self._planning: Job[Planned] | None = None
-        self._taking: Job[ActivePlan] | None = None
+        self._activation: Job[ActivePlan] | None = None
         self._not_taken = ""
-        workspace.documentChanged.connect(self._document_changed)
+        context.documentChanged.connect(self._document_changed)
         self._take_current()
 
     @property
-    def in_hand(self) -> ActivePlan | None:
+    def active(self) -> ActivePlan | None:
         """The current plan, when it can be looked at and edited."""
-        return self._in_hand
+        return self._active
 
     @property
     def is_planning(self) -> bool:
@@ -162,17 +162,17 @@ class PlanController(QObject):
         return self._planning is not None
 
     @property
-    def why_not_in_hand(self) -> str:
-        """Why the current plan could not be taken in hand; empty while it is, is about to be, or there is none."""
+    def why_not_active(self) -> str:
+        """Why the current plan could not be activated; empty while it is, is about to be, or there is none."""
         return self._not_taken
 
     def set_request(self, request: PlanRequest) -> None:
         """What the next plan is wanted to be."""
-        self._workspace.amend(replace(self._workspace.document, request=request))
+        self._context.amend(replace(self._context.document, request=request))
 
     def plan(self) -> None:
         """Plan the site with what is wanted; locked viewpoints of the current plan are kept."""
-        document = self._workspace.document
+        document = self._context.document
         site = document.site
         if site is None or self._planning is not None:
             return
@@ -187,10 +187,10 @@ class PlanController(QObject):
             request = replace(document.request, locked=locked)
         except ValueError as error:
             self.refused.emit(
-                self.tr("{0}; release some, or ask for more views").format(self._workspace.words(str(error)))
+                self.tr("{0}; release some, or ask for more views").format(self._context.words(str(error)))
             )
             return
-        prepared = self._bench.prepared_for(request, site)
+        prepared = self._plan_cache.prepared_for(request, site)
 
         def work(context: JobContext) -> Planned:
             return reunited(context.apart(plan_document_site, site, request, prepared), site, prepared)
@@ -198,7 +198,7 @@ class PlanController(QObject):
         def done(planned: Planned) -> None:
             self._planned(planned, request, site)
 
-        job = self._workspace.start(self.tr("Plan"), work, done, lambda _error: self._planning_over())
+        job = self._context.start(self.tr("Plan"), work, done, lambda _error: self._planning_over())
         self._planning = job
         self.planningStarted.emit(job, request.time_budget_s)
 
@@ -211,52 +211,52 @@ class PlanController(QObject):
         """A job ended: somebody may have cancelled one of these."""
         if self._planning is not None and self._planning.state is JobState.CANCELLED:
             self._planning_over()
-        if self._taking is not None and self._taking.state is JobState.CANCELLED:
+        if self._activation is not None and self._activation.state is JobState.CANCELLED:
             self._give_up(self.tr("It was not looked at. Choose it in the list of plans to do so."))
 
     def choose(self, plan_id: str) -> None:
-        """Look at another plan, or again at one that could not be taken in hand."""
-        if plan_id == self._workspace.document.current_plan_id and self._not_taken:
+        """Look at another plan, or again at one that could not be activated."""
+        if plan_id == self._context.document.current_plan_id and self._not_taken:
             self._take_current()
-        if plan_id != self._workspace.document.current_plan_id:
-            self._workspace.amend(replace(self._workspace.document, current_plan_id=plan_id))
+        if plan_id != self._context.document.current_plan_id:
+            self._context.amend(replace(self._context.document, current_plan_id=plan_id))
 
     def rename(self, plan_id: str, title: str) -> None:
         """Give a plan another title."""
-        document = self._workspace.document
+        document = self._context.document
         entry = document.entry(plan_id)
         if entry is not None and title != entry.title:
             current = document.current_plan_id
             changed = replace(document.with_plan(replace(entry, title=title)), current_plan_id=current)
-            self._workspace.change(self.tr("Rename plan"), changed)
+            self._context.change(self.tr("Rename plan"), changed)
 
     def remove(self, plan_id: str) -> None:
         """Take a plan out of the project."""
-        self._workspace.change(self.tr("Remove plan"), self._workspace.document.without_plan(plan_id))
+        self._context.change(self.tr("Remove plan"), self._context.document.without_plan(plan_id))
 
     def open_plan(self, path: Path) -> None:
         """Bring a plan file into the project."""
 
         def opened(plan: Plan) -> None:
-            document = self._workspace.document
+            document = self._context.document
             entry = PlanEntry(document.free_plan_id(), path.name.removesuffix(".json").removesuffix(".plan"), plan)
-            self._workspace.change(self.tr("Open plan"), document.with_plan(entry))
+            self._context.change(self.tr("Open plan"), document.with_plan(entry))
 
-        self._workspace.start(self.tr("Open plan"), lambda _context: read_input_plan(path), opened)
+        self._context.start(self.tr("Open plan"), lambda _context: read_input_plan(path), opened)
 
     def set_viewpoint(self, viewpoint: Viewpoint) -> None:
         """Move, turn, lock or unlock the viewpoint with this identifier, as it differs."""
-        if self._in_hand is None:
+        if self._active is None:
             self._refuse_all()
             return
-        old = self._in_hand.revision.viewpoint(viewpoint.id)
+        old = self._active.revision.viewpoint(viewpoint.id)
         if old == viewpoint:
             return
         if old.locked != viewpoint.locked:
             label = self.tr("Keep {0}") if viewpoint.locked else self.tr("Release {0}")
             self._edit(label, viewpoint.id, lambda revision: edits.lock(revision, [viewpoint.id], viewpoint.locked))
             return
-        if self._refuse_kept(viewpoint.id):
+        if self._refuse_locked(viewpoint.id):
             return
         pose = viewpoint.position_enu_m, viewpoint.heading_deg, viewpoint.gimbal_pitch_deg
         is_turn = old.position_enu_m == viewpoint.position_enu_m
@@ -265,18 +265,18 @@ class PlanController(QObject):
 
     def add_viewpoint(self, viewpoint: Viewpoint) -> None:
         """Add a viewpoint where and as another one looks; it gets an identifier of its own, and is selected."""
-        in_hand = self._in_hand
-        if in_hand is None:
+        active = self._active
+        if active is None:
             self._refuse_all()
             return
-        new_id = edits.next_id(in_hand.plan)
+        new_id = edits.next_id(active.plan)
         pose = viewpoint.position_enu_m, viewpoint.heading_deg, viewpoint.gimbal_pitch_deg
         if self._edit(self.tr("Add {0}"), new_id, lambda revision: edits.add(revision, *pose)):
-            self._workspace.select(Item(ItemKind.VIEWPOINT, new_id))
+            self._context.select(Item(ItemKind.VIEWPOINT, new_id))
 
     def delete_viewpoint(self, viewpoint_id: str) -> None:
         """Delete a viewpoint."""
-        if not self._refuse_kept(viewpoint_id):
+        if not self._refuse_locked(viewpoint_id):
             self._edit(self.tr("Delete {0}"), viewpoint_id, lambda revision: edits.delete(revision, [viewpoint_id]))
 
     def aim(self, viewpoint_id: str, panel_id: str) -> None:
@@ -287,38 +287,38 @@ class PlanController(QObject):
             heading, pitch = edits.aim_at(revision, view.position_enu_m, panel_id)
             return edits.move(revision, viewpoint_id, None, heading, pitch)
 
-        if not self._refuse_kept(viewpoint_id):
+        if not self._refuse_locked(viewpoint_id):
             self._edit(self.tr("Aim {0}"), viewpoint_id, turned)
 
     def _edit(self, label: str, viewpoint_id: str, edit: Callable[[Revision], Revision]) -> bool:
-        in_hand, document = self._in_hand, self._workspace.document
-        if in_hand is None or document.current is None:
+        active, document = self._active, self._context.document
+        if active is None or document.current is None:
             self._refuse_all()
             return False
         try:
-            edited = in_hand.with_revision(edit(in_hand.revision))
+            edited = active.with_revision(edit(active.revision))
         except (GroundStationError, ValueError) as error:
-            self.refused.emit(self._workspace.words(str(error)))
+            self.refused.emit(self._context.words(str(error)))
             return False
-        self._bench.keep(edited.plan, edited)
-        done, effect = label.format(viewpoint_id), edit_effect(in_hand.revision, edited.revision)
-        self._workspace.change(done, with_edited_plan(document, edited.revision))
+        self._plan_cache.keep(edited.plan, edited)
+        done, effect = label.format(viewpoint_id), edit_effect(active.revision, edited.revision)
+        self._context.change(done, with_edited_plan(document, edited.revision))
         text = self.tr("{0}: sections gained {1}, lost {2}; flight time {3:+.0f} s").format(
             done, effect.gained, effect.lost, effect.added_s
         )
-        self._workspace.say(Severity.NOTE, text)
+        self._context.say(Severity.NOTE, text)
         for finding in effect.problems:
-            self._workspace.say(
+            self._context.say(
                 finding.severity,
-                self._workspace.words(finding.message),
-                item_of_place(finding.place, self._workspace.document),
+                self._context.words(finding.message),
+                item_of_place(finding.place, self._context.document),
                 f"plan.{finding.code}.{finding.place}",
             )
         return True
 
-    def _refuse_kept(self, viewpoint_id: str) -> bool:
+    def _refuse_locked(self, viewpoint_id: str) -> bool:
         """Whether a viewpoint is to be left alone; says so, in the words of the window."""
-        entry = self._workspace.document.current
+        entry = self._context.document.current
         viewpoint = None if entry is None else entry.viewpoint(viewpoint_id)
         if viewpoint is None or not viewpoint.locked:
             return False
@@ -330,24 +330,24 @@ class PlanController(QObject):
         return True
 
     def _refuse_all(self) -> None:
-        if self._workspace.document.current is None:
+        if self._context.document.current is None:
             self.refused.emit(self.tr("There is no plan to change; plan a flight or open a plan first."))
         else:
             self.refused.emit(self._not_taken or self.tr("The plan is still being looked at; try again in a moment."))
 
     def _planned(self, planned: Planned, request: PlanRequest, site: SiteModel) -> None:
         self._planning_over()
-        document, plan = self._workspace.document, planned.plan
+        document, plan = self._context.document, planned.plan
         if not has_same_panels(site, document.site):
             text = self.tr("The plan is not kept: it was made for “{0}”, which is no longer open.")
-            self._workspace.say(Severity.WARNING, text.format(site.site.name))
+            self._context.say(Severity.WARNING, text.format(site.site.name))
             return
-        self._bench.keep_groundwork(PreparedSite(planned.prepared))
+        self._plan_cache.keep_groundwork(PreparedSite(planned.prepared))
         title = self.tr("{0}, {1} views").format(method_name(plan.method), len(plan.viewpoints))
         entry = PlanEntry(document.free_plan_id(), title, plan, request, planned.bound_for_views)
-        self._workspace.change(self.tr("Plan"), document.with_plan(entry))
+        self._context.change(self.tr("Plan"), document.with_plan(entry))
         coverage = plan.coverage
-        self._workspace.say(
+        self._context.say(
             Severity.OK,
             self.tr("Views: {0}, sorties: {1}; covered {2} of at most {3} sections").format(
                 len(plan.viewpoints), len(plan.sorties), coverage.covered, coverage.reachable_upper_bound
@@ -355,7 +355,7 @@ class PlanController(QObject):
         )
         for finding in planned.findings:
             about = f"plan.{finding.code}.{finding.place}"
-            self._workspace.say(finding.severity, self._workspace.words(finding.message), about=about)
+            self._context.say(finding.severity, self._context.words(finding.message), about=about)
 
     def _planning_over(self) -> None:
         self._planning = None
@@ -365,49 +365,49 @@ class PlanController(QObject):
         plan_before = None if before.current is None else before.current.plan
         plan_after = None if after.current is None else after.current.plan
         if plan_before is not plan_after or before.site is not after.site:
-            self._workspace.settle("plan.")
+            self._context.settle("plan.")
             self._take_current()
 
     def _take_current(self) -> None:
-        """Take the current plan in hand: at once where it was before, else by a job."""
-        document = self._workspace.document
+        """Activate the current plan: at once where it was before, else by a job."""
+        document = self._context.document
         entry, site = document.current, document.site
-        if self._taking is not None:
-            self._workspace.cancel(self._taking, quietly=True)
-            self._taking = None
+        if self._activation is not None:
+            self._context.cancel(self._activation, quietly=True)
+            self._activation = None
         self._not_taken = ""
         if entry is None or site is None or site.site.n_panels == 0:  # nothing that an imported mission could show
-            self._set_in_hand(None)
+            self._set_active(None)
             return
         plan = entry.plan
-        found = self._bench.find(plan, site)
-        self._set_in_hand(found)
+        found = self._plan_cache.find(plan, site)
+        self._set_active(found)
         if found is not None:
             return
-        groundwork = self._bench.groundwork_for(plan, site)
+        prepared_site = self._plan_cache.groundwork_for(plan, site)
 
-        def taken(in_hand: ActivePlan) -> None:
-            self._taking = None
-            self._bench.keep(plan, in_hand)
+        def taken(active: ActivePlan) -> None:
+            self._activation = None
+            self._plan_cache.keep(plan, active)
             if self._is_current(plan):
-                self._set_in_hand(in_hand)
+                self._set_active(active)
 
-        self._taking = self._workspace.start(
+        self._activation = self._context.start(
             self.tr("Look at the plan"),
-            lambda context: activate(site, plan, groundwork, context),
+            lambda context: activate(site, plan, prepared_site, context),
             taken,
-            lambda error: self._give_up(self._workspace.words(str(error))) if self._is_current(plan) else None,
+            lambda error: self._give_up(self._context.words(str(error))) if self._is_current(plan) else None,
         )
 
     def _is_current(self, plan: Plan) -> bool:
-        current = self._workspace.document.current
+        current = self._context.document.current
         return current is not None and current.plan is plan
 
     def _give_up(self, why: str) -> None:
-        self._taking, self._not_taken = None, why
+        self._activation, self._not_taken = None, why
         self.inHandChanged.emit(None)
 
-    def _set_in_hand(self, in_hand: ActivePlan | None) -> None:
-        if in_hand is not self._in_hand:
-            self._in_hand = in_hand
-            self.inHandChanged.emit(in_hand)
+    def _set_active(self, active: ActivePlan | None) -> None:
+        if active is not self._active:
+            self._active = active
+            self.inHandChanged.emit(active)

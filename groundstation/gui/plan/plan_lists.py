@@ -59,7 +59,7 @@ class CompareWindow(QDialog):
 
     def __init__(
         self,
-        workspace: ApplicationContext,
+        context: ApplicationContext,
         site: SiteModel,
         entries: tuple[PlanEntry, ...],
         parent: QWidget | None = None,
@@ -69,7 +69,7 @@ class CompareWindow(QDialog):
         self.setWindowFlag(Qt.WindowType.WindowMaximizeButtonHint)
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.resize(1200, 680)
-        self._workspace, self._site, self._entries = workspace, site, entries
+        self._context, self._site, self._entries = context, site, entries
         self._comparison: Comparison | None = None
         self._choices, self._scenes = (ChoiceBox(), ChoiceBox()), (SceneView(self), SceneView(self))
         self._paint = ChoiceBox()
@@ -82,7 +82,7 @@ class CompareWindow(QDialog):
         for number, (choice, scene) in enumerate(zip(self._choices, self._scenes, strict=True)):
             choice.addItems(names)
             choice.setCurrentIndex(number)
-            scene.set_units(workspace.units)
+            scene.set_units(context.units)
             scene.set_site(site)
             choice.currentIndexChanged.connect(self._show_pictures)
         first, second = self._scenes
@@ -91,11 +91,11 @@ class CompareWindow(QDialog):
         self._paint.currentIndexChanged.connect(self._show_pictures)
         self._show_pictures()
         plans = tuple(entry.plan for entry in entries)
-        self._job = workspace.start(
+        self._job = context.start(
             self.tr("Compare plans"),
             lambda context: compare(site, plans, names, monitor=context),
             self._compared,
-            lambda error: self._words.setText(workspace.words(str(error))),
+            lambda error: self._words.setText(context.words(str(error))),
         )
 
     def _lay_out(self) -> None:
@@ -140,15 +140,15 @@ class CompareWindow(QDialog):
     def _compared(self, comparison: Comparison) -> None:
         self._comparison = comparison
         constraints = comparison.constraints
-        wishes = {"auto": self.tr("auto"), "on": self.tr("on"), "off": self.tr("off")}
+        settings = {"auto": self.tr("auto"), "on": self.tr("on"), "off": self.tr("off")}
         words = self.tr(
             "All plans judged with {0:g} degree sections, {1}, occlusion {2}. A star marks the better."
         ).format(
             constraints.section_step_deg,
-            length_unit(self._workspace.units).text(constraints.min_distance_m),
-            wishes[constraints.occlusion],
+            length_unit(self._context.units).text(constraints.min_distance_m),
+            settings[constraints.occlusion],
         )
-        self._words.setText(" ".join([words, *map(self._workspace.words, comparison.notes)]))
+        self._words.setText(" ".join([words, *map(self._context.words, comparison.notes)]))
         self._fill_table(comparison)
         self._show_pictures()
 
@@ -172,7 +172,7 @@ class CompareWindow(QDialog):
         table.resizeColumnsToContents()
 
     def _value_text(self, value: float | None, unit: str) -> str:
-        units: UnitSystem = self._workspace.units
+        units: UnitSystem = self._context.units
         if value is None:
             return "-"
         match unit:
@@ -229,7 +229,7 @@ class CompareWindow(QDialog):
                 reach = max(1.0, float(np.abs(more).max()))
                 return ColourScale(self.tr("Sections more than the other"), "", -reach, reach), more
             case _:
-                unit = sampling_unit(self._workspace.units)
+                unit = sampling_unit(self._context.units)
                 values = unit.factor * np.stack([found.sampling[own].best_m, found.sampling[other].best_m])
                 known = values[np.isfinite(values)]
                 if len(known) == 0:
@@ -248,7 +248,7 @@ class CompareWindow(QDialog):
 
     def done(self, result: int) -> None:
         """Free the pictures, and do not wait for the table."""
-        self._workspace.cancel(self._job, quietly=True)
+        self._context.cancel(self._job, quietly=True)
         for scene in self._scenes:
             scene.close_view()
         super().done(result)
@@ -447,9 +447,9 @@ class PlanLists(QTabWidget):
 
     sectionPicked = Signal(str, int)  # noqa: N815  (Qt's own way of naming)
 
-    def __init__(self, workspace: ApplicationContext, controller: PlanController) -> None:
+    def __init__(self, context: ApplicationContext, controller: PlanController) -> None:
         super().__init__()
-        self._workspace, self._controller = workspace, controller
+        self._context, self._controller = context, controller
         self._measuring: Job[object] | None = None
         self._listed: tuple[Plan | None, Origin | None] = (None, None)
         self._counted: ActivePlan | None = None
@@ -460,7 +460,7 @@ class PlanLists(QTabWidget):
         self.reach, self.clearance, self.plans = ReachTable(), ClearanceChart(), PlansList()
         self._make_pages()
         self._connect()
-        self._show_document(workspace.document)
+        self._show_document(context.document)
 
     def _make_pages(self) -> None:
         self.addTab(self.waypoints, self.tr("Viewpoints"))
@@ -472,12 +472,12 @@ class PlanLists(QTabWidget):
         self.currentChanged.connect(lambda page: self.waypoints.bar.setVisible(page == 0))
 
     def _connect(self) -> None:
-        controller, workspace = self._controller, self._workspace
-        self.waypoints.picked.connect(workspace.select)
-        self.waypoints.activated.connect(workspace.jump_to)
+        controller, context = self._controller, self._context
+        self.waypoints.picked.connect(context.select)
+        self.waypoints.activated.connect(context.jump_to)
         self.reach.picked.connect(self.sectionPicked)
         self.clearance.sortieChosen.connect(lambda _number: self._measure_clearance())
-        self.clearance.legPicked.connect(lambda sortie, leg: workspace.jump_to(Item(ItemKind.LEG, f"{sortie}/{leg}")))
+        self.clearance.legPicked.connect(lambda sortie, leg: context.jump_to(Item(ItemKind.LEG, f"{sortie}/{leg}")))
         self.currentChanged.connect(lambda _page: self._fill_page())
         plans = self.plans
         plans.chosen.connect(controller.choose)
@@ -485,9 +485,9 @@ class PlanLists(QTabWidget):
         plans.removed.connect(controller.remove)
         plans.openWanted.connect(self._ask_plan)
         plans.compareWanted.connect(self.compare)
-        controller.inHandChanged.connect(lambda _in_hand: self._fill_page())
-        workspace.documentChanged.connect(self._document_changed)
-        workspace.selectionChanged.connect(self._show_selection)
+        controller.inHandChanged.connect(lambda _active: self._fill_page())
+        context.documentChanged.connect(self._document_changed)
+        context.selectionChanged.connect(self._show_selection)
 
     def set_units(self, units: UnitSystem) -> None:
         """Show lengths in other units."""
@@ -523,32 +523,32 @@ class PlanLists(QTabWidget):
             self._measure_clearance()
 
     def _list_viewpoints(self) -> None:
-        document, in_hand = self._workspace.document, self._controller.in_hand
+        document, active = self._context.document, self._controller.active
         plan = None if document.current is None else document.current.plan
         origin = None if document.site is None else document.site.site.origin
         if self._listed[0] is not plan or self._listed[1] is not origin:
             self._listed = (plan, origin)
             self.waypoints.set_rows(() if plan is None else waypoint_rows(plan, origin))
-        if self._counted is not in_hand:
-            self._counted = in_hand
-            self.waypoints.set_panels_covered(_panels_covered(in_hand))
+        if self._counted is not active:
+            self._counted = active
+            self.waypoints.set_panels_covered(_panels_covered(active))
         self._show_selection()
 
     def _show_selection(self, _item: Item | None = None) -> None:
         if self.waypoints.isVisible():
-            self.waypoints.set_selection(self._workspace.selection)
+            self.waypoints.set_selection(self._context.selection)
 
     def _explain(self) -> None:
         """What is not covered, and why."""
-        in_hand = self._controller.in_hand
-        if in_hand is None:
+        active = self._controller.active
+        if active is None:
             self._explained = None
             self.reach.set_rows(self.tr("Plan a flight, and what it does not cover stands here."), ())
             return
-        if in_hand is self._explained:
+        if active is self._explained:
             return
-        self._explained = in_hand
-        insight = in_hand.insight
+        self._explained = active
+        insight = active.insight
         groups = reach_groups(insight)
         n_missed = sum(group.n_sections for group in groups if group.state is not SectionState.UNREACHABLE)
         n_hidden = sum(group.n_sections for group in groups if group.state is SectionState.UNREACHABLE)
@@ -565,7 +565,7 @@ class PlanLists(QTabWidget):
         }[group.state]
         if group.rules:
             words = self.tr(" and ").join(self._rule_text(rule) for rule in group.rules)
-        example = "" if group.reason is None else self._workspace.words(str(group.reason))
+        example = "" if group.reason is None else self._context.words(str(group.reason))
         panel_id = insight.panel_ids[group.panel]
         return ReasonRow(words, group.n_sections, group.n_panels, example, panel_id, group.section)
 
@@ -588,26 +588,26 @@ class PlanLists(QTabWidget):
 
     def _measure_clearance(self) -> None:
         """Measure the chosen sortie, unless it is measured already."""
-        in_hand, number = self._controller.in_hand, self.clearance.sortie()
-        if self._measured == (in_hand, number):
+        active, number = self._controller.active, self.clearance.sortie()
+        if self._measured == (active, number):
             return
-        self._measured = (in_hand, number)
+        self._measured = (active, number)
         if self._measuring is not None:
-            self._workspace.cancel(self._measuring, quietly=True)
+            self._context.cancel(self._measuring, quietly=True)
             self._measuring = None
         self.clearance.set_clearance(None)
-        if in_hand is None or not 1 <= number <= len(in_hand.plan.sorties):
+        if active is None or not 1 <= number <= len(active.plan.sorties):
             return
-        site_model = in_hand.groundwork.prepared.site_model
-        space = in_hand.groundwork.prepared.problem.space
-        sortie, limit_m = in_hand.plan.sorties[number - 1], in_hand.plan.constraints.min_distance_m
+        site_model = active.groundwork.prepared.site_model
+        space = active.groundwork.prepared.problem.space
+        sortie, limit_m = active.plan.sorties[number - 1], active.plan.constraints.min_distance_m
 
         def done(found: RouteClearance) -> None:
             self._measuring = None
-            if self._measured == (in_hand, number):
+            if self._measured == (active, number):
                 self.clearance.set_clearance(found, limit_m)
 
-        self._measuring = self._workspace.start(
+        self._measuring = self._context.start(
             self.tr("Measure clearance"),
             lambda _context: route_clearance(sortie, space, things_of(site_model, space)),
             done,
@@ -620,18 +620,18 @@ class PlanLists(QTabWidget):
 
     def compare(self, plan_ids: tuple[str, ...]) -> None:
         """Show plans side by side."""
-        document = self._workspace.document
+        document = self._context.document
         entries = [entry for entry in document.plans if entry.id in plan_ids]
         if document.site is None or len(entries) < 2:
-            self._workspace.say(Severity.NOTE, self.tr("Select two or more plans in the list of plans to compare."))
+            self._context.say(Severity.NOTE, self.tr("Select two or more plans in the list of plans to compare."))
             return
 
-        self.compare_window = CompareWindow(self._workspace, document.site, tuple(entries), self.window())
+        self.compare_window = CompareWindow(self._context, document.site, tuple(entries), self.window())
         self.compare_window.show()
 
 
-def _panels_covered(in_hand: ActivePlan | None) -> dict[str, int]:
+def _panels_covered(active: ActivePlan | None) -> dict[str, int]:
     """Number of panels that each view covers, by its identifier; empty where that is not known."""
-    if in_hand is None:
+    if active is None:
         return {}
-    return dict(zip(in_hand.insight.view_ids, in_hand.insight.panels_per_view.tolist(), strict=True))
+    return dict(zip(active.insight.view_ids, active.insight.panels_per_view.tolist(), strict=True))

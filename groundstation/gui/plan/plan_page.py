@@ -19,7 +19,7 @@ from groundstation.gui.plan.plan_controller import EffectsController, PlanContro
 from groundstation.gui.plan.plan_form import PlanForm
 from groundstation.gui.plan.plan_lists import PlanLists
 from groundstation.gui.plan.viewpoint_page import PanelDetail, ViewpointPage
-from groundstation.gui.shared_view import Stage
+from groundstation.gui.shared_view import SharedView
 from groundstation.gui.view3d.hemispheres import OPEN, UNDECIDED, UNREACHABLE
 from groundstation.gui.view3d.paint import ColourScale, ValueKind
 from groundstation.gui.view3d.scene_view import SceneView
@@ -58,7 +58,7 @@ class RoutePaint(StrEnum):
 
 
 class PaintBar(QWidget):
-    """Two boxes beside the buttons of the stage.
+    """Two boxes beside the buttons of the shared view.
 
     Signals
     -------
@@ -101,17 +101,17 @@ WIDE_CLEARANCE = 3.0
 
 
 def paint_plan(
-    scene: SceneView, in_hand: ActivePlan | None, panels: PanelPaint, routes: RoutePaint, units: UnitSystem
+    scene: SceneView, active: ActivePlan | None, panels: PanelPaint, routes: RoutePaint, units: UnitSystem
 ) -> None:
-    """Paint a plan on a 3-D view, as chosen; without a plan in hand everything is plain."""
-    if in_hand is None or panels is not PanelPaint.HEMISPHERES:
+    """Paint a plan on a 3-D view, as chosen; without an active plan everything is plain."""
+    if active is None or panels is not PanelPaint.HEMISPHERES:
         scene.paint_hemispheres(None)
-    if in_hand is None or panels not in (PanelPaint.SHARE, PanelPaint.GSD):
+    if active is None or panels not in (PanelPaint.SHARE, PanelPaint.GSD):
         scene.set_panel_values(None)
-    if in_hand is None:
+    if active is None:
         scene.set_route_values(None)
         return
-    insight = in_hand.insight
+    insight = active.insight
     match panels:
         case PanelPaint.SHARE:
             title = QCoreApplication.translate("PlanPictures", "Covered of what is possible")
@@ -126,7 +126,7 @@ def paint_plan(
     if routes is RoutePaint.SORTIE:
         scene.set_route_values(None)
     else:
-        scene.set_route_values(*_clearance(in_hand, units))
+        scene.set_route_values(*_clearance(active, units))
 
 
 def _sampling(insight: PlanInsight, units: UnitSystem) -> tuple[ColourScale | None, NDArray[np.float64]]:
@@ -141,13 +141,13 @@ def _sampling(insight: PlanInsight, units: UnitSystem) -> tuple[ColourScale | No
     return ColourScale(title, unit.symbol, low, max(high, 1.01 * low + 1e-9), ValueKind.LOW_IS_GOOD), values
 
 
-def _clearance(in_hand: ActivePlan, units: UnitSystem) -> tuple[ColourScale, list[NDArray[np.float64]]]:
+def _clearance(active: ActivePlan, units: UnitSystem) -> tuple[ColourScale, list[NDArray[np.float64]]]:
     unit = length_unit(units)
-    least_m = in_hand.plan.constraints.min_distance_m
+    least_m = active.plan.constraints.min_distance_m
     far_m = max(WIDE_CLEARANCE * least_m, least_m + 5.0)
     title = QCoreApplication.translate("PlanPictures", "Clearance")
     scale = ColourScale(title, unit.symbol, unit.shown(least_m), unit.shown(far_m))
-    legs = (in_hand.revision.leg_clearances_m(sortie) for sortie in in_hand.plan.sorties)
+    legs = (active.revision.leg_clearances_m(sortie) for sortie in active.plan.sorties)
     return scale, [unit.factor * vertex_clearances_m(clearances_m) for clearances_m in legs]
 
 
@@ -169,19 +169,19 @@ def vertex_clearances_m(legs_m: NDArray[np.float64]) -> NDArray[np.float64]:
 class PlanPage(QObject):
     """The tab."""
 
-    def __init__(self, workspace: ApplicationContext, stage: Stage) -> None:
-        super().__init__(stage)
-        self._workspace, self._stage = workspace, stage
+    def __init__(self, context: ApplicationContext, shared_view: SharedView) -> None:
+        super().__init__(shared_view)
+        self._context, self._shared_view = context, shared_view
         self._planning_id: int | None = None
-        self.controller = PlanController(workspace, self)
+        self.controller = PlanController(context, self)
         self.form, self.chart = PlanForm(), QualityChart(time.perf_counter)
         self.effects, self.panel, self.paint = EffectsPanel(), PanelDetail(), PaintBar()
         self.effects_controller = EffectsController(
-            workspace, self.effects.isVisible, lambda: self.controller.is_planning, self
+            context, self.effects.isVisible, lambda: self.controller.is_planning, self
         )
         self.lists, self.viewpoint = (
-            PlanLists(workspace, self.controller),
-            ViewpointPage(workspace, self.controller, stage),
+            PlanLists(context, self.controller),
+            ViewpointPage(context, self.controller, shared_view),
         )
         self._result, self._verdict = QLabel(), QLabel()
         self._plan_button = QPushButton(self.tr("Plan"))
@@ -189,12 +189,12 @@ class PlanPage(QObject):
         self.left = self._make_left()
         self.right: QWidget | None = self._make_right()
         self.bottom: QWidget | None = self.lists
-        stage.add_overlay_bar(self.paint)
+        shared_view.add_overlay_bar(self.paint)
         self.paint.hide()
         self._connect()
-        self._show_document(workspace.document)
-        self._show_units(workspace.units)
-        self._show_in_hand(self.controller.in_hand)
+        self._show_document(context.document)
+        self._show_units(context.units)
+        self._show_active(self.controller.active)
 
     def _make_actions(self) -> None:
         self._plan_action = QAction(self.tr("Plan the flight"), self)
@@ -231,28 +231,26 @@ class PlanPage(QObject):
         return self._detail
 
     def _connect(self) -> None:
-        controller, workspace = self.controller, self._workspace
+        controller, context = self.controller, self._context
         self.form.valueChanged.connect(controller.set_request)
         self._plan_button.clicked.connect(self._plan)
         self.chart.enough.clicked.connect(controller.stop_here)
-        self.effects.wishChanged.connect(self._wish_changed)
-        self.panel.viewpointPicked.connect(
-            lambda viewpoint_id: workspace.jump_to(Item(ItemKind.VIEWPOINT, viewpoint_id))
-        )
+        self.effects.settingChanged.connect(self._setting_changed)
+        self.panel.viewpointPicked.connect(lambda viewpoint_id: context.jump_to(Item(ItemKind.VIEWPOINT, viewpoint_id)))
         self.lists.sectionPicked.connect(self._show_section)
         self.paint.valueChanged.connect(lambda *_: self._paint())
         controller.planningStarted.connect(self._planning_started)
         controller.planningEnded.connect(self._planning_ended)
-        controller.inHandChanged.connect(self._show_in_hand)
+        controller.inHandChanged.connect(self._show_active)
         self.effects.lookedAt.connect(self.effects_controller.look)
         self.effects_controller.effectsChanged.connect(self.effects.set_effects)
-        controller.refused.connect(lambda text: workspace.say(Severity.ERROR, text))
-        workspace.bridge.improved.connect(self._improved)
-        workspace.bridge.bounded.connect(self._bounded)
-        workspace.jobsChanged.connect(controller.job_ended)
-        workspace.documentChanged.connect(self._document_changed)
-        workspace.selectionChanged.connect(self._show_selection)
-        workspace.unitsChanged.connect(self._show_units)
+        controller.refused.connect(lambda text: context.say(Severity.ERROR, text))
+        context.bridge.improved.connect(self._improved)
+        context.bridge.bounded.connect(self._bounded)
+        context.jobsChanged.connect(controller.job_ended)
+        context.documentChanged.connect(self._document_changed)
+        context.selectionChanged.connect(self._show_selection)
+        context.unitsChanged.connect(self._show_units)
 
     # A tab
 
@@ -306,23 +304,23 @@ class PlanPage(QObject):
         points = tuple(QualityPoint(point.t_s, float(point.covered)) for point in plan.history)
         self.chart.show_history(points, float(plan.coverage.reachable_upper_bound))
 
-    def _show_in_hand(self, in_hand: ActivePlan | None) -> None:
-        self.panel.set_plan(None if in_hand is None else in_hand.insight, None if in_hand is None else in_hand.plan)
+    def _show_active(self, active: ActivePlan | None) -> None:
+        self.panel.set_plan(None if active is None else active.insight, None if active is None else active.plan)
         self._paint()
-        if in_hand is None:
-            if self._workspace.document.current is not None:
-                why = self.controller.why_not_in_hand
+        if active is None:
+            if self._context.document.current is not None:
+                why = self.controller.why_not_active
                 if why:
                     self._say_verdict(self.tr("This plan cannot be judged. {0}").format(why), "error")
                 else:
                     self._say_verdict(self.tr("The plan is being looked at ..."), "muted")
                 self._result.clear()
             return
-        self._show_result(in_hand)
+        self._show_result(active)
 
-    def _show_result(self, in_hand: ActivePlan) -> None:
+    def _show_result(self, active: ActivePlan) -> None:
         # As many as the Mission tab counts, where nothing is said there of the day.
-        revision, plan = in_hand.revision, in_hand.plan
+        revision, plan = active.revision, active.plan
         findings = (*revision.findings, *findings_beside(revision.case))
         wrong = [finding for finding in findings if finding.severity is Severity.ERROR]
         warned = sum(finding.severity is Severity.WARNING for finding in findings)
@@ -330,13 +328,11 @@ class PlanPage(QObject):
             self._say_verdict(self.tr("Ready to fly; warnings: {0}").format(warned), "warning" if warned else "ok")
         else:
             self._say_verdict(
-                self.tr("NOT ready to fly; errors: {0}. {1}").format(
-                    len(wrong), self._workspace.words(wrong[0].message)
-                ),
+                self.tr("NOT ready to fly; errors: {0}. {1}").format(len(wrong), self._context.words(wrong[0].message)),
                 "error",
             )
-        coverage, units = plan.coverage, self._workspace.units
-        finest = in_hand.insight.sampling.best_m
+        coverage, units = plan.coverage, self._context.units
+        finest = active.insight.sampling.best_m
         lines = [
             self.tr("Views: {0}, sorties: {1}").format(len(plan.viewpoints), len(plan.sorties)),
             self.tr("{0} of {1} sections covered ({2:.1f} % of the {3} that any flight could cover)").format(
@@ -350,7 +346,7 @@ class PlanPage(QObject):
                 distance_unit(units).text(sum(sortie.length_m for sortie in plan.sorties)),
             ),
         ]
-        gaps = [float(m) for sortie in plan.sorties for m in in_hand.revision.leg_clearances_m(sortie)]
+        gaps = [float(m) for sortie in plan.sorties for m in active.revision.leg_clearances_m(sortie)]
         if gaps:
             lines.append(self.tr("smallest clearance {0}").format(length_unit(units).text(min(gaps))))
         known = finest[finest == finest]
@@ -368,12 +364,12 @@ class PlanPage(QObject):
         return f"{self._verdict.text()}\n{self._result.text()}"
 
     def _paint(self) -> None:
-        scene = self._stage.scene()
+        scene = self._shared_view.scene()
         if scene is None:
-            self._stage.with_scene(lambda _scene: self._paint())
+            self._shared_view.with_scene(lambda _scene: self._paint())
             return
         if not self.paint.isHidden():
-            paint_plan(scene, self.controller.in_hand, *self.paint.value(), self._workspace.units)
+            paint_plan(scene, self.controller.active, *self.paint.value(), self._context.units)
 
     def _show_selection(self, item: Item | None) -> None:
         if item is None:
@@ -389,21 +385,21 @@ class PlanPage(QObject):
             self._detail.setCurrentIndex(self._detail.count() - 1)
 
     def _show_section(self, panel_id: str, section: int) -> None:
-        self._workspace.jump_to(Item(ItemKind.PANEL, panel_id))
+        self._context.jump_to(Item(ItemKind.PANEL, panel_id))
         self.panel.set_panel(panel_id)
         self.panel.pick_section(section)
         self._detail.setCurrentWidget(self.panel)
 
-    def _wish_changed(self, effect: str, wish: EffectSetting) -> None:
-        request: PlanRequest = self._workspace.document.request
+    def _setting_changed(self, effect: str, setting: EffectSetting) -> None:
+        request: PlanRequest = self._context.document.request
         if effect == "occlusion":
-            self.controller.set_request(replace(request, constraints=replace(request.constraints, occlusion=wish)))
+            self.controller.set_request(replace(request, constraints=replace(request.constraints, occlusion=setting)))
 
     def _show_units(self, units: UnitSystem) -> None:
         for widget in (self.form, self.panel, self.lists, self.effects):
             widget.set_units(units)
-        if self.controller.in_hand is not None:
-            self._show_result(self.controller.in_hand)
+        if self.controller.active is not None:
+            self._show_result(self.controller.active)
         self._paint()
 
     # While a plan runs
@@ -411,7 +407,7 @@ class PlanPage(QObject):
     def _plan(self) -> None:
         """Plan what the form says, where that makes sense: never what it said before."""
         if self.form.problem():
-            self._workspace.say(Severity.ERROR, self.form.problem())
+            self._context.say(Severity.ERROR, self.form.problem())
         else:
             self.controller.plan()
 
@@ -420,13 +416,13 @@ class PlanPage(QObject):
         self.chart.start(budget_s)
         self._detail.setCurrentWidget(self.chart)
         self._enough_action.setEnabled(True)
-        self._show_document(self._workspace.document)
+        self._show_document(self._context.document)
 
     def _planning_ended(self) -> None:
         self._planning_id = None
         self.chart.finish()
         self._enough_action.setEnabled(False)
-        self._show_document(self._workspace.document)
+        self._show_document(self._context.document)
 
     def _improved(self, event: JobImproved) -> None:
         if event.job_id == self._planning_id:

@@ -14,7 +14,7 @@ from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.application.translate import translated
 from groundstation.gui.charts.hemisphere_view import HemisphereView, ShownSection
 from groundstation.gui.plan.plan_controller import PlanController
-from groundstation.gui.shared_view import Stage
+from groundstation.gui.shared_view import SharedView
 from groundstation.gui.widgets.inputs import Form, LengthBox, NumberBox
 from groundstation.gui.widgets.scrolling import ButtonGrid
 from groundstation.services.plan.editing import above_home, beside
@@ -327,9 +327,9 @@ class ViewpointEditor(QWidget):
 class ViewpointPage(QWidget):
     """The editor, connected."""
 
-    def __init__(self, workspace: ApplicationContext, controller: PlanController, stage: Stage) -> None:
+    def __init__(self, context: ApplicationContext, controller: PlanController, shared_view: SharedView) -> None:
         super().__init__()
-        self._workspace, self._controller, self._stage = workspace, controller, stage
+        self._context, self._controller, self._shared_view = context, controller, shared_view
         self._aim_panel = ""
         self._is_changing_tool = False
         self.editor = ViewpointEditor()
@@ -341,21 +341,21 @@ class ViewpointPage(QWidget):
         layout.addWidget(self._move)
         layout.addStretch(1)
         self._connect()
-        self._show_document(workspace.document)
+        self._show_document(context.document)
 
     def _connect(self) -> None:
-        controller, workspace = self._controller, self._workspace
+        controller, context = self._controller, self._context
         self.editor.valueChanged.connect(controller.set_viewpoint)
         self.editor.addWanted.connect(self.add_viewpoint)
         self.editor.deleteWanted.connect(self.delete_viewpoint)
         self.editor.aimWanted.connect(self._aim)
         self._move.toggled.connect(self._move_toggled)
-        controller.inHandChanged.connect(lambda _in_hand: self._say_of_viewpoint())
+        controller.inHandChanged.connect(lambda _active: self._say_of_viewpoint())
         controller.refused.connect(self._refused)
-        workspace.documentChanged.connect(self._document_changed)
-        workspace.selectionChanged.connect(self._show_selection)
-        workspace.unitsChanged.connect(self.set_units)
-        self._stage.with_scene(
+        context.documentChanged.connect(self._document_changed)
+        context.selectionChanged.connect(self._show_selection)
+        context.unitsChanged.connect(self.set_units)
+        self._shared_view.with_scene(
             lambda scene: (scene.toolFinished.connect(self._moved_in_scene), scene.toolEnded.connect(self._tool_ended))
         )
 
@@ -384,10 +384,10 @@ class ViewpointPage(QWidget):
     def _show_document(self, document: Document) -> None:
         if document.current is not None:
             self.editor.set_camera(document.current.plan.camera)
-        self._show_selection(self._workspace.selection)
+        self._show_selection(self._context.selection)
 
     def _show_selection(self, item: Item | None) -> None:
-        entry = self._workspace.document.current
+        entry = self._context.document.current
         if item is not None and item.kind is ItemKind.PANEL:
             self._aim_panel = item.id
             return
@@ -402,26 +402,26 @@ class ViewpointPage(QWidget):
 
     def _refused(self, text: str) -> None:
         """The viewpoint is still as it was, and so are the boxes."""
-        self._show_selection(self._workspace.selection)
+        self._show_selection(self._context.selection)
         self.editor.say(text, wrong=True)
 
     def _say_of_viewpoint(self) -> None:
         """What the selected viewpoint covers, or what is wrong with it."""
-        in_hand, viewpoint = self._controller.in_hand, self.editor.value()
-        if in_hand is None or viewpoint is None or viewpoint.id not in in_hand.insight.view_ids:
+        active, viewpoint = self._controller.active, self.editor.value()
+        if active is None or viewpoint is None or viewpoint.id not in active.insight.view_ids:
             return
         wrong = [
-            self._workspace.words(finding.message)
-            for finding in in_hand.revision.findings
+            self._context.words(finding.message)
+            for finding in active.revision.findings
             if finding.severity is Severity.ERROR and viewpoint.id in finding.place
         ]
         if wrong:
             self.editor.say(wrong[0], wrong=True)
             return
-        row = in_hand.insight.sections[in_hand.insight.view_ids.index(viewpoint.id)]
+        row = active.insight.sections[active.insight.view_ids.index(viewpoint.id)]
         seen = row >= 0
-        alone = int((in_hand.insight.counts[seen, row[seen]] == 1).sum())
-        coverage = in_hand.plan.coverage
+        alone = int((active.insight.counts[seen, row[seen]] == 1).sum())
+        coverage = active.plan.coverage
         self.editor.say(
             self.tr("Covers {0} panels, {1} sections that no other view covers. The plan covers {2}.").format(
                 int(seen.sum()), alone, coverage.covered
@@ -430,9 +430,9 @@ class ViewpointPage(QWidget):
 
     def add_viewpoint(self) -> None:
         """A new viewpoint, beside the selected one or above home."""
-        in_hand, value = self._controller.in_hand, self.editor.value()
-        site = self._workspace.document.site
-        if in_hand is None or site is None:
+        active, value = self._controller.active, self.editor.value()
+        site = self._context.document.site
+        if active is None or site is None:
             return
         self._controller.add_viewpoint(above_home(site.site) if value is None else beside(value, site.site.airspace))
 
@@ -465,7 +465,7 @@ class ViewpointPage(QWidget):
 
     def _start_tool(self) -> None:
         """Take the selected viewpoint in the tool, in place of the one before; none where it cannot be moved."""
-        scene, value = self._stage.scene(), self.editor.value()
+        scene, value = self._shared_view.scene(), self.editor.value()
         if scene is None:
             return
         from groundstation.gui.view3d.tools import ViewpointTool
@@ -482,7 +482,7 @@ class ViewpointPage(QWidget):
     def stop_moving(self) -> None:
         """Put the tool away."""
         self._move.setChecked(False)
-        scene = self._stage.scene()
+        scene = self._shared_view.scene()
         if scene is not None:
             scene.cancel_tool()
 

@@ -211,7 +211,7 @@ class ChoiceForm(QWidget):
         self._show()
 
     def set_light(self, light: str) -> None:
-        """Another light is wished for, elsewhere."""
+        """Another light is chosen, elsewhere."""
         self._value = replace(self._value, light=light)
 
     def _make(self) -> None:

@@ -1,6 +1,6 @@
 """The pictures of a view, asked of the process of models, and what its layers are called.
 
-One look is on its way for each place; what is wished meanwhile is asked for when it has come back, so that the newest
+One look is on its way for each place; what is requested meanwhile waits until it has come back, so that the newest
 request wins and nothing piles up. While a model learns, it is looked at again now and then.
 """
 

@@ -18,7 +18,7 @@ from planning.base.effects import Decision
 from planning.base.parameters import declared
 from reconstruction.training.parameters import LIGHTS, TrainRequest
 
-# Which model of mirrored light the scene calls for and why; and what the user wishes instead.
+# Which model of mirrored light the scene calls for and why; and what the user chooses instead.
 
 
 class LightPage(QWidget):
@@ -59,7 +59,7 @@ class LightPage(QWidget):
         self.show_decisions("", ())
 
     def value(self) -> str:
-        """What is wished."""
+        """What is chosen."""
         return str(self.light.currentData())
 
     def setValue(self, light: str) -> None:  # noqa: N802

@@ -74,9 +74,9 @@ class FolderController(QObject):
     placeChanged = Signal()  # noqa: N815
     stateChanged = Signal()  # noqa: N815
 
-    def __init__(self, workspace: ApplicationContext, parent: QObject | None = None) -> None:
+    def __init__(self, context: ApplicationContext, parent: QObject | None = None) -> None:
         super().__init__(parent)
-        self._workspace = workspace
+        self._context = context
         self.choice, self.out = TrainChoice(), Path()
         self.card: DataSetCard | None = None
         self.machine: Machine = this_machine()
@@ -107,7 +107,7 @@ class FolderController(QObject):
 
     def usual_data_set(self) -> Path | None:
         """That of the project."""
-        return usual_data_set(self._workspace.session.folder)
+        return usual_data_set(self._context.session.folder)
 
     # What is chosen
 
@@ -120,7 +120,7 @@ class FolderController(QObject):
             return read_data_set(folder, context)
 
         self._is_reading = True
-        self._workspace.start(self.tr("Read the data set"), work, self._read, self._not_read)
+        self._context.start(self.tr("Read the data set"), work, self._read, self._not_read)
         self.stateChanged.emit()
 
     def choose(self, choice: TrainChoice) -> None:
@@ -152,10 +152,10 @@ class FolderController(QObject):
         noted = noted_data_set(self.out)
         if not self.standing.is_interrupted or (noted is not None and real_path(noted) != real_path(card.folder)):
             self._propose()
-        site = self._workspace.document.site
-        self._workspace.settle("training.data")
+        site = self._context.document.site
+        self._context.settle("training.data")
         if site is not None and site.site.n_panels > 0 and not card.shows(site.site):
-            self._workspace.say(
+            self._context.say(
                 Severity.WARNING,
                 self.tr(
                     "This data set shows other panels than the site that is open ({0} against {1}). It can be trained "
@@ -172,7 +172,7 @@ class FolderController(QObject):
 
     def _propose(self) -> None:
         if self.card is not None and not self.is_busy:
-            project = self._workspace.session.folder
+            project = self._context.session.folder
             self.out = proposed_folder(self.card.folder, self.choice.method, project)
             self.look_at_out()
             self.placeChanged.emit()
@@ -197,7 +197,7 @@ class FolderController(QObject):
                 self.others = found
                 self.placeChanged.emit()
 
-        self._workspace.start(self.tr("Look for models"), work, done)
+        self._context.start(self.tr("Look for models"), work, done)
 
 
 # What is known of the training that runs, or ran last.
@@ -281,8 +281,8 @@ class ReconstructController(FolderController):
     seen = Signal(object)
     _came = Signal(object)
 
-    def __init__(self, workspace: ApplicationContext, parent: QObject | None = None) -> None:
-        super().__init__(workspace, parent)
+    def __init__(self, context: ApplicationContext, parent: QObject | None = None) -> None:
+        super().__init__(context, parent)
         self._process = ModelProcess(self._came.emit)
         self._came.connect(self._take)
         self.dataSetChanged.connect(self._forget_scene)
@@ -292,13 +292,13 @@ class ReconstructController(FolderController):
         self.light, self.decisions = "", tuple[Decision, ...]()
         self.errors: dict[str, float] = {}
         self.errors_of: Subject | None = None
-        workspace.count_as_busy(lambda: self.is_busy)
+        context.count_as_busy(lambda: self.is_busy)
 
     @classmethod
-    def of(cls, workspace: ApplicationContext) -> ReconstructController:
-        """The one of a workspace: it stays when the window is made anew."""
-        found = workspace.findChild(ReconstructController)
-        return cls(workspace, workspace) if found is None else found
+    def of(cls, context: ApplicationContext) -> ReconstructController:
+        """The one of a context: it stays when the window is made anew."""
+        found = context.findChild(ReconstructController)
+        return cls(context, context) if found is None else found
 
     # What is known
 
@@ -438,9 +438,9 @@ class ReconstructController(FolderController):
                 if self.standing.is_interrupted
                 else self.tr("The training was cancelled before there was anything to keep.")
             )
-            self._workspace.say(Severity.NOTE, words)
+            self._context.say(Severity.NOTE, words)
         elif ended.outcome == "done" and was in BUSY:
-            self._workspace.say(Severity.NOTE, self.tr("The model is written: {0}").format(self.out))
+            self._context.say(Severity.NOTE, self.tr("The model is written: {0}").format(self.out))
             self.watch_errors(TRAINING)
         self.placeChanged.emit()
         self.stateChanged.emit()
@@ -463,7 +463,7 @@ class ReconstructController(FolderController):
                 if self.standing.is_interrupted
                 else self.tr("Close other programs, or ask for less, and try again.")
             )
-            self._workspace.say(
+            self._context.say(
                 Severity.ERROR, self.tr("The process that trains has ended ({0}). {1}").format(why, advice)
             )
         self.placeChanged.emit()
@@ -472,7 +472,7 @@ class ReconstructController(FolderController):
 
     def _say_error(self, error: BaseException) -> None:
         if isinstance(error, (GroundStationError, OSError)):
-            self._workspace.say(Severity.ERROR, self._workspace.words(str(error)))
+            self._context.say(Severity.ERROR, self._context.words(str(error)))
         else:
             text = self.tr("Training: Reflight failed where it should not ({0}: {1}); please report it")
-            self._workspace.say(Severity.ERROR, text.format(type(error).__name__, error))
+            self._context.say(Severity.ERROR, text.format(type(error).__name__, error))

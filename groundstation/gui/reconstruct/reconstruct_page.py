@@ -14,7 +14,7 @@ from groundstation.gui.reconstruct.choice_side import ChoiceSide, MachineWords
 from groundstation.gui.reconstruct.progress_page import LightPage, ProgressPage
 from groundstation.gui.reconstruct.reconstruct_controller import Phase, ReconstructController
 from groundstation.gui.reconstruct.view_pane import ViewPane
-from groundstation.gui.shared_view import Stage
+from groundstation.gui.shared_view import SharedView
 from groundstation.gui.widgets.questions import Questions, agrees
 from groundstation.gui.widgets.scrolling import scrolled
 from groundstation.services.reconstruct.choices import TrainChoice, method_rows
@@ -45,16 +45,16 @@ SIDE_PX, DETAIL_PX, LEAST_DETAIL_PX = 270, 340, 260
 class ReconstructPage(QObject):
     """The tab."""
 
-    def __init__(self, workspace: ApplicationContext, stage: Stage) -> None:
-        super().__init__(stage)
-        self._workspace, self._stage = workspace, stage
+    def __init__(self, context: ApplicationContext, shared_view: SharedView) -> None:
+        super().__init__(shared_view)
+        self._context, self._shared_view = context, shared_view
         self.controller, self.questions, self.asks = (
-            ReconstructController.of(workspace),
+            ReconstructController.of(context),
             Questions(),
             ReconstructQuestions(),
         )
         self._words = MachineWords(self)
-        self.side, self.pane = ChoiceSide(self.controller, self._words), ViewPane(workspace, self.controller)
+        self.side, self.pane = ChoiceSide(self.controller, self._words), ViewPane(context, self.controller)
         self.progress, self.light = ProgressPage(), LightPage()
         self.machine = QWidget()
         self._machine_lines: list[QLabel] = []
@@ -65,7 +65,7 @@ class ReconstructPage(QObject):
         self._connect()
         self.side.form.setValue(self.controller.choice)
         self.light.setValue(self.controller.choice.light)
-        self._units_changed(workspace.units)
+        self._units_changed(context.units)
         self._show_light()
         self._show_state()
 
@@ -117,7 +117,7 @@ class ReconstructPage(QObject):
         return self.details
 
     def _connect(self) -> None:
-        controller, side, workspace = self.controller, self.side, self._workspace
+        controller, side, context = self.controller, self.side, self._context
         side.choose.clicked.connect(self._choose_data_set)
         side.choose_out.clicked.connect(self._choose_out)
         side.form.valueChanged.connect(self._chosen)
@@ -132,20 +132,22 @@ class ReconstructPage(QObject):
         controller.stateChanged.connect(self._show_state)
         controller.progressed.connect(self._show_progress)
         controller.lightChanged.connect(self._show_light)
-        workspace.unitsChanged.connect(self._units_changed)
-        self._stage.closing.connect(self._window_closing)
+        context.unitsChanged.connect(self._units_changed)
+        self._shared_view.closing.connect(self._window_closing)
 
     # What the user does
 
     def _choose_data_set(self) -> None:
         card = self.controller.card
-        places = (None if card is None else card.folder.parent, self._workspace.session.folder)
-        folder = self.questions.folder(self._stage.window(), self.tr("Folder of a data set"), *places)
+        places = (None if card is None else card.folder.parent, self._context.session.folder)
+        folder = self.questions.folder(self._shared_view.window(), self.tr("Folder of a data set"), *places)
         if folder is not None:
             self.controller.read(folder)
 
     def _choose_out(self) -> None:
-        folder = self.questions.new_folder(self._stage.window(), self.tr("Folder for the model"), self._proposed())
+        folder = self.questions.new_folder(
+            self._shared_view.window(), self.tr("Folder for the model"), self._proposed()
+        )
         if folder is not None:
             self.controller.choose_out(folder)
 
@@ -167,7 +169,7 @@ class ReconstructPage(QObject):
     def _window_closing(self, event: QCloseEvent) -> None:
         if not event.isAccepted():
             return
-        if self.controller.is_busy and not self.asks.break_off(self._stage.window()):
+        if self.controller.is_busy and not self.asks.break_off(self._shared_view.window()):
             event.ignore()
             return
         self.pane.close_pictures()
@@ -223,7 +225,7 @@ class ReconstructPage(QObject):
         stage, stepped = controller.training.stage, controller.training.stepped
         words, share = "", None
         if controller.phase is not Phase.IDLE and stage is not None:
-            words = self._workspace.words(stage.stage)
+            words = self._context.words(stage.stage)
             share = -1.0 if stage.total <= 0 else stage.done / stage.total
         elif controller.phase is not Phase.IDLE:
             words, share = self.tr("starting"), -1.0

@@ -269,10 +269,10 @@ class ViewPane(QWidget):
     """Looks at models of the controller's data set."""
 
     def __init__(
-        self, workspace: ApplicationContext, controller: ReconstructController, parent: QWidget | None = None
+        self, context: ApplicationContext, controller: ReconstructController, parent: QWidget | None = None
     ) -> None:
         super().__init__(parent)
-        self._workspace, self._controller = workspace, controller
+        self._context, self._controller = context, controller
         self.pictures = SmallPictures(self)
         self.bar, self.view, self.strip = ViewBar(), ModelView(), ErrorStrip(self.pictures)
         self.line, self.worst = QSlider(Qt.Orientation.Horizontal), QPushButton(self.tr("Worst first"))
@@ -493,7 +493,7 @@ class ViewPane(QWidget):
         if left is None:
             return self.tr("A photo of the data set. The model is shown here once it learns.")
         if self._problem:
-            return str(self._workspace.words(self._problem))
+            return str(self._context.words(self._problem))
         if self.bar.value()[2] == PHOTO and not self._is_at_home:
             return self.tr("The photo is seen from its own place only; 0 goes back there.")
         return ""

@@ -9,7 +9,7 @@ from PySide6.QtCore import QObject, QTimer, Signal
 from PySide6.QtWidgets import QLabel, QPushButton, QVBoxLayout, QWidget
 
 from groundstation.gui.application.context import ApplicationContext
-from groundstation.gui.shared_view import Stage
+from groundstation.gui.shared_view import SharedView
 from groundstation.gui.site.site_editor import SiteEditor
 from groundstation.gui.site.site_tools import SiteTool, SiteTools
 from groundstation.gui.widgets.inputs import Form, LengthBox, WholeBox
@@ -116,16 +116,16 @@ class GridForm(QWidget):
             rectangle, self._rows.value(), self._columns.value(), self._gap.value(), self._tolerance.value()
         )
 
-    def setValue(self, wish: GridRequest) -> None:  # noqa: N802
-        """Show a wish."""
-        for box, count in ((self._rows, wish.n_rows), (self._columns, wish.n_columns)):
+    def setValue(self, request: GridRequest) -> None:  # noqa: N802
+        """Show a request."""
+        for box, count in ((self._rows, request.n_rows), (self._columns, request.n_columns)):
             box.blockSignals(True)
             box.setValue(count)
             box.blockSignals(False)
-        self._gap.setValue(wish.gap_m)
-        self._tolerance.setValue(wish.tolerance_m)
-        self._has_rectangle = wish.rectangle_enu_m is not None
-        for edit, corner in zip(self._corners, wish.rectangle_enu_m or (), strict=False):
+        self._gap.setValue(request.gap_m)
+        self._tolerance.setValue(request.tolerance_m)
+        self._has_rectangle = request.rectangle_enu_m is not None
+        for edit, corner in zip(self._corners, request.rectangle_enu_m or (), strict=False):
             edit.setValue(corner)
         self._show_size()
         self.show_state("", is_good=False)
@@ -140,7 +140,7 @@ class GridForm(QWidget):
         self.valueChanged.emit(self.value())
 
     def set_units(self, units: UnitSystem) -> None:
-        """Show the same wish in other units."""
+        """Show the same request in other units."""
         self._units = units
         for length in (self._gap, self._tolerance):
             length.set_units(units)
@@ -179,20 +179,20 @@ class GridForm(QWidget):
         self.valueChanged.emit(self.value())
 
     def _show_size(self) -> None:
-        wish = self.value()
-        self._corner_rows.setVisible(wish.rectangle_enu_m is not None)
-        if wish.rectangle_enu_m is None:
+        request = self.value()
+        self._corner_rows.setVisible(request.rectangle_enu_m is not None)
+        if request.rectangle_enu_m is None:
             self._size.setText(self.tr("Three clicks: lower left, lower right, upper edge, as seen from outside."))
             return
-        width_m, height_m = rectangle_size_m(wish.rectangle_enu_m)
+        width_m, height_m = rectangle_size_m(request.rectangle_enu_m)
         unit = length_unit(self._units)
         self._size.setText(
             self.tr("Wall: {0} × {1}\nPanels: {2}, each {3} × {4}").format(
                 unit.text(width_m),
                 unit.text(height_m),
-                wish.n_rows * wish.n_columns,
-                unit.text(max(0.0, width_m / wish.n_columns - wish.gap_m)),
-                unit.text(max(0.0, height_m / wish.n_rows - wish.gap_m)),
+                request.n_rows * request.n_columns,
+                unit.text(max(0.0, width_m / request.n_columns - request.gap_m)),
+                unit.text(max(0.0, height_m / request.n_rows - request.gap_m)),
             )
         )
 
@@ -212,12 +212,14 @@ def _count_box() -> WholeBox:
 CHECK_AFTER_MS = 200
 
 
-def checked_grid(model: SiteModel, wish: GridRequest) -> AddedGrid | InputError:
+def checked_grid(model: SiteModel, request: GridRequest) -> AddedGrid | InputError:
     """The site with the grid that is wanted, or why it cannot be: an answer for the form, not a failure of a job."""
-    if wish.rectangle_enu_m is None:
+    if request.rectangle_enu_m is None:
         raise ValueError("rectangle_enu_m: expected a rectangle that was picked")
     try:
-        return add_panel_grid(model, wish.rectangle_enu_m, wish.n_rows, wish.n_columns, wish.gap_m, wish.tolerance_m)
+        return add_panel_grid(
+            model, request.rectangle_enu_m, request.n_rows, request.n_columns, request.gap_m, request.tolerance_m
+        )
     except InputError as error:
         return error
 
@@ -234,10 +236,10 @@ class GridMaker(QObject):
     activeChanged = Signal(bool)  # noqa: N815  (Qt's own way of naming)
 
     def __init__(
-        self, workspace: ApplicationContext, stage: Stage, editor: SiteEditor, tools: SiteTools, form: GridForm
+        self, context: ApplicationContext, shared_view: SharedView, editor: SiteEditor, tools: SiteTools, form: GridForm
     ) -> None:
         super().__init__(form)
-        self._workspace, self._stage, self._editor = workspace, stage, editor
+        self._context, self._shared_view, self._editor = context, shared_view, editor
         self._tools, self._form = tools, form
         self._base: SiteModel | None = None
         self._added: AddedGrid | None = None
@@ -251,7 +253,7 @@ class GridMaker(QObject):
         form.pickAsked.connect(self._pick)
         form.accepted.connect(self._accept)
         form.cancelled.connect(self.end)
-        workspace.documentChanged.connect(self._document_changed)
+        context.documentChanged.connect(self._document_changed)
         form.hide()
 
     def begin(self) -> None:
@@ -267,46 +269,46 @@ class GridMaker(QObject):
         if self._tools.active() is SiteTool.GRID:
             self._tools.put_away()
         self._leave()
-        self._show_site(self._workspace.document.site)
+        self._show_site(self._context.document.site)
 
     def _leave(self) -> None:
         self._form.hide()
         self.activeChanged.emit(False)
 
     def _pick(self) -> None:
-        wish = self._form.value()
-        self._tools.use(SiteTool.GRID, wish.n_rows, wish.n_columns)
+        request = self._form.value()
+        self._tools.use(SiteTool.GRID, request.n_rows, request.n_columns)
 
     def _picked(self, rectangle: Rectangle) -> None:
         self._form.set_rectangle(rectangle)
 
-    def _changed(self, wish: GridRequest) -> None:
-        self._tools.set_grid(wish.n_rows, wish.n_columns)
-        if wish.rectangle_enu_m is not None:
+    def _changed(self, request: GridRequest) -> None:
+        self._tools.set_grid(request.n_rows, request.n_columns)
+        if request.rectangle_enu_m is not None:
             self._form.show_state(self.tr("Checking ..."), is_good=False)
             self._timer.start()
 
     def _check(self) -> None:
-        model, wish = self._workspace.document.site, self._form.value()
-        if model is None or wish.rectangle_enu_m is None or self._form.isHidden():
+        model, request = self._context.document.site, self._form.value()
+        if model is None or request.rectangle_enu_m is None or self._form.isHidden():
             return
 
         def checked(result: AddedGrid | InputError) -> None:
-            if self._form.value() == wish and self._workspace.document.site is model and not self._form.isHidden():
+            if self._form.value() == request and self._context.document.site is model and not self._form.isHidden():
                 self._show_result(model, result)
 
-        self._workspace.start(self.tr("Check the panel grid"), lambda _context: checked_grid(model, wish), checked)
+        self._context.start(self.tr("Check the panel grid"), lambda _context: checked_grid(model, request), checked)
 
     def _show_result(self, base: SiteModel, result: AddedGrid | InputError) -> None:
         if isinstance(result, InputError):
             self._added = None
             self._form.show_error(
-                result.field if isinstance(result, PanelGridError) else None, self._workspace.words(str(result))
+                result.field if isinstance(result, PanelGridError) else None, self._context.words(str(result))
             )
             self._show_site(base)
             return
         self._base, self._added = base, result
-        text = "\n".join(map(self._workspace.words, result.notes)) or self.tr(
+        text = "\n".join(map(self._context.words, result.notes)) or self.tr(
             "The panels lie on the building and look outwards."
         )
         self._form.show_state(text, is_good=True)
@@ -324,7 +326,7 @@ class GridMaker(QObject):
         )
 
     def _show_site(self, model: SiteModel | None) -> None:
-        scene = self._stage.scene()
+        scene = self._shared_view.scene()
         if scene is not None:
             scene.set_site(model, keep_camera=True)
 

@@ -31,9 +31,9 @@ class SiteEditor(QObject):
 
     findingsChanged = Signal(object)  # noqa: N815  (Qt's own way of naming)
 
-    def __init__(self, workspace: ApplicationContext, parent: QObject | None = None) -> None:
+    def __init__(self, context: ApplicationContext, parent: QObject | None = None) -> None:
         super().__init__(parent)
-        self._workspace = workspace
+        self._context = context
         self._job: Job[tuple[Finding, ...]] | None = None
         self._checked: tuple[SiteModel | None, float] = (None, 0.0)
         self._is_active = False
@@ -41,7 +41,7 @@ class SiteEditor(QObject):
         self._timer.setSingleShot(True)
         self._timer.setInterval(CHECK_AFTER_MS)
         self._timer.timeout.connect(self._check)
-        workspace.documentChanged.connect(self._document_changed)
+        context.documentChanged.connect(self._document_changed)
 
     def set_active(self, active: bool) -> None:
         """Check the site after edits from now on, or no longer."""
@@ -51,17 +51,17 @@ class SiteEditor(QObject):
 
     def apply(self, label: str, edit: Edit, select: Item | None = None) -> str:
         """Make an edit; returns why it cannot be made, in the user's words, or an empty text."""
-        document = self._workspace.document
+        document = self._context.document
         if document.site is None:
             return ""
         try:
             model = edit(document.site)
         except InputError as error:
-            return self._workspace.words(str(error))
+            return self._context.words(str(error))
         if model is not document.site:
-            self._workspace.change(label, replace(document, site=model))
+            self._context.change(label, replace(document, site=model))
         if select is not None:
-            self._workspace.select(select)
+            self._context.select(select)
         return ""
 
     def remove(self, item: Item) -> None:
@@ -75,7 +75,7 @@ class SiteEditor(QObject):
     def _apply_or_say(self, label: str, edit: Edit) -> None:
         error = self.apply(label, edit)
         if error:
-            self._workspace.say(Severity.ERROR, f"{label}: {error}")
+            self._context.say(Severity.ERROR, f"{label}: {error}")
 
     def _document_changed(self, before: Document, after: Document) -> None:
         if after.site is not before.site:
@@ -85,7 +85,7 @@ class SiteEditor(QObject):
 
     def _to_check(self) -> tuple[SiteModel | None, float]:
         """The site, and the distance that the next plan is to keep."""
-        document = self._workspace.document
+        document = self._context.document
         return document.site, document.request.constraints.min_distance_m
 
     def _is_checking(self) -> bool:
@@ -103,6 +103,6 @@ class SiteEditor(QObject):
             elif self._is_active:
                 self._timer.start()
 
-        self._job = self._workspace.start(
+        self._job = self._context.start(
             self.tr("Check the site"), lambda context: site_findings(model, distance_m, context), checked
         )

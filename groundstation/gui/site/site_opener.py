@@ -293,18 +293,18 @@ class ImportDialog(QDialog):
 
     imported = Signal(object)
 
-    def __init__(self, workspace: ApplicationContext, path: Path, parent: QWidget | None = None) -> None:
+    def __init__(self, context: ApplicationContext, path: Path, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._workspace, self._path = workspace, path
+        self._context, self._path = context, path
         self._job: Job[ImportPreview | InputError] | None = None
         self._preview: ImportPreview | None = None
         self._is_done = False
         self.setWindowTitle(self.tr("Import {0}").format(path.name))
-        self.form = ImportForm(path, workspace.units)
-        self.grid = GridForm(workspace.units)
+        self.form = ImportForm(path, context.units)
+        self.grid = GridForm(context.units)
         self.grid.set_words(self.tr("Use these panels"), self.tr("Clear"))
         self.scene = SceneView(self)
-        self.scene.set_units(workspace.units)
+        self.scene.set_units(context.units)
         self._summary, self._error = QLabel(), ErrorLine()
         self._summary.setWordWrap(True)
         self._notes = QPlainTextEdit()
@@ -348,7 +348,7 @@ class ImportDialog(QDialog):
         buttons.addWidget(self._cancel)
         layout = QVBoxLayout(self)
         layout.addWidget(splitter, 1)
-        layout.addWidget(DialogFoot(self._workspace))
+        layout.addWidget(DialogFoot(self._context))
         layout.addLayout(buttons)
 
     def _connect(self) -> None:
@@ -361,7 +361,7 @@ class ImportDialog(QDialog):
         self.grid.accepted.connect(self._use_grid)
         self.grid.cancelled.connect(self._clear_grids)
         self.scene.toolFinished.connect(self._picked)
-        self._workspace.bridge.progressed.connect(self._show_progress)
+        self._context.bridge.progressed.connect(self._show_progress)
 
     def preview(self) -> None:
         """Import into memory with the options as they are, and show what comes of it."""
@@ -377,7 +377,7 @@ class ImportDialog(QDialog):
             except InputError as error:  # an answer for this dialog, not a failure for the message area
                 return error
 
-        self._job = self._workspace.start(
+        self._job = self._context.start(
             self.tr("Preview {0}").format(path.name), work, self._show_result, lambda _error: self._failed()
         )
 
@@ -415,7 +415,7 @@ class ImportDialog(QDialog):
 
     def _stop_job(self) -> None:
         if self._job is not None:
-            self._workspace.cancel(self._job, quietly=True)
+            self._context.cancel(self._job, quietly=True)
             self._job = None
 
     def _failed(self) -> None:
@@ -424,7 +424,7 @@ class ImportDialog(QDialog):
 
     def _show_progress(self, event: JobProgress) -> None:
         if self._job is not None and event.job_id == self._job.id:
-            self._say(self.tr("Reading {0}: {1} ...").format(self._path.name, self._workspace.words(event.stage)))
+            self._say(self.tr("Reading {0}: {1} ...").format(self._path.name, self._context.words(event.stage)))
 
     def _show_result(self, result: ImportPreview | InputError) -> None:
         self._job = None
@@ -446,7 +446,7 @@ class ImportDialog(QDialog):
         self._notes.setPlainText("\n".join("• " + self._words(note) for note in result.notes))
         self._error.show_error(self._words(result.problem))
         self._accept.setEnabled(result.model is not None)
-        self._say("" if result.model is None else preview_text(result.model, self._workspace.units))
+        self._say("" if result.model is None else preview_text(result.model, self._context.units))
 
     def _options_changed(self, _options: ImportOptions) -> None:
         self._accept.setEnabled(False)
@@ -458,48 +458,48 @@ class ImportDialog(QDialog):
 
     def _words(self, text: str) -> str:
         """A message of the import in words of the window, without the folder."""
-        return self._workspace.words(without_place(text, self._path))
+        return self._context.words(without_place(text, self._path))
 
     def _pick(self) -> None:
-        wish = self.grid.value()
-        self.scene.start_tool(RectangleTool(wish.n_rows, wish.n_columns))
+        request = self.grid.value()
+        self.scene.start_tool(RectangleTool(request.n_rows, request.n_columns))
 
     def _picked(self, picked: PickedRectangle) -> None:
         self.grid.set_rectangle((picked.lower_left_enu_m, picked.lower_right_enu_m, picked.upper_left_enu_m))
 
-    def _check_grid(self, wish: GridRequest) -> None:
-        preview, rectangle = self._preview, wish.rectangle_enu_m
+    def _check_grid(self, request: GridRequest) -> None:
+        preview, rectangle = self._preview, request.rectangle_enu_m
         tool = self.scene.tool()
         if isinstance(tool, RectangleTool):
-            tool.set_grid(wish.n_rows, wish.n_columns)
+            tool.set_grid(request.n_rows, request.n_columns)
         if preview is None or rectangle is None:
             return
         self.grid.show_state(self.tr("Checking ..."), is_good=False)
 
         def work(_context: JobContext) -> PanelGridError | tuple[str, ...]:
-            return _grid_notes(preview, rectangle, wish)
+            return _grid_notes(preview, rectangle, request)
 
         def checked(result: PanelGridError | tuple[str, ...]) -> None:
-            if self._is_done or self.grid.value() != wish or self._preview is not preview:
+            if self._is_done or self.grid.value() != request or self._preview is not preview:
                 return
             if isinstance(result, PanelGridError):
-                self.grid.show_error(result.field, self._workspace.words(str(result)))
+                self.grid.show_error(result.field, self._context.words(str(result)))
             else:
                 good = self.tr("The panels lie on the building and look outwards.")
-                self.grid.show_state("\n".join(map(self._workspace.words, result)) or good, is_good=True)
+                self.grid.show_state("\n".join(map(self._context.words, result)) or good, is_good=True)
 
-        self._workspace.start(self.tr("Check the panel grid"), work, checked)
+        self._context.start(self.tr("Check the panel grid"), work, checked)
 
     def _use_grid(self) -> None:
-        wish = self.grid.value()
-        if self._preview is None or wish.rectangle_enu_m is None:
+        request = self.grid.value()
+        if self._preview is None or request.rectangle_enu_m is None:
             return
-        grid = grid_in_file(self._preview, wish.rectangle_enu_m, wish.n_rows, wish.n_columns, wish.gap_m)
+        grid = grid_in_file(self._preview, request.rectangle_enu_m, request.n_rows, request.n_columns, request.gap_m)
         options = self.form.value()
         self.form.setValue(
-            replace(options, panel_grids=(*options.panel_grids, grid), grid_tolerance_m=wish.tolerance_m)
+            replace(options, panel_grids=(*options.panel_grids, grid), grid_tolerance_m=request.tolerance_m)
         )
-        self.grid.setValue(replace(wish, rectangle_enu_m=None))
+        self.grid.setValue(replace(request, rectangle_enu_m=None))
         self.preview()
 
     def _clear_grids(self) -> None:
@@ -516,12 +516,12 @@ def _without_grids(preview: ImportPreview) -> ImportOptions:
     return replace(preview.options, panel_grids=(), grid_tolerance_m=0.0)
 
 
-def _grid_notes(preview: ImportPreview, rectangle: Rectangle, wish: GridRequest) -> PanelGridError | tuple[str, ...]:
+def _grid_notes(preview: ImportPreview, rectangle: Rectangle, request: GridRequest) -> PanelGridError | tuple[str, ...]:
     """What is worth knowing about a grid on the building that is looked at, or why it cannot be."""
-    counts = (wish.n_rows, wish.n_columns)
+    counts = (request.n_rows, request.n_columns)
     try:
         return panels_on_building(
-            np.array(rectangle), counts, wish.gap_m, preview.source.building, wish.tolerance_m
+            np.array(rectangle), counts, request.gap_m, preview.source.building, request.tolerance_m
         ).notes
     except PanelGridError as error:
         return error
@@ -530,9 +530,9 @@ def _grid_notes(preview: ImportPreview, rectangle: Rectangle, wish: GridRequest)
 class SiteOpener(QObject):
     """The three ways to a site; each is one step that can be undone."""
 
-    def __init__(self, workspace: ApplicationContext, window: QWidget) -> None:
+    def __init__(self, context: ApplicationContext, window: QWidget) -> None:
         super().__init__(window)
-        self._workspace, self._window = workspace, window
+        self._context, self._window = context, window
 
     def choose_site(self) -> None:
         """Ask for a site file and open it."""
@@ -551,7 +551,7 @@ class SiteOpener(QObject):
     def open_site(self, path: Path) -> None:
         """Open a site file."""
         label = self.tr("Open {0}").format(path.name)
-        self._workspace.start(
+        self._context.start(
             label,
             lambda context: (open_site(path, context), facades_beside(path)),
             lambda found: self._take(label, *found),
@@ -560,11 +560,11 @@ class SiteOpener(QObject):
     def open_bundled(self, name: str) -> None:
         """Open one of the sites that come with the program."""
         label = self.tr("Open {0}").format(name)
-        self._workspace.start(label, lambda _context: bundled_site(name), lambda model: self._take(label, model))
+        self._context.start(label, lambda _context: bundled_site(name), lambda model: self._take(label, model))
 
     def import_site(self, path: Path) -> ImportDialog:
         """Look at a building model, and import it if the user wants that."""
-        dialog = ImportDialog(self._workspace, path, self._window.window())
+        dialog = ImportDialog(self._context, path, self._window.window())
         dialog.imported.connect(lambda model: self._take(self.tr("Import {0}").format(path.name), model))
         dialog.finished.connect(dialog.deleteLater)
         dialog.open()
@@ -589,15 +589,15 @@ class SiteOpener(QObject):
         return menu
 
     def _take(self, label: str, model: SiteModel, facades: FoundFacades | None = None) -> None:
-        before = self._workspace.document
-        self._workspace.change(label, with_new_site(before, model, facades))
-        self._workspace.select(None)
+        before = self._context.document
+        self._context.change(label, with_new_site(before, model, facades))
+        self._context.select(None)
         site = model.site
-        self._workspace.say(
+        self._context.say(
             Severity.OK, self.tr("{0}: panels {1}, facades {2}").format(site.name, site.n_panels, len(site.facades))
         )
         if before.plans:
-            self._workspace.say(
+            self._context.say(
                 Severity.NOTE,
                 self.tr("The plans of the site before are removed with it: {0}. Undo brings them back.").format(
                     len(before.plans)

@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QLabel, QListWidget, QListWidgetItem, QPushButton,
 
 from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.application.translate import translated
-from groundstation.gui.shared_view import Stage
+from groundstation.gui.shared_view import SharedView
 from groundstation.gui.site.grid_form import GridForm, GridMaker
 from groundstation.gui.site.pages import (
     SITE,
@@ -140,18 +140,18 @@ PAGES: dict[ItemKind, Callable[[UnitSystem], Page]] = {
 class PropertyPanel(QWidget):
     """Shows the page of the selected thing; of the site where nothing of a site is selected."""
 
-    def __init__(self, workspace: ApplicationContext, editor: SiteEditor, parent: QWidget | None = None) -> None:
+    def __init__(self, context: ApplicationContext, editor: SiteEditor, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._workspace, self._editor = workspace, editor
+        self._context, self._editor = context, editor
         self._pages: dict[ItemKind, Page] = {}
         self._shown: Page | None = None
         # No stack: it would be as tall as its tallest page.
         self._layout = QVBoxLayout(self)
         self._layout.setContentsMargins(0, 0, 0, 0)
-        workspace.documentChanged.connect(self._document_changed)
-        workspace.selectionChanged.connect(self._show)
-        workspace.unitsChanged.connect(self._set_units)
-        self._show(workspace.selection)
+        context.documentChanged.connect(self._document_changed)
+        context.selectionChanged.connect(self._show)
+        context.unitsChanged.connect(self._set_units)
+        self._show(context.selection)
 
     def page(self) -> Page | None:
         """The page that is shown."""
@@ -165,14 +165,14 @@ class PropertyPanel(QWidget):
             page.name_box().selectAll()
 
     def _show(self, item: Item | None) -> None:
-        model = self._workspace.document.site
+        model = self._context.document.site
         if model is None:
             return
         shown = item if item is not None and item.kind in PAGES else SITE
         page = self._page(shown.kind)
         page.show_error("")
         if isinstance(page, PanelPage):
-            page.set_found(self._workspace.document.found_facades)
+            page.set_found(self._context.document.found_facades)
         page.show_item(model, shown)
         for other in self._pages.values():
             other.setVisible(other is page)
@@ -180,7 +180,7 @@ class PropertyPanel(QWidget):
 
     def _page(self, kind: ItemKind) -> Page:
         if kind not in self._pages:
-            page = PAGES[kind](self._workspace.units)
+            page = PAGES[kind](self._context.units)
             page.edited.connect(self._edit)
             self._pages[kind] = page
             self._layout.addWidget(page)
@@ -194,12 +194,12 @@ class PropertyPanel(QWidget):
 
     def _document_changed(self, before: Document, after: Document) -> None:
         if after.site is not before.site:
-            self._show(self._workspace.selection)
+            self._show(self._context.selection)
 
     def _set_units(self, units: UnitSystem) -> None:
         for page in self._pages.values():
             page.set_units(units)
-        self._show(self._workspace.selection)
+        self._show(self._context.selection)
 
 
 # What stands in the Site tab before there is a site: what to do first.
@@ -246,9 +246,9 @@ def _large(text: str, *, primary: bool = False) -> QPushButton:
 class SiteTab:
     """The Site tab; see `groundstation.gui.tabs.Tab`."""
 
-    def __init__(self, workspace: ApplicationContext, stage: Stage) -> None:
-        self.left = SiteSide(workspace)
-        self.detail = SiteDetail(workspace, stage, self.left)
+    def __init__(self, context: ApplicationContext, shared_view: SharedView) -> None:
+        self.left = SiteSide(context)
+        self.detail = SiteDetail(context, shared_view, self.left)
         self.right: QWidget | None = scrolled(self.detail)
         self.bottom: QWidget | None = None
 
@@ -269,10 +269,10 @@ class SiteTab:
 class SiteSide(QWidget):
     """Where a site comes from, and the tree of what is on it."""
 
-    def __init__(self, workspace: ApplicationContext, parent: QWidget | None = None) -> None:
+    def __init__(self, context: ApplicationContext, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._workspace = workspace
-        self.opener = SiteOpener(workspace, self)
+        self._context = context
+        self.opener = SiteOpener(context, self)
         self.start = StartPage(self.opener)
         self.tree = SiteTree()
         self._pages = CurrentStack()
@@ -283,10 +283,10 @@ class SiteSide(QWidget):
         layout.addWidget(self._pages)
         self.actions_of_tab = self._make_actions()
         self.tree.valueChanged.connect(self._select)
-        self.tree.lookAsked.connect(workspace.jump_to)
-        workspace.selectionChanged.connect(self.tree.setValue)
-        workspace.documentChanged.connect(self._document_changed)
-        workspace.unitsChanged.connect(self._show_units)
+        self.tree.lookAsked.connect(context.jump_to)
+        context.selectionChanged.connect(self.tree.setValue)
+        context.documentChanged.connect(self._document_changed)
+        context.unitsChanged.connect(self._show_units)
         self._show_site()
 
     def _site_page(self) -> QWidget:
@@ -320,7 +320,7 @@ class SiteSide(QWidget):
         return tuple(actions)
 
     def _select(self, item: Item | None) -> None:
-        self._workspace.select(item)
+        self._context.select(item)
 
     def _document_changed(self, before: Document, after: Document) -> None:
         if after.site is not before.site:
@@ -330,9 +330,9 @@ class SiteSide(QWidget):
         self._show_site()
 
     def _show_site(self) -> None:
-        model = self._workspace.document.site
-        self.tree.set_site(model, self._workspace.units)
-        self.tree.setValue(self._workspace.selection)
+        model = self._context.document.site
+        self.tree.set_site(model, self._context.units)
+        self.tree.setValue(self._context.selection)
         self._pages.setCurrentIndex(0 if model is None else 1)
 
 
@@ -340,17 +340,17 @@ class SiteDetail(QWidget):
     """Tools, the panel grid while one is made, properties of what is selected, and what the check found."""
 
     def __init__(
-        self, workspace: ApplicationContext, stage: Stage, side: SiteSide, parent: QWidget | None = None
+        self, context: ApplicationContext, shared_view: SharedView, side: SiteSide, parent: QWidget | None = None
     ) -> None:
         super().__init__(parent)
-        self._workspace = workspace
-        self.editor = SiteEditor(workspace, self)
-        self.tools = SiteTools(workspace, stage, self.editor)
-        self.grid_form = GridForm(workspace.units)
-        self.grid_maker = GridMaker(workspace, stage, self.editor, self.tools, self.grid_form)
-        self.properties = PropertyPanel(workspace, self.editor)
+        self._context = context
+        self.editor = SiteEditor(context, self)
+        self.tools = SiteTools(context, shared_view, self.editor)
+        self.grid_form = GridForm(context.units)
+        self.grid_maker = GridMaker(context, shared_view, self.editor, self.tools, self.grid_form)
+        self.properties = PropertyPanel(context, self.editor)
         self.findings = FindingsList()
-        self.findings.set_units(workspace.units)
+        self.findings.set_units(context.units)
         self._empty = QLabel(self.tr("What is selected on the site is shown here."))
         self._empty.setProperty("role", "muted")
         self._empty.setWordWrap(True)
@@ -366,14 +366,14 @@ class SiteDetail(QWidget):
         layout.addWidget(self._filled)
         layout.addStretch(1)
         self.editor.findingsChanged.connect(self._show_findings)
-        self.findings.chosen.connect(workspace.jump_to)
+        self.findings.chosen.connect(context.jump_to)
         self.grid_maker.activeChanged.connect(self.properties.setHidden)
         side.tree.removeAsked.connect(self.editor.remove)
         side.tree.flipAsked.connect(self.editor.flip)
         side.tree.renameAsked.connect(self._rename)
-        workspace.documentChanged.connect(self._document_changed)
-        workspace.unitsChanged.connect(self.grid_form.set_units)
-        workspace.unitsChanged.connect(self.findings.set_units)
+        context.documentChanged.connect(self._document_changed)
+        context.unitsChanged.connect(self.grid_form.set_units)
+        context.unitsChanged.connect(self.findings.set_units)
         self._show_site()
 
     def put_away(self) -> None:
@@ -383,7 +383,7 @@ class SiteDetail(QWidget):
             self.grid_maker.end()
 
     def _rename(self, item: Item) -> None:
-        self._workspace.select(item)
+        self._context.select(item)
         self.properties.focus_name()
 
     def _show_findings(self, findings: tuple[Finding, ...] | None) -> None:
@@ -394,7 +394,7 @@ class SiteDetail(QWidget):
             self._show_site()
 
     def _show_site(self) -> None:
-        has_site = self._workspace.document.site is not None
+        has_site = self._context.document.site is not None
         self._empty.setVisible(not has_site)
         self._filled.setVisible(has_site)
         if not has_site:

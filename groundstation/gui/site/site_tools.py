@@ -11,7 +11,7 @@ from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QPushButton, QWidget
 
 from groundstation.gui.application.context import ApplicationContext
-from groundstation.gui.shared_view import SharedViewPage, Stage
+from groundstation.gui.shared_view import SharedView, SharedViewPage
 from groundstation.gui.site.pages import Edit
 from groundstation.gui.site.site_editor import SiteEditor
 from groundstation.gui.widgets.questions import choose_file
@@ -61,10 +61,10 @@ class SiteTools(QWidget):
     gridAsked = Signal()  # noqa: N815
 
     def __init__(
-        self, workspace: ApplicationContext, stage: Stage, editor: SiteEditor, parent: QWidget | None = None
+        self, context: ApplicationContext, shared_view: SharedView, editor: SiteEditor, parent: QWidget | None = None
     ) -> None:
         super().__init__(parent)
-        self._workspace, self._stage, self._editor = workspace, stage, editor
+        self._context, self._shared_view, self._editor = context, shared_view, editor
         self._active: SiteTool | None = None
         self._scene: SceneView | None = None
         self._grid_tool: RectangleTool | None = None
@@ -81,7 +81,7 @@ class SiteTools(QWidget):
         mesh.setToolTip(self.tr("Add an obstacle from a mesh file in the site's coordinates (a crane, a tree)"))
         mesh.clicked.connect(self._choose_mesh)
         layout.addWidget(mesh)
-        stage.with_scene(self._connect)
+        shared_view.with_scene(self._connect)
 
     def _texts(self) -> tuple[tuple[SiteTool, str, str], ...]:
         return (
@@ -109,13 +109,13 @@ class SiteTools(QWidget):
         """Start a tool in the 3-D view; rows and columns are those of a panel grid."""
         if tool is SiteTool.GRID and self._active is not SiteTool.GRID:
             self.gridAsked.emit()
-        self._stage.show_page(SharedViewPage.SCENE)
+        self._shared_view.show_page(SharedViewPage.SCENE)
 
         def start(scene: SceneView) -> None:
             scene.start_tool(self._made(tool, n_rows, n_columns))
             self._set_active(tool)
 
-        self._stage.with_scene(start)
+        self._shared_view.with_scene(start)
 
     def put_away(self) -> None:
         """Put the tool in use away; nothing comes of it."""
@@ -141,9 +141,9 @@ class SiteTools(QWidget):
 
             self._apply(self.tr("Add obstacle {0}").format(path.stem), edit)
             if chosen:
-                self._workspace.jump_to(Item(ItemKind.OBSTACLE, chosen))
+                self._context.jump_to(Item(ItemKind.OBSTACLE, chosen))
 
-        self._workspace.start(self.tr("Read {0}").format(path.name), lambda _context: read_mesh(path), added)
+        self._context.start(self.tr("Read {0}").format(path.name), lambda _context: read_mesh(path), added)
 
     def _connect(self, scene: SceneView) -> None:
         self._scene = scene
@@ -229,12 +229,12 @@ class SiteTools(QWidget):
 
         self._apply(label, only_model)
         if names:
-            self._workspace.select(Item(kind, names[-1]))
+            self._context.select(Item(kind, names[-1]))
 
     def _apply(self, label: str, edit: Edit, select: Item | None = None) -> None:
         error = self._editor.apply(label, edit, select)
         if error:
-            self._workspace.say(Severity.ERROR, f"{label}: {error}")
+            self._context.say(Severity.ERROR, f"{label}: {error}")
 
     def _choose_mesh(self) -> None:
         kinds = " ".join(f"*{suffix}" for suffix in MESH_SUFFIXES)

@@ -12,7 +12,7 @@ from groundstation.gui.widgets.scrolling import WrappingRow
 from groundstation.services.plan.effects import EffectChoice
 from groundstation.services.units import UnitSystem
 
-WISHES = ("auto", "on", "off")
+SETTINGS = ("auto", "on", "off")
 
 
 class EffectsPanel(QWidget):
@@ -20,13 +20,13 @@ class EffectsPanel(QWidget):
 
     Signals
     -------
-    wishChanged(str, str)
+    settingChanged(str, str)
         Name of the effect, and auto, on or off.
     lookedAt()
         It came into sight.
     """
 
-    wishChanged = Signal(str, str)  # noqa: N815  (Qt's own way of naming)
+    settingChanged = Signal(str, str)  # noqa: N815  (Qt's own way of naming)
     lookedAt = Signal()  # noqa: N815
 
     def __init__(self, parent: QWidget | None = None) -> None:
@@ -50,7 +50,9 @@ class EffectsPanel(QWidget):
             name = choice.decision.effect
             if name not in self._cards:
                 self._cards[name] = _EffectCard()
-                self._cards[name].wishChanged.connect(lambda wish, name=name: self.wishChanged.emit(name, wish))
+                self._cards[name].settingChanged.connect(
+                    lambda setting, name=name: self.settingChanged.emit(name, setting)
+                )
                 self._layout.insertWidget(1 + number, self._cards[name])
             self._cards[name].set_choice(choice, self._units)
             self._cards[name].setVisible(True)
@@ -72,9 +74,9 @@ class EffectsPanel(QWidget):
 
 
 class _EffectCard(QFrame):
-    """Name and wish above, the decision in words below."""
+    """Name and setting above, the decision in words below."""
 
-    wishChanged = Signal(str)  # noqa: N815
+    settingChanged = Signal(str)  # noqa: N815
 
     def __init__(self) -> None:
         super().__init__()
@@ -84,14 +86,16 @@ class _EffectCard(QFrame):
         self._size.setProperty("role", "muted")
         for label in (self._name, self._words, self._size):
             label.setWordWrap(True)
-        self.wish = ChoiceBox()
-        for wish, text in zip(WISHES, (self.tr("auto"), self.tr("on"), self.tr("off")), strict=True):
-            self.wish.addItem(text, wish)
-        self.wish.currentIndexChanged.connect(lambda _index: self.wishChanged.emit(str(self.wish.currentData())))
+        self.setting = ChoiceBox()
+        for setting, text in zip(SETTINGS, (self.tr("auto"), self.tr("on"), self.tr("off")), strict=True):
+            self.setting.addItem(text, setting)
+        self.setting.currentIndexChanged.connect(
+            lambda _index: self.settingChanged.emit(str(self.setting.currentData()))
+        )
         above = WrappingRow(first_grows=True)
         above.addWidget(self._name)
         above.addWidget(self._state)
-        above.addWidget(self.wish)
+        above.addWidget(self.setting)
         layout = QVBoxLayout(self)
         layout.addLayout(above)
         layout.addWidget(self._words)
@@ -111,9 +115,9 @@ class _EffectCard(QFrame):
                 found.size, translated(found.unit, units), found.tolerance, found.cost_s
             )
         )
-        self.wish.setVisible(choice.setting is not None)
-        with QSignalBlocker(self.wish):
-            self.wish.setCurrentIndex(WISHES.index(choice.setting or "auto"))
+        self.setting.setVisible(choice.setting is not None)
+        with QSignalBlocker(self.setting):
+            self.setting.setCurrentIndex(SETTINGS.index(choice.setting or "auto"))
 
     def text(self) -> str:
         """Everything the card says."""

@@ -25,9 +25,9 @@ SHOW_AFTER_MS = 150
 class JobBar(QWidget):
     """Progress of the running job; hidden while nothing runs."""
 
-    def __init__(self, workspace: ApplicationContext, parent: QWidget | None = None) -> None:
+    def __init__(self, context: ApplicationContext, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._workspace = workspace
+        self._context = context
         self._label, self._bar, self._left = ShortText(), QProgressBar(), QLabel()
         self._queue = QToolButton()
         self._queue.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
@@ -46,19 +46,19 @@ class JobBar(QWidget):
         self._delay.setSingleShot(True)
         self._delay.setInterval(SHOW_AFTER_MS)
         self._delay.timeout.connect(self._show_now)
-        workspace.jobsChanged.connect(self._update)
-        workspace.bridge.progressed.connect(self._show_progress)
+        context.jobsChanged.connect(self._update)
+        context.bridge.progressed.connect(self._show_progress)
         self._show_contents(False)
 
     def cancel_running(self) -> None:
         """Cancel the job that runs."""
-        jobs = self._workspace.jobs()
+        jobs = self._context.jobs()
         if jobs:
             self._label.setText(self.tr("{0}: cancelling ...").format(jobs[0].name))
-            self._workspace.cancel(jobs[0])
+            self._context.cancel(jobs[0])
 
     def _update(self) -> None:
-        jobs = self._workspace.jobs()
+        jobs = self._context.jobs()
         if not jobs:
             self._delay.stop()
             self._show_contents(False)
@@ -73,19 +73,19 @@ class JobBar(QWidget):
             self._queue.setVisible(len(jobs) > 1)
 
     def _show_now(self) -> None:
-        self._show_contents(bool(self._workspace.jobs()))
+        self._show_contents(bool(self._context.jobs()))
 
     def _show_contents(self, visible: bool) -> None:
         for widget in (self._label, self._bar, self._left, self._cancel):
             widget.setVisible(visible)
-        self._queue.setVisible(visible and len(self._workspace.jobs()) > 1)
+        self._queue.setVisible(visible and len(self._context.jobs()) > 1)
         self.setVisible(visible)
 
     def _show_progress(self, event: JobProgress) -> None:
-        jobs = self._workspace.jobs()
+        jobs = self._context.jobs()
         if not jobs or jobs[0].id != event.job_id or jobs[0].cancel_requested:
             return
-        self._label.setText(f"{event.name}: {self._workspace.words(event.stage)}")
+        self._label.setText(f"{event.name}: {self._context.words(event.stage)}")
         self._bar.setRange(0, 1000 if event.total > 0 else 0)
         if event.total > 0:
             self._bar.setValue(int(1000 * min(1.0, event.done / event.total)))
@@ -98,22 +98,22 @@ class JobBar(QWidget):
     def _list_queue(self) -> None:
         menu = self._queue.menu()
         menu.clear()
-        for job in self._workspace.jobs()[1:]:
+        for job in self._context.jobs()[1:]:
             action = menu.addAction(self.tr("Cancel: {0}").format(job.name))
-            action.triggered.connect(lambda _checked=False, job=job: self._workspace.cancel(job))
+            action.triggered.connect(lambda _checked=False, job=job: self._context.cancel(job))
 
 
 class DialogFoot(QWidget):
     """The job bar and the last message, for dialogs that lie over those of the window."""
 
-    def __init__(self, workspace: ApplicationContext, parent: QWidget | None = None) -> None:
+    def __init__(self, context: ApplicationContext, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self.job_bar, self._text = JobBar(workspace), ShortText()
+        self.job_bar, self._text = JobBar(context), ShortText()
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(self._text)
         layout.addWidget(self.job_bar)
-        workspace.messageShown.connect(self._show)
+        context.messageShown.connect(self._show)
 
     def text(self) -> str:
         """What was told last since the dialog has been open."""

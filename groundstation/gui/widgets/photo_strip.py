@@ -32,7 +32,7 @@ from reconstruction.photos.decode import PICTURE_FILE, decoded
 # Small copies of photos for the strip, decoded on another thread, those last that were asked for first.
 
 SIDE_PX = 132
-MOST_KEPT, MOST_WANTED = 1000, 80
+MOST_CACHED, MOST_WANTED = 1000, 80
 LOOK_MS = 30
 """How often it is looked what has been decoded. The thread tells nobody itself: its listener may be gone by then."""
 
@@ -52,7 +52,7 @@ class SmallPictures(QObject):
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
-        self._kept: OrderedDict[Path, QImage | None] = OrderedDict()
+        self._cached: OrderedDict[Path, QImage | None] = OrderedDict()
         self._wanted: OrderedDict[Path, int] = OrderedDict()
         self._done: deque[tuple[Path, QImage | None]] = deque()
         self._lock = threading.Lock()
@@ -62,9 +62,9 @@ class SmallPictures(QObject):
 
     def picture(self, path: Path, longest_px: int) -> QImage | None:
         """A small picture of a file whose longest side is known; None while it is decoded, or where it is damaged."""
-        if path in self._kept:
-            self._kept.move_to_end(path)
-            return self._kept[path]
+        if path in self._cached:
+            self._cached.move_to_end(path)
+            return self._cached[path]
         with self._lock:
             self._wanted[path] = longest_px
             self._wanted.move_to_end(path)
@@ -101,9 +101,9 @@ class SmallPictures(QObject):
     def _look(self) -> None:
         while self._done:
             path, picture = self._done.popleft()
-            self._kept[path] = picture
-            while len(self._kept) > MOST_KEPT:
-                self._kept.popitem(last=False)
+            self._cached[path] = picture
+            while len(self._cached) > MOST_CACHED:
+                self._cached.popitem(last=False)
             self.ready.emit(path)
         if not self.is_busy():
             self._timer.stop()

@@ -22,7 +22,7 @@ from PySide6.QtWidgets import (
 
 from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.application.interpreter import BackgroundImport
-from groundstation.gui.shared_view import Stage
+from groundstation.gui.shared_view import SharedView
 from groundstation.gui.tabs import TABS, Place, Tab, TabSpec
 from groundstation.gui.widgets.job_bar import JobBar
 from groundstation.gui.widgets.scrolling import CurrentStack, scrolled
@@ -51,17 +51,17 @@ class MainWindow(QMainWindow):
     tabShown = Signal(str)  # noqa: N815  (Qt's own way of naming)
     closing = Signal(object)
 
-    def __init__(self, workspace: ApplicationContext) -> None:
+    def __init__(self, context: ApplicationContext) -> None:
         super().__init__()
-        self._workspace = workspace
+        self._context = context
         self._tabs: dict[str, Tab] = {}
         self._shown: TabSpec | None = None
         self._was_shown = False
         self._quick_buttons: list[QWidget] = []
-        self.stage = Stage(workspace)
-        self.stage.tabRequested.connect(self.show_tab)
-        self.messages = MessageArea(workspace)
-        self.job_bar = JobBar(workspace)
+        self.shared_view = SharedView(context)
+        self.shared_view.tabRequested.connect(self.show_tab)
+        self.messages = MessageArea(context)
+        self.job_bar = JobBar(context)
         self._make_layout()
         self._bar.currentChanged.connect(self._tab_chosen)
 
@@ -77,7 +77,7 @@ class MainWindow(QMainWindow):
         # The left side is as high as the window: forms are long. The lists below need width more.
         beside = 1280 - SIDE_WIDTH_PX
         self._view_and_right = _splitter(
-            Qt.Orientation.Horizontal, (self.stage, self._right), (beside - DETAIL_WIDTH_PX, DETAIL_WIDTH_PX), 0
+            Qt.Orientation.Horizontal, (self.shared_view, self._right), (beside - DETAIL_WIDTH_PX, DETAIL_WIDTH_PX), 0
         )
         self._over_bottom = _splitter(
             Qt.Orientation.Vertical, (self._view_and_right, self._bottom), (450, BOTTOM_HEIGHT_PX), 0
@@ -115,7 +115,7 @@ class MainWindow(QMainWindow):
         """A tab by its name; made when it was not yet."""
         if name not in self._tabs:
             spec = next(spec for spec in TABS if spec.name == name)
-            made = self._tabs[name] = spec.make(self._workspace, self.stage)
+            made = self._tabs[name] = spec.make(self._context, self.shared_view)
             if spec.place is Place.WHOLE_PAGE:
                 self._pages.addWidget(made.left)
             else:
@@ -145,7 +145,7 @@ class MainWindow(QMainWindow):
         if self._shown is not None:
             self._tabs[self._shown.name].hidden()
         tab = self.tab(spec.name)
-        self._workspace.tell_of_plugins()
+        self._context.tell_of_plugins()
         self._shown = spec
         if spec.place is Place.WHOLE_PAGE:
             self._pages.setCurrentWidget(tab.left)
@@ -169,7 +169,7 @@ class MainWindow(QMainWindow):
             self._bar,
             *self._quick_buttons,
             self._pages if self._pages.currentWidget() is not self._around else self._left,
-            self.stage,
+            self.shared_view,
             self._right,
             self._bottom,
             self.messages.sheet,
@@ -217,12 +217,12 @@ class MainWindow(QMainWindow):
         if self._shown is None:
             self._tab_chosen(max(0, self._bar.currentIndex()))
         if module == SCENE_MODULE:
-            self.stage.make_scene()
+            self.shared_view.make_scene()
 
     def retire(self) -> None:
-        """Make room for another window on the same workspace: jobs go on, nobody is asked."""
+        """Make room for another window on the same context: jobs go on, nobody is asked."""
         self._show_no_more()
-        self.stage.close_views()
+        self.shared_view.close_views()
         self.hide()
 
     def closeEvent(self, event: QCloseEvent) -> None:  # noqa: N802
@@ -230,12 +230,12 @@ class MainWindow(QMainWindow):
         event.accept()
         self.closing.emit(event)
         if event.isAccepted():
-            self.stage.closing.emit(event)
+            self.shared_view.closing.emit(event)
         if not event.isAccepted():
             return
-        self._workspace.close()
+        self._context.close()
         self._show_no_more()
-        self.stage.close_views()
+        self.shared_view.close_views()
         super().closeEvent(event)
 
     def _show_no_more(self) -> None:

@@ -208,9 +208,9 @@ class Commands(Protocol):
 class Menus(QObject):
     """Fills the menu bar of a window."""
 
-    def __init__(self, window: MainWindow, workspace: ApplicationContext, commands: Commands) -> None:
+    def __init__(self, window: MainWindow, context: ApplicationContext, commands: Commands) -> None:
         super().__init__(window)
-        self._window, self._workspace, self._commands = window, workspace, commands
+        self._window, self._context, self._commands = window, context, commands
         bar = window.menuBar()
         self._project_menu(bar.addMenu(self.tr("&Project")))
         self._edit_menu(bar.addMenu(self.tr("&Edit")))
@@ -226,7 +226,7 @@ class Menus(QObject):
             action.setIconText(text)
         window.add_quick_actions((self._undo, self._redo, self._save))
         window.tabShown.connect(self._fill_tab_menu)
-        workspace.documentChanged.connect(self._update)
+        context.documentChanged.connect(self._update)
         self._update()
 
     def _add(
@@ -264,7 +264,7 @@ class Menus(QObject):
         self._add(menu, self.tr("&Quit"), "Ctrl+Q", lambda: (self._window.close(), None)[1])
 
     def _edit_menu(self, menu: QMenu) -> None:
-        session = self._workspace.session
+        session = self._context.session
         self._undo = self._add(menu, self.tr("&Undo"), QKeySequence.StandardKey.Undo, session.undo)
         self._redo = self._add(menu, self.tr("&Redo"), "Ctrl+Shift+Z", session.redo)
 
@@ -275,7 +275,7 @@ class Menus(QObject):
             (SharedViewPage.MAP, self.tr("&Map"), "F6"),
             (SharedViewPage.CAMERA, self.tr("&Camera preview"), "F7"),
         ):
-            self._add(menu, text, key, partial(self._window.stage.show_page, page))
+            self._add(menu, text, key, partial(self._window.shared_view.show_page, page))
         menu.addSeparator()
         themes = {
             Theme.SYSTEM: self.tr("As the desktop"),
@@ -326,7 +326,7 @@ class Menus(QObject):
             self._recent.addAction(self.tr("none yet")).setEnabled(False)
 
     def _update(self) -> None:
-        session = self._workspace.session
+        session = self._context.session
         for action, label, words in (
             (self._undo, session.undo_label, self.tr("&Undo")),
             (self._redo, session.redo_label, self.tr("&Redo")),
@@ -362,7 +362,7 @@ class Menus(QObject):
         for row in plugin_rows():
             line = escape(f"{row.plugin.name}: {kinds[row.plugin.group]} ({row.plugin.package})")
             if row.problem is not None:
-                line += "<br>" + escape(self._workspace.words(str(row.problem)))
+                line += "<br>" + escape(self._context.words(str(row.problem)))
             lines.append(f"<li>{line}</li>")
         title = self.tr("Plug-ins")
         return f"<p>{title}</p><ul>{''.join(lines)}</ul>" if lines else ""

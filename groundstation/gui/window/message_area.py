@@ -62,10 +62,10 @@ class MessageArea(QWidget):
     """
 
     def __init__(
-        self, workspace: ApplicationContext, parent: QWidget | None = None, clock: Callable[[], float] = time.monotonic
+        self, context: ApplicationContext, parent: QWidget | None = None, clock: Callable[[], float] = time.monotonic
     ) -> None:
         super().__init__(parent)
-        self._workspace, self._clock = workspace, clock
+        self._context, self._clock = context, clock
         self._told: list[tuple[Message, str]] = []
         self._standing: list[tuple[Message, float]] = []
         self._event: tuple[Message, float] | None = None
@@ -90,9 +90,9 @@ class MessageArea(QWidget):
         self.sheet.copyWanted.connect(self.copy_all)
         self._timer = QTimer(self, interval=LOOK_MS)
         self._timer.timeout.connect(self.look)
-        workspace.messageShown.connect(self.add)
-        workspace.messageSettled.connect(self.settle)
-        workspace.documentChanged.connect(self._document_changed)
+        context.messageShown.connect(self.add)
+        context.messageSettled.connect(self.settle)
+        context.documentChanged.connect(self._document_changed)
         self._show()
 
     def add(self, message: Message) -> None:
@@ -205,7 +205,7 @@ class MessageArea(QWidget):
 
     def _show_place(self, message: Message) -> None:
         if message.item is not None:
-            self._workspace.jump_to(message.item)
+            self._context.jump_to(message.item)
 
 
 class MessageSheet(QFrame):

@@ -1,7 +1,7 @@
 """The controller: what happens to the project as a whole. New, open, save, autosave, recovery, settings, and the end.
 
-It owns the workspace and the window, and makes the window anew when the language changes: everything that matters is
-in the workspace, the window only shows it.
+It owns the context and the window, and makes the window anew when the language changes: everything that matters is
+in the context, the window only shows it.
 """
 
 from __future__ import annotations
@@ -60,28 +60,28 @@ class ProjectController(QObject):
         self._settings_problems: list[str] = []
         self._settings = settings_at_start(settings_path(), self._settings_problems.append)
         self._translations = Translations(application)
-        self._garbage = GarbageCollector(self, lambda: self.workspace.is_busy)
+        self._garbage = GarbageCollector(self, lambda: self.context.is_busy)
         self._owns_worker, self._worker = worker is None, worker or Worker()
         self._runner = JobRunner(worker=self._worker)
-        self.keeper = ProjectSession(self.autosaveFailed.emit)
-        self.workspace = ApplicationContext(Session(_first_document(self._settings)), self._runner, self)
-        self.workspace.set_units(self._settings.units)
+        self.project_session = ProjectSession(self.autosaveFailed.emit)
+        self.context = ApplicationContext(Session(_first_document(self._settings)), self._runner, self)
+        self.context.set_units(self._settings.units)
         self._dress()
         self.window = self._make_window()
         self._timer = QTimer(self)
         self._timer.timeout.connect(self.autosave_now)
         self.autosaveFailed.connect(lambda text: self._warn(text, "project.copy"))
-        self.workspace.documentChanged.connect(lambda *_: self._show_title())
+        self.context.documentChanged.connect(lambda *_: self._show_title())
         self._start_timer()
 
     # The window
 
     def _make_window(self) -> MainWindow:
-        window = MainWindow(self.workspace)
-        self.menus = Menus(window, self.workspace, self)
+        window = MainWindow(self.context)
+        self.menus = Menus(window, self.context, self)
         window.closing.connect(self._window_closing)
-        window.stage.tilesChanged.connect(self._tiles_changed)
-        window.stage.sceneReady.connect(lambda _scene: self._scene_is_ready())
+        window.shared_view.tilesChanged.connect(self._tiles_changed)
+        window.shared_view.sceneReady.connect(lambda _scene: self._scene_is_ready())
         self._title_of(window)
         return window
 
@@ -99,17 +99,17 @@ class ProjectController(QObject):
 
     def _after_first_paint(self) -> None:
         for problem in self._settings_problems:
-            self.workspace.say(Severity.WARNING, self.workspace.words(problem), about=f"settings.{problem}")
+            self.context.say(Severity.WARNING, self.context.words(problem), about=f"settings.{problem}")
         if self._settings.map_tiles:
-            self.window.stage.set_tiles(Path(self._settings.map_tiles))
-        if self.workspace.session.folder is None:
+            self.window.shared_view.set_tiles(Path(self._settings.map_tiles))
+        if self.context.session.folder is None:
             self._offer_unsaved(find_unsaved())
 
     def _change_language(self) -> None:
-        if self.workspace.jobs():
+        if self.context.jobs():
             # Their results belong to widgets of this window.
             text = self.tr("Something is running: the language changes when Reflight is started next.")
-            self.workspace.say(Severity.NOTE, text)
+            self.context.say(Severity.NOTE, text)
             return
         self._translations.use(self._settings.language)
         self._rebuild_window()
@@ -126,14 +126,14 @@ class ProjectController(QObject):
         self.window.set_layout_text(layout)
         self.window.show()
         if self._settings.map_tiles:
-            self.window.stage.set_tiles(Path(self._settings.map_tiles))
+            self.window.shared_view.set_tiles(Path(self._settings.map_tiles))
         old.deleteLater()
 
     def _show_title(self) -> None:
         self._title_of(self.window)
 
     def _title_of(self, window: MainWindow) -> None:
-        session = self.workspace.session
+        session = self.context.session
         site = session.document.site
         name = session.folder.name if session.folder is not None else self.tr("New project")
         if site is not None and session.folder is None:
@@ -152,7 +152,7 @@ class ProjectController(QObject):
         before, self._settings = self._settings, replace(self._settings, **changes)
         if (before.theme, before.text_scale) != (self._settings.theme, self._settings.text_scale):
             self._dress()
-        self.workspace.set_units(self._settings.units)
+        self.context.set_units(self._settings.units)
         if before.language != self._settings.language:
             self._change_language()
         if before.autosave_s != self._settings.autosave_s:
@@ -163,7 +163,7 @@ class ProjectController(QObject):
         """Ask for a file with map tiles."""
         name = self._questions.file(self.window, self.tr("Map tiles"), self.tr("Map tiles (*.mbtiles)"))
         if name is not None:
-            self.window.stage.open_tiles(name)
+            self.window.shared_view.open_tiles(name)
 
     def _tiles_changed(self, path: str) -> None:
         self.choose(map_tiles=path)
@@ -176,13 +176,13 @@ class ProjectController(QObject):
         try:
             write_settings(settings_path(), self._settings)
         except InputError as error:
-            self.workspace.say(
+            self.context.say(
                 Severity.WARNING,
-                self.tr("The settings could not be kept: {0}").format(self.workspace.words(str(error))),
+                self.tr("The settings could not be kept: {0}").format(self.context.words(str(error))),
                 about="settings.kept",
             )
         else:
-            self.workspace.settle("settings.kept")
+            self.context.settle("settings.kept")
 
     def _layout_key(self) -> str:
         size = self._application.primaryScreen().availableGeometry()
@@ -196,7 +196,7 @@ class ProjectController(QObject):
 
     def open_project(self) -> None:
         """Ask for a folder, and open it."""
-        project = self.workspace.session.folder
+        project = self.context.session.folder
         beside = None if project is None else project.parent
         folder = self._questions.folder(self.window, self.tr("Open project"), beside)
         if folder is not None:
@@ -206,7 +206,7 @@ class ProjectController(QObject):
         """Open a project that was open before."""
         if not Path(folder).is_dir():
             self._settings = self._settings.without_recent(folder)
-            self.workspace.say(
+            self.context.say(
                 Severity.ERROR,
                 self.tr("{0}: this folder is not there any more; was it moved or renamed?").format(folder),
             )
@@ -217,8 +217,8 @@ class ProjectController(QObject):
         """Open a project, after asking about what is not saved."""
 
         def open_it() -> None:
-            take = self.keeper.taking(folder)
-            self.workspace.start(self.tr("Open project"), lambda _context: take(), self._opened)
+            take = self.project_session.taking(folder)
+            self.context.start(self.tr("Open project"), lambda _context: take(), self._opened)
 
         self._leave(open_it)
 
@@ -229,19 +229,19 @@ class ProjectController(QObject):
             return
         from groundstation.gui.site.site_opener import SiteOpener
 
-        SiteOpener(self.workspace, self.window).open_site(path)
+        SiteOpener(self.context, self.window).open_site(path)
 
     def save(self, then: Callable[[], object] | None = None) -> None:
         """Save where the project is kept, or ask where."""
-        folder = self.workspace.session.folder
-        if folder is None or not self.keeper.may_save:
+        folder = self.context.session.folder
+        if folder is None or not self.project_session.may_save:
             self.save_as(then)
         else:
             self._save_in(folder, then)
 
     def save_as(self, then: Callable[[], object] | None = None) -> None:
         """Ask for a folder, and save there."""
-        session = self.workspace.session
+        session = self.context.session
         site = session.document.site
         name = self.tr("New project") if site is None else file_name(site.site.name)
         beside = Path.home() if session.folder is None else session.folder.parent
@@ -254,8 +254,8 @@ class ProjectController(QObject):
         self._save_in(folder, then)
 
     def _save_in(self, folder: Path, then: Callable[[], object] | None) -> None:
-        document = self.workspace.document
-        is_new = folder != self.workspace.session.folder or not is_project(folder)
+        document = self.context.document
+        is_new = folder != self.context.session.folder or not is_project(folder)
 
         def work(_context: object) -> Document:
             if is_new:
@@ -264,18 +264,18 @@ class ProjectController(QObject):
 
         def done(written: Document) -> None:
             if is_new:
-                self._or_warn(lambda: self.keeper.take_saved(folder))
-            self.workspace.session.saved(document, written, folder)
-            self.workspace.settle("project.copy")
-            if self.workspace.session.is_saved:
-                self.keeper.drop_copy()
+                self._or_warn(lambda: self.project_session.take_saved(folder))
+            self.context.session.saved(document, written, folder)
+            self.context.settle("project.copy")
+            if self.context.session.is_saved:
+                self.project_session.drop_copy()
             self._remember(folder)
             self._show_title()
-            self.workspace.say(Severity.OK, self.tr("Saved in {0}").format(folder))
+            self.context.say(Severity.OK, self.tr("Saved in {0}").format(folder))
             if then is not None:
                 then()
 
-        self.workspace.start(self.tr("Save"), work, done)
+        self.context.start(self.tr("Save"), work, done)
 
     def _opened(self, taken: LockedProject) -> None:
         project = taken.project
@@ -284,12 +284,12 @@ class ProjectController(QObject):
         if taken.problem:
             self._warn(taken.problem, "project.lock")
         for note in project.notes:
-            text = self.workspace.words(note.message)
-            self.workspace.say(note.severity, text, about=f"project.note.{text}")
+            text = self.context.words(note.message)
+            self.context.say(note.severity, text, about=f"project.note.{text}")
         self._remember(project.folder)
         site = project.document.site
         n_panels = 0 if site is None else site.site.n_panels
-        self.workspace.say(
+        self.context.say(
             Severity.OK,
             self.tr("{0}: {1} panels, {2} plans").format(project.name, n_panels, len(project.document.plans)),
         )
@@ -298,10 +298,10 @@ class ProjectController(QObject):
             self._offer(found)
 
     def _put_on_controller(self, document: Document, folder: Path | None, lock: ProjectLock | None = None) -> None:
-        self.keeper.hold(lock)
+        self.project_session.hold(lock)
         for topic in ("project.", "plan.", "job."):
-            self.workspace.settle(topic)
-        self.workspace.session.open(document, folder)
+            self.context.settle(topic)
+        self.context.session.open(document, folder)
         self._show_title()
         self.opened.emit()
 
@@ -316,7 +316,7 @@ class ProjectController(QObject):
 
     def _warn(self, text: str, about: str = "") -> None:
         """Show what a part without Qt warns of."""
-        self.workspace.say(Severity.WARNING, self.workspace.words(text), about=about)
+        self.context.say(Severity.WARNING, self.context.words(text), about=about)
 
     def _remember(self, folder: Path) -> None:
         self._settings = self._settings.with_recent(folder)
@@ -326,7 +326,7 @@ class ProjectController(QObject):
 
     def autosave_now(self) -> None:
         """Have a copy written of what is not saved."""
-        if not self._or_warn(lambda: self.keeper.copy(self.workspace.session)):
+        if not self._or_warn(lambda: self.project_session.copy(self.context.session)):
             self._timer.stop()
 
     def _start_timer(self) -> None:
@@ -346,7 +346,7 @@ class ProjectController(QObject):
             self._discard(found)
             return False
         when = "" if found.saved_at is None else f"{found.saved_at.astimezone():%Y-%m-%d %H:%M}"
-        changes = tuple(map(self.workspace.words, found.changes)) if found.was_saved else ()
+        changes = tuple(map(self.context.words, found.changes)) if found.was_saved else ()
         answer = self._questions.recover(self.window, when, changes, found.is_of_saved_state)
         if answer is Answer.YES:
             self._take_over(found)
@@ -358,14 +358,14 @@ class ProjectController(QObject):
     def _take_over(self, found: Recovery) -> None:
         """Go on with unsaved work; its copy stays until it is saved."""
         document = replace(recover(found).document, site_source=None)
-        folder = self.workspace.session.folder
-        if folder is None and not self._or_warn(lambda: self.keeper.adopt(found.folder)):
+        folder = self.context.session.folder
+        if folder is None and not self._or_warn(lambda: self.project_session.adopt(found.folder)):
             return
-        self.workspace.session.open(document, folder, saved=False)
+        self.context.session.open(document, folder, saved=False)
         self._show_title()
         self.opened.emit()
         text = self.tr("Your work is back. It is not saved yet: Project > Save keeps it.")
-        self.workspace.say(Severity.OK, text)
+        self.context.say(Severity.OK, text)
 
     def _discard(self, found: Recovery) -> None:
         self._or_warn(lambda: discard_recovery(found))
@@ -374,18 +374,18 @@ class ProjectController(QObject):
 
     def _leave(self, go_on: Callable[[], None]) -> None:
         """Go on to something else, after asking about what is not saved."""
-        if self.workspace.session.is_saved:
+        if self.context.session.is_saved:
             go_on()
             return
         answer = self._questions.save_first(self.window)
         if answer is Answer.YES:
             self.save(go_on)
         elif answer is Answer.NO:
-            self.keeper.drop_copy()
+            self.project_session.drop_copy()
             go_on()
 
     def _window_closing(self, event: QCloseEvent) -> None:
-        if not self.workspace.session.is_saved:
+        if not self.context.session.is_saved:
             answer = self._questions.save_first(self.window)
             if answer is Answer.YES:
                 event.ignore()
@@ -405,7 +405,7 @@ class ProjectController(QObject):
         self.window.deleteLater()
         QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete.value)
         self._translations.remove()
-        self.keeper.close()
+        self.project_session.close()
         if self._owns_worker:
             self._worker.close()
         self._runner.shutdown()

@@ -24,19 +24,19 @@ def runner():
 
 
 @pytest.fixture
-def workspace(application, runner):
+def context(application, runner):
     from groundstation.gui.application.context import ApplicationContext
 
-    workspace = ApplicationContext(Session(Document(site=single_panel())), runner)
-    yield workspace
-    workspace.close()
+    context = ApplicationContext(Session(Document(site=single_panel())), runner)
+    yield context
+    context.close()
 
 
 @pytest.fixture
-def messages(workspace):
+def messages(context):
     from groundstation.gui.window.message_area import MessageArea
 
-    return MessageArea(workspace)
+    return MessageArea(context)
 
 
 def wait(application, condition):
@@ -56,57 +56,57 @@ class Gate:
         return "through"
 
 
-def test_a_result_arrives_in_the_windows_thread(application, workspace):
+def test_a_result_arrives_in_the_windows_thread(application, context):
     heard = []
-    workspace.start("job", lambda _context: 42, lambda result: heard.append((result, threading.get_ident())))
+    context.start("job", lambda _context: 42, lambda result: heard.append((result, threading.get_ident())))
     wait(application, lambda: heard)
     assert heard == [(42, threading.get_ident())]
-    assert workspace.jobs() == ()
+    assert context.jobs() == ()
 
 
-def test_it_is_busy_while_a_job_runs_and_while_other_work_says_so(application, workspace):
+def test_it_is_busy_while_a_job_runs_and_while_other_work_says_so(application, context):
     gate, trains = Gate(), [False]
-    workspace.count_as_busy(lambda: trains[0])
-    assert not workspace.is_busy
-    workspace.start("job", gate)
-    assert workspace.is_busy
+    context.count_as_busy(lambda: trains[0])
+    assert not context.is_busy
+    context.start("job", gate)
+    assert context.is_busy
     gate.open.set()
-    wait(application, lambda: not workspace.jobs())
-    assert not workspace.is_busy
+    wait(application, lambda: not context.jobs())
+    assert not context.is_busy
     trains[0] = True
-    assert workspace.is_busy
+    assert context.is_busy
 
 
-def test_an_error_is_shown_with_what_to_do_and_passed_on(application, workspace, messages):
+def test_an_error_is_shown_with_what_to_do_and_passed_on(application, context, messages):
     heard = []
 
     def work(_context):
         raise InputError("a.json: not valid JSON; write it again")
 
-    workspace.start("Open", work, lambda _result: heard.append("done"), heard.append)
+    context.start("Open", work, lambda _result: heard.append("done"), heard.append)
     wait(application, lambda: heard)
     assert isinstance(heard[0], InputError)
     assert messages.texts() == "Error: Open: a.json: not valid JSON; write it again"
 
 
-def test_a_fault_of_the_program_says_so(application, workspace, messages):
-    workspace.start("Open", lambda _context: 1 // 0)
+def test_a_fault_of_the_program_says_so(application, context, messages):
+    context.start("Open", lambda _context: 1 // 0)
     wait(application, messages.texts)
     assert "please report it" in messages.texts()
     assert "ZeroDivisionError" in messages.texts()
 
 
-def test_a_queued_job_is_cancelled_at_once_and_calls_nobody(application, workspace, messages):
+def test_a_queued_job_is_cancelled_at_once_and_calls_nobody(application, context, messages):
     gate, heard = Gate(), []
-    first = workspace.start("first", gate, heard.append)
-    second = workspace.start("second", lambda _context: "second", heard.append, heard.append)
+    first = context.start("first", gate, heard.append)
+    second = context.start("second", lambda _context: "second", heard.append, heard.append)
     wait(application, gate.begun.is_set)
-    workspace.cancel(second)
-    wait(application, lambda: second not in workspace.jobs())
+    context.cancel(second)
+    wait(application, lambda: second not in context.jobs())
     assert second.state is JobState.CANCELLED
-    assert workspace.jobs() == (first,)
+    assert context.jobs() == (first,)
     gate.open.set()
-    wait(application, lambda: not workspace.jobs())
+    wait(application, lambda: not context.jobs())
     assert heard == ["through"]
     assert "second: cancelled" in messages.texts()
 
@@ -114,21 +114,21 @@ def test_a_queued_job_is_cancelled_at_once_and_calls_nobody(application, workspa
 def test_closing_cancels_what_runs_and_what_waits(application, runner):
     from groundstation.gui.application.context import ApplicationContext
 
-    workspace, gate, heard = ApplicationContext(Session(), runner), Gate(), []
-    jobs = [workspace.start("first", gate, heard.append), workspace.start("second", gate, heard.append)]
+    context, gate, heard = ApplicationContext(Session(), runner), Gate(), []
+    jobs = [context.start("first", gate, heard.append), context.start("second", gate, heard.append)]
     wait(application, gate.begun.is_set)
-    assert workspace.close(120.0)
+    assert context.close(120.0)
     application.processEvents()
     assert [job.state for job in jobs] == [JobState.CANCELLED] * 2
     assert not heard
 
 
-def test_the_job_bar_shows_progress_queue_and_time_and_cancels(application, workspace):
+def test_the_job_bar_shows_progress_queue_and_time_and_cancels(application, context):
     from groundstation.gui.widgets.job_bar import JobBar
 
-    bar, gate = JobBar(workspace), Gate()
-    workspace.start("first", gate)
-    workspace.start("second", lambda _context: None)
+    bar, gate = JobBar(context), Gate()
+    context.start("first", gate)
+    context.start("second", lambda _context: None)
     wait(application, lambda: not bar.isHidden() and bar._bar.maximum() == 1000)
     assert "first: waiting" in bar._label.text()
     assert bar._bar.value() == 250
@@ -137,42 +137,42 @@ def test_the_job_bar_shows_progress_queue_and_time_and_cancels(application, work
     bar._list_queue()
     assert [action.text() for action in bar._queue.menu().actions()] == ["Cancel: second"]
     bar.cancel_running()
-    wait(application, lambda: not workspace.jobs())
+    wait(application, lambda: not context.jobs())
     assert bar.isHidden()
 
 
-def test_a_short_job_does_not_make_the_bar_flash(application, workspace):
+def test_a_short_job_does_not_make_the_bar_flash(application, context):
     from groundstation.gui.widgets.job_bar import JobBar
 
-    bar, seen = JobBar(workspace), []
+    bar, seen = JobBar(context), []
     done = []
-    workspace.start("short", lambda _context: "x", done.append)
+    context.start("short", lambda _context: "x", done.append)
     while not done:
         application.processEvents()
         seen.append(not bar.isHidden())
     assert not any(seen)
 
 
-def test_a_selection_is_announced_once_and_goes_with_its_thing(application, workspace):
+def test_a_selection_is_announced_once_and_goes_with_its_thing(application, context):
     heard = []
-    workspace.selectionChanged.connect(heard.append)
+    context.selectionChanged.connect(heard.append)
     item = Item(ItemKind.PANEL, "A-0000")
-    workspace.select(item)
-    workspace.select(item)
-    workspace.change("Close site", Document())
+    context.select(item)
+    context.select(item)
+    context.change("Close site", Document())
     assert heard == [item, None]
 
 
-def test_messages_keep_their_place_and_lead_to_it(application, workspace, messages):
+def test_messages_keep_their_place_and_lead_to_it(application, context, messages):
     heard = []
-    workspace.lookAtRequested.connect(heard.append)
+    context.lookAtRequested.connect(heard.append)
     item = Item(ItemKind.HOME)
-    workspace.say(Severity.WARNING, "home stands close", item)
+    context.say(Severity.WARNING, "home stands close", item)
     messages._jump.click()
     assert heard == [item]
     assert messages.line() == "Warning: home stands close"
     for number in range(600):
-        workspace.say(Severity.NOTE, str(number))
+        context.say(Severity.NOTE, str(number))
     assert len(messages.messages()) == 500
     assert messages.texts().endswith("Note: 599")
 
@@ -185,11 +185,11 @@ class Clock:
 
 
 @pytest.fixture
-def centre(application, workspace):
+def centre(application, context):
     from groundstation.gui.window.message_area import MessageArea
 
     clock = Clock()
-    area = MessageArea(workspace, clock=clock)
+    area = MessageArea(context, clock=clock)
     area.clock = clock
     return area
 
@@ -199,48 +199,48 @@ def passes(area, seconds):
     area.look()
 
 
-def test_a_warning_stays_until_it_is_no_longer_true_whatever_else_is_told(workspace, centre):
-    workspace.say(Severity.WARNING, "the copy could not be written", about="project.copy")
-    workspace.say(Severity.OK, "Saved a file")
+def test_a_warning_stays_until_it_is_no_longer_true_whatever_else_is_told(context, centre):
+    context.say(Severity.WARNING, "the copy could not be written", about="project.copy")
+    context.say(Severity.OK, "Saved a file")
     assert centre.line() == "Done: Saved a file"
     passes(centre, 20.0)
     assert centre.line() == "Warning: the copy could not be written"
     passes(centre, 3600.0)
     assert centre.line() == "Warning: the copy could not be written"
     assert "\u26a0 1" in centre._all.text()
-    workspace.settle("project.copy")
+    context.settle("project.copy")
     assert centre.line() == ""
     assert centre._all.text() == "Messages"
     assert "the copy could not be written" in centre.texts(), "the list keeps it"
 
 
-def test_the_gravest_of_what_holds_is_shown_and_the_next_when_it_goes(workspace, centre):
-    workspace.say(Severity.ERROR, "the link is lost", about="link")
-    workspace.say(Severity.WARNING, "wind above the limit", about="flight.warning.wind")
-    workspace.say(Severity.WARNING, "the battery is low", about="flight.warning.battery")
+def test_the_gravest_of_what_holds_is_shown_and_the_next_when_it_goes(context, centre):
+    context.say(Severity.ERROR, "the link is lost", about="link")
+    context.say(Severity.WARNING, "wind above the limit", about="flight.warning.wind")
+    context.say(Severity.WARNING, "the battery is low", about="flight.warning.battery")
     assert centre.line() == "Error: the link is lost"
     assert centre.standing()[0].text == "the link is lost"
-    workspace.settle("link")
+    context.settle("link")
     assert centre.line().startswith("Warning: ")
-    workspace.settle("flight.warning.")
+    context.settle("flight.warning.")
     assert centre.line() == ""
 
 
-def test_a_message_about_the_same_takes_the_place_of_the_one_before(workspace, centre):
-    workspace.say(Severity.WARNING, "wind 9 m/s", about="flight.warning.wind")
-    workspace.say(Severity.ERROR, "wind 14 m/s", about="flight.warning.wind")
+def test_a_message_about_the_same_takes_the_place_of_the_one_before(context, centre):
+    context.say(Severity.WARNING, "wind 9 m/s", about="flight.warning.wind")
+    context.say(Severity.ERROR, "wind 14 m/s", about="flight.warning.wind")
     assert [message.text for message in centre.standing()] == ["wind 14 m/s"]
-    workspace.say(Severity.OK, "wind 3 m/s", about="flight.warning.wind")
+    context.say(Severity.OK, "wind 3 m/s", about="flight.warning.wind")
     assert centre.standing() == ()
 
 
-def test_what_just_happened_goes_after_a_while(workspace, centre):
-    workspace.say(Severity.OK, "Written: a.kmz")
+def test_what_just_happened_goes_after_a_while(context, centre):
+    context.say(Severity.OK, "Written: a.kmz")
     passes(centre, 5.0)
     assert centre.line() == "Done: Written: a.kmz"
     passes(centre, 30.0)
     assert centre.line() == ""
-    workspace.say(Severity.ERROR, "a.kmz cannot be written")
+    context.say(Severity.ERROR, "a.kmz cannot be written")
     passes(centre, 30.0)
     assert centre.line() == "Error: a.kmz cannot be written", "trouble is longer there to be read"
     passes(centre, 60.0)
@@ -248,39 +248,39 @@ def test_what_just_happened_goes_after_a_while(workspace, centre):
     assert len(centre.messages()) == 2
 
 
-def test_what_just_happened_goes_when_the_site_is_no_longer_as_it_was_told(workspace, centre):
+def test_what_just_happened_goes_when_the_site_is_no_longer_as_it_was_told(context, centre):
     """“panels 46” beside a site that has 50 by now."""
-    workspace.change("Site", replace(workspace.document, site=single_panel()))
-    workspace.say(Severity.OK, "panels 46")
-    workspace.amend(replace(workspace.document, request=replace(workspace.document.request, seed=7)))
+    context.change("Site", replace(context.document, site=single_panel()))
+    context.say(Severity.OK, "panels 46")
+    context.amend(replace(context.document, request=replace(context.document.request, seed=7)))
     assert centre.line() == "Done: panels 46", "the form of the next plan changes nothing that was told"
-    workspace.say(Severity.WARNING, "the copy could not be written", about="project.copy")
-    workspace.say(Severity.OK, "panels 46")
-    workspace.change("Panels", replace(workspace.document, site=single_panel()))
+    context.say(Severity.WARNING, "the copy could not be written", about="project.copy")
+    context.say(Severity.OK, "panels 46")
+    context.change("Panels", replace(context.document, site=single_panel()))
     assert centre.line() == "Warning: the copy could not be written", "what holds goes by itself only"
     assert "panels 46" in centre.texts(), "the list keeps what was told, with its time"
 
 
-def test_an_error_of_a_job_holds_until_it_is_tried_again(application, workspace, centre):
+def test_an_error_of_a_job_holds_until_it_is_tried_again(application, context, centre):
     def fails(_context):
         raise InputError("no room")
 
-    workspace.start("Save", fails)
+    context.start("Save", fails)
     wait(application, centre.standing)
-    workspace.start("Open", lambda _context: None)
-    wait(application, lambda: not workspace.jobs())
+    context.start("Open", lambda _context: None)
+    wait(application, lambda: not context.jobs())
     assert [message.text for message in centre.standing()] == ["Save: no room"]
-    workspace.start("Save", lambda _context: None)
+    context.start("Save", lambda _context: None)
     assert centre.standing() == ()
-    wait(application, lambda: not workspace.jobs())
+    wait(application, lambda: not context.jobs())
 
 
-def test_the_list_opens_over_the_window_and_moves_nothing(application, workspace):
+def test_the_list_opens_over_the_window_and_moves_nothing(application, context):
     from PySide6.QtWidgets import QMainWindow, QPushButton, QVBoxLayout, QWidget
 
     from groundstation.gui.window.message_area import MessageArea
 
-    window, page, area = QMainWindow(), QWidget(), MessageArea(workspace)
+    window, page, area = QMainWindow(), QWidget(), MessageArea(context)
     above, layout = QPushButton("above"), QVBoxLayout(page)
     layout.addWidget(above, 1)
     layout.addWidget(area)
@@ -290,9 +290,9 @@ def test_the_list_opens_over_the_window_and_moves_nothing(application, workspace
     wait(application, window.isVisible)
     before = above.geometry(), area.geometry(), window.size()
     item, heard = Item(ItemKind.HOME), []
-    workspace.lookAtRequested.connect(heard.append)
-    workspace.say(Severity.WARNING, "home stands close " * 40, item, "plan.home")
-    workspace.say(Severity.OK, "Saved")
+    context.lookAtRequested.connect(heard.append)
+    context.say(Severity.WARNING, "home stands close " * 40, item, "plan.home")
+    context.say(Severity.OK, "Saved")
     click_on(window, area._all)
     assert area.sheet.isVisible()
     assert (above.geometry(), area.geometry(), window.size()) == before
@@ -316,8 +316,8 @@ def test_the_list_opens_over_the_window_and_moves_nothing(application, workspace
     window.close()
 
 
-def test_a_long_message_is_cut_in_the_line_and_whole_in_the_list(application, workspace, centre):
-    workspace.say(Severity.WARNING, "word " * 200, about="plan.long")
+def test_a_long_message_is_cut_in_the_line_and_whole_in_the_list(application, context, centre):
+    context.say(Severity.WARNING, "word " * 200, about="plan.long")
     centre.resize(500, centre.sizeHint().height())
     assert centre.sizeHint().height() <= 2 * centre.fontMetrics().lineSpacing() + 30
     assert centre.minimumSizeHint().width() < 500
@@ -327,10 +327,10 @@ def test_a_long_message_is_cut_in_the_line_and_whole_in_the_list(application, wo
     assert centre._text.toolTip().count("word") == 200
 
 
-def test_a_job_that_the_window_itself_throws_away_is_not_spoken_of(application, workspace, messages):
+def test_a_job_that_the_window_itself_throws_away_is_not_spoken_of(application, context, messages):
     gate = Gate()
-    job = workspace.start("looking", gate)
+    job = context.start("looking", gate)
     wait(application, gate.begun.is_set)
-    workspace.cancel(job, quietly=True)
-    wait(application, lambda: not workspace.jobs())
+    context.cancel(job, quietly=True)
+    wait(application, lambda: not context.jobs())
     assert messages.texts() == ""

@@ -50,10 +50,10 @@ def german(application):
 
 
 @pytest.fixture
-def workspace(application):
-    workspace = ApplicationContext(Session(Document()), JobRunner())
-    yield workspace
-    workspace.close()
+def context(application):
+    context = ApplicationContext(Session(Document()), JobRunner())
+    yield context
+    context.close()
 
 
 def test_pre_flight_findings_are_german_and_still_lead_to_their_place(german):
@@ -99,18 +99,18 @@ def test_an_effect_says_in_german_what_it_is_and_why(german):
     )
 
 
-def test_the_stage_and_the_failure_of_a_job_are_german(german, application, workspace):
-    bar, stages, messages = JobBar(workspace), [], []
-    workspace.bridge.progressed.connect(lambda _event: stages.append(bar._label.text()))
-    workspace.messageShown.connect(messages.append)
+def test_the_stage_and_the_failure_of_a_job_are_german(german, application, context):
+    bar, stages, messages = JobBar(context), [], []
+    context.bridge.progressed.connect(lambda _event: stages.append(bar._label.text()))
+    context.messageShown.connect(messages.append)
 
-    def work(context):
-        context.report("finding ways around", 0, 1)
+    def work(job):
+        job.report("finding ways around", 0, 1)
         raise InfeasibleError(
             say("home {:m} lies inside a no-fly volume; move it outside", "(0, 0, 3)", place="home_enu_m")
         )
 
-    workspace.start("Planen", work)
+    context.start("Planen", work)
     turn_until(application, lambda: bool(messages))
     assert stages[-1:] == ["Planen: Umwege werden gesucht"]
     assert messages[0].text == (
@@ -163,14 +163,14 @@ def test_every_option_that_the_import_may_name_has_a_field():
     assert named - instead - {"--without-panels"} <= set(OPTION_FIELDS)
 
 
-def test_an_error_of_a_job_names_fields_and_buttons(application, workspace):
+def test_an_error_of_a_job_names_fields_and_buttons(application, context):
     heard = []
-    workspace.messageShown.connect(heard.append)
+    context.messageShown.connect(heard.append)
 
     def work(_context):
         raise InfeasibleError(say("method 'pso' needs a number of views (--views N); it cannot look for the fewest"))
 
-    workspace.start("Plan", work)
+    context.start("Plan", work)
     turn_until(application, lambda: heard)
     assert heard[-1].text == (
         "Plan: the particle swarm needs a number of views (“Plan for”: number of views); it cannot look for the fewest"

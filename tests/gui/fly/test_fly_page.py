@@ -60,9 +60,9 @@ def controller(application, worker, tmp_path, monkeypatch):
     controller = ProjectController(application, worker=worker)
     controller.show()
     controller.window.setGeometry(0, 0, 1280, 720)
-    turn_until(application, lambda: controller.window.stage.scene() is not None)
+    turn_until(application, lambda: controller.window.shared_view.scene() is not None)
     model, plan = planned()
-    controller.workspace.session.open(Document(model, (PlanEntry("plan-1", "First", plan),), "plan-1"), None)
+    controller.context.session.open(Document(model, (PlanEntry("plan-1", "First", plan),), "plan-1"), None)
     controller.window.show_tab("fly")
     turn_until_idle(application, controller)
     yield controller
@@ -95,11 +95,11 @@ def take_off(application, page):
 
 
 def n_photos(page):
-    return 0 if page.controller.in_hand is None else len(page.controller.in_hand.photos)
+    return 0 if page.controller.active is None else len(page.controller.active.photos)
 
 
 def has_landed(page):
-    return page.controller.in_hand is not None and page.controller.in_hand.ended is not None
+    return page.controller.active is not None and page.controller.active.ended is not None
 
 
 @pytest.mark.alone
@@ -135,7 +135,7 @@ def test_a_flight_is_watched_to_its_report_without_a_gap_in_the_window(applicati
     assert "6/6" in page.readouts.text()
     assert "Photos: 6 of 6 views" in page.report.text()
     assert {row[2] for row in page.report.rows()} == {"taken"}
-    assert len(page.controller.in_hand.track_enu_m) > 20
+    assert len(page.controller.active.track_enu_m) > 20
     assert not page.report.resume.isEnabled()
     findings = "\n".join(page.findings.texts())
     assert "all 6 views have a photo" in findings
@@ -149,7 +149,7 @@ def test_a_flight_is_watched_to_its_report_without_a_gap_in_the_window(applicati
 def test_coverage_is_painted_on_the_panels_as_it_grows(application, controller, page):
     connect(application, page)
     take_off(application, page)
-    scene = controller.window.stage.scene()
+    scene = controller.window.shared_view.scene()
     turn_until(application, lambda: scene._panel_values is not None)
     _, first = scene._panel_values
     turn_until(application, lambda: n_photos(page) >= 5 and (scene._panel_values[1] > first).any())
@@ -170,11 +170,11 @@ def test_pause_resume_return_then_a_top_up_and_the_rest_of_the_sortie(applicatio
     assert missing
     page.report.top_up.click()
     turn_until_idle(application, controller)
-    plans = controller.workspace.document.plans
+    plans = controller.context.document.plans
     assert [entry.title for entry in plans] == ["First", "Top-up"]
     assert 0 < len(plans[-1].plan.viewpoints) <= 6
     assert "Fly it before the battery is changed" in controller.window.messages.texts()
-    left = page.controller.in_hand.battery
+    left = page.controller.active.battery
     # The plan that is shown is another one now: what is uploaded and what is seen must not differ.
     turn_until(application, lambda: "for another plan" in page._phase.text())
     assert not page.buttons.button(Request.UPLOAD).isEnabled()
@@ -182,25 +182,25 @@ def test_pause_resume_return_then_a_top_up_and_the_rest_of_the_sortie(applicatio
     turn_until(application, lambda: not page.controller.is_connected)
     connect(application, page)
     assert len(page.strip.states()) == len(plans[-1].plan.viewpoints)
-    turn_until(application, lambda: page.controller.in_hand.battery is not None)
-    assert page.controller.in_hand.battery == pytest.approx(left, abs=0.011)
+    turn_until(application, lambda: page.controller.active.battery is not None)
+    assert page.controller.active.battery == pytest.approx(left, abs=0.011)
     assert "as the flight before left it" in page.notes.texts()
     page.connection.button.click()
     turn_until(application, lambda: not page.controller.is_connected)
     page.controller.after.resume_sortie()
     turn_until_idle(application, controller)
-    rest = controller.workspace.document.plans[-1]
+    rest = controller.context.document.plans[-1]
     assert rest.title == "Rest of sortie 1"
     assert {view.id for view in rest.plan.viewpoints} == missing
     assert "It needs a full battery" in controller.window.messages.texts()
     connect(application, page)
-    turn_until(application, lambda: page.controller.in_hand.battery is not None)
-    assert page.controller.in_hand.battery > 0.99
+    turn_until(application, lambda: page.controller.active.battery is not None)
+    assert page.controller.active.battery > 0.99
 
 
 @pytest.mark.parametrize(("answer", "titles"), [("Yes", ["First", "Top-up"]), ("Cancel", ["First"])])
 def test_hardly_anything_missing_is_asked_about_with_what_it_would_cost(application, controller, page, answer, titles):
-    document = controller.workspace.document
+    document = controller.context.document
     plan = document.plans[0].plan
     found = top_up(document.site, plan, viewpoint_arrays(plan.viewpoints[:1]), TopUpRequest(time_budget_s=0.5))
     button = getattr(QMessageBox.StandardButton, answer)
@@ -208,7 +208,7 @@ def test_hardly_anything_missing_is_asked_about_with_what_it_would_cost(applicat
         page.controller.after.restFound.emit(replace(found, aimed=100_000))
     assert f"{found.wanted} of 100000 sections are missing" in said[0]
     assert f"in the air (photos: {len(found.plan.viewpoints)}, batteries: {len(found.plan.sorties)})" in said[0]
-    assert [entry.title for entry in controller.workspace.document.plans] == titles
+    assert [entry.title for entry in controller.context.document.plans] == titles
 
 
 def test_losing_the_link_shows_a_band_and_is_survived(application, radio, controller, page, monkeypatch):
@@ -224,7 +224,7 @@ def test_losing_the_link_shows_a_band_and_is_survived(application, radio, contro
     assert page.band.isVisible()
     controller.window.show_tab("fly")
     radio.cut.is_unplugged.clear()
-    turn_until(application, lambda: page.band.isHidden() and page.controller.in_hand.link is LinkState.ALIVE)
+    turn_until(application, lambda: page.band.isHidden() and page.controller.active.link is LinkState.ALIVE)
     assert "link found again" in page.notes.texts()
 
 
@@ -289,17 +289,17 @@ def test_a_click_on_a_photo_goes_to_its_view(application, controller, page):
     turn_until(application, lambda: len(page.strip.states()) == 6)
     place = page.strip.cell(3).center()
     QTest.mouseClick(page.strip, Qt.MouseButton.LeftButton, pos=QPoint(int(place.x()), int(place.y())))
-    selection = controller.workspace.selection
+    selection = controller.context.selection
     assert (selection.kind, selection.id) == (ItemKind.VIEWPOINT, page.strip.states()[3][0])
     assert "still to come" in page.strip.words(3)
 
 
 def test_a_new_window_takes_the_flight_over(application, controller, page):
-    """As when the language changes: the flight belongs to the workspace."""
+    """As when the language changes: the flight belongs to the context."""
     connect(application, page)
     take_off(application, page)
     controller._rebuild_window()
-    turn_until(application, lambda: controller.window.stage.scene() is not None)
+    turn_until(application, lambda: controller.window.shared_view.scene() is not None)
     again = controller.window.tab("fly")
     assert again.controller is page.controller
     before = n_photos(again)
@@ -310,13 +310,13 @@ def test_a_new_window_takes_the_flight_over(application, controller, page):
 def test_lengths_are_shown_in_feet_once_they_are_chosen(application, controller, page):
     connect(application, page)
     turn_until(application, lambda: "min 10.0 m" in page.readouts.text())
-    controller.workspace.set_units(UnitSystem.IMPERIAL)
+    controller.context.set_units(UnitSystem.IMPERIAL)
     assert "min 32.8 ft" in page.readouts.text()
-    controller.workspace.set_units(UnitSystem.METRIC)
+    controller.context.set_units(UnitSystem.METRIC)
 
 
 def test_without_a_plan_it_says_what_to_do_first(application, controller, page):
-    controller.workspace.session.open(Document(planned()[0]), None)
+    controller.context.session.open(Document(planned()[0]), None)
     assert "Plan a flight first" in page._phase.text()
     assert not page.connection.button.isEnabled()
 
@@ -335,7 +335,7 @@ def test_effects_of_the_simulation_are_shown_with_reason_and_overruled(applicati
 
 def test_what_went_wrong_is_said_as_an_error(application, controller, page):
     heard = []
-    controller.workspace.messageShown.connect(heard.append)
+    controller.context.messageShown.connect(heard.append)
     connect(application, page)
     page.controller.request(Request.START)
     turn_until(application, lambda: any(message.severity is Severity.ERROR for message in heard))
@@ -409,7 +409,7 @@ def test_return_and_land_lie_apart_from_each_other_and_from_the_rest(application
     from groundstation.gui.widgets.theme import TOUCH_PX
 
     controller.choose(language=language, text_scale=scale)
-    turn_until(application, lambda: controller.window.stage.scene() is not None)
+    turn_until(application, lambda: controller.window.shared_view.scene() is not None)
     turn_until_idle(application, controller)
     page = controller.window.tab("fly")
     try:
@@ -426,7 +426,7 @@ def test_return_and_land_lie_apart_from_each_other_and_from_the_rest(application
             assert not button.icon().isNull()
     finally:
         controller.choose(language=Language.ENGLISH, text_scale=1.0)
-        turn_until(application, lambda: controller.window.stage.scene() is not None)
+        turn_until(application, lambda: controller.window.shared_view.scene() is not None)
 
 
 def test_pressing_the_keyboard_twice_gives_no_second_order(application, controller, page):
@@ -492,10 +492,10 @@ def test_a_finding_of_the_report_leads_to_its_view(application, controller, page
     take_off(application, page)
     ask_for(page, Request.RETURN)
     turn_until(application, lambda: has_landed(page))
-    found = next(finding for finding in page.controller.in_hand.ended.report.findings if finding.code == "views-taken")
+    found = next(finding for finding in page.controller.active.ended.report.findings if finding.code == "views-taken")
     row = next(n for n, text in enumerate(page.findings.texts()) if "views-taken" in text)
     page.findings.clicked.emit(page.findings.model().index(row, 0))
-    selection = controller.workspace.selection
+    selection = controller.context.selection
     assert (selection.kind, selection.id) == (ItemKind.VIEWPOINT, found.place)
 
 
@@ -512,10 +512,10 @@ def test_too_many_photos_for_the_autopilot_are_shared_out_on_a_yes(application, 
         turn_until_idle(application, controller)
         assert "about 4 photos, and a sortie of this plan has 6" in asked[0]
         assert not page.controller.is_connected
-        assert len(controller.workspace.document.plans) == 1
+        assert len(controller.context.document.plans) == 1
     with clicked("Yes"):
         connect(application, page)
-    entry = controller.workspace.document.current
+    entry = controller.context.document.current
     assert entry.title == "First, shared out"
     assert [len(sortie.viewpoint_ids) <= 4 for sortie in entry.plan.sorties] == [True] * page.sortie.count()
     assert {view.id for view in entry.plan.viewpoints} == {view.id for view in planned()[1].viewpoints}
@@ -551,7 +551,7 @@ def connect_radio(application, radio, page, monkeypatch):
 def upload(application, page):
     turn_until(application, lambda: page.buttons.button(Request.UPLOAD).isEnabled())
     ask_for(page, Request.UPLOAD)
-    turn_until(application, lambda: page.controller.in_hand.view.phase in (Phase.CHECKING, Phase.READY))
+    turn_until(application, lambda: page.controller.active.view.phase in (Phase.CHECKING, Phase.READY))
 
 
 def mend(application, page, code, way):
@@ -594,7 +594,7 @@ def test_an_aircraft_at_another_height_flies_once_the_pilot_has_agreed(
     assert "stands 3.0 m lower than planned" in asked[-1]
     with clicked("Yes"):
         mend(application, page, "home-height", Mend.RAISE)
-    turn_until(application, lambda: page.controller.in_hand.sortie.orders.raised_m == pytest.approx(3.0, abs=0.1))
+    turn_until(application, lambda: page.controller.active.sortie.orders.raised_m == pytest.approx(3.0, abs=0.1))
     upload(application, page)
     turn_until(application, lambda: page.buttons.button(Request.START).isEnabled())
 
@@ -606,7 +606,7 @@ def test_home_can_be_where_the_aircraft_stands(application, radio, controller, p
     turn_until(application, lambda: "8.0 m from the planned home" in page.checks.text())
     with clicked("Yes"):
         mend(application, page, "home", Mend.PLAN_FROM_HERE)
-    assert controller.workspace.document.site.site.home_enu_m == pytest.approx((x + 8.0, y, z + 2.0), abs=0.05)
+    assert controller.context.document.site.site.home_enu_m == pytest.approx((x + 8.0, y, z + 2.0), abs=0.05)
     assert "plan again" in controller.window.messages.texts()
 
 
@@ -650,11 +650,11 @@ def test_another_project_in_flight_leaves_the_flight_and_gets_none_of_its_pictur
     folder = tmp_path / "office"
     folder.mkdir()
     other = read_site(write_scene("office", folder))
-    controller.workspace.session.open(Document(other), None)
+    controller.context.session.open(Document(other), None)
     before = n_photos(page)
     turn_until(application, lambda: n_photos(page) > before)
     assert page.pictures._flight is None
-    assert controller.window.stage.scene()._panel_values is None
+    assert controller.window.shared_view.scene()._panel_values is None
     assert page._phase.text().startswith("Flying.")
     assert page.buttons.button(Request.RETURN).isEnabled()
     assert not page.buttons.button(Request.UPLOAD).isEnabled()
@@ -710,7 +710,7 @@ def test_the_battery_and_the_time_of_a_sortie_agree_from_the_mission_tab_to_the_
     application, controller, page, autopilot
 ):
     """What it uses, and with the reserve that must be left; where the autopilot is slower than the plan, that it is."""
-    reserve = 100.0 * controller.workspace.document.current.plan.rules.battery_reserve
+    reserve = 100.0 * controller.context.document.current.plan.rules.battery_reserve
     connect(application, page, autopilot=autopilot)
     upload(application, page)
     told = re.search(

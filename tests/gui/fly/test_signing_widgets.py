@@ -58,9 +58,9 @@ def controller(application, worker):
 
     controller = ProjectController(application, worker=worker)
     controller.show()
-    turn_until(application, lambda: controller.window.stage.scene() is not None)
+    turn_until(application, lambda: controller.window.shared_view.scene() is not None)
     model, plan = planned()
-    controller.workspace.session.open(Document(model, (PlanEntry("plan-1", "First", plan),), "plan-1"), None)
+    controller.context.session.open(Document(model, (PlanEntry("plan-1", "First", plan),), "plan-1"), None)
     controller.window.show_tab("fly")
     turn_until_idle(application, controller)
     yield controller

@@ -27,56 +27,56 @@ def planned():
 
 
 @pytest.fixture
-def workspace(application):
+def context(application):
     from groundstation.gui.application.context import ApplicationContext
 
     runner = JobRunner()
-    workspace = ApplicationContext(Session(), runner)
-    yield workspace
-    workspace.close()
+    context = ApplicationContext(Session(), runner)
+    yield context
+    context.close()
     runner.shutdown()
 
 
 @pytest.fixture
-def page(application, workspace):
+def page(application, context):
     from PySide6.QtWidgets import QHBoxLayout, QWidget
 
     from groundstation.gui.mission.mission_page import MissionPage
-    from groundstation.gui.shared_view import Stage
+    from groundstation.gui.shared_view import SharedView
 
     window = QWidget()
-    stage = Stage(workspace, window)
-    page = MissionPage(workspace, stage)
+    shared_view = SharedView(context, window)
+    page = MissionPage(context, shared_view)
     layout = QHBoxLayout(window)
-    for widget in (page.left, stage, page.right, page.bottom):
+    for widget in (page.left, shared_view, page.right, page.bottom):
         layout.addWidget(widget)
     window.resize(1280, 600)
     window.show()
     page.shown()
     yield page
-    stage.close_views()
+    shared_view.close_views()
     window.close()
 
 
 @pytest.fixture
-def idle(application, workspace):
+def idle(application, context):
     """Wait until no job runs and a condition holds; without one, until none is about to start either."""
 
     def wait(condition=None):
         end, calm = time.monotonic() + 240.0, 0
-        while workspace.jobs() or (calm < 40 if condition is None else not condition()):
+        while context.jobs() or (calm < 40 if condition is None else not condition()):
             assert time.monotonic() < end
             application.processEvents()
             time.sleep(0.01)
-            calm = 0 if workspace.jobs() else calm + 1
+            calm = 0 if context.jobs() else calm + 1
 
     return wait
 
 
 @pytest.fixture
-def said(workspace):
+def said(context):
     heard = []
-    workspace.messageShown.connect(heard.append)
+    context.messageShown.connect(heard.append)
     return heard
 
 
@@ -86,16 +86,16 @@ def opened(planned, **changes):
     return Document(site=model, plans=(entry,), current_plan_id="plan-1")
 
 
-def test_empty_page_says_what_to_do_first(page, workspace, planned):
+def test_empty_page_says_what_to_do_first(page, context, planned):
     assert "Open or import a site first" in page._summary.text()
     assert [action.text() for action in page.actions() if action.isEnabled()] == ["Import mission files ..."]
-    workspace.session.open(Document(site=planned[0]), None)
+    context.session.open(Document(site=planned[0]), None)
     assert "Plan a flight on the Plan tab" in page._summary.text()
     assert [action.text() for action in page.actions() if action.isEnabled()] == ["Import mission files ..."]
 
 
-def test_a_plan_is_checked_by_itself_and_its_panels_are_counted(page, workspace, planned, idle):
-    workspace.session.open(opened(planned), None)
+def test_a_plan_is_checked_by_itself_and_its_panels_are_counted(page, context, planned, idle):
+    context.session.open(opened(planned), None)
     idle(lambda: page.findings.verdict().startswith("Ready to fly"))
     assert page.findings.state_text() == ""
     model = page.lists.waypoints.model()
@@ -104,24 +104,24 @@ def test_a_plan_is_checked_by_itself_and_its_panels_are_counted(page, workspace,
     assert all(action.isEnabled() for action in page.actions())
 
 
-def test_the_plan_tab_counts_the_warnings_that_the_mission_tab_counts(page, workspace, planned, idle):
+def test_the_plan_tab_counts_the_warnings_that_the_mission_tab_counts(page, context, planned, idle):
     """One verdict: a place that is often just the city, and coverage far under what flights can cover."""
     from groundstation.gui.plan.plan_page import PlanPage
 
-    plan_page = PlanPage(workspace, page._stage)
+    plan_page = PlanPage(context, page._shared_view)
     model, plan = planned
     doubtful = replace(model, site=replace(model.site, place_from="ifc-site"))
     entry = PlanEntry("plan-1", "First plan", plan)
-    workspace.session.open(Document(site=doubtful, plans=(entry,), current_plan_id="plan-1"), None)
+    context.session.open(Document(site=doubtful, plans=(entry,), current_plan_id="plan-1"), None)
     idle(lambda: page.findings.verdict().startswith("Ready to fly") and plan_page.verdict().startswith("Ready to fly"))
     n = sum(finding.severity is Severity.WARNING for finding in page._preflight.findings)
     assert n >= 1
     assert plan_page.verdict().splitlines()[0] == f"Ready to fly; warnings: {n}"
 
 
-def test_only_the_list_in_sight_is_filled_and_none_while_the_tab_is_hidden(page, workspace, planned, idle, application):
+def test_only_the_list_in_sight_is_filled_and_none_while_the_tab_is_hidden(page, context, planned, idle, application):
     model = page.lists.waypoints.model()
-    workspace.session.open(opened(planned), None)
+    context.session.open(opened(planned), None)
     idle(lambda: page.findings.verdict().startswith("Ready to fly"))
     n_rows = model.rowCount()
     assert n_rows > 10
@@ -129,7 +129,7 @@ def test_only_the_list_in_sight_is_filled_and_none_while_the_tab_is_hidden(page,
     page.lists.setCurrentWidget(page.lists.profile)
     assert page.lists.profile.plots()[0].listDataItems()
     page.hidden()
-    workspace.amend(replace(workspace.document, plans=(), current_plan_id=""))
+    context.amend(replace(context.document, plans=(), current_plan_id=""))
     assert page.sorties.model().rowCount() == 1
     page.shown()
     assert page.sorties.model().rowCount() == 0
@@ -140,12 +140,12 @@ def test_only_the_list_in_sight_is_filled_and_none_while_the_tab_is_hidden(page,
     assert model.rowCount() == 0
 
 
-def test_a_list_that_is_shown_later_knows_the_selection_and_the_panels(page, workspace, planned, idle):
+def test_a_list_that_is_shown_later_knows_the_selection_and_the_panels(page, context, planned, idle):
     page.lists.setCurrentWidget(page.lists.comparison)
-    workspace.session.open(opened(planned), None)
+    context.session.open(opened(planned), None)
     idle(lambda: page.findings.verdict().startswith("Ready to fly"))
     wanted = Item(ItemKind.VIEWPOINT, planned[1].sorties[0].viewpoint_ids[3])
-    workspace.select(wanted)
+    context.select(wanted)
     page.lists.setCurrentWidget(page.lists.waypoints)
     model = page.lists.waypoints.model()
     assert page.lists.waypoints.view().selectionModel().currentIndex().row() == model.row_of(wanted)
@@ -154,8 +154,8 @@ def test_a_list_that_is_shown_later_knows_the_selection_and_the_panels(page, wor
     assert [mark.isVisible() for mark in page.lists.profile._marks] == [True, True]
 
 
-def test_files_are_taken_in_the_order_of_their_sorties(page, workspace, planned, monkeypatch, tmp_path):
-    workspace.session.open(opened(planned), None)
+def test_files_are_taken_in_the_order_of_their_sorties(page, context, planned, monkeypatch, tmp_path):
+    context.session.open(opened(planned), None)
     names = [tmp_path / name for name in ("roof-2.plan", "roof-3.plan", "roof.plan")]
     for path in names:
         path.touch()
@@ -166,41 +166,41 @@ def test_files_are_taken_in_the_order_of_their_sorties(page, workspace, planned,
     assert [path.name for path in heard] == ["roof.plan", "roof-2.plan", "roof-3.plan"]
 
 
-def test_findings_are_old_as_soon_as_the_plan_changes_and_then_renewed(page, workspace, planned, idle):
-    workspace.session.open(opened(planned), None)
+def test_findings_are_old_as_soon_as_the_plan_changes_and_then_renewed(page, context, planned, idle):
+    context.session.open(opened(planned), None)
     idle(lambda: page.findings.verdict().startswith("Ready to fly"))
     far = replace(planned[1].constraints, min_distance_m=30.0)
-    workspace.change("Farther", opened(planned, constraints=far))
+    context.change("Farther", opened(planned, constraints=far))
     assert page.findings.verdict() == "Readiness not known"
     assert "Older than the plan" in page.findings.state_text()
     idle(lambda: page.findings.verdict() == "NOT ready to fly")
-    workspace.session.undo()
+    context.session.undo()
     idle(lambda: page.findings.verdict().startswith("Ready to fly"))
 
 
-def test_hidden_tabs_do_not_check(page, workspace, planned, idle):
+def test_hidden_tabs_do_not_check(page, context, planned, idle):
     page.hidden()
-    workspace.session.open(opened(planned), None)
+    context.session.open(opened(planned), None)
     idle()
     assert page.findings.verdict() == "Readiness not known"
     page.shown()
     idle(lambda: page.findings.verdict().startswith("Ready to fly"))
 
 
-def test_cancelling_the_check_leaves_the_page_usable(page, workspace, planned, idle, application):
-    workspace.session.open(opened(planned), None)
-    turn_until(application, workspace.jobs)
-    workspace.cancel(workspace.jobs()[0])
+def test_cancelling_the_check_leaves_the_page_usable(page, context, planned, idle, application):
+    context.session.open(opened(planned), None)
+    turn_until(application, context.jobs)
+    context.cancel(context.jobs()[0])
     idle()
     if not page.findings.verdict().startswith("Ready to fly"):
         page.controller.check()
     idle(lambda: page.findings.verdict().startswith("Ready to fly"))
 
 
-def test_places_of_findings_lead_to_their_things(page, workspace, planned, said):
-    workspace.session.open(opened(planned), None)
+def test_places_of_findings_lead_to_their_things(page, context, planned, said):
+    context.session.open(opened(planned), None)
     looked = []
-    workspace.lookAtRequested.connect(looked.append)
+    context.lookAtRequested.connect(looked.append)
     page.findings.placePicked.emit("sortie 1, leg 2")
     page.findings.placePicked.emit(planned[1].viewpoints[3].id)
     assert looked == [Item(ItemKind.LEG, "1/2"), Item(ItemKind.VIEWPOINT, planned[1].viewpoints[3].id)]
@@ -208,16 +208,16 @@ def test_places_of_findings_lead_to_their_things(page, workspace, planned, said)
     assert "template.kml is not shown" in said[-1].text
 
 
-def test_selection_goes_through_table_and_chart_and_back(page, workspace, planned, application):
-    workspace.session.open(opened(planned), None)
+def test_selection_goes_through_table_and_chart_and_back(page, context, planned, application):
+    context.session.open(opened(planned), None)
     application.processEvents()
     heard = []
-    workspace.selectionChanged.connect(heard.append)
+    context.selectionChanged.connect(heard.append)
     wanted = Item(ItemKind.VIEWPOINT, planned[1].sorties[0].viewpoint_ids[4])
     page.lists.waypoints.view().selectRow(page.lists.waypoints.model().row_of(wanted))
     assert heard == [wanted]
     other = Item(ItemKind.VIEWPOINT, planned[1].sorties[0].viewpoint_ids[1])
-    workspace.select(other)
+    context.select(other)
     assert heard == [wanted, other]
     table = page.lists.waypoints
     assert table.view().selectionModel().currentIndex().row() == table.model().row_of(other)
@@ -225,10 +225,8 @@ def test_selection_goes_through_table_and_chart_and_back(page, workspace, planne
     assert [mark.isVisible() for mark in page.lists.profile._marks] == [True, True]
 
 
-def test_export_shows_findings_first_then_writes_and_remembers_the_folder(
-    page, workspace, planned, idle, said, tmp_path
-):
-    workspace.session.open(opened(planned), None)
+def test_export_shows_findings_first_then_writes_and_remembers_the_folder(page, context, planned, idle, said, tmp_path):
+    context.session.open(opened(planned), None)
     dialog = page.export()
     idle(lambda: dialog.prepared() is not None)
     assert dialog.prepared().can_be_written
@@ -243,17 +241,17 @@ def test_export_shows_findings_first_then_writes_and_remembers_the_folder(
     again.close()
 
 
-def test_closed_dialogs_leave_the_window_also_while_their_jobs_run(page, workspace, planned, idle):
+def test_closed_dialogs_leave_the_window_also_while_their_jobs_run(page, context, planned, idle):
     from PySide6.QtCore import QCoreApplication, QEvent
 
     from groundstation.gui.mission.brief_printer import BriefDialog
     from groundstation.gui.mission.export_dialog import ExportDialog
 
-    workspace.session.open(opened(planned), None)
+    context.session.open(opened(planned), None)
     idle(lambda: page.findings.verdict().startswith("Ready to fly"))
     page.export().reject()
     page.print_brief()
-    window = page._stage.window()
+    window = page._shared_view.window()
     window.findChildren(BriefDialog)[-1].reject()
     idle()
     QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete.value)
@@ -261,11 +259,11 @@ def test_closed_dialogs_leave_the_window_also_while_their_jobs_run(page, workspa
     assert window.findChildren(BriefDialog) == []
 
 
-def test_export_says_why_files_cannot_be_made_and_offers_no_writing(page, workspace, planned, idle):
+def test_export_says_why_files_cannot_be_made_and_offers_no_writing(page, context, planned, idle):
     sortie = planned[1].sorties[0]
     lost = next(view for view in planned[1].viewpoints if view.id == sortie.viewpoint_ids[3])
     path = tuple(point for point in sortie.path_enu_m if point != lost.position_enu_m)
-    workspace.session.open(opened(planned, sorties=(replace(sortie, path_enu_m=path),)), None)
+    context.session.open(opened(planned, sorties=(replace(sortie, path_enu_m=path),)), None)
     dialog = page.export()
     idle(lambda: dialog.prepared() is not None)
     assert f"Cannot be exported: sortie 1: viewpoint '{lost.id}' is not on the path" in dialog.state_text()
@@ -273,8 +271,8 @@ def test_export_says_why_files_cannot_be_made_and_offers_no_writing(page, worksp
     dialog.close()
 
 
-def test_only_the_last_wish_of_the_export_form_is_made(page, workspace, planned, idle):
-    workspace.session.open(opened(planned), None)
+def test_only_the_last_wish_of_the_export_form_is_made(page, context, planned, idle):
+    context.session.open(opened(planned), None)
     dialog = page.export()
     for index in (1, 2, 3, 4):
         dialog.form()._format.setCurrentIndex(index)
@@ -285,8 +283,8 @@ def test_only_the_last_wish_of_the_export_form_is_made(page, workspace, planned,
     dialog.close()
 
 
-def test_a_folder_that_cannot_be_written_is_told_in_the_dialog(page, workspace, planned, idle, tmp_path):
-    workspace.session.open(opened(planned), None)
+def test_a_folder_that_cannot_be_written_is_told_in_the_dialog(page, context, planned, idle, tmp_path):
+    context.session.open(opened(planned), None)
     dialog = page.export()
     idle(lambda: dialog.prepared() is not None)
     dialog.write(tmp_path / "none" / "kiosk.kmz")
@@ -319,44 +317,44 @@ def test_every_choice_of_the_export_form_comes_back(application):
     assert heard[-1][0] == FileFormat.MAVLINK_PLAN
 
 
-def test_import_makes_a_plan_that_undo_takes_away(page, workspace, planned, idle, said, tmp_path):
+def test_import_makes_a_plan_that_undo_takes_away(page, context, planned, idle, said, tmp_path):
     from groundstation.services.mission.files import prepare_export, write_export
 
     model, plan = planned
     path = tmp_path / "flown.kmz"
     write_export(prepare_export(plan, model, FileFormat.DJI_KMZ), path)
-    workspace.session.open(Document(site=model), None)
+    context.session.open(Document(site=model), None)
     page.controller.import_files([path])
-    idle(lambda: workspace.document.current is not None)
-    entry = workspace.document.current
+    idle(lambda: context.document.current is not None)
+    entry = context.document.current
     assert (entry.title, entry.plan.method, len(entry.plan.viewpoints)) == ("flown", "imported", 10)
     assert any("flown imported, photos: 10" in message.text for message in said)
     idle()
-    workspace.session.undo()
-    assert workspace.document.plans == ()
+    context.session.undo()
+    assert context.document.plans == ()
 
 
-def test_a_mission_without_a_site_brings_a_bare_one_of_its_own(page, workspace, idle, said, shared_data):
-    workspace.session.open(Document(), None)
+def test_a_mission_without_a_site_brings_a_bare_one_of_its_own(page, context, idle, said, shared_data):
+    context.session.open(Document(), None)
     page.controller.import_files([shared_data / "missions" / "geoyee_m3d_curtainwall_slope_mapping2d.kmz"])
-    idle(lambda: workspace.document.current is not None)
+    idle(lambda: context.document.current is not None)
     idle()
-    site, plan = workspace.document.site.site, workspace.document.current.plan
+    site, plan = context.document.site.site, context.document.current.plan
     assert (site.n_panels, site.building_mesh) == (0, None)
-    assert plan.site_sha256 == workspace.document.site.sha256
+    assert plan.site_sha256 == context.document.site.sha256
     assert len(plan.viewpoints) == 46
     assert len(plan.sorties[0].in_passing_ids) == 46
     assert not [message.text for message in said if message.severity is Severity.ERROR]
     page.controller.check()
     idle()
-    workspace.session.undo()
-    assert workspace.document.site is None
+    context.session.undo()
+    assert context.document.site is None
 
 
-def test_files_that_are_no_missions_are_refused_by_name(page, workspace, planned, idle, said, tmp_path):
+def test_files_that_are_no_missions_are_refused_by_name(page, context, planned, idle, said, tmp_path):
     bad = tmp_path / "holiday.kmz"
     bad.write_bytes(b"PK not a zip")
-    workspace.session.open(opened(planned), None)
+    context.session.open(opened(planned), None)
     idle()
     page.controller.import_files([bad])
     page.controller.compare_files([bad])
@@ -364,23 +362,23 @@ def test_files_that_are_no_missions_are_refused_by_name(page, workspace, planned
     errors = [message.text for message in said if message.severity is Severity.ERROR]
     assert len(errors) == 2
     assert all("holiday.kmz" in text for text in errors)
-    assert len(workspace.document.plans) == 1
+    assert len(context.document.plans) == 1
 
 
-def test_compare_answers_and_leads_to_the_photos_that_differ(page, workspace, planned, idle, tmp_path):
+def test_compare_answers_and_leads_to_the_photos_that_differ(page, context, planned, idle, tmp_path):
     from groundstation.services.mission.files import prepare_export, write_export
 
     model, plan = planned
     path = tmp_path / "kiosk.plan"
     write_export(prepare_export(plan, model, FileFormat.MAVLINK_PLAN), path)
-    workspace.session.open(opened(planned), None)
+    context.session.open(opened(planned), None)
     page.controller.compare_files([path])
     idle(lambda: "kiosk.plan is the plan: all 10 photos" in page.lists.comparison.answer())
     assert page.lists.currentWidget() is page.lists.comparison
     assert page.lists.comparison.table().model().rowCount() == 0
     first = plan.sorties[0].viewpoint_ids[0]
     turned = tuple(replace(v, heading_deg=v.heading_deg - 3.0) if v.id == first else v for v in plan.viewpoints)
-    workspace.change("Turn", opened(planned, viewpoints=turned))
+    context.change("Turn", opened(planned, viewpoints=turned))
     assert "Compare with file" in page.lists.comparison.answer()
     page.controller.compare_files([path])
     idle(lambda: "NOT the plan: 9 photos the same, 1 changed" in page.lists.comparison.answer())
@@ -392,7 +390,7 @@ def test_compare_answers_and_leads_to_the_photos_that_differ(page, workspace, pl
     assert heard == [Item(ItemKind.VIEWPOINT, first)]
 
 
-def test_all_photos_in_another_order_are_neither_the_plan_nor_strangers(page, workspace, planned, idle, tmp_path):
+def test_all_photos_in_another_order_are_neither_the_plan_nor_strangers(page, context, planned, idle, tmp_path):
     from groundstation.services.mission.files import prepare_export, write_export
 
     model, plan = planned
@@ -402,19 +400,19 @@ def test_all_photos_in_another_order_are_neither_the_plan_nor_strangers(page, wo
         replace(sortie, viewpoint_ids=sortie.viewpoint_ids[::-1], path_enu_m=sortie.path_enu_m[::-1])
         for sortie in plan.sorties
     )
-    workspace.session.open(opened(planned, sorties=backwards), None)
+    context.session.open(opened(planned, sorties=backwards), None)
     page.controller.compare_files([path])
     idle(lambda: "takes all 10 photos of the plan, but flies otherwise" in page.lists.comparison.answer())
     assert "NOT the plan" not in page.lists.comparison.answer()
 
 
-def test_brief_is_shown_and_saved(page, workspace, planned, idle, tmp_path):
+def test_brief_is_shown_and_saved(page, context, planned, idle, tmp_path):
     from groundstation.gui.mission.brief_printer import BriefDialog
 
-    workspace.session.open(opened(planned), None)
+    context.session.open(opened(planned), None)
     idle(lambda: page.findings.verdict().startswith("Ready to fly"))
     page.print_brief()
-    (dialog,) = page._stage.window().findChildren(BriefDialog)
+    (dialog,) = page._shared_view.window().findChildren(BriefDialog)
     idle(dialog.is_ready)
     assert "Flight brief: kiosk" in dialog.page_text()
     assert "First plan" in dialog.page_text()
@@ -424,11 +422,11 @@ def test_brief_is_shown_and_saved(page, workspace, planned, idle, tmp_path):
     dialog.close()
 
 
-def test_units_reach_every_part(page, workspace, planned, idle):
-    workspace.session.open(opened(planned), None)
+def test_units_reach_every_part(page, context, planned, idle):
+    context.session.open(opened(planned), None)
     idle(lambda: page.findings.verdict().startswith("Ready to fly"))
     page.findings.show_severity(Severity.OK, True)
-    workspace.set_units(UnitSystem.IMPERIAL)
+    context.set_units(UnitSystem.IMPERIAL)
     assert "[ft]" in page.lists.waypoints.model().headerData(5, _horizontal())
     assert page.sorties.model().headerData(3, _horizontal()) == "mi"
     assert any(" ft" in text for text in page.findings.list_view().texts())

@@ -27,15 +27,15 @@ def page(application, controller, monkeypatch):
     from groundstation.gui.model.model_page import ModelPage
 
     monkeypatch.setattr(model_controller, "ModelProcess", lambda _listener: Told())
-    page = ModelPage(controller.workspace, controller.window.stage)
+    page = ModelPage(controller.context, controller.window.stage)
     page.told = page.controller._process
     page.messages = []
-    controller.workspace.messageShown.connect(page.messages.append)
+    controller.context.messageShown.connect(page.messages.append)
     page.left.resize(1270, 600)
     page.left.show()
     yield page
-    controller.workspace.messageShown.disconnect(page.messages.append)
-    turn_until(application, lambda: not controller.workspace.jobs())
+    controller.context.messageShown.disconnect(page.messages.append)
+    turn_until(application, lambda: not controller.context.jobs())
     page.left.hide()
     page.controller.setParent(None)
 
@@ -51,5 +51,5 @@ def scene(tmp_path):
 def opened(application, page, scene):
     """The tab with that scene."""
     page.controller.open(scene)
-    turn_until(application, lambda: page.controller.card is not None and not page._workspace.jobs())
+    turn_until(application, lambda: page.controller.card is not None and not page._context.jobs())
     return page

@@ -18,7 +18,7 @@ def trained(tmp_path_factory):
 
 def opened_with(application, page, folder):
     page.controller.open(folder)
-    turn_until(application, lambda: page.controller.card is not None and not page._workspace.jobs())
+    turn_until(application, lambda: page.controller.card is not None and not page._context.jobs())
 
 
 def test_every_format_is_offered_with_what_it_is_for(application):
@@ -119,6 +119,6 @@ def test_what_cannot_be_written_is_told_and_the_window_goes_on(application, page
 def test_an_export_that_is_cancelled_leaves_nothing(application, page, trained, tmp_path):
     opened_with(application, page, trained)
     page.controller.export(tmp_path / "tower.web", ModelExport("web"))
-    page._workspace.cancel(page._workspace.jobs()[0])
-    turn_until(application, lambda: not page._workspace.jobs())
+    page._context.cancel(page._context.jobs()[0])
+    turn_until(application, lambda: not page._context.jobs())
     assert list(tmp_path.iterdir()) == []

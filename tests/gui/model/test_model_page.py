@@ -93,7 +93,7 @@ def test_the_dialog_begins_at_the_projects_models_where_there_are_some(page, tmp
         begun.append(Path(dialog.directory().absolutePath()))
         press("Cancel")(dialog)
 
-    monkeypatch.setattr(type(page._workspace.session), "folder", property(lambda _session: project))
+    monkeypatch.setattr(type(page._context.session), "folder", property(lambda _session: project))
     with clicked(read):
         page.side.open.click()
     (project / "models").mkdir()
@@ -252,7 +252,7 @@ def test_panels_have_their_colours_beside_too_where_they_have_other_numbers(appl
     components = (later.components[0], replace(facade, elements=moved), *later.components[2:])
     write_scene(replace(later, components=components), opened.controller.card.folder.parent / "later.gsscene")
     opened.controller.open(opened.controller.card.folder)
-    turn_until(application, lambda: not opened._workspace.jobs())
+    turn_until(application, lambda: not opened._context.jobs())
     opened.controller.put(Defect(opened.controller.card.panels[2].global_id, "crack", 5, "2026-05-04"))
     opened.side.colour.setCurrentIndex(opened.side.colour.findData(str(Computed.DEFECTS)))
     opened.pane.axis.setCurrentIndex(1)

@@ -25,7 +25,7 @@ def controller(application, worker, tmp_path_factory):
         controller = ProjectController(application, worker=worker)
         controller.show()
         controller.window.setGeometry(0, 0, 1280, 720)
-        turn_until(application, lambda: controller.window.stage.scene() is not None)
+        turn_until(application, lambda: controller.window.shared_view.scene() is not None)
         yield controller
         close_controller(controller)
 
@@ -34,7 +34,7 @@ def controller(application, worker, tmp_path_factory):
 def page(application, controller, folder):
     page = PhotosTab(application, controller, folder)
     yield page
-    controller.workspace.messageShown.disconnect(page.messages.append)
+    controller.context.messageShown.disconnect(page.messages.append)
 
 
 @pytest.fixture

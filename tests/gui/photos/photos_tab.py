@@ -16,11 +16,11 @@ class PhotosTab:
 
     def __init__(self, application, controller, folder, model=None):
         self.application, self.controller = application, controller
-        controller.workspace.session.open(Document(site_model() if model is None else model), None)
+        controller.context.session.open(Document(site_model() if model is None else model), None)
         controller.window.show_tab("photos")
         self.tab = controller.window.tab("photos")
         self.messages = []
-        controller.workspace.messageShown.connect(self.messages.append)
+        controller.context.messageShown.connect(self.messages.append)
         turn_until(application, self.tab.choose.isEnabled)
         with clicked(choose(folder)):
             self.tab.choose.click()

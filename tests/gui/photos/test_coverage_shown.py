@@ -23,7 +23,7 @@ def in_3d(page):
     page.idle()
     yield page
     page.tab.pane.photo.click()
-    page.controller.workspace.select(None)
+    page.controller.context.select(None)
 
 
 def scene(page):
@@ -40,7 +40,7 @@ def test_the_view_is_there_only_while_it_is_seen_and_looked_at_from_where_it_was
     assert scene(in_3d).orbit() == before
     in_3d.controller.window.show_tab("site")
     assert scene(in_3d) is None
-    shared = in_3d.controller.window.stage.scene()
+    shared = in_3d.controller.window.shared_view.scene()
     assert shared._panel_values is None
     in_3d.controller.window.show_tab("photos")
     assert scene(in_3d) is not None
@@ -55,9 +55,9 @@ def test_panels_have_the_colour_of_what_is_seen_of_them(in_3d):
 
 
 def test_with_a_plan_the_colour_tells_how_much_of_its_promise_was_kept(in_3d):
-    workspace = in_3d.controller.workspace
+    context = in_3d.controller.context
     plan = project_cases.plan(2, x_m=-0.5)
-    workspace.amend(workspace.document.with_plan(PlanEntry("plan-1", "Plan 1", plan)))
+    context.amend(context.document.with_plan(PlanEntry("plan-1", "Plan 1", plan)))
     in_3d.idle()
     scale, values = scene(in_3d)._panel_values
     assert (scale.title, scale.unit, scale.low, scale.high) == ("Seen of what the plan promised", "%", 0.0, 100.0)
@@ -67,7 +67,7 @@ def test_with_a_plan_the_colour_tells_how_much_of_its_promise_was_kept(in_3d):
 
 def test_a_panel_that_is_clicked_tells_its_photos_and_a_photo_is_shown_by_a_click(in_3d):
     scene(in_3d).picked.emit(PANEL, Qt.KeyboardModifier.NoModifier)
-    assert in_3d.controller.workspace.selection == PANEL
+    assert in_3d.controller.context.selection == PANEL
     sightings, coverage = in_3d.tab.sightings, in_3d.tab.controller.coverage
     assert in_3d.tab.details.currentWidget() is sightings
     assert "Panel X-1" in sightings.text()
@@ -91,7 +91,7 @@ def test_coverage_is_counted_again_for_panels_that_are_used_and_otherwise_once_t
     assert found.controller.window.shown_tab() == "site"
     assert len(found.tab.controller.coverage.panel_ids) == 30
     assert "of 1080 sections" in found.tab.coverage.text()
-    found.controller.workspace.session.undo()
+    found.controller.context.session.undo()
     found.idle()
     assert found.tab.controller.coverage is None
     assert "counted again" in found.tab.coverage.text()
@@ -102,10 +102,10 @@ def test_coverage_is_counted_again_for_panels_that_are_used_and_otherwise_once_t
 
 
 def test_a_site_that_loses_its_panels_says_so_and_paints_nothing(in_3d):
-    workspace = in_3d.controller.workspace
-    model = workspace.document.site
+    context = in_3d.controller.context
+    model = context.document.site
     site = replace(model.site, facades=())
-    workspace.change("Remove", replace(workspace.document, site=replace(model, site=site, sha256=site_sha256(site))))
+    context.change("Remove", replace(context.document, site=replace(model, site=site, sha256=site_sha256(site))))
     in_3d.idle()
     assert in_3d.tab.controller.coverage is None
     assert "no panels yet" in in_3d.tab.coverage.text()
@@ -113,7 +113,7 @@ def test_a_site_that_loses_its_panels_says_so_and_paints_nothing(in_3d):
 
 
 def test_without_photos_the_view_says_what_to_do(in_3d):
-    in_3d.controller.workspace.session.open(Document(), None)
+    in_3d.controller.context.session.open(Document(), None)
     assert "Open or import a site" in in_3d.tab.pane.scene._text.text()
     assert scene(in_3d) is not None
 
@@ -144,23 +144,23 @@ def test_before_a_search_the_panels_of_the_site_are_drawn(page):
     page.idle()
     assert len(page.view._outlines) == 1
     middle = page.view._outlines[0].mean(axis=0)
-    corners = np.array(page.controller.workspace.document.site.site.panels[0].corners_enu_m)
+    corners = np.array(page.controller.context.document.site.site.panels[0].corners_enu_m)
     assert middle == pytest.approx(page.tab.pane.card().posed.pixels(corners.mean(axis=0))[0], abs=2.0)
 
 
 def test_used_panels_tell_on_the_site_tab_how_good_they_are_and_undo_takes_that_back(found):
     found.tab.use.click()
     found.idle()
-    workspace = found.controller.workspace
-    panel = workspace.document.site.site.panels[4]
-    known = workspace.document.found_facades.of(panel)
-    workspace.select(Item(ItemKind.PANEL, panel.id))
+    context = found.controller.context
+    panel = context.document.site.site.panels[4]
+    known = context.document.found_facades.of(panel)
+    context.select(Item(ItemKind.PANEL, panel.id))
     text = found.controller.window.tab("site").right.findChild(_panel_page()).text()
     assert f"corners ± {1000.0 * known.corner_sigma_m:.3g} mm" in text
     assert f"confidence {100.0 * known.confidence:.0f} %" in text
-    workspace.session.undo()
-    assert workspace.document.found_facades is None
-    workspace.select(PANEL)
+    context.session.undo()
+    assert context.document.found_facades is None
+    context.select(PANEL)
     assert "corners" not in found.controller.window.tab("site").right.findChild(_panel_page()).text()
 
 
@@ -168,10 +168,10 @@ def test_a_view_that_is_open_when_the_window_is_made_anew_is_freed(application, 
     from groundstation.services.settings import Language
 
     in_3d.controller.choose(language=Language.GERMAN)
-    turn_until(application, lambda: in_3d.controller.window.stage.scene() is not None)
+    turn_until(application, lambda: in_3d.controller.window.shared_view.scene() is not None)
     assert scene(in_3d) is None
     in_3d.controller.choose(language=Language.ENGLISH)
-    turn_until(application, lambda: in_3d.controller.window.stage.scene() is not None)
+    turn_until(application, lambda: in_3d.controller.window.shared_view.scene() is not None)
     in_3d.controller.window.show_tab("photos")
     in_3d.tab = in_3d.controller.window.tab("photos")
 

@@ -94,7 +94,7 @@ def test_thousands_of_photos_are_shown_at_once_and_few_of_them_decoded(applicati
     application.processEvents()
     assert time.thread_time() - started < 15.0
     turn_until(application, lambda: not store.is_busy())
-    assert len(store._kept) <= MAX_WANTED
-    assert cards[4000].path in store._kept
+    assert len(store._cached) <= MAX_WANTED
+    assert cards[4000].path in store._cached
     strip.close()
     places.close()

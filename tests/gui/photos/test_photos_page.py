@@ -118,40 +118,40 @@ def test_a_press_beside_everything_moves_the_picture_and_changes_nothing(found):
 def test_used_panels_replace_those_of_the_site_and_undo_brings_them_back(found):
     found.tab.use.click()
     found.idle()
-    workspace = found.controller.workspace
-    assert [len(facade.panels) for facade in workspace.document.site.site.facades] == [30]
+    context = found.controller.context
+    assert [len(facade.panels) for facade in context.document.site.site.facades] == [30]
     assert found.controller.window.shown_tab() == "site"
-    assert workspace.selection.id == "A"
+    assert context.selection.id == "A"
     assert "of 1080 sections" in found.tab.coverage.text()
-    workspace.session.undo()
-    assert [facade.id for facade in workspace.document.site.site.facades] == ["X"]
+    context.session.undo()
+    assert [facade.id for facade in context.document.site.site.facades] == ["X"]
     assert found.draft is not None
 
 
 def test_another_site_clears_the_photos(found):
-    found.controller.workspace.session.open(Document(), None)
+    found.controller.context.session.open(Document(), None)
     assert found.tab.controller.cards == ()
     assert found.draft is None
     assert not found.tab.read.isEnabled()
 
 
 def test_photos_stay_when_the_site_is_saved_and_go_when_it_moves(found):
-    workspace = found.controller.workspace
-    model = workspace.document.site
+    context = found.controller.context
+    model = context.document.site
     anew = replace(model, building=site_model().building)
-    workspace.session.amend(replace(workspace.document, site=anew))
+    context.session.amend(replace(context.document, site=anew))
     assert len(found.tab.controller.cards) == 3
     moved = set_origin(anew, 22.34, 114.2636, 62.0, HeightReference.ELLIPSOID)
-    workspace.change("Move", replace(workspace.document, site=moved))
+    context.change("Move", replace(context.document, site=moved))
     assert found.tab.controller.cards == ()
 
 
 def test_photos_that_were_read_for_another_site_are_not_shown(page):
     folder = page.tab.controller.folder
-    page.controller.workspace.session.open(Document(), None)
-    page.controller.workspace.session.open(Document(site_model()), None)
+    page.controller.context.session.open(Document(), None)
+    page.controller.context.session.open(Document(site_model()), None)
     page.tab.controller.read(folder)
-    page.controller.workspace.session.open(Document(), None)
+    page.controller.context.session.open(Document(), None)
     page.idle()
     assert page.tab.controller.cards == ()
 
@@ -161,14 +161,14 @@ def test_a_new_window_shows_the_same_photos(application, found):
 
     before = found.draft
     found.controller.choose(language=Language.GERMAN)
-    turn_until(application, lambda: found.controller.window.stage.scene() is not None)
+    turn_until(application, lambda: found.controller.window.shared_view.scene() is not None)
     found.controller.window.show_tab("photos")
     found.tab = found.controller.window.tab("photos")
     found.idle()
     assert found.draft is before
     assert found.tab.strip.model().rowCount() == 3
     found.controller.choose(language=Language.ENGLISH)
-    turn_until(application, lambda: found.controller.window.stage.scene() is not None)
+    turn_until(application, lambda: found.controller.window.shared_view.scene() is not None)
 
 
 def test_a_data_set_is_made_of_the_photos_and_what_was_left_out_is_said(application, page, controller, tmp_path):

@@ -78,9 +78,9 @@ def test_panels_that_were_found_stay_and_move_with_the_poses(found, kept):
 def test_lengths_follow_the_units(page, kept):
     kept.refine.click()
     page.idle()
-    page.controller.workspace.set_units(UnitSystem.IMPERIAL)
+    page.controller.context.set_units(UnitSystem.IMPERIAL)
     assert "0.033 ft" in kept.outcome.text()
-    page.controller.workspace.set_units(UnitSystem.METRIC)
+    page.controller.context.set_units(UnitSystem.METRIC)
 
 
 def test_without_pycolmap_it_says_what_to_install_and_the_poses_stay(page, box, monkeypatch):

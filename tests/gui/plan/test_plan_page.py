@@ -27,7 +27,7 @@ def roof():
 
 @pytest.fixture
 def page(application, controller, roof):
-    controller.workspace.session.open(roof, None)
+    controller.context.session.open(roof, None)
     controller.window.show_tab("plan")
     page = controller.window.tab("plan")
     page.controller.set_request(QUICK)
@@ -43,7 +43,7 @@ def page_of_new_plan(application, controller):
 
 
 def first_views(controller, n=1):
-    return controller.workspace.document.current.plan.viewpoints[:n]
+    return controller.context.document.current.plan.viewpoints[:n]
 
 
 def moved(viewpoint, east_m):
@@ -53,26 +53,26 @@ def moved(viewpoint, east_m):
 
 def test_edits_and_undo_leave_the_page_that_is_read_in_front(application, controller, page):
     (viewpoint,) = first_views(controller)
-    controller.workspace.select(Item(ItemKind.VIEWPOINT, viewpoint.id))
+    controller.context.select(Item(ItemKind.VIEWPOINT, viewpoint.id))
     page.right.setCurrentWidget(page.effects)
     page.controller.set_viewpoint(moved(viewpoint, 0.5))
     assert page.right.currentWidget() is page.effects
-    controller.workspace.session.undo()
+    controller.context.session.undo()
     assert page.right.currentWidget() is page.effects
 
 
 def test_undo_of_the_first_plan_leaves_nothing_of_it(application, controller, page_of_new_plan):
     page = page_of_new_plan
-    panel = controller.workspace.document.site.site.panels[3].id
-    controller.workspace.select(Item(ItemKind.PANEL, panel))
+    panel = controller.context.document.site.site.panels[3].id
+    controller.context.select(Item(ItemKind.PANEL, panel))
     assert "sections covered" in page.panel.text()
     assert "The search found" in page.chart.text()
-    controller.workspace.session.undo()
+    controller.context.session.undo()
     turn_until_idle(application, controller)
     assert "search found" not in page.chart.text()
     assert "sections" not in page.panel.text()
     assert page.lists.waypoints.model().rowCount() == 0
-    controller.workspace.session.redo()
+    controller.context.session.redo()
     turn_until_idle(application, controller)
     assert f"Panel {panel}" in page.panel.text()
     assert page.lists.waypoints.model().rowCount() > 8
@@ -80,16 +80,16 @@ def test_undo_of_the_first_plan_leaves_nothing_of_it(application, controller, pa
 
 @pytest.mark.slow
 def test_a_panel_of_the_site_before_is_not_taken_for_one_of_the_next(application, controller, page):
-    controller.workspace.select(Item(ItemKind.PANEL, controller.workspace.document.site.site.panels[3].id))
+    controller.context.select(Item(ItemKind.PANEL, controller.context.document.site.site.panels[3].id))
     opened(application, controller, "office")
     planned(application, controller, replace(QUICK, n_views=6))
     shown = page.panel.panel_id()
-    assert shown is None or shown == controller.workspace.document.site.site.panels[3].id
+    assert shown is None or shown == controller.context.document.site.site.panels[3].id
 
 
 def test_effects_are_looked_at_only_while_somebody_does(application, controller, page):
     names = []
-    controller.workspace.jobsChanged.connect(lambda: names.extend(job.name for job in controller.workspace.jobs()))
+    controller.context.jobsChanged.connect(lambda: names.extend(job.name for job in controller.context.jobs()))
     page.form.setValue(PlanRequest(n_views=9))
     page.controller.set_request(PlanRequest(n_views=9))
     page.controller.set_viewpoint(moved(first_views(controller)[0], 0.5))
@@ -124,14 +124,14 @@ def test_asking_for_something_else_leaves_the_list_of_viewpoints_alone(applicati
 
 
 def test_a_plan_that_was_not_looked_at_says_so_and_is_taken_up_again(application, controller, page):
-    entry = controller.workspace.document.current
-    home = controller.workspace.document.site.site.home_enu_m
-    site = controller.workspace.document.site
+    entry = controller.context.document.current
+    home = controller.context.document.site.site.home_enu_m
+    site = controller.context.document.site
     edited = replace(site, site=replace(site.site, home_enu_m=(home[0] + 1.0, *home[1:])))
-    controller.workspace.change("Move home", replace(controller.workspace.document, site=edited))
-    (job,) = [job for job in controller.workspace.jobs() if job.name == "Look at the plan"]
+    controller.context.change("Move home", replace(controller.context.document, site=edited))
+    (job,) = [job for job in controller.context.jobs() if job.name == "Look at the plan"]
     assert "being looked at" in page.verdict()
-    controller.workspace.cancel(job)
+    controller.context.cancel(job)
     turn_until_idle(application, controller)
     assert "Choose it in the list of plans" in page.verdict()
     refused = []
@@ -145,15 +145,15 @@ def test_a_plan_that_was_not_looked_at_says_so_and_is_taken_up_again(application
 
 def test_an_edit_that_is_refused_leaves_the_boxes_as_they_were(application, controller, page):
     (viewpoint,) = first_views(controller)
-    controller.workspace.select(Item(ItemKind.VIEWPOINT, viewpoint.id))
+    controller.context.select(Item(ItemKind.VIEWPOINT, viewpoint.id))
     page.viewpoint.toggle_lock()
-    kept = controller.workspace.document.current.viewpoint(viewpoint.id)
+    kept = controller.context.document.current.viewpoint(viewpoint.id)
     editor = page.viewpoint.editor
     assert not editor._position[0].isEnabled()
     editor._position[0].box().setValue(99.0)
     assert editor.value() == kept
     assert "Keep when planning again" in editor._says.text()
-    assert controller.workspace.document.current.viewpoint(viewpoint.id) == kept
+    assert controller.context.document.current.viewpoint(viewpoint.id) == kept
 
 
 def test_a_method_that_keeps_no_viewpoints_is_refused_where_some_are_kept(application, controller, page):
@@ -173,17 +173,17 @@ def test_a_plan_for_a_site_that_is_gone_is_not_put_on_the_one_that_is_open(appli
     page = controller.window.tab("plan")
     page.controller.set_request(QUICK)
     page.controller.plan()
-    controller.workspace.session.undo()
-    assert controller.workspace.document.site is None
+    controller.context.session.undo()
+    assert controller.context.document.site is None
     turn_until_idle(application, controller)
-    assert controller.workspace.document.plans == ()
+    assert controller.context.document.plans == ()
     assert "not kept" in controller.window.messages.texts()
     assert not page.controller.is_planning
 
 
 def test_what_panels_and_routes_show_both_have_their_scale(application, controller, page):
     page.paint.setValue(PanelPaint.GSD, RoutePaint.CLEARANCE)
-    overlay = controller.window.stage.scene()._overlay
+    overlay = controller.window.shared_view.scene()._overlay
     assert [scale.title for scale in overlay._scales] == ["Finest pixel", "Clearance"]
     page.paint.setValue(PanelPaint.FACADE, RoutePaint.CLEARANCE)
     assert [scale.title for scale in overlay._scales] == ["Clearance"]
@@ -229,20 +229,20 @@ def test_moving_in_the_view_goes_on_from_where_the_viewpoint_is_until_it_is_put_
     from groundstation.gui.view3d.tools import MovedViewpoint, ViewpointTool
 
     first, second = first_views(controller, 2)
-    scene = controller.window.stage.scene()
-    controller.workspace.select(Item(ItemKind.VIEWPOINT, first.id))
+    scene = controller.window.shared_view.scene()
+    controller.context.select(Item(ItemKind.VIEWPOINT, first.id))
     page.viewpoint._move.setChecked(True)
     scene.toolFinished.emit(MovedViewpoint(first.id, moved(first, 1.0).position_enu_m))
     assert page.viewpoint._move.isChecked()
     assert scene.tool().value.position_enu_m == pytest.approx(moved(first, 1.0).position_enu_m)
-    controller.workspace.session.undo()
+    controller.context.session.undo()
     assert scene.tool().value.position_enu_m == pytest.approx(first.position_enu_m)
     page.viewpoint.toggle_lock()
     assert scene.tool() is None, "it is kept as it is"
-    controller.workspace.select(Item(ItemKind.VIEWPOINT, second.id))
+    controller.context.select(Item(ItemKind.VIEWPOINT, second.id))
     assert isinstance(scene.tool(), ViewpointTool)
-    controller.workspace.select(None)
+    controller.context.select(None)
     assert scene.tool() is None
-    controller.workspace.select(Item(ItemKind.VIEWPOINT, second.id))
+    controller.context.select(Item(ItemKind.VIEWPOINT, second.id))
     scene.cancel_tool()
     assert not page.viewpoint._move.isChecked()

@@ -50,15 +50,15 @@ def page(application, controller, monkeypatch):
     from groundstation.gui.reconstruct.reconstruct_page import ReconstructPage
 
     monkeypatch.setattr(reconstruct_controller, "ModelProcess", lambda _listener: Told())
-    page = ReconstructPage(controller.workspace, controller.window.stage)
+    page = ReconstructPage(controller.context, controller.window.stage)
     page.told = page.controller._process
     page.messages = []
-    controller.workspace.messageShown.connect(page.messages.append)
+    controller.context.messageShown.connect(page.messages.append)
     page.left.resize(1270, 600)
     page.left.show()
     yield page
-    controller.workspace.messageShown.disconnect(page.messages.append)
-    turn_until(application, lambda: not controller.workspace.jobs())
+    controller.context.messageShown.disconnect(page.messages.append)
+    turn_until(application, lambda: not controller.context.jobs())
     page.pane.close_pictures()
     page.left.hide()
     page.controller.phase = reconstruct_controller.Phase.IDLE
@@ -69,7 +69,7 @@ def page(application, controller, monkeypatch):
 def chosen(application, page, data, tmp_path):
     """The tab with a data set."""
     page.controller.read(data)
-    turn_until(application, lambda: page.controller.card is not None and not page._workspace.jobs())
+    turn_until(application, lambda: page.controller.card is not None and not page._context.jobs())
     page.controller.choose_out(tmp_path / "model")
-    turn_until(application, lambda: not page._workspace.jobs())
+    turn_until(application, lambda: not page._context.jobs())
     return page

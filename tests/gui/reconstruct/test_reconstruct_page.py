@@ -79,9 +79,9 @@ def test_a_chosen_data_set_is_shown_and_its_first_photo_looked_at(chosen):
 
 
 def test_a_training_goes_from_preparing_to_its_end_and_buttons_follow(chosen, tmp_path):
-    assert not chosen._workspace.is_busy
+    assert not chosen._context.is_busy
     told = begin(chosen)
-    assert chosen._workspace.is_busy, "nothing may hold the window up that can wait"
+    assert chosen._context.is_busy, "nothing may hold the window up that can wait"
     assert (told.dataset, told.out, told.resume) == (chosen.controller.card.folder, tmp_path / "model", False)
     assert enabled(chosen) == {"pause", "stop", "break_off"}
     assert chosen.details.currentWidget() is chosen.progress
@@ -224,8 +224,8 @@ def test_short_memory_and_a_full_disk_are_told_before_it_starts(chosen):
 def test_a_data_set_of_another_site_is_told(application, page, data, controller):
     from tests.planning.plan_cases import kiosk
 
-    before = controller.workspace.document
-    controller.workspace.amend(replace(before, site=kiosk()))
+    before = controller.context.document
+    controller.context.amend(replace(before, site=kiosk()))
     try:
         page.controller.read(data)
         turn_until(application, lambda: page.controller.card is not None)
@@ -233,7 +233,7 @@ def test_a_data_set_of_another_site_is_told(application, page, data, controller)
         assert "other panels than the site that is open" in page.messages[-1].text
         assert page.side.train.isEnabled()
     finally:
-        controller.workspace.amend(before)
+        controller.context.amend(before)
 
 
 def test_photos_are_judged_and_sorted_the_worst_first(application, chosen):
@@ -385,10 +385,10 @@ def test_folders_are_chosen_and_nothing_happens_without_one(application, page, d
     assert page.messages == []
     with clicked(choose(data)):
         page.side.choose.click()
-    turn_until(application, lambda: page.controller.card is not None and not page._workspace.jobs())
+    turn_until(application, lambda: page.controller.card is not None and not page._context.jobs())
     with clicked(choose(tmp_path / "my model")):
         page.side.choose_out.click()
-    turn_until(application, lambda: not page._workspace.jobs())
+    turn_until(application, lambda: not page._context.jobs())
     assert page.controller.out == tmp_path / "my model"
 
 

@@ -22,16 +22,16 @@ class Dialog:
         from groundstation.gui.site.site_opener import ImportDialog
 
         self.application, self.runner = application, JobRunner()
-        self.workspace = ApplicationContext(Session(Document()), self.runner)
+        self.context = ApplicationContext(Session(Document()), self.runner)
         self.messages, self.taken = [], []
-        self.workspace.messageShown.connect(self.messages.append)
-        self.dialog = ImportDialog(self.workspace, path)
+        self.context.messageShown.connect(self.messages.append)
+        self.dialog = ImportDialog(self.context, path)
         self.dialog.imported.connect(self.taken.append)
         self.dialog.show()
         self.idle()
 
     def idle(self):
-        turn_until(self.application, lambda: not self.workspace.jobs())
+        turn_until(self.application, lambda: not self.context.jobs())
         self.application.processEvents()
 
     def choose(self, box, value):
@@ -47,7 +47,7 @@ class Dialog:
 
     def close(self):
         self.dialog.reject()
-        self.workspace.close()
+        self.context.close()
         self.runner.shutdown()
         self.dialog.deleteLater()
 
@@ -211,8 +211,8 @@ def test_dialog_that_is_closed_while_it_reads_takes_nothing_over(application, sh
     from groundstation.gui.site.site_opener import ImportDialog
 
     hands.application, hands.runner = application, JobRunner()
-    hands.workspace = ApplicationContext(Session(Document()), hands.runner)
-    dialog = ImportDialog(hands.workspace, shared_data / "buildings" / "ingolstadt_lod3" / "4018106.xml")
+    hands.context = ApplicationContext(Session(Document()), hands.runner)
+    dialog = ImportDialog(hands.context, shared_data / "buildings" / "ingolstadt_lod3" / "4018106.xml")
     taken = []
     dialog.imported.connect(taken.append)
     dialog.show()
@@ -221,7 +221,7 @@ def test_dialog_that_is_closed_while_it_reads_takes_nothing_over(application, sh
     hands.idle()
     assert taken == []
     assert dialog.shown() is None
-    hands.workspace.close()
+    hands.context.close()
     hands.runner.shutdown()
 
 

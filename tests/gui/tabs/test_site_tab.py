@@ -29,21 +29,21 @@ class Window:
 
         self.application, self.runner = application, JobRunner()
         model = None if scene_name is None else bundled_site(scene_name)
-        self.workspace = ApplicationContext(Session(Document(site=model)), self.runner)
+        self.context = ApplicationContext(Session(Document(site=model)), self.runner)
         self.messages = []
-        self.workspace.messageShown.connect(self.messages.append)
-        self.window = MainWindow(self.workspace)
+        self.context.messageShown.connect(self.messages.append)
+        self.window = MainWindow(self.context)
         self.window.resize(1280, 720)
         self.window.show()
         self.window.show_tab("site")
         self.tab = self.window.tab("site")
-        self.until(lambda: self.window.stage.scene() is not None)
-        self.scene = self.window.stage.scene()
+        self.until(lambda: self.window.shared_view.scene() is not None)
+        self.scene = self.window.shared_view.scene()
         self.idle()
 
     @property
     def site(self):
-        return self.workspace.document.site.site
+        return self.context.document.site.site
 
     def until(self, condition):
         turn_until(self.application, condition)
@@ -51,7 +51,7 @@ class Window:
     def idle(self):
         """Wait for edits to be checked and jobs to end."""
         editor, form = self.tab.detail.editor, self.tab.detail.grid_maker
-        self.until(lambda: not (editor._timer.isActive() or form._timer.isActive() or self.workspace.jobs()))
+        self.until(lambda: not (editor._timer.isActive() or form._timer.isActive() or self.context.jobs()))
 
     def click(self, point, scene=None):
         """Click where a point of the site is seen."""
@@ -68,7 +68,7 @@ class Window:
         self.application.processEvents()
 
     def undo(self):
-        self.workspace.session.undo()
+        self.context.session.undo()
         self.idle()
 
     def close(self):
@@ -98,7 +98,7 @@ def test_without_a_site_the_tab_says_what_to_do_and_a_bundled_site_fills_it(open
     next(action for action in actions if action.text().startswith("Roof")).trigger()
     hands.idle()
     assert hands.site.name == "roof"
-    assert hands.workspace.session.undo_label == "Open roof"
+    assert hands.context.session.undo_label == "Open roof"
     assert not side.start.isVisible()
     assert hands.tab.detail.findings._title.text() == "Home, airspace and facades: nothing wrong found."
     hands.undo()
@@ -111,12 +111,12 @@ def test_selection_follows_between_tree_view_and_properties(opened):
     hands = opened("canyon")
     tree = hands.tab.left.tree
     hands.click((-20.0, -24.0, 20.0))
-    assert hands.workspace.selection == tree.value() == Item(ItemKind.OBSTACLE, "opposite")
+    assert hands.context.selection == tree.value() == Item(ItemKind.OBSTACLE, "opposite")
     assert isinstance(hands.tab.detail.properties.page(), ObstaclePage)
     panel = Item(ItemKind.PANEL, "A-0199")
     index = tree.model().index_of(panel)
     tree.setCurrentIndex(index)
-    assert hands.workspace.selection == panel
+    assert hands.context.selection == panel
     assert hands.scene._selection == (panel,)
     assert isinstance(hands.tab.detail.properties.page(), PanelPage)
 
@@ -135,14 +135,14 @@ def test_zone_and_box_are_drawn_with_the_mouse_each_in_one_step(opened):
     assert not tools.button(SiteTool.NO_FLY).isChecked()
     (zone,) = hands.site.airspace.no_fly
     np.testing.assert_allclose(zone.polygon_enu_m, np.array(corners)[:, :2], atol=1.0)
-    assert hands.workspace.selection == Item(ItemKind.NO_FLY, zone.id)
+    assert hands.context.selection == Item(ItemKind.NO_FLY, zone.id)
     tools.button(SiteTool.BOX).click()
     for point in ((25.0, -30.0, 0.0), (32.0, -22.0, 0.0), (32.0, -22.0, 12.0)):
         hands.click(point)
     (box,) = hands.site.obstacles
     np.testing.assert_allclose(box.box_enu_m, [(25.0, -30.0, 0.0), (32.0, -22.0, 12.0)], atol=1.0)
     hands.idle()
-    assert hands.workspace.document.site.sha256 == site_sha256(hands.site)
+    assert hands.context.document.site.sha256 == site_sha256(hands.site)
     hands.undo()
     assert hands.site.obstacles == ()
     assert len(hands.site.airspace.no_fly) == 1
@@ -157,7 +157,7 @@ def test_a_rally_point_is_clicked_put_down_and_removed(opened):
     hands.idle()
     (point,) = hands.site.rally_points
     np.testing.assert_allclose(point.position_enu_m, (8.0, -40.0, 0.0), atol=1.0)
-    assert hands.workspace.selection == Item(ItemKind.RALLY, point.id)
+    assert hands.context.selection == Item(ItemKind.RALLY, point.id)
     page = hands.tab.detail.properties.page()
     page.point_box().boxes()[2].box().setValue(2.0)
     assert hands.site.rally_points[0].position_enu_m[2] == 2.0
@@ -165,7 +165,7 @@ def test_a_rally_point_is_clicked_put_down_and_removed(opened):
     assert hands.site.rally_points[0].position_enu_m[2] == 0.0
     hands.tab.left.tree.ask_remove()
     assert hands.site.rally_points == ()
-    hands.workspace.session.undo()
+    hands.context.session.undo()
     assert len(hands.site.rally_points) == 1
     hands.idle()
 
@@ -180,12 +180,12 @@ def test_home_in_a_bad_place_is_taken_and_told_until_it_is_put_right(opened):
     np.testing.assert_allclose(hands.site.home_enu_m, (0.0, -5.0, 0.0), atol=1.0)
     findings = hands.tab.detail.findings
     assert [(f.severity, f.code) for f in findings.findings()] == [(Severity.ERROR, "home-unusable")]
-    hands.workspace.select(None)
+    hands.context.select(None)
     findings._list.itemClicked.emit(findings._list.item(0))
-    assert hands.workspace.selection == Item(ItemKind.HOME)
+    assert hands.context.selection == Item(ItemKind.HOME)
     hands.tab.detail.properties.page().point_box().boxes()[1].box().setValue(-45.0)
     hands.idle()
-    assert hands.workspace.session.undo_label == "Move home"
+    assert hands.context.session.undo_label == "Move home"
     assert findings.findings() == ()
 
 
@@ -196,7 +196,7 @@ def test_escape_and_a_second_press_put_a_tool_away_and_leave_the_site(opened):
     from groundstation.gui.site.site_tools import SiteTool
 
     hands = opened("roof")
-    tools, before = hands.tab.detail.tools, hands.workspace.document
+    tools, before = hands.tab.detail.tools, hands.context.document
     tools.button(SiteTool.AIRSPACE).click()
     QTest.keyClick(hands.scene.canvas(), Qt.Key.Key_Escape)
     assert tools.active() is None
@@ -207,15 +207,15 @@ def test_escape_and_a_second_press_put_a_tool_away_and_leave_the_site(opened):
     tools.button(SiteTool.HOME).click()
     hands.window.show_tab("plan")
     assert hands.scene.tool() is None, "another tab gets the view without a tool"
-    assert hands.workspace.document is before
+    assert hands.context.document is before
 
 
 def test_values_that_cannot_be_are_told_at_the_box_and_not_taken(opened):
     hands = opened("office")
-    hands.workspace.select(Item(ItemKind.AIRSPACE))
-    page, before = hands.tab.detail.properties.page(), hands.workspace.document
+    hands.context.select(Item(ItemKind.AIRSPACE))
+    page, before = hands.tab.detail.properties.page(), hands.context.document
     page.extent_box().boxes()[0][2].box().setValue(99.0)
-    assert hands.workspace.document is before
+    assert hands.context.document is before
     assert "up: expected the first value below the second, got 99 m and 75 m" in page._error.text()
     assert page.extent_box().value()[0][2] == 99.0, "what was typed stays to be put right"
     page.extent_box().boxes()[1][2].box().setValue(120.0)
@@ -225,16 +225,16 @@ def test_values_that_cannot_be_are_told_at_the_box_and_not_taken(opened):
 
 def test_names_are_changed_in_one_step_and_taken_ones_refused(opened):
     hands = opened("court")
-    hands.workspace.select(Item(ItemKind.FACADE, "A"))
+    hands.context.select(Item(ItemKind.FACADE, "A"))
     box = hands.tab.detail.properties.page().name_box()
     box.setText("B")
     box.editingFinished.emit()
     assert "facade 'B' already" in hands.tab.detail.properties.page()._error.text()
     box.setText("West")
     box.editingFinished.emit()
-    assert hands.workspace.selection == Item(ItemKind.FACADE, "West")
+    assert hands.context.selection == Item(ItemKind.FACADE, "West")
     assert hands.site.facades[0].panels[0].id == "West-0000"
-    assert hands.workspace.session.undo_label == "Rename A"
+    assert hands.context.session.undo_label == "Rename A"
 
 
 def test_last_facade_can_be_removed_from_a_building_only(opened):
@@ -245,7 +245,7 @@ def test_last_facade_can_be_removed_from_a_building_only(opened):
     hands = opened("roof")
     hands.tab.left.tree.removeAsked.emit(Item(ItemKind.FACADE, "A"))
     assert hands.site.facades == ()
-    hands.workspace.session.undo()
+    hands.context.session.undo()
     assert hands.site.n_panels == 32
 
 
@@ -282,8 +282,8 @@ def test_panel_grid_is_picked_checked_shown_and_added(opened):
     form._accept.click()
     hands.idle()
     assert [(f.id, len(f.panels)) for f in hands.site.facades] == [("A", 280), ("B", 48)]
-    assert hands.workspace.selection == Item(ItemKind.FACADE, "B")
-    assert hands.workspace.session.undo_label == "Add panel grid B"
+    assert hands.context.selection == Item(ItemKind.FACADE, "B")
+    assert hands.context.session.undo_label == "Add panel grid B"
     assert detail.properties.isVisible()
 
 
@@ -297,7 +297,7 @@ def test_panel_grid_that_is_given_up_leaves_the_view_as_it_was(opened):
     form._cancel.click()
     assert not form.isVisible()
     assert len(hands.scene._site.frames) == 280
-    assert hands.workspace.session.undo_label == ""
+    assert hands.context.session.undo_label == ""
 
 
 def test_delete_removes_what_was_picked_in_the_view(opened):
@@ -308,22 +308,22 @@ def test_delete_removes_what_was_picked_in_the_view(opened):
     remove.trigger()
     hands.idle()
     assert hands.site.obstacles == ()
-    assert hands.workspace.selection is None
+    assert hands.context.selection is None
     remove.trigger()
-    assert hands.workspace.session.undo_label == "Remove opposite"
+    assert hands.context.session.undo_label == "Remove opposite"
     hands.window.show_tab("plan")
     assert remove not in hands.window.actions(), "other tabs have their own Delete"
 
 
 def test_bad_site_files_are_told_and_leave_the_site(opened, tmp_path):
     hands = opened("roof")
-    before = hands.workspace.document
+    before = hands.context.document
     broken = tmp_path / "broken.json"
     broken.write_text("{}")
     hands.tab.left.opener.open_site(broken)
     hands.idle()
     assert "missing required field" in hands.messages[-1].text
-    assert hands.workspace.document is before
+    assert hands.context.document is before
     hands.tab.left.opener.open_site(write_scene("library", tmp_path))
     hands.idle()
     assert hands.site.name == "library"
@@ -334,15 +334,15 @@ def test_plans_of_the_site_before_are_put_away_and_undo_brings_them_back(opened)
     from planning.request import PlanRequest
 
     hands = opened("single-panel")
-    site = hands.workspace.document.site
+    site = hands.context.document.site
     plan = plan_flight(site, PlanRequest(n_views=2, greedy=QUICK)).plan
-    hands.workspace.change("Plan", Document(site=site).with_plan(PlanEntry("plan-1", "Plan 1", plan)))
+    hands.context.change("Plan", Document(site=site).with_plan(PlanEntry("plan-1", "Plan 1", plan)))
     hands.tab.left.opener.open_bundled("roof")
     hands.idle()
-    assert hands.workspace.document.plans == ()
+    assert hands.context.document.plans == ()
     assert "Undo brings them back" in hands.messages[-1].text
     hands.undo()
-    assert len(hands.workspace.document.plans) == 1
+    assert len(hands.context.document.plans) == 1
 
 
 def test_mesh_obstacle_comes_from_a_file_and_bad_files_are_told(opened, tmp_path):
@@ -352,7 +352,7 @@ def test_mesh_obstacle_comes_from_a_file_and_bad_files_are_told(opened, tmp_path
     hands.tab.detail.tools.add_mesh(tmp_path / "crane.stl")
     hands.idle()
     assert [(o.id, o.mesh) for o in hands.site.obstacles] == [("crane", "crane.ply")]
-    assert hands.workspace.selection == Item(ItemKind.OBSTACLE, "crane")
+    assert hands.context.selection == Item(ItemKind.OBSTACLE, "crane")
     hands.tab.detail.tools.add_mesh(tmp_path / "none.stl")
     hands.idle()
     assert "no such mesh file" in hands.messages[-1].text
@@ -361,11 +361,11 @@ def test_mesh_obstacle_comes_from_a_file_and_bad_files_are_told(opened, tmp_path
 
 def test_site_is_checked_anew_for_the_distance_of_the_next_plan(opened):
     hands = opened("office")
-    document = hands.workspace.document
+    document = hands.context.document
     assert hands.tab.detail.findings.findings() == ()
     hands.window.show_tab("plan")
     request = replace(document.request, constraints=replace(document.request.constraints, min_distance_m=60.0))
-    hands.workspace.amend(replace(document, request=request))
+    hands.context.amend(replace(document, request=request))
     hands.window.show_tab("site")
     hands.idle()
     assert "60 m are required" in hands.tab.detail.findings.findings()[0].message
@@ -374,12 +374,12 @@ def test_site_is_checked_anew_for_the_distance_of_the_next_plan(opened):
 def test_check_that_was_cancelled_does_not_stop_later_ones(opened):
     hands = opened("roof")
     editor = hands.tab.detail.editor
-    hands.workspace.select(Item(ItemKind.HOME))
+    hands.context.select(Item(ItemKind.HOME))
     box = hands.tab.detail.properties.page().point_box().boxes()[1].box()
     box.setValue(-31.0)
     editor._check()
-    for job in hands.workspace.jobs():
-        hands.workspace.cancel(job)
+    for job in hands.context.jobs():
+        hands.context.cancel(job)
     hands.idle()
     box.setValue(0.0)
     hands.idle()
@@ -388,7 +388,7 @@ def test_check_that_was_cancelled_does_not_stop_later_ones(opened):
 
 def test_edits_of_a_large_site_do_not_hold_the_window_up(opened):
     hands = opened("tower")
-    hands.workspace.select(Item(ItemKind.HOME))
+    hands.context.select(Item(ItemKind.HOME))
     box = hands.tab.detail.properties.page().point_box().boxes()[1].box()
     seconds = []
     for north in (-50.5, -51.0, -51.5, -52.0):

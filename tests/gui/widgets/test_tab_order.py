@@ -90,8 +90,8 @@ def window(application, worker, tmp_path_factory):
         controller.show()
         window = controller.window
         window.setGeometry(0, 0, 1280, 720)
-        controller.workspace.session.open(Document(SCENES["single-panel"]()), None)
-        turn_until(application, lambda: window.stage.scene() is not None)
+        controller.context.session.open(Document(SCENES["single-panel"]()), None)
+        turn_until(application, lambda: window.shared_view.scene() is not None)
         yield window
         close_controller(controller)
 
@@ -116,7 +116,7 @@ def test_tab_reaches_every_region_once_around_and_stops_at_no_frame(application,
     assert window.focusWidget() is first, "Tab comes around"
     assert len(set(map(id, stops))) == len(stops), "no widget holds Tab back"
     assert not any(isinstance(stop, QScrollArea) for stop in stops)
-    regions = [made.left, window.stage, made.right, made.bottom, window.messages]
+    regions = [made.left, window.shared_view, made.right, made.bottom, window.messages]
     reached = [
         next((number for number, region in enumerate(regions) if region and region.isAncestorOf(stop)), None)
         for stop in stops
@@ -139,7 +139,7 @@ def test_the_view_is_framed_while_keys_go_to_it_and_keys_brought_them(applicatio
     from PySide6.QtCore import QEvent, Qt
     from PySide6.QtGui import QFocusEvent
 
-    scene = window.stage.scene()
+    scene = window.shared_view.scene()
     scene._overlay.set_frame(not is_shown)
     event = QFocusEvent(getattr(QEvent.Type, kind), getattr(Qt.FocusReason, reason))
     application.sendEvent(scene.canvas(), event)

@@ -36,7 +36,7 @@ def controller(application, worker, tmp_path, monkeypatch):
     controller = ProjectController(application, worker=worker)
     controller.show()
     controller.window.setGeometry(0, 0, 1280, 720)
-    turn_until(application, lambda: controller.window.stage.scene() is not None)
+    turn_until(application, lambda: controller.window.shared_view.scene() is not None)
     yield controller
     close_controller(controller)
 
@@ -58,7 +58,7 @@ def planned(application, controller, request):
 
 def test_window_opens_a_site_plans_it_and_shows_both(application, controller):
     opened(application, controller, "roof")
-    scene = controller.window.stage.scene()
+    scene = controller.window.shared_view.scene()
     controller.window.show_tab("plan")
     turn_until_idle(application, controller)
     empty = scene.screenshot()
@@ -92,11 +92,11 @@ def test_cancel_throws_a_plan_away_and_enough_keeps_the_best_so_far(application,
     page = controller.window.tab("plan")
     page.controller.set_request(PlanRequest(n_views=60, time_budget_s=60.0))
     page.controller.plan()
-    turn_until(application, lambda: controller.workspace.jobs()[0].state.name == "RUNNING")
+    turn_until(application, lambda: controller.context.jobs()[0].state.name == "RUNNING")
     controller.window.job_bar.cancel_running()
     turn_until_idle(application, controller)
     assert "Plan: cancelled" in controller.window.messages.texts()
-    assert controller.workspace.document.plans == ()
+    assert controller.context.document.plans == ()
     assert not page.controller.is_planning
     page.controller.plan()
     turn_until(application, lambda: "sections" in page.chart.text())
@@ -105,40 +105,40 @@ def test_cancel_throws_a_plan_away_and_enough_keeps_the_best_so_far(application,
     page.controller.stop_here()
     turn_until_idle(application, controller)
     assert time.perf_counter() - started < 20.0
-    assert len(controller.workspace.document.current.plan.viewpoints) >= 1
+    assert len(controller.context.document.current.plan.viewpoints) >= 1
 
 
 def test_editing_by_hand_shows_at_once_and_can_be_undone(application, controller):
     opened(application, controller, "roof")
     page = planned(application, controller, QUICK)
-    before = controller.workspace.document.current.plan
+    before = controller.context.document.current.plan
     viewpoint = before.viewpoints[3]
-    controller.workspace.select(Item(ItemKind.VIEWPOINT, viewpoint.id))
+    controller.context.select(Item(ItemKind.VIEWPOINT, viewpoint.id))
     page.controller.set_viewpoint(replace(viewpoint, position_enu_m=(0.0, 0.0, 14.0)))
     assert page.verdict().startswith("NOT ready to fly"), "without a turn of the event loop"
-    assert viewpoint.id in {f.place for f in page.controller.in_hand.revision.findings if f.severity == "error"}
+    assert viewpoint.id in {f.place for f in page.controller.active.revision.findings if f.severity == "error"}
     said = controller.window.messages.texts()
     assert f"Move {viewpoint.id}: sections gained" in said
     assert "Error: smallest distance at a viewpoint" in said
-    controller.workspace.session.undo()
-    assert controller.workspace.document.current.plan is before
+    controller.context.session.undo()
+    assert controller.context.document.current.plan is before
     assert page.verdict().startswith("Ready to fly")
     page.viewpoint.toggle_lock()
-    locked = controller.workspace.document.current.viewpoint(viewpoint.id)
+    locked = controller.context.document.current.viewpoint(viewpoint.id)
     assert locked.locked
     page.viewpoint.delete_viewpoint()
     assert "switch off “Keep when planning again”" in controller.window.messages.texts()
     page.viewpoint.add_viewpoint()
-    assert len(controller.workspace.document.current.plan.viewpoints) == 9
+    assert len(controller.context.document.current.plan.viewpoints) == 9
     again = planned(application, controller, replace(QUICK, n_views=6))
-    assert locked in again.controller.in_hand.plan.viewpoints
+    assert locked in again.controller.active.plan.viewpoints
 
 
 def test_plans_are_compared_side_by_side(application, controller):
     opened(application, controller, "roof")
     planned(application, controller, QUICK)
     page = planned(application, controller, PlanRequest(method="noto", share=0.9, time_budget_s=1.0))
-    page.lists.compare(tuple(entry.id for entry in controller.workspace.document.plans))
+    page.lists.compare(tuple(entry.id for entry in controller.context.document.plans))
     turn_until_idle(application, controller)
     window = page.lists.compare_window
     table = window.table()
@@ -157,7 +157,7 @@ def test_a_row_that_is_clicked_to_compare_does_not_become_the_plan_that_is_flown
     opened(application, controller, "roof")
     planned(application, controller, QUICK)
     page = planned(application, controller, replace(QUICK, n_views=6))
-    first, second = (entry.id for entry in controller.workspace.document.plans)
+    first, second = (entry.id for entry in controller.context.document.plans)
     plans = page.lists.plans
     page.lists.setCurrentWidget(plans)
     turn_until_idle(application, controller)
@@ -167,19 +167,19 @@ def test_a_row_that_is_clicked_to_compare_does_not_become_the_plan_that_is_flown
         place = table.visualRect(table.model().index(row, 1)).center()
         click(table.viewport(), Qt.MouseButton.LeftButton, modifier, place)
 
-    assert controller.workspace.document.current_plan_id == second
+    assert controller.context.document.current_plan_id == second
     click(0)
     assert plans.selected() == (first,)
-    assert controller.workspace.document.current_plan_id == second, "a click selects"
+    assert controller.context.document.current_plan_id == second, "a click selects"
     click(1, Qt.KeyboardModifier.ControlModifier)
     assert plans.selected() == (first, second)
-    assert controller.workspace.document.current_plan_id == second
+    assert controller.context.document.current_plan_id == second
     click(0)
     press_in(controller.window, "Make current")
-    assert controller.workspace.document.current_plan_id == first
+    assert controller.context.document.current_plan_id == first
     click(1)
     click(1, click=QTest.mouseDClick)
-    assert controller.workspace.document.current_plan_id == second
+    assert controller.context.document.current_plan_id == second
 
 
 def test_theme_units_and_language_change_at_once_and_are_kept(application, controller):
@@ -195,14 +195,14 @@ def test_theme_units_and_language_change_at_once_and_are_kept(application, contr
     assert controller.window.tab("plan").form.box("constraints.min_distance_m").box().text() == "32.8 ft"
     turn_until_idle(application, controller)
     controller.choose(language=Language.GERMAN)
-    turn_until(application, lambda: controller.window.stage.scene() is not None)
+    turn_until(application, lambda: controller.window.shared_view.scene() is not None)
     assert controller.window.shown_tab() == "plan"
     titles = [spec.shown_title() for spec in TABS]
     assert "Planung" in titles
     assert "roof" in controller.window.messages.texts(), "what was said before is still there"
     turn_until_idle(application, controller)
     controller.choose(language=Language.ENGLISH, theme=Theme.LIGHT, units=UnitSystem.METRIC)
-    turn_until(application, lambda: controller.window.stage.scene() is not None)
+    turn_until(application, lambda: controller.window.shared_view.scene() is not None)
     kept = read_settings(settings_path())
     assert (kept.theme, kept.units, kept.language) == (Theme.LIGHT, UnitSystem.METRIC, Language.ENGLISH)
 
@@ -243,7 +243,7 @@ def test_every_key_of_a_menu_tab_or_shortcut_is_in_the_list_and_none_twice(appli
     from groundstation.gui.window.menus import ShortcutsDialog, sections, view_keys
 
     for page in SharedViewPage:
-        controller.window.stage.show_page(page)
+        controller.window.shared_view.show_page(page)
     told = dict(sections(controller.window))
     dialog = ShortcutsDialog(controller.window)
     of_views = dict(view_keys())
@@ -329,9 +329,9 @@ def test_the_language_waits_while_something_runs(application, controller):
     assert controller.window is window
     assert "started next" in controller.window.messages.texts()
     turn_until_idle(application, controller)
-    assert len(controller.workspace.document.plans) == 1
+    assert len(controller.context.document.plans) == 1
     controller.choose(language=Language.ENGLISH)
-    turn_until(application, lambda: controller.window.stage.scene() is not None)
+    turn_until(application, lambda: controller.window.shared_view.scene() is not None)
 
 
 def test_the_language_can_be_chosen_before_the_first_tab_is_there(application, worker, tmp_path, monkeypatch):
@@ -344,7 +344,7 @@ def test_the_language_can_be_chosen_before_the_first_tab_is_there(application, w
     assert first.shown_tab() == ""
     controller.choose(language=Language.GERMAN)
     controller.choose(language=Language.ENGLISH)
-    turn_until(application, lambda: controller.window.stage.scene() is not None)
+    turn_until(application, lambda: controller.window.shared_view.scene() is not None)
     assert controller.window is not first
     assert controller.window.shown_tab() == "site"
     close_controller(controller)

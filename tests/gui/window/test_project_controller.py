@@ -45,7 +45,7 @@ def make_controller(application, worker, tmp_path, monkeypatch):
     def make():
         controller = ProjectController(application, worker=worker)
         controller.show()
-        turn_until(application, lambda: controller.window.stage.scene() is not None)
+        turn_until(application, lambda: controller.window.shared_view.scene() is not None)
         controllers.append(controller)
         return controller
 
@@ -73,7 +73,7 @@ def test_a_project_is_saved_and_opened_again(application, make_controller, entry
     controller = make_controller()
     assert "Begin with a site" in controller.window.tab("site").left.start.findChild(QLabel).text()
     with_site(application, controller)
-    controller.workspace.change("Plan", controller.workspace.document.with_plan(entry))
+    controller.context.change("Plan", controller.context.document.with_plan(entry))
     assert controller.window.isWindowModified()
     with clicked(choose(tmp_path / "my roof")):
         controller.save()
@@ -81,15 +81,13 @@ def test_a_project_is_saved_and_opened_again(application, make_controller, entry
     assert not controller.window.isWindowModified()
     assert controller.window.windowTitle() == "my roof[*] - Reflight"
     assert "Saved in" in controller.window.messages.texts()
-    controller.workspace.session.undo()
+    controller.context.session.undo()
     assert controller.window.isWindowModified()
     with clicked(choose(tmp_path / "my roof"), "Discard"):
         trigger(controller.window, "Open project ...")
     turn_until_idle(application, controller)
-    assert [found.title for found in controller.workspace.document.plans] == ["First"], (
-        controller.window.messages.texts()
-    )
-    assert controller.workspace.document.current.plan == entry.plan
+    assert [found.title for found in controller.context.document.plans] == ["First"], controller.window.messages.texts()
+    assert controller.context.document.current.plan == entry.plan
     assert controller.settings().recent_projects == (str(tmp_path / "my roof"),)
 
 
@@ -100,16 +98,16 @@ def test_leaving_unsaved_work_asks_first(application, make_controller, tmp_path)
         with clicked(no) as asked:
             trigger(controller.window, "New project")
         assert "This project has changes that are not saved" in asked[0]
-        assert controller.workspace.document.site is not None
+        assert controller.context.document.site is not None
         with clicked(no):
             assert not controller.window.close()
     with clicked("Save", escape):
         trigger(controller.window, "New project")
-    assert controller.workspace.document.site is not None, "no folder was named: nothing is saved, nothing is lost"
+    assert controller.context.document.site is not None, "no folder was named: nothing is saved, nothing is lost"
     with clicked("Save", choose(tmp_path / "kept")):
         trigger(controller.window, "New project")
     turn_until_idle(application, controller)
-    assert controller.workspace.document.site is None
+    assert controller.context.document.site is None
     assert open_project(tmp_path / "kept").document.site.site.name == "roof"
 
 
@@ -124,7 +122,7 @@ def test_a_damaged_project_is_refused_and_what_is_open_stays(application, make_c
     turn_until_idle(application, controller)
     assert "project.json" in controller.window.messages.texts()
     assert "Error" in controller.window.messages.texts()
-    assert controller.workspace.document.site.site.name == "roof"
+    assert controller.context.document.site.site.name == "roof"
     controller.open_recent(str(tmp_path / "gone"))
     assert "not there any more" in controller.window.messages.texts()
 
@@ -134,7 +132,7 @@ def test_a_full_disk_leaves_the_work_in_the_window(application, make_controller,
     with_site(application, controller)
     controller.save_in(tmp_path / "project")
     turn_until_idle(application, controller)
-    controller.workspace.change("Plan", controller.workspace.document.with_plan(entry))
+    controller.context.change("Plan", controller.context.document.with_plan(entry))
 
     def full(_path, _content):
         raise InputError("plan-1.plan.json: cannot be written (No space left on device)")
@@ -180,8 +178,8 @@ def test_a_read_only_project_opens_and_is_saved_elsewhere(application, make_cont
         controller.open_folder(folder)
         turn_until_idle(application, controller)
         assert "cannot be locked for editing" in controller.window.messages.texts()
-        assert controller.workspace.document.site.site.name == "roof"
-        controller.workspace.change("Plan", controller.workspace.document.with_plan(entry))
+        assert controller.context.document.site.site.name == "roof"
+        controller.context.change("Plan", controller.context.document.with_plan(entry))
         controller.autosave_now()
         with clicked(choose(tmp_path / "copy")):
             controller.save()
@@ -196,7 +194,7 @@ def test_unsaved_work_is_offered_after_a_crash(application, make_controller, ent
     folder = tmp_path / "project"
     controller.save_in(folder)
     turn_until_idle(application, controller)
-    controller.workspace.change("Plan", controller.workspace.document.with_plan(entry))
+    controller.context.change("Plan", controller.context.document.with_plan(entry))
     controller.autosave_now()
     turn_until(application, lambda: (folder / ".autosave" / "autosave.json").exists())
     # What a crash leaves: the folder as it is now, and no process that has it open.
@@ -205,7 +203,7 @@ def test_unsaved_work_is_offered_after_a_crash(application, make_controller, ent
         controller.open_folder(tmp_path / "crashed")
     turn_until_idle(application, controller)
     assert "plan 'First' is new" in asked[-1]
-    assert [found.title for found in controller.workspace.document.plans] == ["First"]
+    assert [found.title for found in controller.context.document.plans] == ["First"]
     assert controller.window.isWindowModified(), "it is still not saved"
     controller.save()
     turn_until_idle(application, controller)
@@ -219,7 +217,7 @@ def crashed(application, make_controller, tmp_path):
     with_site(application, controller)
     controller.save_in(tmp_path / "project")
     turn_until_idle(application, controller)
-    controller.workspace.change("Rename", replace(controller.workspace.document, request=PlanRequest(n_views=9)))
+    controller.context.change("Rename", replace(controller.context.document, request=PlanRequest(n_views=9)))
     controller.autosave_now()
     turn_until(application, lambda: (tmp_path / "project" / ".autosave" / "autosave.json").exists())
     shutil.copytree(tmp_path / "project", tmp_path / "crashed", ignore=shutil.ignore_patterns(".lock*"))
@@ -233,7 +231,7 @@ def test_unsaved_work_that_is_not_decided_about_is_offered_again(application, ma
         with clicked(later):
             controller.open_folder(folder)
         turn_until_idle(application, controller)
-        assert controller.workspace.document.request.n_views is None
+        assert controller.context.document.request.n_views is None
         assert (folder / ".autosave").exists()
     with clicked("Delete the copy"):
         controller.open_folder(folder)
@@ -241,7 +239,7 @@ def test_unsaved_work_that_is_not_decided_about_is_offered_again(application, ma
     assert not (folder / ".autosave").exists()
     controller.open_folder(folder)
     turn_until_idle(application, controller)
-    assert controller.workspace.document.request.n_views is None
+    assert controller.context.document.request.n_views is None
 
 
 def test_save_as_proposes_a_name_that_is_free(application, make_controller, tmp_path, monkeypatch):
@@ -308,7 +306,7 @@ def test_work_without_a_project_survives_a_crash_too(application, make_controlle
     first = make_controller()
     with_site(application, first)
     first.autosave_now()
-    place = first.keeper.place()
+    place = first.project_session.place()
     turn_until(application, lambda: (place / ".autosave" / "autosave.json").exists())
     shutil.copytree(place, place.with_name("crashed"), ignore=shutil.ignore_patterns(".lock*"))
     make_controller.end(first)
@@ -316,7 +314,7 @@ def test_work_without_a_project_survives_a_crash_too(application, make_controlle
     with clicked("Restore") as asked:
         second = make_controller()
     turn_until_idle(application, second)
-    assert second.workspace.document.site.site.name == "roof"
+    assert second.context.document.site.site.name == "roof"
     assert "Nothing is lost" in asked[0]
     assert "it was never saved as a project" in asked[0]
     assert "What was saved" not in asked[0], "nothing was"
@@ -334,7 +332,7 @@ def test_a_second_window_on_one_project_is_told(application, make_controller, tm
     second.open_folder(tmp_path / "project")
     turn_until_idle(application, second)
     assert "open in another Reflight" in second.window.messages.texts()
-    assert second.workspace.document.site is not None
+    assert second.context.document.site is not None
 
 
 def test_closing_while_a_plan_runs_cancels_it_and_loses_nothing(application, make_controller, tmp_path):
@@ -345,8 +343,8 @@ def test_closing_while_a_plan_runs_cancels_it_and_loses_nothing(application, mak
     controller.window.show_tab("plan")
     controller.window.tab("plan").controller.set_request(PlanRequest(n_views=25, time_budget_s=60.0))
     controller.window.tab("plan").controller.plan()
-    turn_until(application, lambda: any(job.state is JobState.RUNNING for job in controller.workspace.jobs()))
-    jobs = controller.workspace.jobs()
+    turn_until(application, lambda: any(job.state is JobState.RUNNING for job in controller.context.jobs()))
+    jobs = controller.context.jobs()
     assert controller.window.close()
     assert all(job.wait(120.0) for job in jobs)
     assert open_project(tmp_path / "project").document.site.site.name == "roof"
@@ -391,12 +389,12 @@ def test_work_that_was_thrown_away_is_not_offered_again(application, make_contro
     folder = tmp_path / "project"
     controller.save_in(folder)
     turn_until_idle(application, controller)
-    controller.workspace.change("Plan", controller.workspace.document.with_plan(entry))
+    controller.context.change("Plan", controller.context.document.with_plan(entry))
     controller.autosave_now()
     turn_until(application, lambda: (folder / ".autosave" / "autosave.json").exists())
     with clicked("Discard") as asked:
         controller.open_folder(folder)
     turn_until_idle(application, controller)
     assert asked[-1].startswith("Unsaved changes")
-    assert controller.workspace.document.plans == ()
+    assert controller.context.document.plans == ()
     assert not controller.window.isWindowModified()
