@@ -27,7 +27,7 @@ def page(application, controller, monkeypatch):
     from groundstation.gui.model.model_page import ModelPage
 
     monkeypatch.setattr(model_controller, "ModelProcess", lambda _listener: Told())
-    page = ModelPage(controller.context, controller.window.stage)
+    page = ModelPage(controller.context, controller.window.shared_view)
     page.told = page.controller._process
     page.messages = []
     controller.context.messageShown.connect(page.messages.append)

@@ -50,7 +50,7 @@ def page(application, controller, monkeypatch):
     from groundstation.gui.reconstruct.reconstruct_page import ReconstructPage
 
     monkeypatch.setattr(reconstruct_controller, "ModelProcess", lambda _listener: Told())
-    page = ReconstructPage(controller.context, controller.window.stage)
+    page = ReconstructPage(controller.context, controller.window.shared_view)
     page.told = page.controller._process
     page.messages = []
     controller.context.messageShown.connect(page.messages.append)

@@ -416,7 +416,7 @@ def test_as_a_user_trains_looks_around_and_stops(application, controller, data, 
     import time
 
     controller.show()
-    turn_until(application, lambda: controller.window.stage.scene() is not None)
+    turn_until(application, lambda: controller.window.shared_view.scene() is not None)
     controller.window.show_tab("reconstruct")
     page = controller.window.tab("reconstruct")
     page.controller.read(data)
