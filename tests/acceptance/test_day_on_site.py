@@ -61,7 +61,7 @@ def test_from_a_real_building_to_a_report_of_the_flight(pilot, building):
 
 def _import_the_building(pilot, path):
     with clicked(choose(path), stay):
-        pilot.press("Import a building model")
+        pilot.press("Import building model")
     pilot.idle()
     pilot.see("import")
     pilot.press("Import")

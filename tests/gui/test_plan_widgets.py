@@ -133,7 +133,7 @@ def test_effects_say_state_reason_size_and_cost_and_take_a_wish(application):
     for part in ("occlusion", "is on", "something stands there", "7.5 %", "tolerance 0.5", "1.2 s"):
         assert part in text
     assert not heard
-    panel.card("occlusion").wish.setCurrentIndex(2)
+    panel.card("occlusion").setting.setCurrentIndex(2)
     assert heard == [("occlusion", "off")]
     assert panel.card("x").wish.isHidden()
     panel.set_effects(())

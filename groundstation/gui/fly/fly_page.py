@@ -298,7 +298,6 @@ class FlyPage(QObject):
         self.band.put_into(shared_view.window())
         self._connect()
         self.connection.setValue(self.controller.choice)
-        self.simulation.setValue(self.controller.simulation.conditions, self.controller.simulation.effect_settings)
         self.settings.setValue(self.controller.settings)
         self._show_units(context.units)
         self._show_document()
@@ -481,8 +480,10 @@ class FlyPage(QObject):
         return active if is_same_place(active.sortie.case.site_model.site, shown.site) else None
 
     def _show_document(self) -> None:
-        """Offer the sorties of the current plan."""
+        """Offer the sorties of the current plan, and the wind that it expects."""
         plan = self.controller.plan
+        self.controller.simulation.expect_wind_of(plan)
+        self.simulation.setValue(self.controller.simulation.conditions, self.controller.simulation.effect_settings)
         texts = [
             self.tr("Sortie {0}: photos: {1}, {2}").format(
                 n, len(sortie.viewpoint_ids), minutes_text(sortie.duration_s)

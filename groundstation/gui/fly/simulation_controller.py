@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from PySide6.QtCore import QObject, QSignalBlocker, Signal
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
@@ -89,6 +91,9 @@ class SimulationPage(QWidget):
 class SimulationController(QObject):
     """Conditions and settings of effects of the next simulation.
 
+    Its wind begins as the one that the plan expects, as that of the command `simulate` does, and follows another plan
+    until the pilot chooses one.
+
     Signals
     -------
     effectsChanged(tuple of EffectChoice)
@@ -102,10 +107,12 @@ class SimulationController(QObject):
         self._context = context
         self._looking_id = 0
         self.conditions: Conditions = CALM
+        self._expected_wind_m_s = CALM.wind_m_s
         self.effect_settings: dict[str, EffectSetting] = {}
 
     def connection(self, sortie: LiveSortie, choice: ConnectionChoice, charge: float) -> Simulation:
         """The simulation of a sortie, as it was chosen; `charge` of the battery that it begins with, 1 full."""
+        self.expect_wind_of(sortie.case.plan)
         return Simulation(
             sortie.case.plan,
             sortie.case.site_model,
@@ -122,6 +129,14 @@ class SimulationController(QObject):
         """Simulate this sortie in other conditions the next time."""
         self.conditions, self.effect_settings = conditions, effect_settings
         self.look(plan, number)
+
+    def expect_wind_of(self, plan: Plan | None) -> None:
+        """Begin with the wind of another plan, unless the pilot chose one."""
+        if plan is None:
+            return
+        if self.conditions.wind_m_s == self._expected_wind_m_s:
+            self.conditions = replace(self.conditions, wind_m_s=plan.rules.wind_m_s)
+        self._expected_wind_m_s = plan.rules.wind_m_s
 
     def look(self, plan: Plan | None, number: int) -> None:
         """Find out what the simulation of a sortie, counted from 1, takes into account."""

@@ -263,7 +263,7 @@ class RecordDialog(QDialog):
         text = box.text().strip()
         if name in MAY_BE_NONE and not text:
             return None
-        return float(_number(text)) if name in NUMBERS else text
+        return _number(text) if name in NUMBERS else text
 
 
 def _typed(text: str, kind: str) -> Any:

@@ -544,7 +544,7 @@ class SiteOpener(QObject):
         """Ask for a building model and look at it."""
         kinds = " ".join(f"*{suffix}" for suffix in SUFFIXES)
         kinds = self.tr("Building models ({0});;All files (*)").format(kinds)
-        path = choose_file(self._window, self.tr("Import a building model"), kinds)
+        path = choose_file(self._window, self.tr("Import building model"), kinds)
         if path is not None:
             self.import_site(path)
 

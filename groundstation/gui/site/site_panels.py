@@ -220,7 +220,7 @@ class StartPage(QWidget):
         heading.setWordWrap(True)
         layout.addWidget(heading)
         layout.addWidget(muted(self.tr("A site holds the glass panels, the building, and where you may fly.")))
-        self.import_button = _large(self.tr("Import a building model"), primary=True)
+        self.import_button = _large(self.tr("Import building model"), primary=True)
         self.open_button = _large(self.tr("Open a site file"))
         self.bundled_button = _large(self.tr("Try a bundled site"))
         self.import_button.clicked.connect(opener.choose_import)

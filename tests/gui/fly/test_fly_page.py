@@ -321,6 +321,23 @@ def test_without_a_plan_it_says_what_to_do_first(application, controller, page):
     assert not page.connection.button.isEnabled()
 
 
+def test_the_simulation_starts_with_the_wind_that_the_plan_expects_until_another_is_chosen(controller, page):
+    """As the command `simulate` does."""
+    model, plan = planned()
+    box = page.simulation.rows["wind_m_s"].widget
+
+    def open_with(wind_m_s):
+        entry = PlanEntry("plan-1", "First", replace(plan, rules=replace(plan.rules, wind_m_s=wind_m_s)))
+        controller.context.session.open(Document(model, (entry,), "plan-1"), None)
+        return box.value()
+
+    assert open_with(6.0) == open_with(6.0) == 6.0
+    assert page.controller.simulation.conditions.wind_m_s == 6.0
+    assert open_with(3.0) == 3.0
+    box.box().setValue(8.0)
+    assert open_with(5.0) == page.controller.simulation.conditions.wind_m_s == 8.0
+
+
 def test_effects_of_the_simulation_are_shown_with_reason_and_overruled(application, controller, page):
     page.right.setCurrentIndex(1)
     turn_until(application, lambda: "wind" in page.simulation.effects._cards)
@@ -328,9 +345,9 @@ def test_effects_of_the_simulation_are_shown_with_reason_and_overruled(applicati
     page.simulation.rows["wind_m_s"].widget.box().setValue(8.0)
     turn_until(application, lambda: "is on" in page.simulation.effects.card("wind").text())
     card = page.simulation.effects.card("wind")
-    card.wish.setCurrentIndex(card.wish.findData("off"))
+    card.setting.setCurrentIndex(card.setting.findData("off"))
     turn_until(application, lambda: "is off" in page.simulation.effects.card("wind").text())
-    assert page.controller.simulation.wishes == {"wind": "off"}
+    assert page.controller.simulation.effect_settings == {"wind": "off"}
 
 
 def test_what_went_wrong_is_said_as_an_error(application, controller, page):

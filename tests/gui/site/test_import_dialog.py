@@ -3,15 +3,20 @@
 import numpy as np
 import pytest
 import trimesh
-from PySide6.QtCore import Qt
+from PySide6.QtCore import Qt, QTranslator
 from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QLineEdit
 
+from groundstation.gui.application.translate import FOLDER
 from groundstation.services.jobs.runner import JobRunner
 from groundstation.services.project.document import Document
 from groundstation.services.project.session import Session
 from planning.geo.frames import Origin
 from planning.geo.mesh import box_mesh, join
 from tests.gui.driving import turn_until
+
+FRAME_PX = 8
+"""Between a box and its words, on either side."""
 
 
 class Dialog:
@@ -247,3 +252,22 @@ def test_a_ground_that_is_not_clear_is_asked_for_in_the_form(opened, tmp_path):
     hands.dialog._accept.click()
     (model,) = hands.taken
     assert model.building.vertices_enu_m[:, 2].min() == pytest.approx(model.site.airspace.ground_z_m)
+
+
+def test_words_in_empty_boxes_are_whole_in_german(application, tmp_path):
+    path = tmp_path / "tower.obj"
+    trimesh.creation.box((20.0, 10.0, 30.0)).export(path)
+    translator = QTranslator()
+    assert translator.load(str(FOLDER / "reflight_de.qm"))
+    application.installTranslator(translator)
+    try:
+        hands = Dialog(application, path)
+        edits = [edit for edit in hands.dialog.findChildren(QLineEdit) if edit.isVisible() and edit.placeholderText()]
+        room_px = {edit.placeholderText(): edit.width() - 2 * FRAME_PX for edit in edits}
+        cut = {text: px for text, px in room_px.items() if hands.dialog.fontMetrics().horizontalAdvance(text) > px}
+        hands.idle()
+        hands.close()
+    finally:
+        application.removeTranslator(translator)
+    assert len(room_px) > 1
+    assert not cut
