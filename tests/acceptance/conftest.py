@@ -26,7 +26,7 @@ def pilot(application, worker, tmp_path, monkeypatch, request):
     language = getattr(request, "param", Language.ENGLISH)
     controller = ProjectController(application, worker=worker)
     controller.show()
-    turn_until(application, lambda: controller.window.stage.scene() is not None)
+    turn_until(application, lambda: controller.window.shared_view.scene() is not None)
     controller.window.setGeometry(0, 0, 1280, 720)
     pilot = Pilot(application, controller, tmp_path)
     pilot.speak(language)

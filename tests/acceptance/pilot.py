@@ -242,7 +242,7 @@ class Pilot:
         if language is not self.language:
             self.controller.choose(language=language)
             self.language = language
-            self.until(lambda: self.controller.window.stage.scene() is not None, "the window is back")
+            self.until(lambda: self.controller.window.shared_view.scene() is not None, "the window is back")
             self.controller.window.setGeometry(0, 0, 1280, 720)
             self.come_to_front()
 

@@ -66,7 +66,7 @@ def _import_the_building(pilot, path):
     pilot.see("import")
     pilot.press("Import")
     pilot.idle()
-    assert pilot.controller.workspace.document.site.site.n_panels == 57
+    assert pilot.controller.context.document.site.site.n_panels == 57
     pilot.see("site")
 
 
@@ -79,7 +79,7 @@ def _plan_twice_and_compare(pilot):
         pilot.press("Plan")
         pilot.idle()
         pilot.see("plan")
-        assert len(pilot.controller.workspace.document.current.plan.viewpoints) == int(n_views)
+        assert len(pilot.controller.context.document.current.plan.viewpoints) == int(n_views)
     assert pilot.reads("Ready to fly; warnings: {0}")
     pilot.tab("Plans")
     pilot.see("plans")
@@ -159,5 +159,5 @@ def _save(pilot):
         pilot.press("Save")
     pilot.idle()
     pilot.see("saved")
-    assert pilot.controller.workspace.session.is_saved
+    assert pilot.controller.context.session.is_saved
     assert (project / "project.json").is_file()

@@ -53,7 +53,7 @@ def _save(pilot, project):
     with clicked(choose(project)):
         pilot.press("Save")
     pilot.idle()
-    assert pilot.controller.workspace.session.is_saved
+    assert pilot.controller.context.session.is_saved
 
 
 def _make_the_data_set(pilot, folder):
