@@ -14876,6 +14876,37 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
 </context>
 <context>
+    <name>SharedView</name>
+    <message>
+        <source>The 3-D view is being prepared ...</source>
+        <translation>Die 3D-Ansicht wird vorbereitet ...</translation>
+    </message>
+    <message>
+        <source>3-D</source>
+        <translation>3D</translation>
+    </message>
+    <message>
+        <source>The site in three dimensions</source>
+        <translation>Der Standort in drei Dimensionen</translation>
+    </message>
+    <message>
+        <source>Map</source>
+        <translation>Karte</translation>
+    </message>
+    <message>
+        <source>The site from above, on the map</source>
+        <translation>Der Standort von oben, auf der Karte</translation>
+    </message>
+    <message>
+        <source>Camera</source>
+        <translation>Kamera</translation>
+    </message>
+    <message>
+        <source>What a viewpoint will see</source>
+        <translation>Was ein Aufnahmepunkt sehen wird</translation>
+    </message>
+</context>
+<context>
     <name>Shortcuts</name>
     <message>
         <source>Everywhere</source>
@@ -15202,12 +15233,12 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Standorte (*.json);;Alle Dateien (*)</translation>
     </message>
     <message>
-        <source>Import a building model</source>
-        <translation>Gebäude importieren</translation>
-    </message>
-    <message>
         <source>Building models ({0});;All files (*)</source>
         <translation>Gebäudemodelle ({0});;Alle Dateien (*)</translation>
+    </message>
+    <message>
+        <source>Import building model</source>
+        <translation>Gebäudemodell importieren</translation>
     </message>
     <message>
         <source>Open {0}</source>
@@ -15498,37 +15529,6 @@ Größe: {3}; Dreiecke: {4}</translation>
     </message>
 </context>
 <context>
-    <name>Stage</name>
-    <message>
-        <source>The 3-D view is being prepared ...</source>
-        <translation>Die 3D-Ansicht wird vorbereitet ...</translation>
-    </message>
-    <message>
-        <source>3-D</source>
-        <translation>3D</translation>
-    </message>
-    <message>
-        <source>The site in three dimensions</source>
-        <translation>Der Standort in drei Dimensionen</translation>
-    </message>
-    <message>
-        <source>Map</source>
-        <translation>Karte</translation>
-    </message>
-    <message>
-        <source>The site from above, on the map</source>
-        <translation>Der Standort von oben, auf der Karte</translation>
-    </message>
-    <message>
-        <source>Camera</source>
-        <translation>Kamera</translation>
-    </message>
-    <message>
-        <source>What a viewpoint will see</source>
-        <translation>Was ein Aufnahmepunkt sehen wird</translation>
-    </message>
-</context>
-<context>
     <name>StartPage</name>
     <message>
         <source>Begin with a site</source>
@@ -15539,8 +15539,8 @@ Größe: {3}; Dreiecke: {4}</translation>
         <translation>Ein Standort enthält die Glasscheiben, das Gebäude und den erlaubten Flugraum.</translation>
     </message>
     <message>
-        <source>Import a building model</source>
-        <translation>Gebäude importieren</translation>
+        <source>Import building model</source>
+        <translation>Gebäudemodell importieren</translation>
     </message>
     <message>
         <source>Open a site file</source>
