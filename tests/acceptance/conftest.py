@@ -7,13 +7,12 @@ from tests.acceptance.pilot import Pilot
 from tests.gui.conftest import (
     _garbage_stays_in_this_thread,
     _no_dialog_waits,
-    _windows_are_let_go_of,
     application,
     worker,
 )
 from tests.gui.driving import close_controller, turn_until
 
-__all__ = ["_garbage_stays_in_this_thread", "_no_dialog_waits", "_windows_are_let_go_of", "application", "worker"]
+__all__ = ["_garbage_stays_in_this_thread", "_no_dialog_waits", "application", "worker"]
 
 
 @pytest.fixture

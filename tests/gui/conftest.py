@@ -28,20 +28,6 @@ def application():
     return QApplication(["reflight-tests"])
 
 
-MANY = 20_000
-"""New objects among which a window may be: one has more."""
-
-
-@pytest.fixture(autouse=True)
-def _windows_are_let_go_of():
-    """Windows that tests before closed are freed before another is made, as long as they are young and that is cheap.
-
-    While a test ends, pytest itself still holds what it had.
-    """
-    if gc.get_count()[0] > MANY:
-        gc.collect(1)
-
-
 @pytest.fixture(autouse=True)
 def _no_dialog_waits(request):
     """A dialog that a test brings up and does not click would stand for ever: it is sent away, and the test fails."""

@@ -96,13 +96,13 @@ def settings(tmp_path_factory):
 
 
 @pytest.fixture
-def request(settings):
+def asked(settings):
     return TrainRequest(method="2dgs", iterations=100_000, settings=settings)
 
 
-def test_it_is_looked_at_while_it_trains_and_waits_and_its_end_is_a_model(heard, card, request, tmp_path):
+def test_it_is_looked_at_while_it_trains_and_waits_and_its_end_is_a_model(heard, card, asked, tmp_path):
     out, photo = tmp_path / "model", card.source.photos[0]
-    heard.send(Train(card.folder, out, request))
+    heard.send(Train(card.folder, out, asked))
     assert heard.until(Devices).cuda is not None
     early = heard.seen(Subject("photo", card.folder, photo.name), photo)
     assert early.picture.shape == (30, 40, 3)
@@ -138,23 +138,23 @@ def test_it_is_looked_at_while_it_trains_and_waits_and_its_end_is_a_model(heard,
     assert read_model_card(out).n_steps == ended.summary["iterations"]
 
 
-def test_broken_off_it_can_be_gone_on_with(heard, card, request, tmp_path):
+def test_broken_off_it_can_be_gone_on_with(heard, card, asked, tmp_path):
     out = tmp_path / "model"
-    heard.send(Train(card.folder, out, request))
+    heard.send(Train(card.folder, out, asked))
     reached = heard.until(Stepped, lambda stepped: stepped.step > 3)
     heard.send(BreakOff())
     assert heard.until(Ended).outcome == "kept"
     assert standing(out).is_interrupted
-    heard.send(Train(card.folder, out, request, resume=True))
+    heard.send(Train(card.folder, out, asked, resume=True))
     assert heard.until(Stepped).step >= reached.step
     heard.send(Stop())
     assert heard.until(Ended).outcome == "done"
     assert standing(out).has_model
 
 
-def test_what_cannot_be_is_said_and_it_goes_on_working(heard, card, request, tmp_path):
+def test_what_cannot_be_is_said_and_it_goes_on_working(heard, card, asked, tmp_path):
     photo = card.source.photos[0]
-    heard.send(Train(tmp_path / "nothing", tmp_path / "model", request))
+    heard.send(Train(tmp_path / "nothing", tmp_path / "model", asked))
     ended = heard.until(Ended)
     assert ended.outcome == "failed"
     assert isinstance(ended.error, InputError)
@@ -181,9 +181,9 @@ def test_a_process_that_is_ended_is_told_and_another_one_takes_its_place(heard, 
 
 
 @pytest.mark.slow
-def test_when_the_window_has_gone_a_training_keeps_its_state_and_the_process_ends(card, request, tmp_path):
+def test_when_the_window_has_gone_a_training_keeps_its_state_and_the_process_ends(card, asked, tmp_path):
     heard, out = Heard(), tmp_path / "model"
-    heard.send(Train(card.folder, out, request))
+    heard.send(Train(card.folder, out, asked))
     heard.until(Stepped, lambda stepped: stepped.step > 2)
     process = heard.process._process._child
     heard.process.close()
