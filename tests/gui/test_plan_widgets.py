@@ -121,11 +121,11 @@ def decision(on, size):
     return Decision("occlusion", on, "scene", "something stands there", size, 0.5, "%", 1.2)
 
 
-def test_effects_say_state_reason_size_and_cost_and_take_a_wish(application):
+def test_effects_say_state_reason_size_and_cost_and_take_a_setting(application):
     from groundstation.gui.widgets.effects_panel import EffectsPanel
 
     panel, heard = EffectsPanel(), []
-    panel.settingChanged.connect(lambda name, wish: heard.append((name, wish)))
+    panel.settingChanged.connect(lambda name, setting: heard.append((name, setting)))
     panel.set_effects(
         (EffectChoice(decision(True, 7.5), "auto"), EffectChoice(replace(decision(False, 0.0), effect="x"), None))
     )
@@ -135,7 +135,7 @@ def test_effects_say_state_reason_size_and_cost_and_take_a_wish(application):
     assert not heard
     panel.card("occlusion").setting.setCurrentIndex(2)
     assert heard == [("occlusion", "off")]
-    assert panel.card("x").wish.isHidden()
+    assert panel.card("x").setting.isHidden()
     panel.set_effects(())
     assert panel.card("occlusion").isHidden()
     panel.set_effects((EffectChoice(decision(True, 7.5), "on"),))
