@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from planning.base.errors import InputError
 from planning.base.files import check_ending, check_folder_name, read_given
-from planning.base.json_file import check_output
 from planning.base.messages import say
 from planning.base.parameters import Choice, check, parameter
 from planning.base.plugins import Plugin, PluginGroup, expect_type, guarded, load_plugins, told_problem
@@ -120,6 +119,8 @@ def check_name(out: Path, kind: str) -> None:
         check_folder_name(out)
         return
     check_ending(out, endings)
+    from planning.base.json_file import check_output  # not at the top: the command line describes itself
+
     check_output(out)
 
 
