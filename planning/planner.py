@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import itertools
 import time
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from functools import partial
@@ -219,15 +220,13 @@ def plan_flight(
     Parameters
     ----------
     prepared
-        The site as an earlier plan left it, where it fits the request (`Prepared.unfit_for`).
+        The site as an earlier plan left it; used where it serves the request, else the site is prepared anew.
     started_s
         When the time budget began, by `time.perf_counter`, where that was before this call: a program that is started
         for one plan spends some of it on itself.
 
     Raises
     ------
-    ValueError
-        The site was prepared for something else.
     InputError
         There is no such method or profile, the method cannot do what is asked, or a locked viewpoint cannot be flown.
     InfeasibleError
@@ -239,11 +238,10 @@ def plan_flight(
     spent_s = 0.0 if started_s is None else time.perf_counter() - started_s
     limit = TimeLimit(request.time_budget_s - spent_s)
     watch = _StopWatch()
+    prepared = serving(() if prepared is None else (prepared,), site_model, request)
     if prepared is None:
         proving = any_of(stop, TimeLimit(REACHABILITY_SHARE * limit.remaining_s()))
         prepared = _prepared(site_model, request, chosen_profile, proving, monitor)
-    else:
-        prepared = _fitting(prepared, site_model, request, chosen_profile)
     watch.lap("reachability")
     trace.record_bound(prepared.problem.reachability.upper_bound)
     routing_s = float(np.clip(ROUTING_SHARE * request.time_budget_s, SHORTEST_ROUTING_S, LONGEST_ROUTING_S))
@@ -319,13 +317,14 @@ def _prepared(
     )
 
 
-def _fitting(prepared: Prepared, site_model: SiteModel, request: PlanRequest, chosen_profile: Profile) -> Prepared:
-    """A prepared site as it was passed on, under the site's present checksum."""
-    wanted = (site_model, chosen_profile.camera, request.constraints, request.precision, request.seed)
-    differs = prepared.unfit_for(*wanted)
-    if differs:
-        raise ValueError(f"prepared: the site was prepared for another {differs}")
-    return prepared if prepared.site_model is site_model else replace(prepared, site_model=site_model)
+def serving(known: Iterable[Prepared], site_model: SiteModel, request: PlanRequest) -> Prepared | None:
+    """The first prepared site that serves a request, under the site's present checksum; None where none does."""
+    camera = profile(request.profile_id).camera
+    wanted = (site_model, camera, request.constraints, request.precision, request.seed)
+    found = next((prepared for prepared in known if prepared.serves(*wanted)), None)
+    if found is None or found.site_model is site_model:
+        return found
+    return replace(found, site_model=site_model)
 
 
 def _choose(

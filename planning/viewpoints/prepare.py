@@ -12,7 +12,7 @@ from planning.base.effects import Assessment, Decision, EffectSetting, decide
 from planning.base.errors import InfeasibleError
 from planning.base.findings import Finding, Severity
 from planning.base.jit import chunks
-from planning.base.messages import joined, say
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor, Stop, never
 from planning.coverage.model import CoverageModel
 from planning.coverage.positions import spread_positions
@@ -134,24 +134,21 @@ class Prepared:
     seed: int = 0
     is_cut_short: bool = False
 
-    def unfit_for(
+    def serves(
         self, site_model: SiteModel, camera: Camera, constraints: Constraints, precision: Precision, seed: int
-    ) -> str:
-        """What preparing with these arguments would do otherwise; empty where it comes to the same.
+    ) -> bool:
+        """Whether preparing with these arguments would come to the same.
 
         The site's checksum does not matter: it changes when the site is saved.
         """
         is_by_user = any(effect.decided_by == "user" for effect in self.effects)
         asked = replace(self.constraints, occlusion=self.constraints.occlusion if is_by_user else "auto")
         constraints = settled(constraints, site_model, camera)
-        differs = {
-            "site": not is_same_place(site_model, self.site_model),
-            "camera": camera != self.problem.model.camera,
-            "constraints": constraints != asked,
-            "precision": precision != self.problem.model.precision,
-            "seed": seed != self.seed,
-        }
-        return joined(", ", (name for name, is_other in differs.items() if is_other))
+        return (
+            is_same_place(site_model, self.site_model)
+            and (camera, precision) == (self.problem.model.camera, self.problem.model.precision)
+            and (constraints, seed) == (asked, self.seed)
+        )
 
 
 def settled(constraints: Constraints, site_model: SiteModel, camera: Camera) -> Constraints:

@@ -331,7 +331,7 @@ def check_refined_folder(folder: Path) -> None:
 
 
 def read_refined(folder: Path, photos: Sequence[PosedPhoto]) -> KeptRefinement:
-    """Refined poses as they were written, for the photos in hand.
+    """Refined poses as they were written, for the photos at hand.
 
     Parameters
     ----------

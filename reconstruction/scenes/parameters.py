@@ -111,7 +111,10 @@ class RenderSettings:
             raise InputError(
                 say("expected 2 to {}, got {}", MOST_ROWS, self.environment_rows, place="environment_rows")
             )
-        check(self)
+        try:
+            check(self)
+        except ValueError as error:
+            raise InputError(error.args[0]) from error
 
     def decided(self, decisions: Iterable[Decision]) -> RenderSettings:
         """With decisions in place of what was left to scene and flight."""

@@ -342,7 +342,7 @@ class PlanController(QObject):
             text = self.tr("The plan is not kept: it was made for “{0}”, which is no longer open.")
             self._context.say(Severity.WARNING, text.format(site.site.name))
             return
-        self._plan_cache.keep_groundwork(PreparedSite(planned.prepared))
+        self._plan_cache.keep_prepared(PreparedSite(planned.prepared))
         title = self.tr("{0}, {1} views").format(method_name(plan.method), len(plan.viewpoints))
         entry = PlanEntry(document.free_plan_id(), title, plan, request, planned.bound_for_views)
         self._context.change(self.tr("Plan"), document.with_plan(entry))
@@ -384,7 +384,7 @@ class PlanController(QObject):
         self._set_active(found)
         if found is not None:
             return
-        prepared_site = self._plan_cache.groundwork_for(plan, site)
+        prepared_site = self._plan_cache.prepared_site_for(plan, site)
 
         def taken(active: ActivePlan) -> None:
             self._activation = None

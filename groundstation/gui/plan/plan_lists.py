@@ -598,8 +598,8 @@ class PlanLists(QTabWidget):
         self.clearance.set_clearance(None)
         if active is None or not 1 <= number <= len(active.plan.sorties):
             return
-        site_model = active.groundwork.prepared.site_model
-        space = active.groundwork.prepared.problem.space
+        site_model = active.prepared_site.prepared.site_model
+        space = active.prepared_site.prepared.problem.space
         sortie, limit_m = active.plan.sorties[number - 1], active.plan.constraints.min_distance_m
 
         def done(found: RouteClearance) -> None:

@@ -14789,11 +14789,11 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>import it first (Site &gt; Import building model), and plan a flight over that</source>
-        <translation>erst importieren (Standort &gt; Gebäudemodell importieren) und dafür einen Flug planen</translation>
+        <translation>erst importieren (Standort &gt; Gebäude importieren) und dafür einen Flug planen</translation>
     </message>
     <message>
         <source>import it first: Site &gt; Import building model</source>
-        <translation>erst importieren: Standort &gt; Gebäudemodell importieren</translation>
+        <translation>erst importieren: Standort &gt; Gebäude importieren</translation>
     </message>
     <message>
         <source>has no dataset.json; choose the folder of a data set that is finished</source>
@@ -15238,7 +15238,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>Import building model</source>
-        <translation>Gebäudemodell importieren</translation>
+        <translation>Gebäude importieren</translation>
     </message>
     <message>
         <source>Open {0}</source>
@@ -15324,7 +15324,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>Import building model...</source>
-        <translation>Gebäudemodell importieren...</translation>
+        <translation>Gebäude importieren...</translation>
     </message>
     <message>
         <source>Remove what is selected</source>
@@ -15540,7 +15540,7 @@ Größe: {3}; Dreiecke: {4}</translation>
     </message>
     <message>
         <source>Import building model</source>
-        <translation>Gebäudemodell importieren</translation>
+        <translation>Gebäude importieren</translation>
     </message>
     <message>
         <source>Open a site file</source>

@@ -624,7 +624,7 @@ class LiveFlight:
             )
             self._end_flight(run, record, error)
 
-    # What is in hand
+    # The active sortie
 
     def _activate(self, sortie: LiveSortie, state: VehicleState) -> None:
         """Listen, with this sortie to be flown next."""

@@ -1,8 +1,8 @@
 """What looking at plans, editing them and planning again have in common, kept so that it is computed once.
 
-Preparing a site takes seconds (what can be reached is proven), taking a plan in hand a fraction of one; an edit then
+Preparing a site takes seconds (what can be reached is proven), activating a plan a fraction of one; an edit then
 takes milliseconds. A `PlanCache` is a value that lives in the window's thread; `activate` is for jobs and gives a
-`ActivePlan` that the bench keeps.
+`ActivePlan` that the cache keeps.
 """
 
 from __future__ import annotations
@@ -13,7 +13,6 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.aircraft.catalogue import profile
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.checks.case import pose_of
@@ -22,6 +21,7 @@ from planning.insight.reasons import SectionReasons, section_reasons
 from planning.insight.sections import PanelSampling, PlanInsight, assembled, panel_sampling
 from planning.parameters import Constraints
 from planning.plan import Camera, Plan, viewpoint_arrays
+from planning.planner import serving
 from planning.request import PlanRequest
 from planning.revision import Revision, revise
 from planning.site.records import SiteModel
@@ -30,14 +30,14 @@ from planning.viewpoints.prepare import Prepared, is_same_place, prepare, settle
 MAX_ACTIVE = 40
 """Plans kept: undo goes back through so many edits without computing anything; each shares most with the others."""
 
-MAX_GROUNDWORKS = 3
+MAX_PREPARED = 3
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PreparedSite:
     """A prepared site and why parts of it cannot be seen; the same for all plans with one camera and constraints.
 
-    Planning leaves it without the reasons; they are found when a plan is taken in hand.
+    Planning leaves it without the reasons; they are found when a plan is activated.
     """
 
     prepared: Prepared
@@ -48,7 +48,7 @@ class PreparedSite:
 class ActivePlan:
     """A plan that can be looked at and edited."""
 
-    groundwork: PreparedSite
+    prepared_site: PreparedSite
     revision: Revision
     insight: PlanInsight
 
@@ -63,20 +63,20 @@ class ActivePlan:
 
 
 class PlanCache:
-    """The plans that were in hand, the last ones first to be found."""
+    """The plans that were active, the last ones first to be found."""
 
     def __init__(self) -> None:
         self._active: OrderedDict[int, tuple[Plan, ActivePlan]] = OrderedDict()
-        self._groundworks: list[PreparedSite] = []
+        self._prepared_sites: list[PreparedSite] = []
 
     def find(self, plan: Plan, site_model: SiteModel) -> ActivePlan | None:
-        """A plan that is in hand on this site; None where it must be taken first.
+        """The active plan of this site; None where it must be activated first.
 
         Plans are told apart by being one object, as the document's history keeps them; the record inside may be
         another one, equal to it.
         """
         found = self._active.get(id(plan))
-        if found is None or not is_same_place(found[1].groundwork.prepared.site_model, site_model):
+        if found is None or not is_same_place(found[1].prepared_site.prepared.site_model, site_model):
             return None
         self._active.move_to_end(id(plan))
         return found[1]
@@ -87,32 +87,30 @@ class PlanCache:
         self._active.move_to_end(id(plan))
         while len(self._active) > MAX_ACTIVE:
             self._active.popitem(last=False)
-        self.keep_groundwork(active.groundwork)
+        self.keep_prepared(active.prepared_site)
 
-    def keep_groundwork(self, groundwork: PreparedSite) -> None:
+    def keep_prepared(self, prepared_site: PreparedSite) -> None:
         """Remember a prepared site."""
-        others = [kept for kept in self._groundworks if kept.prepared is not groundwork.prepared]
-        self._groundworks = [groundwork, *others][:MAX_GROUNDWORKS]
+        others = [kept for kept in self._prepared_sites if kept.prepared is not prepared_site.prepared]
+        self._prepared_sites = [prepared_site, *others][:MAX_PREPARED]
 
-    def groundwork_for(self, plan: Plan, site_model: SiteModel) -> PreparedSite | None:
-        """PreparedSite on which a plan can be taken in hand."""
-        return next((kept for kept in self._groundworks if _fits(kept.prepared, plan, site_model)), None)
+    def prepared_site_for(self, plan: Plan, site_model: SiteModel) -> PreparedSite | None:
+        """Prepared site on which a plan can be made the active one."""
+        return next((kept for kept in self._prepared_sites if _fits(kept.prepared, plan, site_model)), None)
 
     def prepared_for(self, request: PlanRequest, site_model: SiteModel) -> Prepared | None:
         """A prepared site with which a request can be planned."""
-        camera = profile(request.profile_id).camera
-        wanted = (site_model, camera, request.constraints, request.precision, request.seed)
-        return next((kept.prepared for kept in self._groundworks if not kept.prepared.unfit_for(*wanted)), None)
+        return serving((one.prepared for one in self._prepared_sites), site_model, request)
 
 
 def activate(
-    site_model: SiteModel, plan: Plan, groundwork: PreparedSite | None, monitor: Monitor = QUIET
+    site_model: SiteModel, plan: Plan, prepared_site: PreparedSite | None, monitor: Monitor = QUIET
 ) -> ActivePlan:
     """Measure a plan and find out what it leaves unseen and why.
 
     Parameters
     ----------
-    groundwork
+    prepared_site
         What is known of the site, for this plan's camera and constraints; None where nothing is.
 
     Raises
@@ -120,19 +118,19 @@ def activate(
     InfeasibleError
         Home cannot be used, or no allowed viewpoint sees any panel.
     """
-    if groundwork is None:
+    if prepared_site is None:
         prepared = prepare(site_model, plan.camera, plan.constraints, seed=plan.seed, monitor=monitor)
-        groundwork = PreparedSite(prepared)
-    reasons = groundwork.reasons
+        prepared_site = PreparedSite(prepared)
+    reasons = prepared_site.reasons
     if reasons is None:
-        reasons = section_reasons(site_model, groundwork.prepared, monitor=monitor)
+        reasons = section_reasons(site_model, prepared_site.prepared, monitor=monitor)
     monitor.report(say("measuring the plan"), 0, 1)
-    revision = revise(plan, groundwork.prepared)
-    return ActivePlan(PreparedSite(groundwork.prepared, reasons), revision, insight_of(revision, reasons))
+    revision = revise(plan, prepared_site.prepared)
+    return ActivePlan(PreparedSite(prepared_site.prepared, reasons), revision, insight_of(revision, reasons))
 
 
 def insight_of(revision: Revision, reasons: SectionReasons, before: ActivePlan | None = None) -> PlanInsight:
-    """What a plan in hand covers, from what is measured on it already; `before` is the same plan before an edit."""
+    """What an active plan covers, from what is measured on it already; `before` is the same plan before an edit."""
     prepared, plan = revision.prepared, revision.plan
     if before is None:
         sections, sampling = _measured(revision)

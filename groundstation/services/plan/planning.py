@@ -11,7 +11,6 @@ from typing import Any
 from groundstation.services.mission.readiness import UNKNOWN_DAY, FlightDay, preflight
 from groundstation.services.project.input_files import read_input_plan, read_input_site
 from groundstation.services.project.project_file import check_not_index
-from planning.aircraft.catalogue import profile
 from planning.base.errors import InputError
 from planning.base.findings import Finding, Severity
 from planning.base.jit import is_compiled
@@ -73,16 +72,14 @@ def plan_document_site(
     Parameters
     ----------
     prepared
-        What an earlier plan left; used where it fits the request and was not cut short, else the site is prepared anew.
+        What an earlier plan left; used where it serves the request and was not cut short.
 
     Raises
     ------
     InputError, InfeasibleError
         As `planning.planner.plan_flight`.
     """
-    camera = profile(request.profile_id).camera
-    wanted = (site_model, camera, request.constraints, request.precision, request.seed)
-    if prepared is not None and (prepared.is_cut_short or prepared.unfit_for(*wanted)):
+    if prepared is not None and prepared.is_cut_short:
         prepared = None
     compiled_s = _compile_once(monitor)
     if started_s is not None:

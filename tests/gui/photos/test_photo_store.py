@@ -31,7 +31,7 @@ def store(application):
 def test_small_pictures_come_later_and_no_more_are_kept_than_allowed(application, store, photos, monkeypatch):
     from groundstation.gui.photos import photo_store
 
-    monkeypatch.setattr(photo_store, "MAX_KEPT", 2)
+    monkeypatch.setattr(photo_store, "MAX_CACHED", 2)
     ready = []
     store.thumbnailReady.connect(ready.append)
     for photo in photos:

@@ -63,7 +63,7 @@ def prepared(name: str) -> Prepared:
 
 @functools.cache
 def planned(name: str) -> Revision:
-    """A plan as the planner leaves it, in hand."""
+    """A plan as the planner leaves it, measured."""
     found = plan_flight(prepared(name).site_model, SETTINGS[name].request, prepared=prepared(name))
     return revise(found.plan, prepared(name))
 

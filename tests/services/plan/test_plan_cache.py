@@ -1,4 +1,4 @@
-"""After an edit a plan in hand is what it would be if it were taken anew."""
+"""After an edit an active plan is what it would be if it were activated anew."""
 
 from __future__ import annotations
 
