@@ -76,7 +76,9 @@ class RenderSettings:
     Raises
     ------
     InputError
-        A wish names no effect, or the samples or the tolerance make no sense.
+        A setting names no effect, or the samples make no sense.
+    ValueError
+        The tolerance or Mitsuba's rays are out of range.
     """
 
     samples: int | Literal["auto"] = "auto"
@@ -111,10 +113,7 @@ class RenderSettings:
             raise InputError(
                 say("expected 2 to {}, got {}", MOST_ROWS, self.environment_rows, place="environment_rows")
             )
-        try:
-            check(self)
-        except ValueError as error:
-            raise InputError(error.args[0]) from error
+        check(self)
 
     def decided(self, decisions: Iterable[Decision]) -> RenderSettings:
         """With decisions in place of what was left to scene and flight."""

@@ -250,7 +250,7 @@ def test_settings_choose_the_renderer() -> None:
     made = scene()
     assert isinstance(renderer_of(made, RenderSettings()), Renderer)
     assert isinstance(renderer_of(made, RenderSettings(mitsuba_rays=1)), MitsubaRenderer)
-    with pytest.raises(InputError, match="rays: expected 1 to"):
+    with pytest.raises(ValueError, match="rays: expected 1 to"):
         RenderSettings(mitsuba_rays=0)
 
 
