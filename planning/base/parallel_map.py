@@ -28,7 +28,9 @@ def cluster_client(address: str) -> Iterator[Any]:
     try:
         from distributed import Client
     except ImportError as error:
-        raise InputError.say("a cluster ({}) needs Dask: pip install 'reflight[cluster]'", address) from error
+        raise InputError.say(
+            "a cluster ({}) needs Dask: pip install 'reflight-groundstation[cluster]'", address
+        ) from error
     client = None
     try:
         client = Client(address, timeout="10s")

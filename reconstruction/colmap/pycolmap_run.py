@@ -262,7 +262,7 @@ def load_colmap() -> Any:
         raise InputError(
             say(
                 "refining cameras needs pycolmap, which is not installed; install it with: pip install "
-                "'reflight[colmap]', or go on with the poses that the photos have"
+                "'reflight-groundstation[colmap]', or go on with the poses that the photos have"
             )
         ) from error
     pycolmap.logging.minloglevel = pycolmap.logging.Level.ERROR.value

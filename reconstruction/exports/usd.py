@@ -119,11 +119,14 @@ def _pxr() -> Any:
         pxr = SimpleNamespace(**{name: import_module(f"pxr.{name}") for name in MODULES})
     except ImportError as error:
         raise InputError(
-            say("USD needs the package usd-core, which is not installed: pip install 'reflight[usd]'")
+            say("USD needs the package usd-core, which is not installed: pip install 'reflight-groundstation[usd]'")
         ) from error
     if not hasattr(pxr.UsdVol, SPLATS):
         raise InputError(
-            say("USD: this usd-core knows no Gaussians; install 26.3 or newer: pip install 'reflight[usd]'")
+            say(
+                "USD: this usd-core knows no Gaussians; install 26.3 or newer: "
+                "pip install 'reflight-groundstation[usd]'"
+            )
         )
     return pxr
 

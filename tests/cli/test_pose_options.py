@@ -73,7 +73,7 @@ def test_without_pycolmap_it_is_said_what_to_install_and_nothing_is_written(
     flight, site, reflight, tmp_path, without_pycolmap
 ):
     refused = reflight("photos", flight / "photos", site, "--refine", "--refined", tmp_path / "refined")
-    assert "pip install 'reflight[colmap]'" in refused.error
+    assert "pip install 'reflight-groundstation[colmap]'" in refused.error
     assert not (tmp_path / "refined").exists()
 
 

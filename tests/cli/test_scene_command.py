@@ -149,7 +149,7 @@ def test_what_cannot_be_rendered_is_said_in_one_line_and_nothing_is_written(
 def test_mitsuba_is_asked_for_before_anything_else_is_done(reflight, tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "mitsuba", None)
     failed = reflight("scene", "render", "planar", "-o", tmp_path / "out", "--renderer", "mitsuba")
-    assert "Mitsuba is not installed; install it (pip install 'reflight[mitsuba]')" in failed.error
+    assert "Mitsuba is not installed; install it (pip install 'reflight-groundstation[mitsuba]')" in failed.error
     assert not (tmp_path / "out").exists()
 
 

@@ -5984,8 +5984,8 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Mitsuba ist installiert, läuft hier aber nicht ({0}); den eingebauten Renderer benutzen</translation>
     </message>
     <message>
-        <source>Mitsuba is not installed; install it (pip install &apos;reflight[mitsuba]&apos;), or use the embedded renderer</source>
-        <translation>Mitsuba ist nicht installiert; installieren (pip install &apos;reflight[mitsuba]&apos;) oder den eingebauten Renderer benutzen</translation>
+        <source>Mitsuba is not installed; install it (pip install &apos;reflight-groundstation[mitsuba]&apos;), or use the embedded renderer</source>
+        <translation>Mitsuba ist nicht installiert; installieren (pip install &apos;reflight-groundstation[mitsuba]&apos;) oder den eingebauten Renderer benutzen</translation>
     </message>
     <message>
         <source>Panels with pictures of their fronts, for programs that know no splats.</source>
@@ -6056,8 +6056,8 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>ein leerer Standort darum herum, ohne Gebäude und Scheiben</translation>
     </message>
     <message>
-        <source>a cluster ({0}) needs Dask: pip install &apos;reflight[cluster]&apos;</source>
-        <translation>ein Cluster ({0}) braucht Dask: pip install &apos;reflight[cluster]&apos;</translation>
+        <source>a cluster ({0}) needs Dask: pip install &apos;reflight-groundstation[cluster]&apos;</source>
+        <translation>ein Cluster ({0}) braucht Dask: pip install &apos;reflight-groundstation[cluster]&apos;</translation>
     </message>
     <message>
         <source>a fence has a radius of {0} m; expected more than 0</source>
@@ -13296,8 +13296,8 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>um Kameras zu verfeinern, braucht es mindestens {0} Fotos mit Pose, gefunden wurden {1}</translation>
     </message>
     <message>
-        <source>refining cameras needs pycolmap, which is not installed; install it with: pip install &apos;reflight[colmap]&apos;, or go on with the poses that the photos have</source>
-        <translation>um Kameras zu verfeinern, braucht es pycolmap, das nicht installiert ist; installieren Sie es mit: pip install &apos;reflight[colmap]&apos;, oder arbeiten Sie mit den Posen der Fotos weiter</translation>
+        <source>refining cameras needs pycolmap, which is not installed; install it with: pip install &apos;reflight-groundstation[colmap]&apos;, or go on with the poses that the photos have</source>
+        <translation>um Kameras zu verfeinern, braucht es pycolmap, das nicht installiert ist; installieren Sie es mit: pip install &apos;reflight-groundstation[colmap]&apos;, oder arbeiten Sie mit den Posen der Fotos weiter</translation>
     </message>
     <message>
         <source>the {0} photos do not fit together: expected features that at least {1} of them share; photos must overlap by two thirds, and show more than mirroring glass</source>
@@ -13928,8 +13928,8 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>torch findet kein CUDA-Gerät</translation>
     </message>
     <message>
-        <source>gsplat is not installed (pip install &apos;reflight[cuda]&apos;)</source>
-        <translation>gsplat ist nicht installiert (pip install &apos;reflight[cuda]&apos;)</translation>
+        <source>gsplat is not installed (pip install &apos;reflight-groundstation[cuda]&apos;)</source>
+        <translation>gsplat ist nicht installiert (pip install &apos;reflight-groundstation[cuda]&apos;)</translation>
     </message>
     <message>
         <source>gsplat&apos;s kernels are not compiled, which takes NVIDIA&apos;s CUDA toolkit</source>
@@ -14556,12 +14556,12 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>nichts zu schreiben: die Szene hat weder Gaußsche noch Scheiben</translation>
     </message>
     <message>
-        <source>USD needs the package usd-core, which is not installed: pip install &apos;reflight[usd]&apos;</source>
-        <translation>USD braucht das Paket usd-core, das nicht installiert ist: pip install &apos;reflight[usd]&apos;</translation>
+        <source>USD needs the package usd-core, which is not installed: pip install &apos;reflight-groundstation[usd]&apos;</source>
+        <translation>USD braucht das Paket usd-core, das nicht installiert ist: pip install &apos;reflight-groundstation[usd]&apos;</translation>
     </message>
     <message>
-        <source>USD: this usd-core knows no Gaussians; install 26.3 or newer: pip install &apos;reflight[usd]&apos;</source>
-        <translation>USD: dieses usd-core kennt keine Gaußschen; 26.3 oder neuer installieren: pip install &apos;reflight[usd]&apos;</translation>
+        <source>USD: this usd-core knows no Gaussians; install 26.3 or newer: pip install &apos;reflight-groundstation[usd]&apos;</source>
+        <translation>USD: dieses usd-core kennt keine Gaußschen; 26.3 oder neuer installieren: pip install &apos;reflight-groundstation[usd]&apos;</translation>
     </message>
     <message>
         <source>writing Gaussians</source>

@@ -87,7 +87,10 @@ def mitsuba(variant: str | None = None) -> Any:
         import mitsuba as mi
     except ImportError as error:
         raise InputError(
-            say("Mitsuba is not installed; install it (pip install 'reflight[mitsuba]'), or use the embedded renderer")
+            say(
+                "Mitsuba is not installed; install it (pip install 'reflight-groundstation[mitsuba]'), or use the "
+                "embedded renderer"
+            )
         ) from error
     name = next(filter(_works, VARIANTS if variant is None else (variant,)), None)
     if name is None:

@@ -93,7 +93,7 @@ def why_not_gsplat() -> str:
     if not torch.cuda.is_available():
         return say("torch finds no CUDA device")
     if importlib.util.find_spec("gsplat") is None:
-        return say("gsplat is not installed (pip install 'reflight[cuda]')")
+        return say("gsplat is not installed (pip install 'reflight-groundstation[cuda]')")
     from gsplat.cuda import _backend
 
     return (
