@@ -145,7 +145,9 @@ def show_tradeoff(
 
 def table_row(*cells: tuple[str, int]) -> str:
     """A line of a table in the language of the command line: texts and widths, below 0 for what stands on the left."""
-    return "  " + "".join(f"{worded(text):{'<' if width < 0 else '>'}{abs(width)}}" for text, width in cells)
+    shown = ((worded(text), width) for text, width in cells)
+    # A word that is as long as its column keeps a space before it.
+    return "  " + "".join(f"{text:<{-width}}" if width < 0 else f" {text:>{width - 1}}" for text, width in shown)
 
 
 def print_notes(notes: Iterable[str], file: TextIO | None = None) -> None:

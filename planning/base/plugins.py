@@ -21,7 +21,7 @@ from functools import cache
 from typing import TYPE_CHECKING, TypeVar
 
 from planning.base.errors import GroundStationError, InputError, PluginError
-from planning.base.messages import say
+from planning.base.messages import glue, say
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
@@ -116,8 +116,10 @@ def leave_out(plugin: Plugin, error: BaseException) -> None:
 
 
 def _reason(error: BaseException) -> str:
+    if isinstance(error, GroundStationError):
+        return glue(error)
     text = " ".join(str(error).split())
-    return text if text and isinstance(error, (ValueError, GroundStationError)) else f"{type(error).__name__}: {text}"
+    return text if text and isinstance(error, ValueError) else f"{type(error).__name__}: {text}"
 
 
 def expect_type(found: object, expected: type[T]) -> T:

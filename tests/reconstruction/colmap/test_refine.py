@@ -115,7 +115,7 @@ def test_too_many_photos_that_are_linked_count_as_equally_good(monkeypatch):
 
 def test_without_pycolmap_the_message_says_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "pycolmap", None)
-    with pytest.raises(InputError, match=r"pip install 'reflight\[colmap\]'"):
+    with pytest.raises(InputError, match=r"pip install 'reflight-groundstation\[colmap\]'"):
         refine_poses(photos(3), Path())
 
 

@@ -163,7 +163,7 @@ def test_places_and_endings_that_cannot_be_are_refused(tmp_path):
 def test_without_usd_core_it_says_what_to_install(tmp_path, monkeypatch):
     # Python takes a module that is None for one that is not there.
     monkeypatch.setitem(sys.modules, "pxr.UsdVol", None)
-    with pytest.raises(InputError, match=r"pip install 'reflight\[usd\]'"):
+    with pytest.raises(InputError, match=r"pip install 'reflight-groundstation\[usd\]'"):
         write_usd(made_scene(), tmp_path / "model.usdc")
     assert not list(tmp_path.iterdir())
 

@@ -233,7 +233,7 @@ def test_the_same_seed_gives_the_same_picture_and_another_another() -> None:
 
 def test_without_mitsuba_it_is_said_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "mitsuba", None)
-    with pytest.raises(InputError, match=r"reflight\[mitsuba\]"):
+    with pytest.raises(InputError, match=r"reflight-groundstation\[mitsuba\]"):
         mitsuba()
     monkeypatch.undo()
     with pytest.raises(InputError, match="no_such_variant"):

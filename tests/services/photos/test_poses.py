@@ -111,10 +111,10 @@ def test_a_kept_refinement_of_the_size_wished_for_is_taken(flight, kept, size):
 def test_another_size_or_other_photos_are_computed_and_pycolmap_missing_is_said(flight, kept, monkeypatch):
     monkeypatch.setitem(sys.modules, "pycolmap", None)
     folder, posed = flight
-    with pytest.raises(InputError, match=r"pip install 'reflight\[colmap\]'"):
+    with pytest.raises(InputError, match=r"pip install 'reflight-groundstation\[colmap\]'"):
         better_poses(posed, folder, refine=RefineRequest(kept, 800))
     fewer = replace(posed, photos=posed.photos[:2])
-    with pytest.raises(InputError, match=r"pip install 'reflight\[colmap\]'"):
+    with pytest.raises(InputError, match=r"pip install 'reflight-groundstation\[colmap\]'"):
         better_poses(fewer, folder, refine=RefineRequest(kept))
 
 
