@@ -219,7 +219,8 @@ COUNTED = (
     *(say("{} panel", 1), say("{} panels", 2), say("{} photo", 1), say("{} picture", 1)),
     *(say("{} pictures", 2), say("{} plan", 1), say("{} plans", 2), say("{} record", 1), say("{} records", 2)),
     *(say("{} row", 1), say("{} rows", 2), say("{} sortie", 1), say("{} sorties", 2), say("{} splat", 1)),
-    *(say("{} splats", 2), say("{} step", 1), say("{} steps", 2), say("{} view", 1)),
+    *(say("{} splats", 2), say("{} step", 1), say("{} steps", 2), say("{} unseen view", 1)),
+    *(say("{} unseen views", 2), say("{} view", 1)),
     *(say("{} warning", 1), say("{} warnings", 2)),
 )
 """What `counted` says, for translators."""

@@ -7,6 +7,8 @@ rounded to 8 bit. Everything is reckoned in double precision.
 from __future__ import annotations
 
 import math
+import statistics
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -52,7 +54,43 @@ class PictureScore:
     n_pixels: int
 
 
-def score_picture(found: NDArray[Any], truth: NDArray[Any], mask: Mask | None = None) -> PictureScore:
+@dataclass(frozen=True, slots=True)
+class Quality:
+    """PSNR of several views in one number, see `mean_quality`.
+
+    Parameters
+    ----------
+    n_views
+        That it is the mean of.
+    is_of_facades
+        False: no view shows a facade, and it is of whole pictures.
+    """
+
+    psnr_db: float
+    n_views: int
+    is_of_facades: bool
+
+
+def mean_quality(views: Iterable[tuple[float | None, float | None]]) -> Quality | None:
+    """Mean of the views' own PSNR on facades, over those that show a facade, as papers report it.
+
+    Of views among which none shows a facade it is that of whole pictures; None where there is nothing to score. A mean
+    of squared errors over all views would be another number, which the worst views decide.
+
+    Parameters
+    ----------
+    views
+        Of each view the PSNR, dB, of its facade and of all of it; None where it shows none.
+    """
+    found = list(views)
+    facades = [facade for facade, _ in found if facade is not None]
+    counted = facades or [whole for _, whole in found if whole is not None]
+    return Quality(statistics.fmean(counted), len(counted), bool(facades)) if counted else None
+
+
+def score_picture(
+    found: NDArray[Any], truth: NDArray[Any], mask: Mask | None = None, *, with_ssim: bool = True
+) -> PictureScore:
     """Score a picture against its photo.
 
     PSNR is that of the mean square error over all values of the mask's pixels. Structural similarity is that of Wang et
@@ -67,6 +105,8 @@ def score_picture(found: NDArray[Any], truth: NDArray[Any], mask: Mask | None = 
         Shape (h, w, c); floating point as 0 to 1, or uint8 as 0 to 255. NaN counts as 0.
     mask
         Shape (h, w).
+    with_ssim
+        False leaves structural similarity out, which takes nearly all of the time.
     """
     _check(found, truth, mask)
     height, width = found.shape[:2]
@@ -80,7 +120,7 @@ def score_picture(found: NDArray[Any], truth: NDArray[Any], mask: Mask | None = 
         error = np.square(a[inside] - b[inside]).mean(axis=2)
         squares.append(float(error.sum() if mask is None else error[mask[start:stop]].sum()))
         counted = None if mask is None else mask[first:last][edge:-edge, edge:-edge]
-        if min(a.shape[:2]) >= WINDOW_PX and (counted is None or counted.any()):
+        if with_ssim and min(a.shape[:2]) >= WINDOW_PX and (counted is None or counted.any()):
             values = ssim_map(a, b)
             values = values if counted is None else values[counted]
             likeness.append(float(values.sum()))

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import csv
+import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InputError
-from planning.base.files import MIB, FileLimit, read_given
+from planning.base.files import MIB, FileLimit, parse_xml, read_given
 from planning.base.json_file import read_json
 from planning.base.messages import say
 from reconstruction.base.cameras import Intrinsics
@@ -28,6 +29,9 @@ from reconstruction.scenes.facades.record import Case, MadeFacade
 from reconstruction.scenes.facades.render import make_facade
 from reconstruction.scenes.facades.scene import BASE_ABOVE_GROUND_M, BORDER_M
 
+if TYPE_CHECKING:
+    from xml.etree.ElementTree import Element
+
 # Photos of real facades that people annotated: where they lie, and which pixels are which window.
 #
 # A *panel* of these sets is a window. They break what the search for panels assumes: between their windows there is
@@ -41,6 +45,10 @@ ECP_WINDOW_BGR = (0, 0, 255)
 """Windows are red in ECP's masks."""
 
 COCO_FILE = "_annotations.coco.json"
+
+CMP_TABLE, CMP_WINDOW = ".windows.csv", "window"
+CMP_FILE = FileLimit("annotations of the CMP facade base", 16 * MIB)
+XML_DECLARATION = re.compile(rb"^\s*(?:\xef\xbb\xbf)?\s*<\?xml[^>]*\?>")
 
 TABLE_FILE = FileLimit("a CSV table", 64 * MIB)
 COCO_WINDOW = "window"
@@ -64,18 +72,25 @@ class AnnotatedPhoto:
 
 
 def cmp_photos(folder: Path) -> Iterator[AnnotatedPhoto]:
-    """CMP facade base: `NAME.jpg` with the windows' rectangles in `NAME.windows.csv` (x0, y0, x1, y1 in pixels).
+    """CMP facade base as it is published: `NAME.jpg` with its objects in `NAME.xml`.
+
+    Where there is `NAME.windows.csv`, the windows' rectangles (x0, y0, x1, y1 in pixels) are taken from that. Pictures
+    with labels, `NAME.png`, are not needed: in them windows that touch are one.
 
     Raises
     ------
     InputError
         The folder holds none, or a file is not as described.
     """
-    for path in _files(folder, "*.windows.csv"):
-        name = path.name.removesuffix(".windows.csv")
+    tables = {path.name.removesuffix(CMP_TABLE): path for path in folder.glob(f"*{CMP_TABLE}")}
+    found = {path.stem: path for path in folder.glob("*.xml")} | tables
+    if not found:
+        raise InputError(say("expected annotated photos ({}) in this folder, found none", "*.xml", place=folder))
+    for name, path in sorted(found.items()):
         image = read_picture(path.with_name(f"{name}.jpg"))
         height, width = image.shape[:2]
-        boxes = [np.array([[a, b], [c, b], [c, d], [a, d]]) for a, b, c, d in _rectangles(path)]
+        rectangles = _rectangles(path) if name in tables else _cmp_windows(path, width, height)
+        boxes = [np.array([[a, b], [c, b], [c, d], [a, d]]) for a, b, c, d in rectangles]
         yield AnnotatedPhoto(name, image, index_image(boxes, width, height))
 
 
@@ -152,6 +167,36 @@ def _rectangles(path: Path) -> list[tuple[float, float, float, float]]:
         raise InputError(
             say("expected columns x0, y0, x1, y1 of numbers, found {}", repr(error), place=path)
         ) from error
+
+
+def _cmp_windows(path: Path, width: int, height: int) -> list[tuple[float, float, float, float]]:
+    """Rectangles x0, y0, x1, y1, in whole pixels, of the windows in a published XML file.
+
+    The file is a row of `object` elements without a root. In `points`, two `x` are shares of the photo's height and two
+    `y` of its width, rounded to five digits: rows come first there.
+    """
+    content = read_given(path, CMP_FILE)
+    try:
+        root = parse_xml(b"<objects>" + XML_DECLARATION.sub(b"", content) + b"</objects>", path)
+        objects = list(root.iter("object"))
+        windows = [each for each in objects if each.findtext("labelname", "").strip() == CMP_WINDOW]
+        if not objects:
+            raise ValueError("no object")
+        return [_cmp_rectangle(each, width, height) for each in windows]
+    except ValueError as error:
+        raise InputError(
+            say(
+                "expected objects with labelname and two x and y each, shares from 0 to 1, found: {}", error, place=path
+            )
+        ) from error
+
+
+def _cmp_rectangle(element: Element, width: int, height: int) -> tuple[float, float, float, float]:
+    rows, columns = ([float(each.text or "") for each in element.iterfind(f"points/{name}")] for name in ("x", "y"))
+    if not len(rows) == len(columns) == 2 or not all(0.0 <= share <= 1.0 for share in (*rows, *columns)):
+        raise ValueError(f"x {rows}, y {columns}")
+    x, y = sorted(round(share * width) for share in columns), sorted(round(share * height) for share in rows)
+    return float(x[0]), float(y[0]), float(x[1]), float(y[1])
 
 
 def _coco_polygons(annotation: Any) -> list[NDArray[np.float64]]:

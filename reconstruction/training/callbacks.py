@@ -13,10 +13,9 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from planning.base.progress import QUIET, Monitor, Stop, Trace, never
-from reconstruction.metrics.image_metrics import psnr_db
+from reconstruction.metrics.image_metrics import mean_quality, score_picture
 from reconstruction.splats.rasterising.raster_types import RasterSettings
 from reconstruction.training.model.joint_model import SceneModel
-from reconstruction.training.objective import display_of, on_device
 from reconstruction.training.photos.exposures import Exposures
 from reconstruction.training.photos.photo_stream import Sample
 
@@ -103,21 +102,23 @@ class Callbacks:
 
 
 @torch.no_grad()
-def quality_db(shown: Sequence[HeldOut], displayed: Callable[[HeldOut], Tensor], device: torch.device) -> float:
-    """PSNR, dB, of all shown views together, over their facades; over all of a view that has none.
+def quality_db(shown: Sequence[HeldOut], displayed: Callable[[HeldOut], Tensor]) -> float:
+    """PSNR, dB, of the shown views' facades, as `mean_quality` has it.
 
     Parameters
     ----------
     displayed
         A view as the model shows it, sRGB, 0 to 1, shape (h, w, 3).
     """
-    squares, n_values = 0.0, 0
+    views = []
     for held_out in shown:
-        sample = on_device(held_out.sample, device)
-        counted = sample.facade if bool(sample.facade.any()) else torch.ones_like(sample.facade)
-        errors = (displayed(held_out) - display_of(sample))[counted].square()
-        squares, n_values = squares + float(errors.sum(dtype=torch.float64)), n_values + errors.numel()
-    return psnr_db(squares / n_values)
+        found, truth = displayed(held_out).cpu().numpy(), held_out.sample.display.numpy()
+        facade, whole = (
+            score_picture(found, truth, mask, with_ssim=False).psnr_db for mask in held_out.sample.scored_pixels()
+        )
+        views.append((facade, whole))
+    quality = mean_quality(views)
+    return math.nan if quality is None else quality.psnr_db
 
 
 @dataclass(slots=True, eq=False)

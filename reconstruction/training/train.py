@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 import math
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import asdict, replace
 from pathlib import Path
@@ -14,15 +14,17 @@ from typing import Any
 import numpy as np
 import torch
 
-from planning.base.errors import InputError
+from planning.base.errors import InputError, OperationCancelled
 from planning.base.json_file import to_record
 from planning.base.messages import say
 from planning.base.progress import QualityPoint
 from reconstruction.light.photo_set import PhotoSet, read_photo_set
+from reconstruction.metrics.image_metrics import Quality
 from reconstruction.training.callbacks import Callbacks, HeldOut
 from reconstruction.training.config import TrainConfig
 from reconstruction.training.model.record import ModelRecord, empty_model, light_record, site_record
 from reconstruction.training.model.saved import TrainedModel
+from reconstruction.training.model.score import quality_of, score_views
 from reconstruction.training.photos.exposures import moved
 from reconstruction.training.photos.photo_stream import PhotoStream, StreamSettings
 from reconstruction.training.ranks import ALONE, Ranks
@@ -160,10 +162,11 @@ def _started(
             notes=start.notes,
             ranks=ranks,
             watch=watch,
+            last_px=_pixels(source, record.held_out),
         )
         trainer.save()
         ranks.wait()
-        return _finished(trainer, record, watching)
+        return _finished(trainer, record, source, watching)
 
 
 @freed_memory_kept()
@@ -251,10 +254,11 @@ def _resumed(
             record=asdict(record),
             ranks=ranks,
             watch=watch,
+            last_px=_pixels(source, record.held_out),
         )
         trainer.restore(state)
         watch.before_s += trainer.at.spent_s
-        return _finished(trainer, record, watching)
+        return _finished(trainer, record, source, watching)
 
 
 def _check_method(config: TrainConfig, method: str | None, checkpoint: Path) -> None:
@@ -287,6 +291,11 @@ def _photos(source: PhotoSet, record: ModelRecord, closing: ExitStack) -> tuple[
     )
 
 
+def _pixels(source: PhotoSet, names: Sequence[str]) -> int:
+    """Of all photos that are named."""
+    return sum(photo.intrinsics.width_px * photo.intrinsics.height_px for photo in source.named(names))
+
+
 def _corrected(source: PhotoSet, record: ModelRecord) -> PhotoSet:
     """With the photos that are learned from where learning light found them to be; held-out ones stay."""
     if not record.moves:
@@ -295,10 +304,29 @@ def _corrected(source: PhotoSet, record: ModelRecord) -> PhotoSet:
     return replace(source, photos=tuple(learned.get(photo.name, photo) for photo in source.photos))
 
 
-def _finished(trainer: Trainer, record: ModelRecord, watching: Callbacks) -> TrainedModel:
+def _finished(trainer: Trainer, record: ModelRecord, source: PhotoSet, watching: Callbacks) -> TrainedModel:
     trainer.run(watching)
-    trainer.model.cpu()
-    trainer.exposures.cpu()
     at = trainer.at
     history = tuple(QualityPoint(t_s, value) for t_s, value in at.history)
-    return TrainedModel(record, trainer.model, trainer.exposures, history, at.step, at.spent_s, tuple(at.notes))
+    trained = TrainedModel(record, trainer.model, trainer.exposures, history, at.step, at.spent_s, tuple(at.notes))
+    try:
+        quality = _last_look(trainer, trained, source, watching)
+    except OperationCancelled:
+        trainer.save()
+        raise
+    trainer.model.cpu()
+    trainer.exposures.cpu()
+    return replace(trained, quality=quality)
+
+
+def _last_look(trainer: Trainer, trained: TrainedModel, source: PhotoSet, watching: Callbacks) -> Quality | None:
+    """Score held-out views as `score` does, all of them where that fits into its share of the time limit."""
+    if not trainer.is_first:
+        return None
+    names, config = trained.record.held_out, trained.record.config
+    share = trainer.most_last_s() / max(trainer.last_look_s(), 1e-9)
+    n_views = len(names) if share >= 1.0 else max(1, int(share * len(names)))
+    chosen = [names[number * len(names) // n_views] for number in range(n_views)]
+    return quality_of(
+        score_views(trained, source, chosen, threads=config.threads, monitor=watching.monitor, with_ssim=False)
+    )

@@ -9,6 +9,7 @@ How it ends, besides by itself, and as `TrainingState` says:
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -120,6 +121,9 @@ PAUSE_S = 0.05
 SHOWN_VIEWS = 4
 """Held-out views that the quality is measured on while training runs."""
 
+LAST_SHARE = 0.05
+"""Of a time limit, at most, for scoring held-out views in full when it has ended."""
+
 WRITTEN = 2.0
 """Time that a finished model takes to be written, as weights and for other programs, against a checkpoint's."""
 
@@ -150,6 +154,8 @@ class Trainer(TrainingState):
         Processes that train it together; each has a trainer of its own.
     watch
         Of all that counts for the time limit, what went before included.
+    last_px
+        Pixels of all held-out views, which are looked at when it has ended.
     """
 
     def __init__(
@@ -167,6 +173,7 @@ class Trainer(TrainingState):
         notes: Sequence[str] = (),
         ranks: Ranks = ALONE,
         watch: Timer | None = None,
+        last_px: int = 0,
     ) -> None:
         at = Progress(window_px=photos.window_px or config.window_px, notes=[*notes])
         super().__init__(model, exposures, photos, strategy, config, extent_m, checkpoint, at)
@@ -175,9 +182,15 @@ class Trainer(TrainingState):
         self._settings = replace(config.raster, threads=config.threads)
         self._no_more, self._ranks = FixedNumber(), ranks
         self._reserve_s = 0.0
+        self._last_px = last_px
         self._with_glass = config.trained_by.knows_panels
         self._settling: Settling | None = None
         self._terms: dict[str, float] = {}
+
+    @property
+    def is_first(self) -> bool:
+        """Whether its process is the first of those that train together."""
+        return self._ranks.is_first
 
     @property
     def progress(self) -> float:
@@ -277,8 +290,19 @@ class Trainer(TrainingState):
         return self._settling is not None and self._settling.share(self.at.spent_s) >= 1.0
 
     def _needed_s(self) -> float:
-        """For the last look at the quality, and for writing the model."""
-        return self._watch.lasted_s.get("look", 0.0) + WRITTEN * self._watch.lasted_s.get("save", 0.0)
+        """For the last looks at the quality, and for writing the model."""
+        look_s, save_s = (self._watch.lasted_s.get(part, 0.0) for part in ("look", "save"))
+        return look_s + min(self.last_look_s(), self.most_last_s()) + WRITTEN * save_s
+
+    def last_look_s(self) -> float:
+        """That it would take to look at all held-out views in full, judged by what looks have taken."""
+        seen_px = sum(held_out.sample.facade.numel() for held_out in self.shown)
+        return self._watch.lasted_s.get("look", 0.0) * self._last_px / max(seen_px, 1)
+
+    def most_last_s(self) -> float:
+        """For that, at most."""
+        limit_s = self.config.time_limit_s
+        return math.inf if limit_s is None else LAST_SHARE * limit_s
 
     def _survived_step(self) -> None:
         try:
@@ -368,7 +392,7 @@ class Trainer(TrainingState):
         was_training = self.model.training
         self.model.eval()
         with self._watch.timing("look"):
-            at.history.append((at.spent_s, quality_db(self.shown, displayed, self.device)))
+            at.history.append((at.spent_s, quality_db(self.shown, displayed)))
         self.model.train(was_training)
         if watching.trace is not None:
             watching.trace.record(at.history[-1][1])

@@ -19,6 +19,7 @@ from reconstruction.training.parameters import PRESETS, TrainRequest
 
 if TYPE_CHECKING:
     from groundstation.services.reconstruct.training import TrainedFiles
+    from reconstruction.metrics.image_metrics import Quality
 
 PRESET_LINES = "\n".join(f"  {name:<11} {each.what}" for name, each in PRESETS.items())
 
@@ -139,7 +140,15 @@ def _print(made: TrainedFiles, options: argparse.Namespace) -> None:
         tell("  mirrored light: {}{}", name, "" if record.config.light == "auto" else say(", as you asked"))
     for decision in record.decisions:
         show(glue("  ", decision))
-    quality = say(", {:.2f} dB on facades of unseen views", trained.history[-1].value) if trained.history else ""
-    tell("  {} in {:.0f} s{}", counted(trained.n_steps, "step"), trained.seconds, quality)
+    tell("  {} in {:.0f} s{}", counted(trained.n_steps, "step"), trained.seconds, _told_quality(trained.quality))
     print_notes(trained.notes, sys.stderr)
     print_next("score", made.folder, options.dataset)
+
+
+def _told_quality(quality: Quality | None) -> str:
+    """What `score` says of the same views."""
+    if quality is None:
+        return ""
+    if quality.is_of_facades:
+        return say(", {:.2f} dB on facades of {}", quality.psnr_db, counted(quality.n_views, "unseen view"))
+    return say(", {:.2f} dB on {}", quality.psnr_db, counted(quality.n_views, "unseen view"))

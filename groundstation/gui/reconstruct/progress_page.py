@@ -135,7 +135,7 @@ class ProgressPage(QWidget):
         for widget in (self.state, self.bar, self.numbers):
             layout.addWidget(widget)
         for heading, plot in (
-            (self.tr("Facades of unseen views"), self.quality),
+            (self.tr("Facades of some unseen views"), self.quality),
             (self.tr("Terms of the loss"), self.losses),
         ):
             title = QLabel(heading)

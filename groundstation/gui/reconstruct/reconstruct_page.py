@@ -236,10 +236,17 @@ class ReconstructPage(QObject):
                 minutes_text(stepped.seconds), stepped.step, stepped.n_splats
             )
             if controller.training.quality.y:
-                numbers += self.tr("; {0:.2f} dB on facades of unseen views").format(controller.training.quality.y[-1])
+                numbers += self._quality_words()
         self.progress.set_state(words, share, numbers)
         self.progress.set_curves(controller.training.quality, controller.training.terms)
         self.pane.follow_training()
+
+    def _quality_words(self) -> str:
+        training = self.controller.training
+        done = None if training.ended is None else training.ended.summary
+        if done and done["psnr_db"] is not None:
+            return self.tr("; {0:.2f} dB on facades of {1} unseen views").format(done["psnr_db"], done["scored_views"])
+        return self.tr("; {0:.2f} dB on facades of some unseen views").format(training.quality.y[-1])
 
     def _phase_words(self, stage: str) -> str:
         controller = self.controller

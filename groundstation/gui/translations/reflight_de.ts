@@ -4630,8 +4630,8 @@ Blickrichtung: {3}</translation>
         <translation>Verlust</translation>
     </message>
     <message>
-        <source>Facades of unseen views</source>
-        <translation>Fassaden ungesehener Aufnahmen</translation>
+        <source>Facades of some unseen views</source>
+        <translation>Fassaden einiger neuer Ansichten</translation>
     </message>
     <message>
         <source>Terms of the loss</source>
@@ -4999,8 +4999,12 @@ Damit weiterarbeiten?</translation>
         <translation>{0}, {1} Schritte, {2} Splats</translation>
     </message>
     <message>
-        <source>; {0:.2f} dB on facades of unseen views</source>
-        <translation>; {0:.2f} dB auf Fassaden ungesehener Aufnahmen</translation>
+        <source>; {0:.2f} dB on facades of {1} unseen views</source>
+        <translation>; {0:.2f} dB auf Fassaden von {1} neuen Ansichten</translation>
+    </message>
+    <message>
+        <source>; {0:.2f} dB on facades of some unseen views</source>
+        <translation>; {0:.2f} dB auf Fassaden einiger neuer Ansichten</translation>
     </message>
     <message>
         <source>Breaking off; the state is being kept ...</source>
@@ -5880,10 +5884,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>, {0} % des Möglichen</translation>
     </message>
     <message>
-        <source>, {0} dB on facades of unseen views</source>
-        <translation>, {0} dB auf Fassaden neuer Ansichten</translation>
-    </message>
-    <message>
         <source>, {0} further</source>
         <translation>, {0} weitere</translation>
     </message>
@@ -6424,6 +6424,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>expected named tensors, found {0}; name a file of weights</source>
         <translation>erwartet werden benannte Tensoren, gefunden {0}; eine Datei mit Gewichten nennen</translation>
+    </message>
+    <message>
+        <source>expected objects with labelname and two x and y each, shares from 0 to 1, found: {0}</source>
+        <translation>erwartet wurden Objekte (object) mit labelname und je zwei x und y, Anteile von 0 bis 1; gefunden: {0}</translation>
     </message>
     <message>
         <source>expected once, found again</source>
@@ -7352,6 +7356,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>way flown</source>
         <translation>Flugweg</translation>
+    </message>
+    <message>
+        <source>{0} unseen view</source>
+        <translation>{0} neue Ansicht</translation>
+    </message>
+    <message>
+        <source>{0} unseen views</source>
+        <translation>{0} neue Ansichten</translation>
     </message>
     <message>
         <source>{0}{1} - {2} ({3} {4}, tolerance {5}; costs about {6} s)</source>
@@ -8896,6 +8908,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>finest pixel on a panel, of the coarsest photo</source>
         <translation>feinstes Pixel auf einer Scheibe, beim gröbsten Foto</translation>
+    </message>
+    <message>
+        <source>, {0} dB on facades of {1}</source>
+        <translation>, {0} dB auf Fassaden ({1})</translation>
+    </message>
+    <message>
+        <source>, {0} dB on {1}</source>
+        <translation>, {0} dB ({1})</translation>
     </message>
     <message>
         <source>it covers nothing; take it closer or drop it</source>

@@ -76,11 +76,13 @@ def score_files(
 
 
 def score_summary(scored: ScoredFiles) -> dict[str, Any]:
-    """For `--json`: means, worst views, and every view."""
-    from reconstruction.training.model.score import mean_of
+    """For `--json`: means, worst views, and every view. `psnr_db` is what `train` says of the same views."""
+    from reconstruction.training.model.score import mean_of, quality_of
 
-    scores = scored.views
+    scores, quality = scored.views, quality_of(scored.views)
     found: dict[str, Any] = {"views": len(scores), "lpips_weights": scored.lpips or None}
+    found["psnr_db"] = None if quality is None else quality.psnr_db
+    found["scored_views"] = 0 if quality is None else quality.n_views
     for part in ("facade", "whole"):
         parts = [getattr(score, part) for score in scores]
         known = [one.psnr_db for one in parts if one.psnr_db is not None]

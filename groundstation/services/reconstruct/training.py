@@ -241,7 +241,8 @@ def train_summary(made: TrainedFiles) -> dict[str, Any]:
         "iterations": trained.n_steps,
         "splats": trained.n_splats,
         "seconds": round(trained.seconds, 3),
-        "psnr_db": round(trained.history[-1].value, 3) if trained.history else None,
+        "psnr_db": None if trained.quality is None else round(trained.quality.psnr_db, 3),
+        "scored_views": 0 if trained.quality is None else trained.quality.n_views,
         "history": [{"t_s": round(point.t_s, 3), "psnr_db": round(point.value, 3)} for point in trained.history],
         "notes": list(trained.notes),
     }

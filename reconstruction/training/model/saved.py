@@ -25,6 +25,7 @@ from planning.base.json_file import expect_format, part_files, read_json, to_rec
 from planning.base.messages import say
 from planning.base.progress import QualityPoint
 from reconstruction.base.tensor_files import tensor_bytes
+from reconstruction.metrics.image_metrics import Quality
 from reconstruction.splats.ply import Kind, render_mode, write_splats
 from reconstruction.splats.splats import splats_from_tensors
 from reconstruction.training.model.joint_model import SceneModel
@@ -50,11 +51,13 @@ class TrainedModel:
     exposures
         Gains of the photos learned from, in the order of `record.learned`.
     history
-        PSNR, dB, of some held-out views over their facades, by seconds of training.
+        PSNR, dB, of some held-out views, made smaller, over their facades, by seconds of training.
     n_steps, seconds
         Of the joint training; seconds with learning light alone.
     notes
         What had to be survived on the way.
+    quality
+        Of held-out views in full, when it had ended: what `score` says of them. None where that was not measured.
     """
 
     record: ModelRecord
@@ -64,6 +67,7 @@ class TrainedModel:
     n_steps: int
     seconds: float
     notes: tuple[str, ...] = ()
+    quality: Quality | None = None
 
     @property
     def n_splats(self) -> int:
@@ -83,6 +87,7 @@ class _Saved(ModelRecord):
     n_steps: int = 0
     seconds: float = 0.0
     notes: tuple[str, ...] = ()
+    quality: Quality | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -184,6 +189,7 @@ def description_of(trained: TrainedModel) -> dict[str, Any]:
         "n_steps": trained.n_steps,
         "seconds": trained.seconds,
         "notes": list(trained.notes),
+        "quality": None if trained.quality is None else asdict(trained.quality),
     }
 
 
@@ -207,7 +213,9 @@ def trained_of(description: Mapping[str, Any], tensors: Mapping[str, Tensor], pa
 def _trained(saved: _Saved, tensors: Mapping[str, Tensor], path: Path) -> TrainedModel:
     record = ModelRecord(*(getattr(saved, each.name) for each in fields(ModelRecord)))
     model, exposures = _filled(record, tensors, path)
-    return TrainedModel(record, model, exposures, saved.history, saved.n_steps, saved.seconds, saved.notes)
+    return TrainedModel(
+        record, model, exposures, saved.history, saved.n_steps, saved.seconds, saved.notes, saved.quality
+    )
 
 
 def tensors_of(trained: TrainedModel) -> dict[str, Tensor]:

@@ -15,7 +15,7 @@ from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from reconstruction.light.photo_set import PhotoSet
 from reconstruction.light.shading import linear_from_display
-from reconstruction.metrics.image_metrics import PictureScore, score_picture
+from reconstruction.metrics.image_metrics import PictureScore, Quality, mean_quality, score_picture
 from reconstruction.metrics.lpips import LpipsWeights, lpips
 from reconstruction.splats.rasterising.raster_types import RasterSettings
 from reconstruction.training.model.record import site_record
@@ -54,6 +54,8 @@ def score_views(
     gain: HeldOutGain = "none",
     threads: int = 0,
     monitor: Monitor = QUIET,
+    *,
+    with_ssim: bool = True,
 ) -> tuple[ViewScores, ...]:
     """Score views of a folder that shows the same panels.
 
@@ -65,6 +67,8 @@ def score_views(
         Of LPIPS; without, that is left out.
     gain
         Of exposure: what is known of each photo, or fitted to it.
+    with_ssim
+        See `score_picture`.
 
     Raises
     ------
@@ -93,8 +97,13 @@ def score_views(
             if gain == "fitted":
                 factor *= _fitted(model, sample, factor, settings)
             found = render_view(model, sample.view, (), factor, settings).display
-            scores.append(_scored(photo.name, photo.name in learned, found, sample, weights))
+            scores.append(_scored(photo.name, photo.name in learned, found, sample, weights, with_ssim))
     return tuple(scores)
+
+
+def quality_of(scores: Iterable[ViewScores]) -> Quality | None:
+    """PSNR of views in one number."""
+    return mean_quality((score.facade.psnr_db, score.whole.psnr_db) for score in scores)
 
 
 @torch.no_grad()
@@ -106,12 +115,18 @@ def _fitted(model: torch.nn.Module, sample: Sample, gain: float, settings: Raste
 
 
 def _scored(
-    name: str, is_learned: bool, found: NDArray[np.float32], sample: Sample, weights: LpipsWeights | None
+    name: str,
+    is_learned: bool,
+    found: NDArray[np.float32],
+    sample: Sample,
+    weights: LpipsWeights | None,
+    with_ssim: bool,
 ) -> ViewScores:
-    truth, facade = sample.display.numpy(), sample.facade.numpy()
-    shown = None if sample.shown is None else sample.shown.numpy()
-    facade = facade if shown is None else facade & shown
-    scores = score_picture(found, truth, facade), score_picture(found, truth, shown)
+    truth, (facade, shown) = sample.display.numpy(), sample.scored_pixels()
+    scores = (
+        score_picture(found, truth, facade, with_ssim=with_ssim),
+        score_picture(found, truth, shown, with_ssim=with_ssim),
+    )
     if weights is None:
         return ViewScores(name, is_learned, *scores)
     return ViewScores(

@@ -194,6 +194,12 @@ class Sample:
     x_px: int
     y_px: int
 
+    def scored_pixels(self) -> tuple[NDArray[np.bool_], NDArray[np.bool_] | None]:
+        """Of the facade, and of all that the photo shows (None for all of it): what pictures of it are scored on."""
+        facade = self.facade.numpy()
+        shown = None if self.shown is None else self.shown.numpy()
+        return facade if shown is None else facade & shown, shown
+
 
 class PhotoStream:
     """Random photos of a folder, or random windows of them; to be closed, or used in a `with` block.

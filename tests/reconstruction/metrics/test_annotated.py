@@ -26,6 +26,20 @@ def write_cmp(folder: Path, table: str = "x0,y0,x1,y1\n5,5,15,20\n20,5,30,20\n")
     return folder
 
 
+def cmp_object(rows: tuple[float, ...], columns: tuple[float, ...], name: str = "window") -> str:
+    """An object as the published files have it, lines ending as on old Macs; there x is the row and y the column."""
+    points = [f"<{axis}>\r{value:.5g}\r</{axis}>" for axis, values in (("x", rows), ("y", columns)) for value in values]
+    label = f"<label>\r3\r</label>\r<labelname>\r{name}\r</labelname>\r<flag>\r1\r</flag>"
+    return f"<object>\r<points>\r{chr(13).join(points)}\r</points>\r{label}\r</object>\r"
+
+
+def write_published_cmp(folder: Path, *objects: str) -> Path:
+    write(folder / "a.jpg", GREY)
+    write(folder / "a.png", GREY[..., 0])
+    (folder / "a.xml").write_bytes("".join(objects).encode())
+    return folder
+
+
 def write_coco(folder: Path, content: object = None) -> Path:
     write(folder / "b_png_jpg.rf.123.jpg", GREY)
     polygon = [5, 5, 15, 5, 15, 20, 5, 20]
@@ -56,6 +70,39 @@ def test_cmp_rectangles_become_numbered_windows(tmp_path: Path) -> None:
     assert (photo.index == 1).sum() == (photo.index == 2).sum() == 150
     assert photo.index[5, 5] == 1
     assert photo.index[4, 5] == photo.index[5, 15] == 0
+
+
+def test_published_cmp_objects_become_windows_with_rows_first(tmp_path: Path) -> None:
+    windows = cmp_object((5 / 30, 20 / 30), (5 / 40, 15 / 40)), cmp_object((20 / 30, 5 / 30), (30 / 40, 20 / 40))
+    other = cmp_object((0.0, 1.0), (0.0, 1.0), "facade"), cmp_object((0.8, 0.9), (0.1, 0.9), "sill")
+    (published,) = cmp_photos(write_published_cmp(tmp_path / "xml", other[0], *windows, other[1]))
+    (table,) = cmp_photos(write_cmp(tmp_path / "csv"))
+    np.testing.assert_array_equal(published.index, table.index)
+    content = (tmp_path / "xml" / "a.xml").read_bytes()
+    (tmp_path / "xml" / "a.xml").write_bytes(b'<?xml version="1.0"?>\n<annotation>' + content + b"</annotation>")
+    (with_root,) = annotated_set("cmp", tmp_path / "xml").photos()
+    np.testing.assert_array_equal(with_root.index, table.index)
+    # A table beside it counts.
+    write_cmp(tmp_path / "xml", "x0,y0,x1,y1\n0,0,40,30\n")
+    (by_table,) = cmp_photos(tmp_path / "xml")
+    assert (by_table.index == 1).all()
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        "",
+        "<object><points>",
+        cmp_object((0.1, 0.2), (0.1,)),
+        cmp_object((0.1, 0.2, 0.3), (0.1, 0.2)),
+        cmp_object((5.0, 20.0), (5.0, 15.0)),
+        cmp_object((0.1, 0.2), (0.1, float("nan"))),
+        "<!DOCTYPE a [<!ENTITY b 'c'>]>" + cmp_object((0.1, 0.2), (0.1, 0.2)),
+    ],
+)
+def test_broken_published_objects_are_named(tmp_path: Path, content: str) -> None:
+    with pytest.raises(InputError, match=r"a\.xml: expected objects with labelname and two x and y"):
+        list(cmp_photos(write_published_cmp(tmp_path, content)))
 
 
 def test_ecp_areas_of_red_become_windows(tmp_path: Path) -> None:
@@ -148,6 +195,17 @@ def test_real_cmp_photos_have_a_window_for_each_line_of_their_tables(shared_data
     assert len(lines) == photos.n_photos > 0
     # A window annotated twice is seen once.
     assert all(0.95 * n <= count <= n for n, count in zip(lines, counts, strict=True))
+
+
+def test_real_cmp_photos_are_the_same_as_published(shared_data: Path, tmp_path: Path) -> None:
+    for path in (shared_data / "facades" / "cmp").iterdir():
+        if path.suffix in (".jpg", ".xml"):
+            (tmp_path / path.name).symlink_to(path)
+    tables = annotated_set("cmp", shared_data / "facades")
+    published = annotated_set("cmp", tmp_path)
+    assert published.photo_names == tables.photo_names
+    for one, other in zip(published.photos(), tables.photos(), strict=True):
+        np.testing.assert_array_equal(one.index, other.index)
 
 
 @pytest.mark.slow

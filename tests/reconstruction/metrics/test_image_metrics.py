@@ -6,7 +6,17 @@ import numpy as np
 import pytest
 
 from reconstruction.metrics import image_metrics
-from reconstruction.metrics.image_metrics import C1, C2, PictureScore, psnr_db, score_picture, ssim_map, window_weights
+from reconstruction.metrics.image_metrics import (
+    C1,
+    C2,
+    PictureScore,
+    Quality,
+    mean_quality,
+    psnr_db,
+    score_picture,
+    ssim_map,
+    window_weights,
+)
 
 
 def picture(seed, height=23, width=17):
@@ -132,3 +142,16 @@ def test_wrong_shapes_are_refused(found, truth, mask):
         score_picture(found, truth, mask)
     with pytest.raises(ValueError, match="expected two pictures"):
         ssim_map(np.zeros((10, 12, 3)), np.zeros((10, 12, 3)))
+
+
+def test_quality_of_views_is_the_mean_over_those_that_show_a_facade():
+    assert mean_quality([(20.0, 10.0), (None, 50.0), (30.0, 11.0)]) == Quality(25.0, 2, True)
+    assert mean_quality([(None, 10.0), (None, 14.0)]) == Quality(12.0, 2, False)
+    assert mean_quality([(None, None)]) is None
+    assert mean_quality([]) is None
+
+
+def test_similarity_can_be_left_out():
+    a, b = np.random.default_rng(3).random((2, 40, 30, 3))
+    whole, quick = score_picture(a, b), score_picture(a, b, with_ssim=False)
+    assert quick == PictureScore(whole.psnr_db, None, 1200)
