@@ -3,7 +3,8 @@
 Here alone simulated time meets real time. A `DirectLink` knows only simulated time: to wait for a message is to fly on.
 `serve` lets simulated time follow the clock, `speedup` times as fast; while a mission is being uploaded both run alike,
 because the time-outs of the upload are the vehicle's and the ground station's answers are not sped up. Where it can be
-known that the ground station is still busy with what it was told, simulated time waits for it.
+known that the ground station is still busy with what it was told, simulated time waits for it; and one that takes its
+time from a `FlownClock` waits for the vehicle. So the speed of the machine changes how long a flight takes, no flight.
 """
 
 from __future__ import annotations
@@ -31,13 +32,31 @@ MAX_STEP_S = 0.1
 MAX_FLOWN_S = 0.5
 """Of simulated time, flown in one go: between two looks at what the ground station wants."""
 
-DEAF_S = 5.0
+DEAF_S = 30.0
 """How long simulated time waits for a ground station, in real time; one that takes longer does not listen at all."""
 
 
 def always() -> bool:
     """Of links from whose other end nothing can be known: it listens."""
     return True
+
+
+class FlownClock:
+    """Real time, less that in which the vehicle could not fly: it stands still while the machine is busy.
+
+    Time-outs of a ground station that reads it run out where the vehicle does not answer, and nowhere else.
+    """
+
+    def __init__(self, start_s: float = 0.0) -> None:
+        self._now_s = start_s
+
+    def __call__(self) -> float:
+        """Seconds."""
+        return self._now_s
+
+    def advance(self, duration_s: float) -> None:
+        """The vehicle has flown so long, in seconds of the ground station."""
+        self._now_s += duration_s
 
 
 class DirectLink:
@@ -119,6 +138,7 @@ def serve(
     stop: Stop = never,
     clock: Clock = time.perf_counter,
     is_heard: Callable[[], bool] = always,
+    flown: FlownClock | None = None,
 ) -> None:
     """Fly a vehicle and answer for it on links, until told to stop or until the last link breaks.
 
@@ -132,6 +152,8 @@ def serve(
     is_heard
         Whether the ground station has dealt with all that it was told, and listens. Where not, the vehicle waits, so
         that a slow machine makes the flight longer and not another one.
+    flown
+        Goes on as the vehicle flies.
 
     Raises
     ------
@@ -159,6 +181,8 @@ def serve(
             elapsed_s = min(now_s - flown_until_s, MAX_STEP_S)
             flown_until_s = now_s
             said += vehicle.step(min(elapsed_s * (1.0 if vehicle.is_transferring else speedup), MAX_FLOWN_S))
+            if flown is not None:
+                flown.advance(elapsed_s)
         _send(listening, said)
 
 

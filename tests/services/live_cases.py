@@ -92,20 +92,35 @@ class Reopening:
 
 
 class Follower:
-    """Collects the events of a flight; waits for what they say."""
+    """Collects the events of a flight; waits for what they say.
+
+    The flight waits with each event until the next is looked for, and its simulated vehicle waits with it: what a test
+    does about an event, it does at once, however slow the machine is.
+    """
 
     def __init__(self):
         self.events, self.told_s, self.view = [], [], None
         self._queue = queue.SimpleQueue()
+        self._next, self._has_one, self._is_waited_for = threading.Semaphore(0), False, True
 
     def __call__(self, event):
         self._queue.put((time.monotonic(), event))
+        if self._is_waited_for:
+            self._next.acquire()
+
+    def let_go(self):
+        """The flight waits no longer: it is to be closed."""
+        self._is_waited_for = False
+        self._next.release()
 
     def until(self, condition, timeout_s=400.0):
         """Take events until one meets the condition; returns it."""
         end = time.monotonic() + timeout_s
         while True:
+            if self._has_one and self._is_waited_for:
+                self._next.release()
             told_s, event = self._queue.get(timeout=max(0.01, end - time.monotonic()))
+            self._has_one = True
             self.told_s.append(told_s)
             self.events.append(event)
             if isinstance(event, FlightChanged):

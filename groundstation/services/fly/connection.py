@@ -36,7 +36,7 @@ from missions.simulator.conditions import Conditions
 from missions.simulator.effects.battery import BatterySag
 from missions.simulator.effects.facts import effect_facts
 from missions.simulator.effects.link_loss import through_air
-from missions.simulator.server import MAX_SPEEDUP, serve
+from missions.simulator.server import MAX_SPEEDUP, FlownClock, serve
 from missions.simulator.vehicle import SimulatedVehicle
 from planning.base.effects import Decision, EffectSetting
 from planning.base.errors import GroundStationError, InputError
@@ -228,6 +228,8 @@ class OpenedLink:
         What came in; None for the embedded simulation.
     is_signed
         Whether what is sent is signed, and must be.
+    clock
+        That the vehicle has to be watched by; None for real time.
     """
 
     link: Link
@@ -235,6 +237,7 @@ class OpenedLink:
     simulated: SampledVehicle | None = None
     counts: Counts | None = None
     is_signed: bool = False
+    clock: Clock | None = None
 
 
 class Connection(Protocol):
@@ -345,18 +348,19 @@ class Simulation:
         )
         flown = with_charge(airframe, self.charge, decisions)
         vehicle = SampledVehicle(self.autopilot, flown, self.site_model.site.origin, self._parameters())
-        ground, air = memory_pair(vehicle=vehicle.address, clock=clock)
+        watched = FlownClock(clock())
+        ground, air = memory_pair(vehicle=vehicle.address, clock=watched)
         ground.observe(observe)
         link = through_air(ground, decisions, self.conditions, lambda: vehicle.flight_s, self.seed)
         # It ends when the link is closed.
         threading.Thread(
             target=serve,
             args=(vehicle, [air], self.speed_up),
-            kwargs={"is_heard": ground.is_idle},
+            kwargs={"is_heard": ground.is_idle, "flown": watched},
             name="simulated-vehicle",
             daemon=True,
         ).start()
-        return OpenedLink(link, decisions, vehicle)
+        return OpenedLink(link, decisions, vehicle, clock=watched)
 
     def _parameters(self) -> dict[str, float | None]:
         """What a vehicle whose time runs faster than the orders to it needs to be set otherwise.
@@ -470,6 +474,11 @@ class LoggedLink:
         Where the log goes; where it cannot be written, the user's data folder takes its place.
     problem
         Called with what is wrong with the log, when that changes to something.
+
+    Attributes
+    ----------
+    now_s
+        Gives the time by which the vehicle is watched: real time, or that of a simulation.
     """
 
     def __init__(
@@ -481,6 +490,7 @@ class LoggedLink:
         self._log_problem = ""
         self._retry_s = 0.0
         self.opened: OpenedLink | None = None
+        self.now_s: Clock = clock
 
     @property
     def name(self) -> str:
@@ -500,7 +510,8 @@ class LoggedLink:
         InputError, LinkError
             It cannot be opened.
         """
-        self.opened = self._connection.open(orders, self._clock, self._frame_passed)
+        self.opened = self._connection.open(orders, self.now_s, self._frame_passed)
+        self.now_s = self.opened.clock or self.now_s
 
     def open_again(self, orders: SortieOrders) -> None:
         """Open a link that broke, once it is time to; returns after a moment in any case.

@@ -374,7 +374,8 @@ class LiveFlight:
     flown
         Records of the same plan from before, such as on another battery; photos and coverage count on.
     clock, unix_clock
-        Real time, also for simulations: the vehicle's own time runs ahead of it, and is in its messages.
+        Real time, by which the vehicle is watched too, unless it is a simulated one: see `OpenedLink`. Its own time, in
+        its messages, runs ahead.
     """
 
     def __init__(
@@ -491,7 +492,7 @@ class LiveFlight:
                 break
             wait_s = 0.0
             yield from self._machine.receive(received)
-        yield from self._machine.tick(self._clock())
+        yield from self._machine.tick(self._wire.now_s())
 
     @property
     def _machine(self) -> FlightRun | Listener:
@@ -551,7 +552,7 @@ class LiveFlight:
         self._ordered.clear()
         self._events.begin()
         self._coverage.add_sortie(self._sortie.viewpoint_ids)
-        for message in run.start(self._clock()):
+        for message in run.start(self._wire.now_s()):
             self._wire.send(message)
 
     # What has happened
@@ -581,7 +582,7 @@ class LiveFlight:
         self._publish(FlightChanged(self._view))
 
     def _notice_link(self) -> None:
-        link = link_state(self._machine.state, self._clock(), is_open=self._wire.opened is not None)
+        link = link_state(self._machine.state, self._wire.now_s(), is_open=self._wire.opened is not None)
         if link is not self._link:
             text = say("the vehicle is heard again") if self._link is LinkState.LOST else ""
             self._say_link(link, text if link is LinkState.ALIVE else "")
@@ -640,7 +641,7 @@ class LiveFlight:
 
     def _now(self) -> LiveView:
         """The flight as it stands."""
-        run, state, now_s = self._run, self._machine.state, self._clock()
+        run, state, now_s = self._run, self._machine.state, self._wire.now_s()
         orders, on_board = self._sortie.orders, OnBoard() if run is None else run.on_board
         overrules: frozenset[str] = frozenset() if run is None else run.options.overrules
         checks = preflight_checks(

@@ -25,7 +25,7 @@ from missions.mavlink.messages import (
     SystemTime,
 )
 from missions.mavlink.wire import Decoder
-from missions.simulator.server import DEAF_S, MAX_FLOWN_S, DirectLink, serve
+from missions.simulator.server import DEAF_S, MAX_FLOWN_S, MAX_STEP_S, DirectLink, FlownClock, serve
 from missions.simulator.vehicle import SimulatedVehicle
 from planning.base.errors import LinkError
 from planning.base.progress import StopRequest
@@ -153,19 +153,33 @@ def test_simulated_time_goes_speedup_times_as_fast_as_the_clock(speedup: float) 
 
 
 def test_simulated_time_waits_for_a_ground_station_that_is_busy_and_not_for_one_that_is_away() -> None:
-    vehicle = make_vehicle()
+    vehicle, n_reads = make_vehicle(), 500 + round(DEAF_S / 0.01)
     start_s, flown_s = vehicle.now_s, []
 
     def is_heard() -> bool:
         flown_s.append(vehicle.now_s - start_s)
         return len(flown_s) < 10 or 100 < len(flown_s) < 200
 
-    serve(vehicle, [Silent(1000)], 20.0, clock=ScriptedClock(), is_heard=is_heard)
+    serve(vehicle, [Silent(n_reads)], 20.0, clock=ScriptedClock(), is_heard=is_heard)
     assert flown_s[9] == pytest.approx(9 * 0.2, abs=0.03)
     assert flown_s[9] == flown_s[100], "busy for 0.9 s"
     assert flown_s[101] - flown_s[100] == pytest.approx(MAX_FLOWN_S, abs=0.03)
-    assert flown_s[199] == flown_s[199 + round(DEAF_S / 0.01)], "it has 5 s"
-    assert flown_s[-1] - flown_s[199] == pytest.approx(0.2 * (1000 - 199 - DEAF_S / 0.01), abs=1.0)
+    assert flown_s[199] == flown_s[198 + round(DEAF_S / 0.01)], "it has 30 s"
+    assert flown_s[-1] - flown_s[199] == pytest.approx(0.2 * (500 - 199), abs=1.0)
+
+
+def test_the_time_of_a_ground_station_goes_on_with_the_vehicle_and_not_with_the_clock() -> None:
+    """A machine that is busy for 1000 s, or a ground station that is for 100 looks, must not run time-outs down."""
+    vehicle, flown, times, looks = make_vehicle(), FlownClock(7.0), itertools.count(), itertools.count()
+    start_s = vehicle.now_s
+
+    def clock() -> float:
+        n = next(times)
+        return 0.01 * n + (1000.0 if n > 50 else 0.0)
+
+    serve(vehicle, [Silent(299)], 20.0, clock=clock, is_heard=lambda: not 100 < next(looks) <= 200, flown=flown)
+    assert flown() - 7.0 == pytest.approx(0.01 * 199 + 2 * MAX_STEP_S, abs=0.021)
+    assert vehicle.now_s - start_s == pytest.approx(20.0 * 0.01 * 198 + 2 * MAX_FLOWN_S, abs=0.5)
 
 
 def test_clock_that_jumps_does_not_make_the_vehicle_jump() -> None:

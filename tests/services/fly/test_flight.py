@@ -43,12 +43,13 @@ def flight(tmp_path, monkeypatch):
         follower = Follower()
         connection = connection or simulation()
         flight = LiveFlight(sortie(), connection, follower, folder or tmp_path / "flights", **options)
-        flights.append((flight, connection))
+        flights.append((flight, follower, connection))
         flight.start()
         return flight, follower
 
     yield begin
-    for flight, connection in flights:
+    for flight, follower, connection in flights:
+        follower.let_go()
         assert flight.close()
         if isinstance(connection, Reopening):
             connection.end()
@@ -198,11 +199,7 @@ def test_a_link_that_breaks_in_flight_is_opened_again_and_the_sortie_goes_on(fli
 
 
 def test_silence_is_shown_and_survived(flight):
-    """The radio loses everything for a while; what was photographed meanwhile is in the record all the same.
-
-    How many photos were counted depends on how fast the simulation goes: reports that got lost may be asked for again
-    before the aircraft has landed, or not.
-    """
+    """The radio loses everything for a while; what was photographed meanwhile is in the record all the same."""
     radio = Reopening()
     live, follower = flight(radio)
     fly(live, follower)
@@ -221,6 +218,7 @@ def test_disconnecting_in_flight_keeps_what_was_flown(flight):
     fly(live, follower)
     follower.until(lambda event: isinstance(event, PhotoCounted) and event.number >= 2)
     assert live.is_in_flight
+    follower.let_go()
     assert live.close()
     follower.until_closed()
     (ended,) = follower.of(FlightEnded)
@@ -289,11 +287,13 @@ def test_photos_of_an_earlier_battery_count_on(flight):
     follower.until(lambda event: isinstance(event, PhotoCounted) and event.number >= 2)
     live.request(Request.RETURN)
     first = follower.until_ended()
+    follower.let_go()
     live.close()
     again, follower = flight(flown=(first.record,))
     follower.until_may(Request.UPLOAD)
     done = [state for _, state in follower.view.view_states if state in (ViewState.TAKEN, ViewState.OFF)]
     assert len(done) == len(first.record.photos)
+    follower.let_go()
     assert again.close()
 
 
