@@ -8,16 +8,20 @@ than light that changes slowly, harmonics are enough. The Reflection MLP is neve
 from __future__ import annotations
 
 import time
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
 import torch
+from numpy.typing import NDArray
 
-from planning.base.effects import Assessment, Decision, Effect, decide
+from planning.base.effects import Assessment, Decision, Effect, EffectSetting, decide
 from planning.base.messages import say
 from planning.base.progress import QUIET, Clock, Monitor
+from reconstruction.base.cameras import PosedPhoto
 from reconstruction.light.config import ReflectionConfig
 from reconstruction.light.glass_rays import GlassRays
-from reconstruction.light.photo_set import PanelPlanes
+from reconstruction.light.photo_set import PanelPlanes, PhotoSet
 from reconstruction.light.reflective_panels import ModelName
 from reconstruction.light.training import TrainedReflections, mean_square_error, train_reflections
 from reconstruction.metrics.image_metrics import psnr_db
@@ -35,7 +39,10 @@ MOST_RAYS = 1 << 17
 """Of all photos together: more than a trial looks at."""
 
 SCORED, UNSEEN = 8192, 0.2
-"""Rays that trials are scored on, and the share of the photos that these are of."""
+"""Rays that a trial is scored on, and the share of the photos that these are of."""
+
+FOLDS, FEW_PHOTOS = 3, 40
+"""Of fewer photos than this, others are held back again and again: a fifth of them would tell too little."""
 
 NEAR_TOLERANCE_DB, FAR_TOLERANCE_DB = 0.3, 0.3
 
@@ -53,10 +60,23 @@ class Trials:
         In the order of `TRIED`.
     seconds
         Of an environment map.
+    unsure_db
+        Standard errors, over unseen photos, of what the better light gains on harmonics, and of what the grid gains on
+        the others: a gain counts as far as it is beyond that.
     """
 
     scores_db: tuple[float, float, float]
     seconds: float
+    unsure_db: tuple[float, float] = (0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LightTrials:
+    """Trials, the models of the last ones, and the numbers of the photos that these have not seen."""
+
+    trials: Trials
+    found: Mapping[ModelName, TrainedReflections]
+    unseen: tuple[int, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +90,7 @@ class NearLight:
     def assess(self, scene: Trials) -> Assessment:
         """By how much a radiance grid is better than the best model without places."""
         slow, far, near = scene.scores_db
-        gained = near - max(slow, far)
+        gained = near - max(slow, far) - scene.unsure_db[1]
         what = say("show parallax") if gained > self.tolerance else say("show no parallax to speak of")
         reason = say(
             "mirror images in unseen photos {}: radiance grid {:.1f} dB, environment map {:.1f} dB", what, near, far
@@ -89,26 +109,63 @@ class FarLight:
     def assess(self, scene: Trials) -> Assessment:
         """By how much the better model of mirrored light is better than harmonics, which mirror nothing."""
         slow, far, near = scene.scores_db
-        gained = max(far, near) - slow
+        gained = max(far, near) - slow - scene.unsure_db[0]
         what = say("clear mirror images") if gained > self.tolerance else say("no clear mirror images")
         return Assessment(gained, say("the panes show {}: harmonics alone {:.1f} dB", what, slow), scene.seconds)
 
 
-def choose_light(
+WHITE = 250.0 / 255.0
+"""Values from here on are clipped, or are means of some that are: what JPEG and smaller pictures make of white."""
+
+LOOKED_AT = 16
+"""Photos, evenly chosen, that tell how much of all is overexposed."""
+
+EVERY_PX = 4
+"""Pixels of them along each side, of which one is looked at."""
+
+
+@dataclass(frozen=True, slots=True)
+class Overexposure:
+    """Whether photos are overexposed: values next to white then say "at least so bright"."""
+
+    name: str = say("overexposed photos")
+    unit: str = say("share of the pixels")
+    tolerance: float = 0.01
+
+    def assess(self, scene: Sequence[NDArray[np.uint8]]) -> Assessment:
+        """Share of pixels of pictures with a value next to white."""
+        share = float(np.mean([(picture >= 255.0 * WHITE).any(axis=-1).mean() for picture in scene]))
+        return Assessment(share, say("{:.1f} % of the pixels are next to white", 100.0 * share), 0.0)
+
+
+def white_of(source: PhotoSet, photos: Sequence[PosedPhoto], setting: EffectSetting = "auto") -> tuple[float, Decision]:
+    """From which value on photos are taken as overexposed, and the decision that leads to it.
+
+    Raises
+    ------
+    InputError
+        A photo is missing or damaged.
+    """
+    chosen = photos[:: -(-len(photos) // LOOKED_AT)]
+    pictures = [source.picture(photo)[::EVERY_PX, ::EVERY_PX] for photo in chosen]
+    decision = decide(Overexposure(), pictures, setting)
+    return WHITE if decision.on else 1.0, decision
+
+
+def try_lights(
     rays: GlassRays,
     planes: PanelPlanes,
     config: ReflectionConfig,
     monitor: Monitor = QUIET,
     clock: Clock = time.process_time,
     device: str = "cpu",
-) -> tuple[ModelName, tuple[Decision, ...]]:
-    """Try the models on some rays, and decide which one is trained.
+) -> LightTrials | None:
+    """Try the models on some rays, and score them on photos that they have not seen; None of fewer than two photos.
 
     Parameters
     ----------
     rays
-        Of all photos that are learned from. Of fewer than two photos nothing can be held out, and an environment map is
-        chosen without a decision.
+        Of all photos that are learned from.
     clock
         Processor time, so that what else the machine does changes no decision.
     device
@@ -121,18 +178,64 @@ def choose_light(
     OperationCancelled
         From `monitor`.
     """
-    seen, unseen = _split(rays, config.seed)
-    if not len(seen) or not len(unseen):
-        return "environment-map", ()
-    found = []
-    for done, model in enumerate(TRIED):
-        monitor.report(say("choosing a model of mirrored light"), done, len(TRIED))
-        # In a program's first run kernels are compiled here, which takes longer than a trial and tells nothing of it.
-        _tried(model, seen, planes, replace(config, steps=1, time_limit_s=None), monitor, clock, device)
-        found.append(_tried(model, seen, planes, config, monitor, clock, device))
-    slow, far, near = (psnr_db(mean_square_error(trained.panels, unseen)) for trained in found)
-    whole = config.steps_for(len(rays)) * config.batch / (found[1].n_steps * found[1].config.batch)
-    return chosen(Trials((slow, far, near), found[1].seconds * whole))
+    folds = _folds(rays, config.seed)
+    scores: list[list[float]] = []
+    found: dict[ModelName, TrainedReflections] = {}
+    for number, (seen, unseen) in enumerate(folds):
+        for done, model in enumerate(TRIED):
+            monitor.report(
+                say("choosing a model of mirrored light"), number * len(TRIED) + done, len(folds) * len(TRIED)
+            )
+            if number == 0:
+                # In a program's first run kernels are compiled here, which takes longer than a trial.
+                _tried(model, seen, planes, replace(config, steps=1, time_limit_s=None), monitor, clock, device)
+            found[model] = _tried(model, seen, planes, config, monitor, clock, device)
+        scores += [[psnr_db(mean_square_error(found[model].panels, photo)) for model in TRIED] for photo in unseen]
+    if not scores:
+        return None
+    far = found["environment-map"]
+    whole = config.steps_for(len(rays)) * config.batch / (far.n_steps * far.config.batch)
+    trials = trials_of(np.array(scores), far.seconds * whole)
+    return LightTrials(trials, found, tuple(int(photo.photos[0]) for photo in folds[-1][1]))
+
+
+def trials_of(scores_db: NDArray[np.float64], seconds: float) -> Trials:
+    """Means of photos' scores, shape (n, 3) in the order of `TRIED`, and how far their differences may be off."""
+    slow, far, near = scores_db.T
+    best = near if near.mean() > far.mean() else far
+    return Trials(
+        (float(slow.mean()), float(far.mean()), float(near.mean())),
+        seconds,
+        (_standard_error(best - slow), _standard_error(near - np.where(far.mean() > slow.mean(), far, slow))),
+    )
+
+
+def _standard_error(differences: NDArray[np.float64]) -> float:
+    """Of a mean; 0 of one alone, of which it is not known."""
+    return float(differences.std(ddof=1) / np.sqrt(len(differences))) if len(differences) > 1 else 0.0
+
+
+def choose_light(
+    rays: GlassRays,
+    planes: PanelPlanes,
+    config: ReflectionConfig,
+    monitor: Monitor = QUIET,
+    clock: Clock = time.process_time,
+    device: str = "cpu",
+) -> tuple[ModelName, tuple[Decision, ...]]:
+    """Try the models on some rays, and decide which one is trained; see `try_lights`.
+
+    Of fewer than two photos nothing can be held out, and an environment map is chosen without a decision.
+
+    Raises
+    ------
+    ReconstructionError
+        A trial failed.
+    OperationCancelled
+        From `monitor`.
+    """
+    found = try_lights(rays, planes, config, monitor, clock, device)
+    return ("environment-map", ()) if found is None else chosen(found.trials)
 
 
 def chosen(trials: Trials) -> tuple[ModelName, tuple[Decision, ...]]:
@@ -144,15 +247,22 @@ def chosen(trials: Trials) -> tuple[ModelName, tuple[Decision, ...]]:
     return ("environment-map" if mirrors.on else "harmonics"), (mirrors, near)
 
 
-def _split(rays: GlassRays, seed: int) -> tuple[GlassRays, GlassRays]:
-    """An even share of the rays to learn from, and some of other photos to be scored on."""
+def _folds(rays: GlassRays, seed: int) -> list[tuple[GlassRays, list[GlassRays]]]:
+    """An even share of the rays of most photos, and some of each other photo to be scored on; many times of few."""
     generator = torch.Generator().manual_seed(seed)
     photos = torch.unique(rays.photos)
-    n_unseen = max(1, round(UNSEEN * len(photos))) if len(photos) > 1 else 0
-    held = photos[torch.randperm(len(photos), generator=generator)[:n_unseen]]
+    if len(photos) < 2:
+        return []
+    n_unseen = max(1, round(UNSEEN * len(photos)))
+    n_folds = min(FOLDS, len(photos) // n_unseen) if len(photos) < FEW_PHOTOS else 1
+    shuffled = photos[torch.randperm(len(photos), generator=generator)]
     order = torch.randperm(len(rays), generator=generator)
-    is_unseen = torch.isin(rays.photos[order], held)
-    return rays[order[~is_unseen][:MOST_RAYS]], rays[order[is_unseen][:SCORED]]
+    of_photo = rays.photos[order]
+    folds = []
+    for held in shuffled[: n_folds * n_unseen].split(n_unseen):
+        unseen = [rays[order[of_photo == photo][: -(-SCORED // n_unseen)]] for photo in held]
+        folds.append((rays[order[~torch.isin(of_photo, held)][:MOST_RAYS]], unseen))
+    return folds
 
 
 def _tried(

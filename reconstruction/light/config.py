@@ -193,6 +193,8 @@ class ReflectionConfig:
         0.04 dB with 51 rendered photos and by -0.1 dB with 180.
     squared_to
         Of `ray_errors`: 0 for the paper's mean error. A radiance grid has its own.
+    white
+        See `no_brighter`.
     precision
         Of the matrix products; features, colours and weights are float32 always. `auto` times both, once in a process.
     threads
@@ -224,6 +226,7 @@ class ReflectionConfig:
     warm_up: int = parameter(100, least=0)
     high_frequency: tuple[HighFrequencyStage, ...] = ()
     squared_to: float = 0.0
+    white: float = parameter(1.0, above=0.0, most=1.0)
     precision: Precision = "auto"
     threads: int = parameter(1, least=1)
     time_limit_s: float | None = parameter(None, above=0.0, most=math.inf, expected="more than 0")

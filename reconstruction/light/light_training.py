@@ -27,7 +27,7 @@ from planning.base.progress import QUIET, Clock, Monitor
 from reconstruction.base.out_of_memory import NotFinite, is_out_of_memory
 from reconstruction.light.config import Precision, ReflectionConfig
 from reconstruction.light.glass_rays import GlassRays
-from reconstruction.light.losses import ray_errors, ray_loss
+from reconstruction.light.losses import no_brighter, ray_errors, ray_loss
 from reconstruction.light.radiance_grid import RadianceGrid
 from reconstruction.light.reflective_panels import ReflectivePanels
 
@@ -174,7 +174,9 @@ class LightTraining:
         batch = self.rays[rows.to(self.device)]
         with torch.autocast(self.device.type, torch.bfloat16, enabled=self.precision == "bfloat16"):
             colours = panels(batch, generator=self.generator)
-        loss = ray_loss(ray_errors(colours, batch.display, config.squared_to), config.stage(progress))
+        truth = batch.display
+        colours = no_brighter(colours, truth, config.white)
+        loss = ray_loss(ray_errors(colours, truth, config.squared_to), config.stage(progress))
         more = None if panels.light is None else panels.light.regulariser(config, at.step)
         loss = loss if more is None else loss + more
         if not bool(torch.isfinite(loss)):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import torch
 from torch import Tensor
 from torch.nn.functional import huber_loss
 
@@ -9,6 +10,17 @@ from reconstruction.light.config import HighFrequencyStage
 
 EPSILON = 1e-6
 """Of Eq. 24: with no ray above the threshold the loss is 0, and so is its gradient."""
+
+
+def no_brighter(found: Tensor, truth: Tensor, white: float = 1.0) -> Tensor:
+    """What was found, but nowhere brighter than a photo that is overexposed there: that says "at least so bright".
+
+    Parameters
+    ----------
+    white
+        Value of sRGB, 0 to 1, from which on a photo is overexposed.
+    """
+    return torch.where(truth >= white, torch.minimum(found, truth), found)
 
 
 def ray_errors(found: Tensor, truth: Tensor, squared_to: float = 0.0) -> Tensor:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal
 
+from planning.base.effects import EffectSetting
 from planning.base.errors import InputError
 from planning.base.json_file import settings_over
 from planning.base.parameters import check, like, parameter
@@ -56,6 +57,8 @@ class LossWeights:
         between it says nothing. They brought 0.55 dB on facades of unseen views (the paper: 0.53).
     high_frequency_from
         Share of the training after which they begin: before, every pixel is among the worst.
+    white
+        See `no_brighter`; `overexposed` sets it.
     """
 
     dssim: float = parameter(0.2, least=0.0, most=1.0)
@@ -65,6 +68,7 @@ class LossWeights:
     consistent_from: float = parameter(0.25, least=0.0, most=1.0)
     high_frequency: tuple[HighFrequencyStage, ...] = PAPER_STAGES
     high_frequency_from: float = parameter(0.25, least=0.0, most=1.0)
+    white: float = parameter(1.0, above=0.0, most=1.0)
 
     def __post_init__(self) -> None:
         check(self)
@@ -153,6 +157,8 @@ class TrainConfig:
         Of the time that is left when light begins to be learned alone, at most, for that.
     reflections
         How light is learned alone, from random rays of glass.
+    overexposed
+        Whether values next to white say "at least so bright", as white does: `choose_light.Overexposure`.
     start_from
         With `points`, no mesh and no ground are known, and panels to methods alone that know panels. Points on glass
         are left out: photogrammetry finds none there that is where it seems.
@@ -188,6 +194,7 @@ class TrainConfig:
     time_limit_s: float | None = like(TrainRequest, "time_limit_s", None, unset="none")
     light_share: float = parameter(0.35, least=0.0, most=1.0)
     reflections: ReflectionConfig = field(default_factory=ReflectionConfig)
+    overexposed: EffectSetting = "auto"
     start_from: StartFrom = "surfaces"
     n_splats: int = parameter(12_000, least=1)
     max_splats: int = parameter(30_000, least=1)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from planning.base.jit import chunks, kernel, run_chunks
-from reconstruction.light.losses import high_frequency_loss, ray_errors
+from reconstruction.light.losses import high_frequency_loss, no_brighter, ray_errors
 from reconstruction.metrics.image_metrics import C1, C2, WINDOW_PX, window_weights
 from reconstruction.splats.rasterising.views import View
 
@@ -306,7 +306,7 @@ def colour_loss(found: Tensor, truth: Tensor, dssim_weight: float) -> Tensor:
     Where the photo is overexposed, what is brighter than it can show is no error. Pictures that D-SSIM's window does
     not fit into have L1 alone.
     """
-    found = torch.where(truth >= 1.0, found.clamp(max=1.0), found)
+    found = no_brighter(found, truth)
     absolute = (found - truth).abs().mean()
     if dssim_weight == 0.0 or min(found.shape[:2]) < WINDOW_PX:
         return absolute

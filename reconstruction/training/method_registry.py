@@ -67,6 +67,7 @@ PAPER = "Liang et al., RefGlass-GS (the paper), 2026"
 AS_PAPER: dict[str, Any] = {
     "light": "mlp",
     "geometry": "splats",
+    "overexposed": "off",
     "losses": {"normal_prior": 1.0},
     "rates": {"glass_geometry": 0.1, "light": 0.15},
 }
@@ -94,6 +95,7 @@ METHODS: dict[str, Method] = {
         settings={
             "light": "auto",
             "geometry": "panels",
+            "overexposed": "auto",
             "losses": {"normal_prior": 0.1},
             "rates": {"glass_geometry": 1.0, "light": 0.25},
         },

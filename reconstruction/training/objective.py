@@ -7,6 +7,7 @@ from dataclasses import replace
 import torch
 from torch import Tensor
 
+from reconstruction.light.losses import no_brighter
 from reconstruction.training.config import LossWeights
 from reconstruction.training.losses import (
     colour_loss,
@@ -38,6 +39,7 @@ def objective(
         # What a straightened photo does not show is as it should be.
         found = torch.where(sample.shown[..., None], found, truth)
         facade = facade & sample.shown
+    found = no_brighter(found, truth, weights.white)
     terms = {"colour": colour_loss(found, truth, weights.dssim)}
     raster = picture.raster
     if weights.normal_consistency > 0.0 and progress >= weights.consistent_from:

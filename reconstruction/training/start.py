@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import math
 from collections.abc import Iterator, Sequence
+from contextlib import ExitStack
 from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
 from typing import Any
@@ -14,13 +15,13 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
-from planning.base.effects import Decision
+from planning.base.effects import Assessment, Decision, decide
 from planning.base.errors import InputError
 from planning.base.json_file import to_record
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.light.choose_light import choose_light
+from reconstruction.light.choose_light import LightTrials, chosen, try_lights, white_of
 from reconstruction.light.glass_rays import GlassRays, glass_rays
 from reconstruction.light.light_training import Keeping
 from reconstruction.light.photo_set import PanelPlanes, PhotoSet, held_out_names
@@ -35,6 +36,7 @@ from reconstruction.splats.rasterising.views import View
 from reconstruction.splats.sky import Sky
 from reconstruction.splats.splats import NO_PANEL, Splats, splats_from_tensors, splats_to_tensors
 from reconstruction.splats.surfels import known_scene, model_origin, points_alone
+from reconstruction.training.callbacks import Callbacks, HeldOut
 from reconstruction.training.config import TrainConfig
 from reconstruction.training.methods.shader import Shader
 from reconstruction.training.methods.shaders import Surroundings, as_method_has_them, shader_of, with_primitive
@@ -43,6 +45,7 @@ from reconstruction.training.model.record import SiteRecord, site_record
 from reconstruction.training.photos.exposures import Exposures, Move, learned_moves, moved
 from reconstruction.training.photos.photo_stream import PhotoStream, StreamSettings
 from reconstruction.training.timer import Timer
+from reconstruction.training.trainer import SHOWN_VIEWS, Trainer, strategy_of
 from reconstruction.training.training_state import write_checkpoint
 
 # The first stage of a training, learning light alone: what it needs to go on after it was interrupted.
@@ -289,6 +292,8 @@ class Start:
 
     Parameters
     ----------
+    config
+        As asked, with what the photos call for.
     learned, held_out
         Photos to learn from, and names of those that are kept for scoring.
     extent_m
@@ -303,6 +308,7 @@ class Start:
         What learning light had to survive.
     """
 
+    config: TrainConfig
     model: SceneModel
     exposures: Exposures
     learned: tuple[PosedPhoto, ...]
@@ -365,18 +371,23 @@ def start_model(
     light: TrainedReflections | None = None
     shader: Shader | None = None
     decisions: tuple[Decision, ...] = ()
+    if begun is None and config.trained_by.knows_panels:
+        white, decision = white_of(source, learned, config.overexposed)
+        config = with_white(config, white)
+        decisions = (decision,)
     if not config.trained_by.knows_panels:
         triangles = (scene.mesh.corners_enu_m - origin).astype(np.float32).reshape(-1, 3, 3)
         shader = shader_of(config, Surroundings(triangles))
         splats = as_method_has_them(splats, config, shader)
     else:
-        light, decisions = _learned_light(source, learned, config, splats, monitor, watch, checkpoint, begun)
+        light, decisions = _learned_light(source, learned, config, splats, monitor, watch, checkpoint, begun, decisions)
     moves = learned_moves(None if light is None else light.panels.light, len(learned))
     cameras = np.array([photo.pose.position_enu_m for photo in moved(learned, moves)])
     if light is not None:
         hand_over(light.panels, splats, source.panels, origin, cameras)
     exposures = [source.own_exposures.get(photo.name, 1.0) for photo in learned]
     return Start(
+        config,
         _joined(source, learned, splats, light, shader, origin, config),
         Exposures(exposures),
         learned,
@@ -389,6 +400,122 @@ def start_model(
     )
 
 
+SHOWN_PX = 512 * 384
+"""About as many pixels of held-out views are looked at: larger ones are made smaller, so that looking takes no time."""
+
+
+def held_out_views(
+    source: PhotoSet, names: Sequence[str], origin_enu_m: Array, memory_bytes: int, closing: ExitStack
+) -> tuple[HeldOut, ...]:
+    """Views that the quality is measured on while a training runs, made smaller."""
+    most = max(photo.intrinsics.width_px * photo.intrinsics.height_px for photo in source.photos)
+    few = StreamSettings(max(1, memory_bytes), reduce=max(1, math.isqrt(most // SHOWN_PX)))
+    shown = closing.enter_context(PhotoStream(source, names, origin_enu_m, few))
+    return tuple(
+        HeldOut(shown.frame(number), source.own_exposures.get(photo.name, 1.0))
+        for number, photo in enumerate(shown.photos)
+    )
+
+
+# Whether light apart from the splats is worth it: both ways are tried for a short while, and scored on views held back.
+#
+# Where mirror images differ from photo to photo, or too little is known of where cameras were, light that is learned
+# apart tells unseen photos worse than splats alone do, although it tells glass better than harmonics of a pane do.
+
+CLEAR_DB = 3.0
+"""That light apart gains on harmonics, on rays of unseen photos, from which on nobody need ask further."""
+
+ASKED_SHARE = 0.04
+"""Of a training, for each of both ways."""
+
+LEAST_ASKED_STEPS = 20
+
+NEVER_S = 1e9
+
+
+@dataclass(frozen=True, slots=True)
+class LightApart:
+    """Whether light that is learned apart from the splats tells unseen views better."""
+
+    name: str = say("light apart from the splats")
+    unit: str = "dB"
+    tolerance: float = 0.1
+
+    def assess(self, scene: tuple[float, float, float]) -> Assessment:
+        """By PSNR, dB, of views held back with it and without; and what it costs, seconds."""
+        apart, alone, cost_s = scene
+        reason = say("views held back have {:.1f} dB with it, {:.1f} dB with splats alone", apart, alone)
+        return Assessment(apart - alone, reason, cost_s)
+
+
+@dataclass(frozen=True, slots=True)
+class _Told:
+    """Reports under the name of the choice."""
+
+    monitor: Monitor
+
+    def report(self, stage: str, done: float, total: float) -> None:
+        self.monitor.report(say("choosing a model of mirrored light"), done, total)
+
+
+def _is_worth(
+    source: PhotoSet,
+    learned: Sequence[PosedPhoto],
+    splats: Splats,
+    tried: LightTrials,
+    name: ModelName,
+    config: TrainConfig,
+    watch: Timer,
+    monitor: Monitor,
+) -> Decision:
+    """Train with light apart and without for a short while, and score both on the photos that trials have not seen."""
+    unseen = [learned[number].name for number in tried.unseen]
+    seen = tuple(photo for photo in learned if photo.name not in unseen)
+    origin = model_origin(known_scene(source))
+    limit_s = None if config.time_limit_s is None else ASKED_SHARE * config.time_limit_s
+    short = replace(
+        config,
+        time_limit_s=limit_s,
+        iterations=max(LEAST_ASKED_STEPS, round(ASKED_SHARE * config.iterations)),
+        densification="none",
+        score_every_s=NEVER_S,
+        checkpoint_every_s=NEVER_S,
+    )
+    cameras = np.array([photo.pose.position_enu_m for photo in seen])
+    exposures = [source.own_exposures.get(photo.name, 1.0) for photo in seen]
+    scores: dict[str, float] = {}
+    for model in (name, "harmonics"):
+        light = tried.found[model]
+        own = splats_from_tensors(splats_to_tensors(splats), str(source.folder))
+        hand_over(light.panels, own, source.panels, origin, cameras)
+        joint = _joined(source, seen, own, light, None, origin, config)
+        with ExitStack() as closing:
+            with_normals = config.losses.normal_prior > 0.0
+            settings = StreamSettings(config.memory_bytes // 2, config.window_px, config.reduce, with_normals)
+            names = [photo.name for photo in seen]
+            photos = closing.enter_context(PhotoStream(source, names, origin, settings))
+            shown = held_out_views(source, unseen[:SHOWN_VIEWS], origin, config.memory_bytes // 2, closing)
+            trainer = Trainer(
+                joint,
+                Exposures(exposures),
+                photos,
+                strategy_of(short, len(own)),
+                short,
+                shown=shown,
+                extent_m=_extent_m(cameras),
+                watch=Timer(watch.clock),
+            )
+            trainer.run(Callbacks(_Told(monitor)))
+            scores[model] = trainer.at.history[-1][1]
+    return decide(LightApart(), (scores[name], scores["harmonics"], tried.trials.seconds))
+
+
+def with_white(config: TrainConfig, white: float) -> TrainConfig:
+    """Settings with a value from which on photos are taken as overexposed."""
+    losses, reflections = replace(config.losses, white=white), replace(config.reflections, white=white)
+    return replace(config, losses=losses, reflections=reflections)
+
+
 def _learned_light(
     source: PhotoSet,
     learned: Sequence[PosedPhoto],
@@ -398,8 +525,9 @@ def _learned_light(
     watch: Timer,
     checkpoint: Path | None,
     begun: BegunLight | None,
+    before: tuple[Decision, ...],
 ) -> tuple[TrainedReflections, tuple[Decision, ...]]:
-    """The light, and the decisions about what learns it."""
+    """The light, and the decisions about what learns it after those that were made before."""
     settings = replace(config.reflections, seed=config.seed, threads=config.threads, memory_bytes=config.memory_bytes)
     rays = glass_rays(source, learned, settings.memory_bytes, settings.seed, monitor)
     if not len(rays):
@@ -416,10 +544,14 @@ def _learned_light(
     if begun is None:
         name, decisions = config.light, no_decisions
         if name == "auto":
-            tried = replace(settings, time_limit_s=_light_limit_s(config, watch))
-            name, decisions = choose_light(rays, source.panels, tried, monitor, device=config.device)
+            quick = replace(settings, time_limit_s=_light_limit_s(config, watch))
+            tried = try_lights(rays, source.panels, quick, monitor, device=config.device)
+            name, decisions = ("environment-map", no_decisions) if tried is None else chosen(tried.trials)
+            if tried is not None and name != "harmonics" and decisions[0].size < CLEAR_DB:
+                worth = _is_worth(source, learned, splats, tried, name, config, watch, monitor)
+                name, decisions = (name if worth.on else "harmonics"), (*decisions, worth)
         limit_s = _light_limit_s(config, watch)
-        stage = LightStage(config, site_record(source.folder), name, decisions, limit_s, digest)
+        stage = LightStage(config, site_record(source.folder), name, (*before, *decisions), limit_s, digest)
     else:
         stage = begun.stage
         if digest != stage.rays_sha256:

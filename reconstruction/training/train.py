@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-import math
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
@@ -28,7 +27,7 @@ from reconstruction.training.model.score import quality_of, score_views
 from reconstruction.training.photos.exposures import moved
 from reconstruction.training.photos.photo_stream import PhotoStream, StreamSettings
 from reconstruction.training.ranks import ALONE, Ranks
-from reconstruction.training.start import Start, begun_light, start_model
+from reconstruction.training.start import Start, begun_light, held_out_views, start_model
 from reconstruction.training.timer import Timer
 from reconstruction.training.trainer import SHOWN_VIEWS, Trainer, strategy_of
 from reconstruction.training.training_state import read_checkpoint
@@ -71,9 +70,6 @@ def _gnu_library() -> Any:
     library = ctypes.CDLL(None)
     return library if hasattr(library, "gnu_get_libc_version") else None
 
-
-SHOWN_PX = 512 * 384
-"""About as many pixels of them are looked at: larger photos are made smaller, so that looking takes no time."""
 
 SHOWN_SHARE = 0.25
 """Of the memory for photos, at most, for held-out ones that the quality is measured on."""
@@ -120,19 +116,19 @@ def train_model(
         return _joined_later(folder, checkpoint, watching, ranks, watch)
     source = read_photo_set(folder)
     start = start_model(source, config, watching.monitor, watch, checkpoint, given=given)
-    return _started(source, start, config, watching, checkpoint, ranks, watch)
+    return _started(source, start, watching, checkpoint, ranks, watch)
 
 
 def _started(
     source: PhotoSet,
     start: Start,
-    config: TrainConfig,
     watching: Callbacks,
     checkpoint: Path | None,
     ranks: Ranks,
     watch: Timer,
 ) -> TrainedModel:
     """The joint training after its start."""
+    config = start.config
     record = ModelRecord(
         config,
         light_record(start.model, start.light_name),
@@ -207,7 +203,7 @@ def resume_model(
     watch.before_s += begun.spent_s
     source = read_photo_set(folder)
     start = start_model(source, config, watching.monitor, watch, checkpoint, begun)
-    return _started(source, start, config, watching, checkpoint, ranks, watch)
+    return _started(source, start, watching, checkpoint, ranks, watch)
 
 
 def _joined_later(folder: Path, checkpoint: Path, watching: Callbacks, ranks: Ranks, watch: Timer) -> TrainedModel:
@@ -282,13 +278,7 @@ def _photos(source: PhotoSet, record: ModelRecord, closing: ExitStack) -> tuple[
     )
     photos = closing.enter_context(PhotoStream(source, record.learned, origin, settings))
     names = record.held_out[:: -(-len(record.held_out) // SHOWN_VIEWS)]
-    most = max(photo.intrinsics.width_px * photo.intrinsics.height_px for photo in source.photos)
-    few = StreamSettings(max(1, round(SHOWN_SHARE * config.memory_bytes)), reduce=max(1, math.isqrt(most // SHOWN_PX)))
-    shown = closing.enter_context(PhotoStream(source, names, origin, few))
-    return photos, tuple(
-        HeldOut(shown.frame(number), source.own_exposures.get(photo.name, 1.0))
-        for number, photo in enumerate(shown.photos)
-    )
+    return photos, held_out_views(source, names, origin, round(SHOWN_SHARE * config.memory_bytes), closing)
 
 
 def _pixels(source: PhotoSet, names: Sequence[str]) -> int:

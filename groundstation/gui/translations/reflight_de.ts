@@ -6738,6 +6738,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Schlüssel gespeichert; einem Fluggerät mit &apos;signing give URL&apos; geben, über ein Kabel</translation>
     </message>
     <message>
+        <source>light apart from the splats</source>
+        <translation>Licht getrennt von den Splats</translation>
+    </message>
+    <message>
         <source>line 1: expected a column &apos;global_id&apos; or &apos;name&apos;, found {0}</source>
         <translation>Zeile 1: erwartet wird eine Spalte &apos;global_id&apos; oder &apos;name&apos;, gefunden {0}</translation>
     </message>
@@ -6974,6 +6978,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>gesamte mIoU</translation>
     </message>
     <message>
+        <source>overexposed photos</source>
+        <translation>überbelichtete Fotos</translation>
+    </message>
+    <message>
         <source>panels of photo &apos;{0}&apos; are given for {1} x {2} pixels, but it has {3} x {4}; find and correct them in the photo itself</source>
         <translation>Scheiben des Fotos &apos;{0}&apos; sind für {1} x {2} Pixel gegeben, es hat aber {3} x {4}; sie im Foto selbst suchen und verbessern</translation>
     </message>
@@ -7108,6 +7116,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>setting</source>
         <translation>Einstellung</translation>
+    </message>
+    <message>
+        <source>share of the pixels</source>
+        <translation>Anteil der Pixel</translation>
     </message>
     <message>
         <source>shows other panels than the model; name photos of the same site</source>
@@ -7354,8 +7366,16 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Aufnahmen gefunden nach</translation>
     </message>
     <message>
+        <source>views held back have {0} dB with it, {1} dB with splats alone</source>
+        <translation>zurückgehaltene Ansichten haben damit {0} dB, mit Splats allein {1} dB</translation>
+    </message>
+    <message>
         <source>way flown</source>
         <translation>Flugweg</translation>
+    </message>
+    <message>
+        <source>{0} % of the pixels are next to white</source>
+        <translation>{0} % der Pixel sind fast weiß</translation>
     </message>
     <message>
         <source>{0} unseen view</source>

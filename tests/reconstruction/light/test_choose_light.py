@@ -2,15 +2,19 @@
 
 from dataclasses import replace
 
+import cv2
+import numpy as np
 import pytest
 import torch
 
 from planning.base.errors import OperationCancelled
-from reconstruction.light.choose_light import Trials, choose_light, chosen
+from reconstruction.light.choose_light import WHITE, Trials, choose_light, chosen, trials_of, try_lights, white_of
 from reconstruction.light.config import GridSettings, ReflectionConfig
 from reconstruction.light.glass_rays import glass_rays
 from reconstruction.light.photo_set import read_photo_set
 from reconstruction.light.radiance_grid import RadianceGrid, box_around, box_of
+from reconstruction.light.training import mean_square_error, train_reflections
+from reconstruction.metrics.image_metrics import psnr_db
 from tests.reconstruction.light.made_folder import far, near, write_folder
 
 CONFIG = ReflectionConfig(environment_rows=32, steps=100, batch=512)
@@ -96,3 +100,68 @@ def test_the_box_holds_where_mirrored_rays_go_and_no_more_cells_than_are_allowed
     assert box_of(rays, GridSettings(reach_m=30.0), len(rays)).reach == pytest.approx(30.0 / float(table.half_side_m))
     few, many = (box_of(rays, GridSettings(cell=0.01), n).counts for n in (10_000, 100_000))
     assert few[0] * few[1] * few[2] < 0.2 * many[0] * many[1] * many[2]
+
+
+def test_gains_count_as_far_as_they_are_beyond_what_photos_differ_in():
+    alike = np.tile([16.0, 17.0, 18.0], (4, 1))
+    assert chosen(trials_of(alike, 1.0))[0] == "radiance-grid"
+    # The same means, but the grid is better in one photo alone.
+    apart = alike + np.array([[0.0, 0.0, 6.0], *[[0.0, 0.0, -2.0]] * 3])
+    trials = trials_of(apart, 1.0)
+    assert trials.scores_db == trials_of(alike, 1.0).scores_db
+    assert trials.unsure_db[1] == pytest.approx(2.0)
+    assert chosen(trials)[0] == "harmonics"
+    assert trials_of(alike[:1], 1.0).unsure_db == (0.0, 0.0)
+
+
+def test_of_few_photos_others_are_held_back_again_and_again(found):
+    _, rays, planes, _ = found
+    tried = try_lights(rays, planes, replace(CONFIG, steps=2))
+    assert len(tried.unseen) == 4
+    assert set(tried.found) == {"harmonics", "environment-map", "radiance-grid"}
+    assert max(tried.trials.unsure_db) > 0.0
+    assert try_lights(rays[torch.nonzero(rays.photos == 0).squeeze(1)], planes, CONFIG) is None
+
+
+def overexpose(folder, times):
+    """Put so many times the light into a folder's photos, with white that JPEG and smaller pictures leave of clipped
+    light: a little less than white."""
+    for path in (folder / "images").iterdir():
+        light = times * (cv2.imread(str(path)) / 255.0) ** 2.2
+        ragged = np.random.default_rng(len(str(path.name))).uniform(0.985, 1.0, light.shape)
+        display = np.where(light >= 1.0, ragged, np.minimum(light, 1.0) ** (1.0 / 2.2))
+        cv2.imwrite(str(path), np.round(255.0 * display).astype(np.uint8))
+
+
+def test_values_next_to_white_say_at_least_where_photos_are_overexposed(tmp_path):
+    write_folder(tmp_path / "dark", far, 8)
+    dark = read_photo_set(tmp_path / "dark")
+    white, decision = white_of(dark, dark.photos)
+    assert (white, decision.on, decision.size) == (1.0, False, 0.0)
+    assert white_of(dark, dark.photos, "on")[0] == WHITE
+    write_folder(tmp_path / "bright", far, 8)
+    overexpose(tmp_path / "bright", 4.0)
+    bright = read_photo_set(tmp_path / "bright")
+    white, decision = white_of(bright, bright.photos)
+    assert (white, decision.on) == (WHITE, True)
+    assert decision.size > 0.1
+    assert white_of(bright, bright.photos, "off")[0] == 1.0
+
+
+@pytest.mark.slow
+def test_what_is_overexposed_is_told_better_by_at_least_and_the_rest_is_the_same(tmp_path):
+    write_folder(tmp_path / "truth", near, 16)
+    write_folder(tmp_path / "bright", near, 16)
+    overexpose(tmp_path / "bright", 4.0)
+    truth, bright = (read_photo_set(tmp_path / name) for name in ("truth", "bright"))
+    rays, clipped = (glass_rays(each, each.photos) for each in (truth, bright))
+    learned, plain = {}, {}
+    for white in (1.0, WHITE):
+        config = replace(CONFIG, steps=300, white=white)
+        panels = train_reflections(clipped, bright.panels, "radiance-grid", config).panels
+        # Exposed for less light, it shows what the photos could not.
+        learned[white] = psnr_db(mean_square_error(panels, rays, 0.25))
+        plain[white] = train_reflections(rays, truth.panels, "radiance-grid", replace(config, steps=20)).panels
+    assert learned[WHITE] > learned[1.0] + 1.0
+    pairs = zip(*(plain[white].state_dict().values() for white in (1.0, WHITE)), strict=True)
+    assert all(torch.equal(a, b) for a, b in pairs)

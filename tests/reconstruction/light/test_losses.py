@@ -4,7 +4,7 @@ import pytest
 import torch
 
 from reconstruction.light.config import ReflectionConfig
-from reconstruction.light.losses import ray_errors
+from reconstruction.light.losses import no_brighter, ray_errors
 
 
 def test_errors_are_absolute_ones_where_none_is_squared():
@@ -30,3 +30,13 @@ def test_a_radiance_grid_has_a_loss_and_passes_of_its_own():
     assert config.for_grid.squared_to == config.grid.squared_to > 0.0
     assert config.for_grid.passes == config.grid.passes > config.passes
     assert ReflectionConfig(passes=60.0).for_grid.passes == 60.0
+
+
+def test_where_a_photo_is_overexposed_only_darker_light_is_an_error():
+    truth = torch.tensor([1.0, 0.99, 0.5, 1.0, 0.99])
+    found = torch.tensor([1.3, 1.1, 0.9, 0.8, 0.8], requires_grad=True)
+    seen = no_brighter(found, truth, 250.0 / 255.0)
+    torch.testing.assert_close(seen, torch.tensor([1.0, 0.99, 0.9, 0.8, 0.8]))
+    seen.sum().backward()
+    assert found.grad.tolist() == [0.0, 0.0, 1.0, 1.0, 1.0]
+    assert no_brighter(found, truth).tolist() == pytest.approx([1.0, 1.1, 0.9, 0.8, 0.8])

@@ -66,10 +66,11 @@ def test_it_goes_on_bit_by_bit(data_set, tmp_path, light):
 
 def test_what_chose_the_light_is_not_asked_again(data_set, tmp_path, monkeypatch):
     config, checkpoint = config_of("auto"), tmp_path / "c"
-    cancelled(data_set, checkpoint, config, n=3 * 8 + 4)
-    monkeypatch.setattr(start_module, "choose_light", lambda *_, **__: 1 / 0)
+    # Three models are tried for 8 steps, on three choices of photos, after a step of each that compiles its kernels.
+    cancelled(data_set, checkpoint, config, n=3 * 3 * 8 + 3 + 4)
+    monkeypatch.setattr(start_module, "try_lights", lambda *_, **__: 1 / 0)
     again = resume_model(data_set, checkpoint)
-    assert len(again.record.decisions) == 2
+    assert len(again.record.decisions) in (3, 4)
     assert again.record.config == config
 
 
