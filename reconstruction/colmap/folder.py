@@ -6,8 +6,10 @@ that is read here.
 
 from __future__ import annotations
 
+import math
 import struct
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, TypeVar
 
@@ -15,8 +17,9 @@ import numpy as np
 
 from planning.base.errors import InputError
 from planning.base.files import MIB, FileLimit, check_lines, read_given
-from planning.base.json_file import write_atomically
+from planning.base.json_file import encoded, plain_values, read_json, to_record, write_atomically
 from planning.base.messages import say
+from planning.geo.frames import Origin
 from reconstruction.colmap.record import (
     N_PARAMETERS,
     NAMES,
@@ -472,3 +475,47 @@ def _read(
 
 def _encoded(content: str) -> bytes:
     return content.encode("utf-8", "surrogateescape")
+
+
+# What stands beside a model that is in the frame of a site already.
+
+FRAME_FILE, FRAME_FORMAT = "frame.json", "reflight-frame/1"
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """That a model's world is the local ENU frame, and how well its poses are known.
+
+    Parameters
+    ----------
+    origin
+        Of the frame; None where it is not said.
+    """
+
+    position_sigma_m: float
+    angle_sigma_deg: float
+    origin: Origin | None = None
+    format: str = FRAME_FORMAT
+
+    def __post_init__(self) -> None:
+        for name in ("position_sigma_m", "angle_sigma_deg"):
+            value = getattr(self, name)
+            if not (math.isfinite(value) and value > 0.0):
+                raise ValueError(say("expected more than 0, got {}", value, place=name))
+
+
+def read_frame(folder: Path) -> Frame | None:
+    """The frame of the model in a folder; None where nothing says it.
+
+    Raises
+    ------
+    InputError
+        The file that says it is damaged.
+    """
+    path = folder / FRAME_FILE
+    return to_record(read_json(path), Frame, path) if path.is_file() else None
+
+
+def write_frame(folder: Path, frame: Frame) -> None:
+    """Write it beside a model."""
+    write_atomically(folder / FRAME_FILE, encoded(plain_values(frame)))

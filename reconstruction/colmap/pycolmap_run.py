@@ -1,14 +1,15 @@
-"""The steps of a refinement in COLMAP, each in a thread of its own so that it can be cancelled.
+"""The steps of a reconstruction in COLMAP, each in a thread of its own so that it can be cancelled.
 
-pycolmap is an optional extra; it is imported here only, and only when it is asked for.
+pycolmap is imported here only, and only when it is asked for.
 """
 
 from __future__ import annotations
 
 import importlib
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Hashable, Iterable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -20,8 +21,9 @@ from planning.base.jit import n_threads
 from planning.base.messages import say
 from planning.base.progress import Monitor
 from reconstruction.base.cameras import Intrinsics, PosedPhoto
-from reconstruction.colmap.georeference import position_covariance
-from reconstruction.colmap.record import camera_of
+from reconstruction.colmap.folder import read_model
+from reconstruction.colmap.georeference import Similarity, position_covariance
+from reconstruction.colmap.record import ColmapModel, camera_of
 
 Array = NDArray[np.float64]
 
@@ -32,7 +34,41 @@ BATCH = 8
 """Photos whose features are found in one call, so that progress can be told in between: reading COLMAP's database while
 it is written to makes COLMAP stop."""
 
+PAIRS_PER_CALL = 60
+"""Of a list of pairs, likewise."""
+
 LEAST_PHOTOS = 3
+
+Pair = tuple[str, str]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StartPhoto:
+    """A photo as COLMAP begins with it.
+
+    Parameters
+    ----------
+    name
+        Path below the folder of photos.
+    group
+        Photos of one group share a camera.
+    lens
+        What the camera's numbers begin with; None where only its picture is known.
+    position_enu_m, covariance
+        Where it was taken, shape (3,), and how well that is known, shape (3, 3); None where nothing says so.
+    """
+
+    name: str
+    group: Hashable
+    lens: Intrinsics | None = None
+    position_enu_m: Array | None = None
+    covariance: Array | None = None
+
+    @classmethod
+    def of(cls, photo: PosedPhoto) -> StartPhoto:
+        """Of a photo with a pose."""
+        place = photo.pose.position_enu_m
+        return cls(photo.name, photo.intrinsics, photo.intrinsics, place, position_covariance(photo))
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,12 +104,15 @@ DEFAULT_PARAMETERS = RefineParameters()
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ColmapRun:
-    """One run: COLMAP's database in a folder of its own, and its steps in the order in which they stand here."""
+    """One run: COLMAP's database in a folder of its own, and its steps in the order in which they stand here.
+
+    A step that was interrupted goes on where it was: features and matches in the database are not found again.
+    """
 
     colmap: Any
     own: Path
     folder: Path
-    photos: Sequence[PosedPhoto]
+    photos: Sequence[StartPhoto]
     parameters: RefineParameters
     monitor: Monitor
 
@@ -88,16 +127,21 @@ class ColmapRun:
         options.num_threads, options.use_gpu = n_threads(), False
         options.max_image_size = self.parameters.max_image_size_px
         options.sift.max_num_features = self.parameters.max_features
-        names_of: dict[Intrinsics, list[str]] = {}
+        names_of: dict[Hashable, list[StartPhoto]] = {}
         for photo in self.photos:
-            names_of.setdefault(photo.intrinsics, []).append(photo.name)
-        found: list[str] = []
+            names_of.setdefault(photo.group, []).append(photo)
+        known, cameras = self._features_known()
+        found = [photo.name for photo in self.photos if photo.name in known]
 
         def n_found() -> int:
             return len(found)
 
-        for number, (intrinsics, names) in enumerate(names_of.items(), 1):
-            reader = self._reader(intrinsics)
+        for group in names_of.values():
+            reader = self._reader(group[0].lens)
+            names = [photo.name for photo in group if photo.name not in known]
+            shared = next((known[photo.name] for photo in group if photo.name in known), None)
+            if shared is not None:
+                reader.existing_camera_id = shared
             for start in range(0, len(names), BATCH):
                 batch = names[start : start + BATCH]
                 self._run(
@@ -113,16 +157,29 @@ class ColmapRun:
                     extraction_options=options,
                     device=self.colmap.Device.cpu,
                 )
-                reader.existing_camera_id = number  # COLMAP counts cameras from 1
+                if shared is None:
+                    shared = cameras = cameras + 1  # COLMAP counts cameras from 1
+                    reader.existing_camera_id = shared
                 found += batch
         with self.colmap.Database.open(self.database) as database:
             kept = {c.camera_id for c in database.read_all_cameras() if c.model_name == "FULL_OPENCV"}
             self._write_positions(database)
         return kept
 
-    def _reader(self, intrinsics: Intrinsics) -> Any:
+    def _features_known(self) -> tuple[dict[str, int], int]:
+        """The camera of each photo whose features are in the database, by name; and how many cameras there are."""
+        if not self.database.is_file():
+            return {}, 0
+        with self.colmap.Database.open(self.database) as database:
+            images = [image for image in database.read_all_images() if database.exists_keypoints(image.image_id)]
+            return {image.name: image.camera_id for image in images}, database.num_cameras()
+
+    def _reader(self, intrinsics: Intrinsics | None) -> Any:
         """How COLMAP reads photos of one camera: with a lens that can bend, and the calibration it starts from."""
         reader = self.colmap.ImageReaderOptions()
+        if intrinsics is None:
+            reader.camera_model = "SIMPLE_RADIAL"
+            return reader
         camera = camera_of(intrinsics, 0)
         numbers = camera.parameters if camera.model != "PINHOLE" else (*camera.parameters, 0.0, 0.0, 0.0, 0.0)
         reader.camera_model = "OPENCV" if camera.model == "PINHOLE" else camera.model
@@ -132,9 +189,11 @@ class ColmapRun:
     def _write_positions(self, database: Any) -> None:
         """The photos' positions in the site's frame, in place of those that COLMAP took from EXIF."""
         database.clear_pose_priors()
-        position_of = {photo.name: photo.pose for photo in self.photos}
+        position_of = {photo.name: photo.position_enu_m for photo in self.photos}
         for image in database.read_all_images():
-            database.write_pose_prior(self._prior(image, position_of[image.name].position_enu_m, np.eye(3)))
+            position = position_of.get(image.name)
+            if position is not None:
+                database.write_pose_prior(self._prior(image, position, np.eye(3)))
 
     def _prior(self, image: Any, position_enu_m: Array, covariance: Array) -> Any:
         prior = self.colmap.PosePrior()
@@ -161,6 +220,47 @@ class ColmapRun:
             pairing_options=pairs,
             device=self.colmap.Device.cpu,
         )
+
+    def descriptors(self) -> dict[str, NDArray[np.uint8]]:
+        """Of the features of each photo, shape (n, 128), by its name."""
+        with self.colmap.Database.open(self.database) as database:
+            return {
+                image.name: np.asarray(database.read_descriptors(image.image_id).data, np.uint8)
+                for image in database.read_all_images()
+                if database.exists_descriptors(image.image_id)
+            }
+
+    def match_pairs(self, pairs: Sequence[Pair]) -> None:
+        """Matches between the photos of each pair, by their names."""
+        options = self.colmap.FeatureMatchingOptions()
+        options.num_threads, options.use_gpu = n_threads(), False
+        todo = self._unmatched(pairs)
+        done = len(pairs) - len(todo)
+        listed = self.own / "pairs.txt"
+        for start in range(0, len(todo), PAIRS_PER_CALL):
+            part = todo[start : start + PAIRS_PER_CALL]
+            listed.write_text("".join(f"{one} {other}\n" for one, other in part), "utf-8")
+            pairing = self.colmap.ImportedPairingOptions()
+            pairing.match_list_path = listed
+            self._run(
+                say("matching photos"),
+                self.colmap.match_image_pairs,
+                self.database,
+                n_done=partial(int, done + start),
+                n_all=len(pairs),
+                matching_options=options,
+                pairing_options=pairing,
+                device=self.colmap.Device.cpu,
+            )
+
+    def _unmatched(self, pairs: Iterable[Pair]) -> list[Pair]:
+        with self.colmap.Database.open(self.database) as database:
+            ids = {image.name: image.image_id for image in database.read_all_images()}
+            return [
+                (one, other)
+                for one, other in pairs
+                if one in ids and other in ids and not database.exists_matches(ids[one], ids[other])
+            ]
 
     def map(self, fixed_cameras: set[int]) -> Any:
         """The largest model that the matches give, in a frame of its own."""
@@ -201,7 +301,8 @@ class ColmapRun:
             config.add_image(image_id)
             image = model.image(image_id)
             photo = photo_of[image.name]
-            priors.append(self._prior(image, photo.pose.position_enu_m, position_covariance(photo)))
+            if photo.position_enu_m is not None and photo.covariance is not None:
+                priors.append(self._prior(image, photo.position_enu_m, photo.covariance))
         for camera_id in fixed_cameras & set(model.cameras):
             config.set_constant_cam_intrinsics(camera_id)
         options = self.colmap.BundleAdjustmentOptions()
@@ -248,6 +349,19 @@ class ColmapRun:
         return result[0]
 
 
+def as_model(reconstruction: Any, folder: Path) -> ColmapModel:
+    """A reconstruction as our record, by way of files in a new folder."""
+    folder.mkdir()
+    reconstruction.write_binary(folder)
+    return read_model(folder)
+
+
+def transform(colmap: Any, reconstruction: Any, similarity: Similarity) -> None:
+    """Bring a reconstruction into another frame, in place."""
+    turned = colmap.Sim3d(similarity.scale, colmap.Rotation3d(similarity.rotation), similarity.translation)
+    reconstruction.transform(turned)
+
+
 def load_colmap() -> Any:
     """The module pycolmap.
 
@@ -261,8 +375,8 @@ def load_colmap() -> Any:
     except ImportError as error:
         raise InputError(
             say(
-                "refining cameras needs pycolmap, which is not installed; install it with: pip install "
-                "'reflight-groundstation[colmap]', or go on with the poses that the photos have"
+                "matching photos needs pycolmap, which is not installed; install it with: pip install "
+                "'reflight-groundstation[colmap]'"
             )
         ) from error
     pycolmap.logging.minloglevel = pycolmap.logging.Level.ERROR.value

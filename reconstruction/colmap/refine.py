@@ -14,7 +14,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,7 +26,6 @@ from planning.base.findings import Finding, Severity
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from reconstruction.base.cameras import Intrinsics, PosedPhoto
-from reconstruction.colmap.folder import read_model
 from reconstruction.colmap.georeference import (
     Georeference,
     Similarity,
@@ -42,7 +40,10 @@ from reconstruction.colmap.pycolmap_run import (
     LEAST_PHOTOS,
     ColmapRun,
     RefineParameters,
+    StartPhoto,
+    as_model,
     load_colmap,
+    transform,
 )
 from reconstruction.colmap.record import ColmapImage, ColmapModel, intrinsics_of
 
@@ -385,15 +386,16 @@ def refine_poses(
         )
     colmap = load_colmap()
     with tempfile.TemporaryDirectory(prefix="reflight-colmap-") as name:
-        work = ColmapRun(colmap, Path(name), folder, photos, parameters, monitor)
+        started = [StartPhoto.of(photo) for photo in photos]
+        work = ColmapRun(colmap, Path(name), folder, started, parameters, monitor)
         fixed_cameras = work.find_features()
         work.match()
         free = work.map(fixed_cameras)
-        laid = georeference(_as_model(free, Path(name) / "free"), photos, parameters.seed)
-        _transform(colmap, free, laid.enu_from_model)
+        laid = georeference(as_model(free, Path(name) / "free"), photos, parameters.seed)
+        transform(colmap, free, laid.enu_from_model)
         if not laid.on_a_line:
             work.adjust(free, fixed_cameras)
-        model = _as_model(free, Path(name) / "adjusted")
+        model = as_model(free, Path(name) / "adjusted")
         error_px = float(free.compute_mean_reprojection_error())
     # The adjustment knows positions alone; the last word on where the model lies is that of positions and angles.
     laid = georeference(model, photos, parameters.seed)
@@ -428,17 +430,6 @@ def _covariances(
         )
         covariances = {image.name: laid.usual_covariance for image in model.images.values()}
         return covariances, [Finding(Severity.NOTE, "accuracy-estimated", text)]
-
-
-def _as_model(reconstruction: Any, folder: Path) -> ColmapModel:
-    folder.mkdir()
-    reconstruction.write_binary(folder)
-    return read_model(folder)
-
-
-def _transform(colmap: Any, reconstruction: Any, similarity: Similarity) -> None:
-    turned = colmap.Sim3d(similarity.scale, colmap.Rotation3d(similarity.rotation), similarity.translation)
-    reconstruction.transform(turned)
 
 
 def _left_out(names: Sequence[str], n_all: int) -> list[Finding]:

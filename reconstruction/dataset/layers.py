@@ -211,7 +211,7 @@ class Layers:
     panels
         Shape (h, w), uint16: position of the panel plus 1, 0 for none.
     facade
-        Shape (h, w): panels and the frames between them.
+        Shape (h, w): panels and the frames between them; all of the photo where there are no panels.
     normals_enu
         Shape (h / step, w / step, 3), float32, of what the pixel shows; 0 where that is nothing.
     """
@@ -249,6 +249,10 @@ def draw_layers(photo: PosedPhoto, scene: Scene, normal_step: int = 1) -> Layers
     normal_step
         Pixels of the photo, along each side, per pixel of the normal map.
     """
+    if not len(scene.corners_enu_m):
+        size = photo.intrinsics.height_px, photo.intrinsics.width_px
+        normals = normal_map(photo, scene.refined, normal_step)
+        return Layers(np.zeros(size, np.uint16), np.ones(size, np.bool_), normals)
     front = facing(photo, scene.corners_enu_m)
     numbers = np.concatenate([[0], np.flatnonzero(front) + 1]).astype(np.uint16)
     drawn = draw_panels(photo, scene.corners_enu_m[front])

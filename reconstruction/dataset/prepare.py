@@ -25,7 +25,7 @@ from planning.base.jit import n_threads
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.geo.mesh import join, write_mesh
-from planning.site.records import SiteModel, panel_corners, require_panels
+from planning.site.records import SiteModel, panel_corners
 from reconstruction.base.cameras import Intrinsics, PosedPhoto
 from reconstruction.base.ray_casting import RayCaster
 from reconstruction.dataset.layers import IN_FRONT_M, Scene, draw_layers, facing, normals_to_16_bit, straightened
@@ -178,29 +178,32 @@ def prepare(
     folder: Path,
     parameters: PrepareParameters | None = None,
     monitor: Monitor = QUIET,
+    cloud: Array | None = None,
 ) -> PreparedData:
     """Write the data set of a site's photos.
+
+    On a site without panels it is one for plain splats: masks have all of each photo.
 
     Parameters
     ----------
     model
         The site with its panels; its building mesh is the coarse model.
+    cloud
+        Points that are known beside the mesh, such as a COLMAP model's: splats start from them, too.
     folder
         That does not exist yet, or is empty. What was written is taken away again if this fails or is cancelled.
 
     Raises
     ------
     InputError
-        The site has no panels, there are no photos, the folder is not empty or cannot be written, or none of the photos
-        can be read.
+        There are no photos, the folder is not empty or cannot be written, or none of the photos can be read.
     """
-    require_panels(model.site)
     parameters = parameters or PrepareParameters()
     if not photos:
         raise InputError(say("there are no photos with a pose to prepare"))
     made = _empty(folder)
     try:
-        prepared = _prepare(photos, model, panel_corners(model.site), folder, parameters, monitor)
+        prepared = _prepare(photos, model, panel_corners(model.site), folder, parameters, monitor, cloud)
     except BaseException:
         _clear(folder)
         if made:
@@ -217,6 +220,7 @@ def _prepare(
     folder: Path,
     parameters: PrepareParameters,
     monitor: Monitor,
+    cloud: Array | None,
 ) -> PreparedData:
     refined = refine_mesh(model.building, corners, parameters.refine, monitor)
     surroundings = RayCaster(join([refined.mesh, *model.obstacles]))
@@ -224,7 +228,7 @@ def _prepare(
     hidden = decide(HiddenPanels(), PanelsInPhotos(photos, corners, surroundings), parameters.hidden_panels)
     refined_caster = RayCaster(refined.mesh)
     scene = Scene(corners, grown_corners(model.site.facades), refined_caster, surroundings if hidden.on else None)
-    points = start_points(refined.mesh, parameters.n_points, parameters.seed)
+    points = start_points(refined.mesh, parameters.n_points, parameters.seed, cloud)
     write_mesh(folder / "refined.ply", refined.mesh)
     kept: list[PosedPhoto] = []
     findings: list[Finding] = []

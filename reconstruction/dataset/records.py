@@ -69,20 +69,22 @@ class ColouredPoints:
         return np.where(self._counts[:, None] > 0, np.round(mean), UNSEEN).astype(np.uint8)
 
 
-def start_points(mesh: TriangleMesh, n: int, seed: int = 0) -> ColouredPoints:
-    """Points spread evenly, by area, over a mesh."""
-    if not len(mesh.triangles) or n == 0:
-        return ColouredPoints(np.zeros((0, 3)))
+def start_points(mesh: TriangleMesh, n: int, seed: int = 0, cloud: Array | None = None) -> ColouredPoints:
+    """Points spread evenly, by area, over a mesh; and before them up to as many that are known, shape (k, 3)."""
     rng = np.random.default_rng(seed)
+    known = np.zeros((0, 3)) if cloud is None else cloud[np.sort(rng.permutation(len(cloud))[:n])]
+    if not len(mesh.triangles) or n == 0:
+        return ColouredPoints(known)
     a, b, c = np.moveaxis(mesh.corners_enu_m, 1, 0)
     areas = np.linalg.norm(np.cross(b - a, c - a), axis=1)
     if not areas.sum() > 0.0:
-        return ColouredPoints(np.zeros((0, 3)))
+        return ColouredPoints(known)
     chosen = rng.choice(len(areas), n, p=areas / areas.sum())
     u, v = rng.random((2, n, 1))
     flip = u + v > 1.0
     u, v = np.where(flip, 1.0 - u, u), np.where(flip, 1.0 - v, v)
-    return ColouredPoints(a[chosen] + u * (b[chosen] - a[chosen]) + v * (c[chosen] - a[chosen]))
+    spread = a[chosen] + u * (b[chosen] - a[chosen]) + v * (c[chosen] - a[chosen])
+    return ColouredPoints(np.concatenate([known, spread]))
 
 
 DATASET_FORMAT = "reflight-dataset/1"

@@ -159,13 +159,11 @@ def read_photo_set(folder: Path) -> PhotoSet:
     content = read_json(path, names_files=True)
     expect_format(content, DATASET_FORMAT, path)
     description = to_record(content, _Description, path)
-    if not description.panels:
-        raise InputError(say("lists no panels, so there is no glass to learn from", place=path))
     if [panel.index for panel in description.panels] != list(range(1, len(description.panels) + 1)):
         raise InputError(say("panels: expected indices 1, 2, 3 and so on; was the file edited?", place=path))
-    corners = np.array([panel.corners_enu_m for panel in description.panels], float)
+    corners = np.array([panel.corners_enu_m for panel in description.panels], float).reshape(-1, 4, 3)
     areas = 0.5 * np.linalg.norm(np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]), axis=1)
-    if areas.min() < LEAST_AREA_M2:
+    if areas.min(initial=np.inf) < LEAST_AREA_M2:
         raise InputError(
             say("panel {} has next to no area; correct the site and prepare again", areas.argmin() + 1, place=path)
         )

@@ -51,6 +51,8 @@ class Accuracy:
     takeoff_height_m
         Of heights above take-off: barometers wander by some decimetres in a flight, and the place of take-off is known
         no better. Our choice.
+    hand_held_horizontal_m, hand_held_vertical_m
+        Of photos that no aircraft took: telephones state 5 m under open sky, and are worse before walls. Our choice.
     heading_deg, tilt_deg
         Of the camera about the vertical, and about any horizontal axis. Makers publish how still gimbals hold (some
         thousandths of a degree), not how true their angles are. A heading rests on the compass, or on two antennas.
@@ -62,6 +64,8 @@ class Accuracy:
     fixed_horizontal_m: float = 0.02
     fixed_vertical_m: float = 0.03
     takeoff_height_m: float = 1.0
+    hand_held_horizontal_m: float = 5.0
+    hand_held_vertical_m: float = 10.0
     heading_deg: float = 2.0
     tilt_deg: float = 0.5
 
@@ -109,6 +113,7 @@ def pose_photos(
     heights: PhotoHeights = "auto",
     camera: CameraKind | None = None,
     accuracy: Accuracy = DEFAULT_ACCURACY,
+    posed_elsewhere: bool = False,
 ) -> PhotoSet:
     """Cameras of photos from what these say of themselves.
 
@@ -120,6 +125,8 @@ def pose_photos(
         Which heights count.
     camera
         Which of several cameras; None for the wide one.
+    posed_elsewhere
+        Whether poses come from elsewhere, so that photos need not say any.
 
     Raises
     ------
@@ -129,6 +136,8 @@ def pose_photos(
     label = str(folder)
     chosen, findings = of_camera(photos, camera)
     usable, lens_by_path, unposed = _usable(chosen, folder)
+    if not usable and posed_elsewhere:
+        return PhotoSet((), (), (), tuple(unposed), findings)
     if not usable:
         raise InputError(say("no photo can be given a camera pose ({}); {}", _counted(unposed), ADVICE, place=label))
     near, elsewhere = photos_near(usable, site, label)
@@ -136,11 +145,11 @@ def pose_photos(
     places = photo_places(here, site, heights, label)
     lenses = tuple(lens_by_path[photo.path] for photo in here)
     poses = [
-        _pose(photo, site.origin, point, is_absolute, accuracy)
+        measured_pose(photo, site.origin, point, is_absolute, accuracy)
         for photo, point, is_absolute in zip(here, places.points_enu_m, places.is_absolute.tolist(), strict=True)
     ]
     posed = tuple(
-        PosedPhoto(_name(photo, folder), photo.path, lens.intrinsics, pose, photo.taken_at)
+        PosedPhoto(name_in(folder, photo), photo.path, lens.intrinsics, pose, photo.taken_at)
         for photo, lens, pose in zip(here, lenses, poses, strict=True)
     )
     findings += (*elsewhere, *places.findings, *receiver_findings(here))
@@ -151,7 +160,8 @@ def pose_photos(
 ADVICE = say("use the files as the camera wrote them: programs that edit, send or share photos often take that out")
 
 
-def _name(photo: PhotoMetadata, folder: Path) -> str:
+def name_in(folder: Path, photo: PhotoMetadata) -> str:
+    """Name of a photo: its path below the folder of photos."""
     return (photo.path.relative_to(folder) if photo.path.is_relative_to(folder) else photo.path).as_posix()
 
 
@@ -164,7 +174,7 @@ def _usable(
         lens = lens_of(photo)
         missing = _missing(photo, lens)
         if missing or lens is None:
-            unposed.append(Unposed(_name(photo, folder), missing))
+            unposed.append(Unposed(name_in(folder, photo), missing))
         else:
             usable.append(photo)
             lenses[photo.path] = lens
@@ -182,13 +192,21 @@ def _missing(photo: PhotoMetadata, lens: Lens | None) -> str:
     return say("a focal length") if lens is None else ""
 
 
-def _pose(photo: PhotoMetadata, origin: Origin, point_enu_m: Array, is_absolute: bool, accuracy: Accuracy) -> Pose:
+def measured_pose(
+    photo: PhotoMetadata, origin: Origin, point_enu_m: Array, is_absolute: bool, accuracy: Accuracy = DEFAULT_ACCURACY
+) -> Pose:
+    """Where a photo was taken, and how it was turned: as its gimbal says, or level to the north where it does not.
+
+    Parameters
+    ----------
+    point_enu_m, is_absolute
+        As `photo_places` has them; the photo has a position.
+    """
     assert photo.lat_deg is not None
     assert photo.lon_deg is not None
-    assert photo.gimbal_heading_deg is not None
-    assert photo.gimbal_pitch_deg is not None
+    heading_deg, pitch_deg = photo.gimbal_heading_deg or 0.0, photo.gimbal_pitch_deg or 0.0
     local_from_site = enu_axes(photo.lat_deg, photo.lon_deg) @ enu_axes(origin.lat_deg, origin.lon_deg).T
-    cam_from_local = cam_from_enu(photo.gimbal_heading_deg, photo.gimbal_pitch_deg, photo.gimbal_roll_deg or 0.0)
+    cam_from_local = cam_from_enu(heading_deg, pitch_deg, photo.gimbal_roll_deg or 0.0)
     covariance = np.zeros((6, 6))
     covariance[:3, :3] = (local_from_site.T * _position_variances(photo, is_absolute, accuracy)) @ local_from_site
     covariance[3:, 3:] = angle_covariance(
@@ -213,14 +231,14 @@ def angle_covariance(cam_from_enu: Array, heading_rad: float, tilt_rad: float) -
 def _position_variances(photo: PhotoMetadata, is_absolute: bool, accuracy: Accuracy) -> Array:
     """East, north, up, m^2, in the axes of the photo's own place."""
     told = photo.rtk_std_lon_m, photo.rtk_std_lat_m, photo.rtk_std_height_m
+    is_flown = photo.gimbal_pitch_deg is not None or photo.height_above_takeoff_m is not None
+    horizontal_m = accuracy.single_horizontal_m if is_flown else accuracy.hand_held_horizontal_m
+    vertical_m = accuracy.single_vertical_m if is_flown else accuracy.hand_held_vertical_m
+    horizontal_m = photo.accuracy_horizontal_m or horizontal_m
     fallback = (
         (accuracy.fixed_horizontal_m, accuracy.fixed_horizontal_m, accuracy.fixed_vertical_m)
         if photo.is_rtk_fixed
-        else (
-            photo.accuracy_horizontal_m or accuracy.single_horizontal_m,
-            photo.accuracy_horizontal_m or accuracy.single_horizontal_m,
-            photo.accuracy_vertical_m or accuracy.single_vertical_m,
-        )
+        else (horizontal_m, horizontal_m, photo.accuracy_vertical_m or vertical_m)
     )
     # 0 stands in photos without RTK.
     east, north, up = (std or other for std, other in zip(told, fallback, strict=True))

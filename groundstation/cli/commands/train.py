@@ -66,7 +66,7 @@ def add_parser(subparsers: Any) -> None:
     parser.set_defaults(run=run)
     parser.more_help = METHOD_NAMES.help_on_plugins
     add = parser.add_argument
-    add("dataset", type=Path, metavar="DATASET", help="folder of a data set")
+    add("dataset", type=Path, metavar="DATASET", help="folder of a data set, or of a coarse model")
     add("-o", "--out", type=new_folder, required=True, metavar="MODEL", help="folder for the model")
     for name, each in declared(TrainRequest).items():
         if each.parameter.option:
@@ -83,6 +83,7 @@ def add_parser(subparsers: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Train and print; returns the exit status."""
     begun_s = time.perf_counter()
+    from groundstation.services.photos.coarse import data_set_of
     from groundstation.services.reconstruct.training import preview_to, train_files, train_summary
 
     request = request_of(options)
@@ -99,7 +100,7 @@ def run(options: argparse.Namespace) -> int:
         made = run_job(
             "train",
             lambda context: train_files(
-                options.dataset,
+                data_set_of(options.dataset, context),
                 options.out,
                 request,
                 resume=options.resume,

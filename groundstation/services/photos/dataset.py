@@ -55,9 +55,9 @@ def prepare_files(
     """
     model = read_input_site(site)
     read = read_photos(folder, monitor)
-    posed = pose_photos(read.photos, model.site, folder, heights=heights)
+    posed = pose_photos(read.photos, model.site, folder, heights=heights, posed_elsewhere=colmap is not None)
     better = better_poses(posed, folder, colmap, refine, monitor)
-    prepared = prepare(better.photos, model, out, parameters, monitor)
+    prepared = prepare(better.photos, model, out, parameters, monitor, better.points_enu_m)
     findings = (*read.findings, *still_true(posed.findings, better), *better.findings, *prepared.findings)
     return PreparedFiles(prepared, findings, better.refined)
 

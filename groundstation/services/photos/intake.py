@@ -32,7 +32,7 @@ from planning.site.records import Site, SiteModel, require_panels
 from planning.viewpoints.prepare import coverage_model, decide_occlusion
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.photos.coverage import AchievedCoverage, achieved_coverage, distances_m, distances_to_building_m
-from reconstruction.photos.poses import PhotoSet, pose_photos
+from reconstruction.photos.poses import PhotoSet, name_in, pose_photos
 from reconstruction.photos.quality import QualityLimits, QualityReport, check_quality
 
 NO_PANELS = "no-panels"
@@ -126,10 +126,10 @@ def take_in_photos(
         Poses are to be refined, and the photos do not fit together.
     """
     read = read_photos(folder, monitor)
-    posed = pose_photos(read.photos, model.site, folder, heights=heights)
+    posed = pose_photos(read.photos, model.site, folder, heights=heights, posed_elsewhere=colmap is not None)
     better = better_poses(posed, folder, colmap, refine, monitor)
     photos = better.photos
-    metadata = {photo.name: data for photo, data in zip(posed.photos, posed.metadata, strict=True)}
+    metadata = {name_in(folder, photo): photo for photo in read.photos}
     counted, occlusion = _coverage_model(model, flown) if model.site.n_panels else (None, None)
     ahead_m = distances_to_building_m(model.building, photos) if counted is None else distances_m(counted, photos)
     quality = check_quality(

@@ -36,7 +36,7 @@ from reconstruction.panels.solving.facades_file import facades_bytes
 from reconstruction.panels.solving.find import FindParameters, FoundPanels, find_panels
 from reconstruction.panels.solving.record import SolvedFacade
 from reconstruction.photos.decode import colour_picture
-from reconstruction.photos.poses import pose_photos
+from reconstruction.photos.poses import name_in, pose_photos
 
 CORNER_DECIMALS = 4
 """0.1 mm, so that the file reads back as it was."""
@@ -128,10 +128,10 @@ def find_panel_files(
     without_panels = replace(options, panels_required=False)
     source = None if site_model is not None else read_source(model, without_panels, monitor)
     place, mesh = _place(model, site_model, source, options)
-    posed = pose_photos(read.photos, place, folder, heights=heights)
+    posed = pose_photos(read.photos, place, folder, heights=heights, posed_elsewhere=colmap is not None)
     better = better_poses(posed, folder, colmap, refine, monitor)
     photos = better.photos
-    metadata = {photo.name: data for photo, data in zip(posed.photos, posed.metadata, strict=True)}
+    metadata = {name_in(folder, photo): photo for photo in read.photos}
 
     def load(photo: PosedPhoto) -> NDArray[np.uint8]:
         return colour_picture(metadata[photo.name])

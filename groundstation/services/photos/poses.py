@@ -2,21 +2,31 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from datetime import datetime
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from planning.base.errors import InputError
 from planning.base.findings import Finding, Severity
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.colmap.folder import read_model
-from reconstruction.colmap.georeference import georeference, posed_photos
+from reconstruction.colmap.folder import Frame, read_frame, read_model
+from reconstruction.colmap.georeference import (
+    ADJUSTED_SIGMA_DEG,
+    ADJUSTED_SIGMA_M,
+    Similarity,
+    georeference,
+    posed_photos,
+)
 from reconstruction.colmap.pycolmap_run import RefineParameters, load_colmap
+from reconstruction.colmap.record import ColmapModel
 from reconstruction.colmap.refine import refine_poses
 from reconstruction.colmap.refined_folder import (
     KeptRefinement,
@@ -31,6 +41,9 @@ from reconstruction.photos.poses import PhotoSet
 
 LENS_UNKNOWN = "lens-distortion-unknown"
 """Code of the finding that advises to refine cameras."""
+
+USUAL_FRAME = Frame(position_sigma_m=ADJUSTED_SIGMA_M, angle_sigma_deg=ADJUSTED_SIGMA_DEG)
+"""Of models that say nothing of their frame, where photos do not say it either."""
 
 REFINED_SUFFIX = ".refined"
 """Of the folder beside that of the photos."""
@@ -111,11 +124,14 @@ class BetterPoses:
     ----------
     refined
         None where nothing was refined.
+    points_enu_m
+        Of the COLMAP model that the poses are of, shape (n, 3); None where they are of none.
     """
 
     photos: tuple[PosedPhoto, ...]
     findings: tuple[Finding, ...] = ()
     refined: RefinedOutcome | None = None
+    points_enu_m: NDArray[np.float64] | None = None
 
 
 def better_poses(
@@ -153,12 +169,41 @@ def better_poses(
         if kept.photos_sha256 == fingerprint(posed.photos):
             return _judged(posed.photos, kept, colmap, was_kept=True)
     model = read_model(colmap)
+    frame = read_frame(colmap)
+    if frame is not None:
+        return _in_frame(model, frame, folder, {photo.name: photo.taken_at for photo in posed.photos})
+    if not posed.photos:
+        text = say(
+            "the photos do not say where they were taken, so the COLMAP model counts as one in the frame of the site"
+        )
+        found = _in_frame(model, USUAL_FRAME, folder, {})
+        return replace(found, findings=(Finding(Severity.NOTE, "model-as-it-is", text),))
     reference = georeference(model, posed.photos)
     times = {photo.name: photo.taken_at for photo in posed.photos}
     better = posed_photos(model, reference.enu_from_model, folder, times)
     known = (photo for photo in better if photo.name in times)
     photos = tuple(replace(photo, pose=replace(photo.pose, covariance=reference.usual_covariance)) for photo in known)
-    return BetterPoses(photos, reference.findings)
+    points = reference.enu_from_model(model.points.xyz) if len(model.points) else None
+    return BetterPoses(photos, reference.findings, points_enu_m=points)
+
+
+def _in_frame(model: ColmapModel, frame: Frame, folder: Path, times: dict[str, datetime | None]) -> BetterPoses:
+    """Photos of a model that is in the frame of the site already, as far as their files are there."""
+    covariance = np.diag([frame.position_sigma_m**2] * 3 + [math.radians(frame.angle_sigma_deg) ** 2] * 3)
+    found = posed_photos(model, Similarity.identity(), folder, times)
+    photos = tuple(
+        replace(photo, pose=replace(photo.pose, covariance=covariance)) for photo in found if photo.path.is_file()
+    )
+    if not photos:
+        raise InputError(
+            say(
+                "none of the {} images of the COLMAP model is a photo in {}; are the names in the model the paths "
+                "below the folder of photos?",
+                len(found),
+                folder,
+            )
+        )
+    return BetterPoses(photos, points_enu_m=model.points.xyz if len(model.points) else None)
 
 
 def refined_poses(

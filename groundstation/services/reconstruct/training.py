@@ -185,10 +185,33 @@ def _trained(
         if not checkpoint.is_file():
             raise InputError(say("holds no training that was interrupted; begin the training anew", place=out))
         return resume_model(dataset, checkpoint, watching, method=request.method, ranks=ranks, watch=watch)
-    config = config_of_request(request)
     if ranks.is_first:
         _check_begin(dataset, out, checkpoint)
+    config = _config_of_data_set(dataset, request)
     return train_model(dataset, config, watching, checkpoint, given=request.start, ranks=ranks, watch=watch)
+
+
+PLAIN_METHOD = "2dgs"
+"""What learns a scene without panels, unless another method is asked for."""
+
+
+def _config_of_data_set(dataset: Path, request: TrainRequest) -> TrainConfig:
+    """Settings of a request; of plain splats where the data set has no panels and nothing else is asked for."""
+    from reconstruction.training.model.record import site_record
+
+    config = config_of_request(request)
+    if not config.trained_by.knows_panels or site_record(dataset).panels:
+        return config
+    if request.method is None and request.settings is None:
+        return config_of_request(replace(request, method=PLAIN_METHOD))
+    raise InputError(
+        say(
+            "has no panels, and {} learns what panels mirror; leave --method out for plain splats, or find the panels "
+            "first ('panels')",
+            config.method,
+            place=dataset,
+        )
+    )
 
 
 def _check_begin(dataset: Path, out: Path, checkpoint: Path) -> None:

@@ -63,14 +63,10 @@ class SiteRecord:
     origin: OriginRecord | None
     panels: tuple[PanelRecord, ...]
 
-    def __post_init__(self) -> None:
-        if not self.panels:
-            raise ValueError("panels: expected at least one")
-
     @property
     def planes(self) -> PanelPlanes:
         """Of the panels."""
-        return PanelPlanes(np.array([panel.corners_enu_m for panel in self.panels], float))
+        return PanelPlanes(np.array([panel.corners_enu_m for panel in self.panels], float).reshape(-1, 4, 3))
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,125 @@
+"""`coarse`: the photos of the first flight alone to poses, a coarse model and a site."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+from groundstation.cli.console import counted, print_findings, print_json, print_next, run_job, tell, worded
+from groundstation.cli.options import count, in_words_of_options, new_folder
+from planning.base.messages import say
+
+EPILOG = """Writes coarse.ply, site.json (without panels), sparse/0 (a COLMAP text model in the frame of the site) and
+coarse.json, a report. An interrupted run goes on when the command is given again. The size is that of GPS, control
+points (--gcp: gcp_list.txt of OpenDroneMap or ground_control_points.json of OpenSfM) or stated distances.
+
+examples:
+  coarse photos/ -o tower
+  coarse photos/ -o tower --gcp gcp_list.txt --camera camera.json
+  coarse photos/ -o castle --distance IMG_1.JPG,IMG_2.JPG,12.5 --origin 48.774,2.302,90
+"""
+
+
+def add_parser(subparsers: Any) -> None:
+    """Describe the command."""
+    parser = subparsers.add_parser(
+        "coarse",
+        help="make a coarse model and a site of photos alone",
+        description="Match photos, find where they were taken, and make ground, walls and roofs of what they show.",
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.set_defaults(run=run)
+    add = parser.add_argument
+    add("photos", type=Path, metavar="PHOTOS", help="folder of photos, as they come from the camera's card")
+    add("-o", "--out", type=new_folder, required=True, metavar="DIR", help="folder for the coarse model")
+    add("--camera", type=Path, metavar="FILE", help="the camera: JSON or TOML, a COLMAP cameras.txt, or a 3 x 3 matrix")
+    add("--gcp", type=Path, metavar="FILE", help="ground control points")
+    add(
+        "--distance",
+        type=_distance,
+        action="append",
+        default=[],
+        metavar="A,B,M",
+        help="two photos, and the metres between where they were taken; may be given again",
+    )
+    add("--origin", type=_origin, metavar="LAT,LON,H", help="where this is, if the photos do not say so")
+    add("--heights", choices=("auto", "takeoff", "absolute"), default="auto", help="which heights of photos count")
+    add("--lens", choices=("wide", "zoom", "thermal", "band"), help="which of several cameras (default: the wide one)")
+    add("--size", type=count, default=1600, metavar="PX", help="longer side that photos are reduced to (default 1600)")
+    add("--seed", type=int, default=0, metavar="N", help="of random choices (default 0)")
+    add("--json", action="store_true", help="print one JSON object instead of text")
+
+
+def _distance(text: str) -> tuple[str, str, float]:
+    parts = text.rsplit(",", 2)
+    try:
+        metres = float(parts[2])
+        if not 0.0 < metres < 1e5:
+            raise ValueError("no distance")
+    except (IndexError, ValueError) as error:
+        raise argparse.ArgumentTypeError(
+            worded(say("expected two photos and metres such as A.JPG,B.JPG,12.5, got '{}'", text))
+        ) from error
+    return parts[0], parts[1], metres
+
+
+def _origin(text: str) -> tuple[float, float, float]:
+    try:
+        lat, lon, height = map(float, text.split(","))
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(
+            worded(say("expected latitude, longitude and height such as 48.774,2.302,90, got '{}'", text))
+        ) from error
+    return lat, lon, height
+
+
+def run(options: argparse.Namespace) -> int:
+    """Make, write, print; returns the exit status."""
+    from groundstation.services.photos.coarse import CoarseRequest, coarse_files
+    from planning.geo.frames import Origin
+    from reconstruction.photos.lens import CameraKind
+
+    with in_words_of_options():
+        request = CoarseRequest(
+            options.photos,
+            options.out,
+            options.camera,
+            options.gcp,
+            tuple(options.distance),
+            None if options.origin is None else Origin(*options.origin),
+            options.heights,
+            None if options.lens is None else CameraKind(options.lens),
+            options.size,
+            options.seed,
+        )
+    made = run_job("coarse", lambda context: coarse_files(request, context))
+    report = made.report
+    if options.json:
+        print_json(report)
+        return 0
+    tell(
+        "{} of {} found their place, {} points, {} of {} pairs matched, image points off by {:.2f} px",
+        report["registered"],
+        counted(report["photos"], "photo"),
+        report["points"],
+        report["pairs"],
+        report["of_pairs"],
+        report["reprojection_px"],
+    )
+    residual = report["position_residual_m"]
+    if residual is not None:
+        tell("receivers are off by {:.2f} m in the middle, {:.2f} m at most", residual["median"], residual["largest"])
+    tell(
+        "{} walls, {} roofs; {:.0f} m2 of walls, of them {:.0f} m2 holes that were closed and {:.0f} m2 guessed",
+        len(report["walls"]),
+        report["roofs"],
+        report["walls_m2"],
+        report["holes_m2"],
+        report["guessed_m2"],
+    )
+    print_findings(made.findings)
+    tell("written", place=made.site)
+    print_next("panels", options.photos, made.site, "-o", options.out / "panels.site.json")
+    return 0

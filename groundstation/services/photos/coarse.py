@@ -1,0 +1,287 @@
+"""Use case of the first flight: its photos alone become a coarse model, and a site to plan the second flight on."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from groundstation.services.photos.dataset import prepare_files
+from planning.base.errors import InputError
+from planning.base.files import check_folder_name
+from planning.base.findings import Finding
+from planning.base.json_file import read_json, write_atomically, write_together
+from planning.base.messages import say
+from planning.base.progress import QUIET, Monitor, Stop, Trace, never
+from planning.geo.frames import Origin
+from planning.geo.mesh import TriangleMesh, box_mesh, empty_mesh, join, ply_bytes
+from planning.photos.folder import read_photos
+from planning.photos.places import PhotoHeights
+from planning.site.file import site_bytes
+from planning.site.importing.importer import site_of_facades
+from planning.site.importing.options import ImportOptions
+from planning.site.importing.placement import LocalFrame, Placement
+from planning.site.importing.source import SourceModel
+from planning.site.records import Obstacle, SiteModel
+from reconstruction.coarse.build import CoarseModel, CoarseParameters, Stated, build_coarse, write_sparse
+from reconstruction.coarse.given_files import read_control_points, read_lens
+from reconstruction.photos.lens import CameraKind
+
+SITE_FILE, MESH_FILE, OBSTACLES_FILE, REPORT_FILE = "site.json", "coarse.ply", "obstacles.ply", "coarse.json"
+SPARSE, KEPT, PHOTOS_FILE, DATA_SET = Path("sparse", "0"), ".coarse", "photos.json", "dataset"
+
+REPORT_FORMAT = "reflight-coarse/1"
+
+PLACE_UNKNOWN = "unknown"
+"""Of a site that nobody has said the place of."""
+
+REACH_M = 40.0
+"""What stands further from the building than the airspace reaches is no obstacle."""
+
+
+@dataclass(frozen=True, slots=True)
+class CoarseRequest:
+    """What is to be made.
+
+    Parameters
+    ----------
+    photos, out
+        Folder of photos, and of what is made of them.
+    camera, control
+        Files of the camera's numbers and of ground control points.
+    distances
+        Names of two photos, and the metres between where they were taken.
+    size_px
+        Longer side that photos are reduced to for matching.
+    """
+
+    photos: Path
+    out: Path
+    camera: Path | None = None
+    control: Path | None = None
+    distances: tuple[tuple[str, str, float], ...] = ()
+    origin: Origin | None = None
+    heights: PhotoHeights = "auto"
+    kind: CameraKind | None = None
+    size_px: int = 1600
+    seed: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class CoarseFiles:
+    """What was made, in numbers.
+
+    Parameters
+    ----------
+    site
+        The site file.
+    report
+        Content of the report.
+    """
+
+    site: Path
+    report: dict[str, Any]
+    findings: tuple[Finding, ...]
+
+
+def coarse_files(request: CoarseRequest, monitor: Monitor = QUIET) -> CoarseFiles:
+    """Make a coarse model of a folder of photos: `coarse.ply`, `site.json`, `sparse/0` and a report.
+
+    What is finished is not done again: features, matches and the free model stay in a folder of the result.
+
+    Raises
+    ------
+    InputError
+        The photos, the camera or the control points cannot be used, or the result cannot be written.
+    ReconstructionError
+        The photos do not fit together.
+    """
+    check_folder_name(request.out)
+    parameters = CoarseParameters(max_image_size_px=request.size_px, seed=request.seed)
+    read = read_photos(request.photos, monitor)
+    names = {photo.path.relative_to(request.photos).as_posix(): photo for photo in read.photos}
+    sizes = {name: (photo.width_px, photo.height_px) for name, photo in names.items()}
+    stated = Stated(
+        None if request.camera is None else read_lens(request.camera, sizes),
+        () if request.control is None else read_control_points(request.control, sizes),
+        request.distances,
+        request.origin,
+        request.heights,
+        request.kind,
+    )
+    coarse = build_coarse(request.photos, read.photos, request.out / KEPT, stated, parameters, monitor)
+    monitor.report(say("writing the coarse model"), 0, 0)
+    _write(request.out, coarse)
+    taken_from = {"photos": str(request.photos.resolve())}
+    write_atomically(request.out / KEPT / PHOTOS_FILE, json.dumps(taken_from).encode())
+    report = coarse_report(coarse)
+    write_atomically(request.out / REPORT_FILE, json.dumps(report, indent=1).encode())
+    return CoarseFiles(request.out / SITE_FILE, report, (*read.findings, *coarse.findings))
+
+
+def coarse_apart(
+    request: CoarseRequest, *, stop: Stop = never, trace: Trace | None = None, monitor: Monitor = QUIET
+) -> CoarseFiles:
+    """As `coarse_files`, for a process of its own: COLMAP ends the process that it runs in when it fails badly."""
+    del stop, trace
+    return coarse_files(request, monitor)
+
+
+def _write(out: Path, coarse: CoarseModel) -> None:
+    """Write site, meshes and the sparse model."""
+    sparse = out / SPARSE
+    for name in ("cameras", "images", "points3D"):
+        (sparse / f"{name}.txt").unlink(missing_ok=True)
+        (sparse / f"{name}.bin").unlink(missing_ok=True)
+    write_sparse(sparse, coarse)
+    model, meshes = site_of_coarse(coarse, out.resolve().name)
+    write_together(
+        {out / SITE_FILE: site_bytes(model.site), **{out / name: ply_bytes(mesh) for name, mesh in meshes.items()}}
+    )
+
+
+def site_of_coarse(coarse: CoarseModel, name: str) -> tuple[SiteModel, dict[str, TriangleMesh]]:
+    """The site of a coarse model, without panels, and its meshes by the names of their files."""
+    buildings = coarse.buildings
+    low, high = _bounds(buildings.mesh)
+    near = [
+        box_mesh(one, other)
+        for one, other in buildings.others
+        if (one[:2] < high + REACH_M).all() and (other[:2] > low - REACH_M).all() and (other > one).all()
+    ]
+    others = join(near) if near else empty_mesh()
+    has_mesh = len(buildings.mesh.triangles) > 0
+    mesh = buildings.mesh if has_mesh else _box_of_points(coarse)
+    placement = Placement(coarse.origin, LocalFrame(coarse.origin), 0.0)
+    source = SourceModel(name, (), mesh, others, placement)
+    imported = site_of_facades(Path(name), source, (), ImportOptions(name=name)).model
+    site = replace(imported.site, building_mesh=MESH_FILE if has_mesh else None, is_bare=not has_mesh)
+    meshes = {MESH_FILE: buildings.mesh}
+    if near:
+        site = replace(site, obstacles=(Obstacle("standing-beside", mesh=OBSTACLES_FILE),))
+        meshes[OBSTACLES_FILE] = others
+    if not coarse.is_origin_known or coarse.placed.scale_from == "height of eyes":
+        site = replace(site, place_from=PLACE_UNKNOWN)
+    return SiteModel(site, buildings.mesh, (others,) if near else ()), meshes
+
+
+def _bounds(mesh: TriangleMesh) -> tuple[np.ndarray, np.ndarray]:
+    if not len(mesh.vertices_enu_m):
+        return np.zeros(2), np.zeros(2)
+    flat = mesh.vertices_enu_m[:, :2]
+    return flat.min(axis=0), flat.max(axis=0)
+
+
+def _box_of_points(coarse: CoarseModel) -> TriangleMesh:
+    """What an airspace is put around where no wall was found."""
+    low, high = np.percentile(coarse.cloud.points, (5.0, 95.0), axis=0)
+    return box_mesh(low, np.maximum(high, low + 1.0))
+
+
+def coarse_report(coarse: CoarseModel) -> dict[str, Any]:
+    """What was registered, residuals, holes and guesses; for `--json` and for the file beside the model."""
+    placed, buildings = coarse.placed, coarse.buildings
+    used = placed.residuals_m[placed.is_used]
+    lengths = np.linalg.norm(used, axis=1)
+    control = np.linalg.norm(placed.control_residuals_m, axis=1)
+    faces = buildings.faces
+    area = sum(face.area_m2 for face in faces)
+    return {
+        "format": REPORT_FORMAT,
+        "photos": len(coarse.photos) + len(coarse.left_out),
+        "registered": len(coarse.photos),
+        "left_out": list(coarse.left_out),
+        "points": len(coarse.model.points),
+        "seconds": round(sum(coarse.seconds.values()), 3),
+        "steps_s": {name: round(value, 3) for name, value in coarse.seconds.items()},
+        "pairs": coarse.pairs[0],
+        "of_pairs": coarse.pairs[1],
+        "reprojection_px": round(coarse.reprojection_px, 4),
+        "scale_from": placed.scale_from,
+        "scale_sigma": _finite(placed.sigma_scale),
+        "tilt_sigma_deg": _finite(placed.sigma_tilt_deg),
+        "north_sigma_deg": _finite(placed.sigma_north_deg),
+        "position_residual_m": {"median": _finite(np.median(lengths)), "largest": _finite(lengths.max())}
+        if len(lengths)
+        else None,
+        "control_residual_m": {"median": _finite(np.median(control)), "largest": _finite(control.max())}
+        if len(control)
+        else None,
+        "origin": {
+            "lat_deg": coarse.origin.lat_deg,
+            "lon_deg": coarse.origin.lon_deg,
+            "ellipsoid_height_m": coarse.origin.ellipsoid_height_m,
+            "is_known": coarse.is_origin_known,
+        },
+        "ground": {
+            "is_seen": buildings.ground.is_seen,
+            "slope_deg": round(buildings.ground.slope_deg, 3),
+        },
+        "walls": [
+            {
+                "length_m": round(wall.length_m, 3),
+                "bottom_m": round(wall.bottom_m, 3),
+                "top_m": round(wall.top_m, 3),
+                "rms_m": round(wall.rms_m, 4),
+                "seen_share": round(wall.seen_share, 4),
+                "points": wall.n_points,
+            }
+            for wall in buildings.walls
+        ],
+        "roofs": len(buildings.roofs),
+        "sides": [
+            {
+                "ends_enu_m": [[round(value, 3) for value in end] for end in face.ends_m],
+                "top_m": round(face.top_m, 3),
+                "seen_share": round(face.seen_share, 4),
+                "is_guessed": face.wall is None,
+            }
+            for face in faces
+        ],
+        "walls_m2": round(area, 2),
+        "holes_m2": round(sum(face.area_m2 * (1.0 - face.seen_share) for face in faces if face.wall is not None), 2),
+        "guessed_m2": round(sum(face.area_m2 for face in faces if face.wall is None), 2),
+    }
+
+
+def _finite(value: float) -> float | None:
+    return round(float(value), 4) if np.isfinite(value) else None
+
+
+def data_set_of(folder: Path, monitor: Monitor = QUIET) -> Path:
+    """The data set folder that stands for a folder: itself, or what is prepared of a coarse model for plain splats.
+
+    Raises
+    ------
+    InputError
+        It is a coarse model whose photos cannot be found or prepared.
+    """
+    report = folder / REPORT_FILE
+    if not report.is_file():
+        return folder
+    out = folder / DATA_SET
+    if not (out / "dataset.json").is_file():
+        prepare_coarse(folder, out, monitor)
+    return out
+
+
+def prepare_coarse(folder: Path, out: Path, monitor: Monitor = QUIET) -> None:
+    """Write the data set of a coarse model, of the photos that it was made of."""
+    prepare_files(photos_of(folder), folder / SITE_FILE, out, colmap=folder / SPARSE, monitor=monitor)
+
+
+def photos_of(folder: Path) -> Path:
+    """The folder of photos that a coarse model was made of.
+
+    Raises
+    ------
+    InputError
+        It is not there any more.
+    """
+    named = Path(str(read_json(folder / KEPT / PHOTOS_FILE).get("photos", "")))
+    if not named.is_dir():
+        raise InputError(say("the photos of this coarse model were in {}, which is not there", named, place=folder))
+    return named

@@ -1,0 +1,641 @@
+"""Photos of a first flight to a coarse model: features, pairs, matches, a free model, its place, and what stands there.
+
+The work with photos is COLMAP's (`reconstruction.colmap.pycolmap_run`). Features, matches and the free model are kept
+in a folder, so that an interrupted run goes on, and another size of the walls takes seconds.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import shutil
+import time
+from collections.abc import Hashable, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.base.errors import InputError
+from planning.base.findings import Finding, Severity
+from planning.base.json_file import read_json, write_atomically
+from planning.base.messages import say
+from planning.base.progress import QUIET, Monitor
+from planning.geo.enu import geodetic_from_enu
+from planning.geo.frames import Origin, Vec3
+from planning.photos.places import PhotoHeights, absolute_height_m, photo_places, photos_near
+from planning.photos.record import PhotoMetadata
+from reconstruction.base.cameras import Intrinsics, PosedPhoto
+from reconstruction.coarse.buildings import Buildings, make_buildings, moved
+from reconstruction.coarse.cloud import (
+    Cloud,
+    Up,
+    believed,
+    cloud_of,
+    extent_of,
+    find_planes,
+    thinned,
+    turn_upright,
+    up_of_cameras,
+    up_of_planes,
+)
+from reconstruction.coarse.pairs import PairHint, PairParameters, choose_pairs, likeness_of
+from reconstruction.coarse.placing import NO_CONTROL, Control, Measured, Placed, place_model
+from reconstruction.coarse.walls import BuildingParameters, find_ground
+from reconstruction.colmap.folder import Frame, write_frame, write_model
+from reconstruction.colmap.georeference import Similarity, in_enu, posed_photos
+from reconstruction.colmap.pycolmap_run import (
+    LEAST_PHOTOS,
+    ColmapRun,
+    Pair,
+    RefineParameters,
+    StartPhoto,
+    as_model,
+    load_colmap,
+    transform,
+)
+from reconstruction.colmap.record import ColmapModel
+from reconstruction.photos.lens import CameraKind, lens_of, of_camera
+from reconstruction.photos.poses import DEFAULT_ACCURACY, measured_pose
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class CoarseParameters:
+    """How much work goes into a coarse model.
+
+    Parameters
+    ----------
+    max_image_size_px
+        Photos are reduced to this for features.
+    max_features
+        Of each photo.
+    """
+
+    max_image_size_px: int = 1600
+    max_features: int = 6000
+    pairs: PairParameters = field(default_factory=PairParameters)
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        for name in ("max_image_size_px", "max_features"):
+            if getattr(self, name) < 1:
+                raise ValueError(f"{name}: expected at least 1, got {getattr(self, name)}")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ControlPoint:
+    """A point whose place is known, and where photos show it.
+
+    Parameters
+    ----------
+    lat_deg, lon_deg, ellipsoid_height_m
+        WGS 84.
+    seen
+        Names of photos, and pixels in them.
+    """
+
+    name: str
+    lat_deg: float
+    lon_deg: float
+    ellipsoid_height_m: float
+    seen: tuple[tuple[str, float, float], ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Stated:
+    """What the user says beside the photos.
+
+    Parameters
+    ----------
+    lens
+        Of all photos, for one picture size; it is scaled to others.
+    control
+        Control points.
+    distances
+        Names of two photos, and the metres between where they were taken.
+    origin
+        Of the site, where the photos do not say where it is.
+    camera
+        Which of several cameras; None for the wide one.
+    """
+
+    lens: Intrinsics | None = None
+    control: tuple[ControlPoint, ...] = ()
+    distances: tuple[tuple[str, str, float], ...] = ()
+    origin: Origin | None = None
+    heights: PhotoHeights = "auto"
+    camera: CameraKind | None = None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CoarseModel:
+    """What a folder of photos gave, in the site's frame: ENU, the ground at the building's foot at z = 0.
+
+    Parameters
+    ----------
+    photos
+        That found their place, with covariance.
+    left_out
+        Names of the others.
+    is_origin_known
+        Whether anything says where on earth this is.
+    pairs
+        Number of pairs that were matched, of how many there are.
+    seconds
+        Of each step, by its name.
+    """
+
+    photos: tuple[PosedPhoto, ...]
+    left_out: tuple[str, ...]
+    model: ColmapModel
+    cloud: Cloud
+    buildings: Buildings
+    placed: Placed
+    origin: Origin
+    is_origin_known: bool
+    reprojection_px: float
+    pairs: tuple[int, int]
+    seconds: dict[str, float]
+    findings: tuple[Finding, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Taken:
+    """Photos before they are matched: what each says, by its row."""
+
+    names: tuple[str, ...]
+    metadata: tuple[PhotoMetadata, ...]
+    lenses: tuple[Intrinsics | None, ...]
+    groups: tuple[Hashable, ...]
+    measured: tuple[Measured, ...]
+    origin: Origin | None
+    findings: tuple[Finding, ...]
+
+
+def build_coarse(
+    folder: Path,
+    photos: Sequence[PhotoMetadata],
+    kept: Path,
+    stated: Stated | None = None,
+    parameters: CoarseParameters | None = None,
+    monitor: Monitor = QUIET,
+) -> CoarseModel:
+    """Make a coarse model.
+
+    Parameters
+    ----------
+    folder
+        What the photos' names are paths below.
+    kept
+        Folder for what an interrupted run goes on with; made where it is not there.
+
+    Raises
+    ------
+    InputError
+        There are too few photos, pycolmap is not installed, or what is known of the photos does not fit.
+    ReconstructionError
+        The photos do not fit together.
+    """
+    stated, parameters = stated or Stated(), parameters or CoarseParameters()
+    clock = _Clock()
+    taken = _taken(folder, photos, stated)
+    if len(taken.names) < LEAST_PHOTOS:
+        raise InputError(say("a coarse model needs at least {} photos, got {}", LEAST_PHOTOS, len(taken.names)))
+    colmap = load_colmap()
+    _prepare_folder(kept, taken, parameters)
+    run = _run(colmap, kept, folder, taken, parameters, monitor)
+    fixed = run.find_features()
+    clock.lap("features")
+    pairs = _pairs(run, taken, parameters, monitor)
+    run.match_pairs(pairs)
+    clock.lap("matches")
+    free = _mapped(run, fixed, pairs, colmap)
+    clock.lap("model")
+    scratch = kept / "scratch"
+    shutil.rmtree(scratch, ignore_errors=True)
+    scratch.mkdir()
+    placed, model, error_px, lately = _in_place(run, free, fixed, taken, stated, scratch, parameters)
+    shutil.rmtree(scratch, ignore_errors=True)
+    clock.lap("place")
+    cloud = believed(cloud_of(model))
+    cell = float(np.clip(extent_of(cloud.points) / 150.0, 0.05, 0.4))
+    sizes = BuildingParameters(cell_m=cell, tolerance_m=max(0.04, 0.25 * cell), seed=parameters.seed)
+    buildings = make_buildings(cloud, sizes, monitor=monitor)
+    clock.lap("buildings")
+    origin, shift = _origin(taken, stated, buildings, cloud)
+    model = in_enu(model, Similarity(1.0, np.eye(3), shift))
+    cloud = replace(cloud, points=cloud.points + shift, centres=cloud.centres + shift)
+    buildings = moved(buildings, shift)
+    posed = _posed(model, placed, folder, taken)
+    left_out = tuple(name for name in taken.names if name not in {photo.name for photo in posed})
+    known = taken.origin is not None or stated.origin is not None or bool(stated.control)
+    findings = (*taken.findings, *lately, *placed.findings, *_left_out(left_out, len(taken.names)))
+    findings += (*_about_ground(buildings), *_about_place(known))
+    n = len(taken.names)
+    return CoarseModel(
+        posed,
+        left_out,
+        model,
+        cloud,
+        buildings,
+        placed,
+        origin,
+        known,
+        error_px,
+        (len(pairs), n * (n - 1) // 2),
+        clock.laps,
+        findings,
+    )
+
+
+class _Clock:
+    """Seconds of steps, one after the other."""
+
+    def __init__(self) -> None:
+        self.laps: dict[str, float] = {}
+        self._last = time.perf_counter()
+
+    def lap(self, name: str) -> None:
+        """End a step."""
+        now = time.perf_counter()
+        self.laps[name] = now - self._last
+        self._last = now
+
+
+# What photos say.
+
+
+@dataclass(frozen=True, slots=True)
+class _Provisional:
+    """The frame until there is a site: its zero in the middle of the photos."""
+
+    name: str
+    origin: Origin
+    home_enu_m: Vec3 = (0.0, 0.0, 0.0)
+
+
+def _taken(folder: Path, photos: Sequence[PhotoMetadata], stated: Stated) -> _Taken:
+    chosen, findings = of_camera(photos, stated.camera)
+    names = tuple(_name(photo, folder) for photo in chosen)
+    lenses = tuple(_lens(photo, stated.lens) for photo in chosen)
+    groups = tuple(
+        (photo.make, photo.model, photo.camera_serial, photo.width_px, photo.height_px, photo.focal_length_mm, lens)
+        for photo, lens in zip(chosen, lenses, strict=True)
+    )
+    origin, measured, lately = _measured(chosen, stated, str(folder))
+    n_unknown = sum(lens is None for lens in lenses)
+    if n_unknown:
+        text = say("{} of {} photos do not say their focal length: it is found with the model", n_unknown, len(names))
+        findings += (Finding(Severity.NOTE, "lens-found", text, "", float(n_unknown), None, "photos"),)
+    return _Taken(names, tuple(chosen), lenses, groups, measured, origin, (*findings, *lately))
+
+
+def _name(photo: PhotoMetadata, folder: Path) -> str:
+    return (photo.path.relative_to(folder) if photo.path.is_relative_to(folder) else photo.path).as_posix()
+
+
+def _lens(photo: PhotoMetadata, stated: Intrinsics | None) -> Intrinsics | None:
+    if stated is not None:
+        shape = (photo.width_px / photo.height_px) / (stated.width_px / stated.height_px)
+        if abs(math.log(shape)) > 0.01:
+            return None
+        return stated.scaled(photo.width_px, photo.height_px)
+    lens = lens_of(photo)
+    return None if lens is None else lens.intrinsics
+
+
+def _measured(
+    photos: Sequence[PhotoMetadata], stated: Stated, label: str
+) -> tuple[Origin | None, tuple[Measured, ...], tuple[Finding, ...]]:
+    """A provisional origin, and where each photo was taken and how it was turned, as far as it says so."""
+    placed = [
+        photo
+        for photo in photos
+        if photo.lat_deg is not None
+        and (absolute_height_m(photo) is not None or photo.height_above_takeoff_m is not None)
+    ]
+    if not placed:
+        if not stated.control:
+            return None, tuple(Measured() for _ in photos), ()
+        points = stated.control
+        origin = Origin(
+            float(np.median([point.lat_deg for point in points])),
+            float(np.median([point.lon_deg for point in points])),
+            float(np.median([point.ellipsoid_height_m for point in points])),
+        )
+        return origin, tuple(Measured() for _ in photos), ()
+    lat = float(np.median([photo.lat_deg for photo in placed if photo.lat_deg is not None]))
+    lon = float(np.median([photo.lon_deg for photo in placed if photo.lon_deg is not None]))
+    heights = [height for photo in placed if (height := absolute_height_m(photo)) is not None]
+    place = _Provisional(label, Origin(lat, lon, float(np.clip(np.median(heights or [0.0]), -900.0, 9000.0))))
+    near, findings = photos_near(placed, place, label)
+    where = photo_places(near, place, stated.heights, label)
+    n_turned = sum(_is_turned(photo) for photo in near)
+    found = {}
+    for photo, point, is_absolute in zip(near, where.points_enu_m, where.is_absolute.tolist(), strict=True):
+        pose = measured_pose(photo, place.origin, point, is_absolute, DEFAULT_ACCURACY)
+        if pose is None or pose.covariance is None:
+            continue
+        information = np.linalg.inv(pose.covariance[3:, 3:]) / max(1, n_turned) if _is_turned(photo) else None
+        turn = pose.cam_from_enu if _is_turned(photo) else None
+        found[photo.path] = Measured(pose.position_enu_m, pose.covariance[:3, :3], turn, information)
+    notes = tuple(finding for finding in where.findings if finding.code != "height-disagreement")
+    return place.origin, tuple(found.get(photo.path, Measured()) for photo in photos), (*findings, *notes)
+
+
+def _is_turned(photo: PhotoMetadata) -> bool:
+    return photo.gimbal_heading_deg is not None and photo.gimbal_pitch_deg is not None
+
+
+# Features, pairs, matches, and the free model.
+
+SETTINGS, MAPPED = "settings.json", "mapped.json"
+
+
+def _prepare_folder(kept: Path, taken: _Taken, parameters: CoarseParameters) -> None:
+    """Take away what is of other photos or other settings."""
+    files = [
+        (name, photo.path.stat().st_size, photo.path.stat().st_mtime_ns, repr(lens))
+        for name, photo, lens in zip(taken.names, taken.metadata, taken.lenses, strict=True)
+    ]
+    settings = [parameters.max_image_size_px, parameters.max_features, sorted(files)]
+    digest = hashlib.sha256(json.dumps(settings).encode()).hexdigest()
+    path = kept / SETTINGS
+    if not path.is_file() or read_json(path) != {"sha256": digest}:
+        shutil.rmtree(kept, ignore_errors=True)
+    try:
+        kept.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(say("cannot be made ({})", error.strerror or error, place=kept)) from error
+    write_atomically(path, json.dumps({"sha256": digest}).encode())
+
+
+def _run(
+    colmap: Any, kept: Path, folder: Path, taken: _Taken, parameters: CoarseParameters, monitor: Monitor
+) -> ColmapRun:
+    started = [
+        StartPhoto(name, group, lens, one.position_enu_m, one.covariance)
+        for name, group, lens, one in zip(taken.names, taken.groups, taken.lenses, taken.measured, strict=True)
+    ]
+    settings = RefineParameters(
+        max_image_size_px=parameters.max_image_size_px, max_features=parameters.max_features, seed=parameters.seed
+    )
+    return ColmapRun(colmap, kept, folder, started, settings, monitor)
+
+
+def _pairs(run: ColmapRun, taken: _Taken, parameters: CoarseParameters, monitor: Monitor) -> list[Pair]:
+    hints = [
+        PairHint(
+            name,
+            one.position_enu_m,
+            None if one.cam_from_enu is None else np.array(one.cam_from_enu[2]),
+            photo.taken_at,
+        )
+        for name, one, photo in zip(taken.names, taken.measured, taken.metadata, strict=True)
+    ]
+    likeness = None
+    if len(hints) > parameters.pairs.all_up_to:
+        monitor.report(say("comparing photos"), 0, 0)
+        likeness = likeness_of(run.descriptors(), taken.names, parameters.seed)
+    return choose_pairs(hints, likeness, parameters.pairs)
+
+
+def _mapped(run: ColmapRun, fixed: set[int], pairs: Sequence[Pair], colmap: Any) -> Any:
+    """The free model: made, or as it was kept of the same pairs."""
+    digest = hashlib.sha256(json.dumps(sorted(pairs)).encode()).hexdigest()
+    path, folder = run.own / MAPPED, run.own / "mapped"
+    if path.is_file() and read_json(path) == {"sha256": digest}:
+        return colmap.Reconstruction(folder)
+    free = run.map(fixed)
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir()
+    free.write_binary(folder)
+    write_atomically(path, json.dumps({"sha256": digest}).encode())
+    return free
+
+
+# Where the model lies.
+
+
+def _in_place(
+    run: ColmapRun,
+    free: Any,
+    fixed: set[int],
+    taken: _Taken,
+    stated: Stated,
+    scratch: Path,
+    parameters: CoarseParameters,
+) -> tuple[Placed, ColmapModel, float, tuple[Finding, ...]]:
+    """The model in the provisional frame, adjusted with the positions where they say enough."""
+    model = as_model(free, scratch / "free")
+    placed, findings = _place(model, taken, stated, parameters)
+    transform(run.colmap, free, placed.enu_from_model)
+    n_used = int(placed.is_used.sum())
+    if placed.scale_from == "positions" and n_used >= LEAST_PHOTOS:
+        run.adjust(free, fixed)
+    model = as_model(free, scratch / "placed")
+    placed, findings = _place(model, taken, stated, parameters)
+    model = in_enu(model, placed.enu_from_model)
+    return placed, model, float(free.compute_mean_reprojection_error()), findings
+
+
+def _place(
+    model: ColmapModel, taken: _Taken, stated: Stated, parameters: CoarseParameters
+) -> tuple[Placed, tuple[Finding, ...]]:
+    images = list(model.images.values())
+    row_of = {name: row for row, name in enumerate(taken.names)}
+    rows = [row_of[image.name] for image in images]
+    centres = np.array([image.centre_world for image in images])
+    rotations = np.array([image.cam_from_world for image in images])
+    measured = [taken.measured[row] for row in rows]
+    cloud = believed(cloud_of(model))
+    up = _up(rotations, [taken.metadata[row] for row in rows], measured, cloud, parameters)
+    control, findings = _control(model, taken, stated, [image.name for image in images])
+    eyes = _height_of_eyes(cloud, centres, up)
+    placed = place_model(centres, rotations, measured, up, control, eyes, parameters.seed)
+    if not math.isfinite(placed.sigma_north_deg) or placed.sigma_north_deg > 90.0:
+        placed = replace(placed, enu_from_model=_first_ahead(placed.enu_from_model, rotations, images))
+    return placed, findings
+
+
+def _first_ahead(similarity: Similarity, rotations: Array, images: Sequence[Any]) -> Similarity:
+    """Turned about the vertical so that the first photo looks north."""
+    first = min(range(len(images)), key=lambda row: images[row].name)
+    ahead = similarity.rotation @ rotations[first][2]
+    angle = math.atan2(float(ahead[0]), float(ahead[1]))
+    c, s = math.cos(angle), math.sin(angle)
+    turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    return Similarity(similarity.scale, turn @ similarity.rotation, turn @ similarity.translation)
+
+
+def _up(
+    rotations: Array,
+    photos: Sequence[PhotoMetadata],
+    measured: Sequence[Measured],
+    cloud: Cloud,
+    parameters: CoarseParameters,
+) -> Up:
+    """By gimbals where they tell, else by cameras held level; then by walls and floors."""
+    told = [
+        rotation.T @ np.asarray(one.cam_from_enu)[:, 2]
+        for rotation, one in zip(rotations, measured, strict=True)
+        if one.cam_from_enu is not None
+    ]
+    if len(told) >= LEAST_PHOTOS:
+        mean = np.median(told, axis=0)
+        start = Up(mean / np.linalg.norm(mean), math.radians(DEFAULT_ACCURACY.tilt_deg))
+    else:
+        axes = [_upright_axes(photo) for photo in photos]
+        rights = np.array([rotation.T @ right for rotation, (right, _) in zip(rotations, axes, strict=True)])
+        downs = np.array([rotation.T @ down for rotation, (_, down) in zip(rotations, axes, strict=True)])
+        start = up_of_cameras(rights, downs)
+    if len(cloud) < 30:
+        return start
+    size = extent_of(cloud.points)
+    rows = thinned(cloud.points, size / 150.0)
+    tolerance = max(size / 600.0, 2.0 * float(np.median(cloud.sigmas)))
+    planes = find_planes(
+        cloud.points[rows], cloud.towards[rows], tolerance, 12, max(20, len(rows) // 50), parameters.seed
+    )
+    return up_of_planes(start, planes)
+
+
+TURNED = {3: (-1.0, 0.0, 0.0, -1.0), 6: (0.0, -1.0, 1.0, 0.0), 8: (0.0, 1.0, -1.0, 0.0)}
+"""By EXIF's orientation: the upright picture's right and down axes in the stored picture's, x and y each."""
+
+
+def _upright_axes(photo: PhotoMetadata) -> tuple[Array, Array]:
+    a, b, c, d = TURNED.get(photo.orientation or 1, (1.0, 0.0, 0.0, 1.0))
+    return np.array([a, b, 0.0]), np.array([c, d, 0.0])
+
+
+def _height_of_eyes(cloud: Cloud, centres: Array, up: Up) -> float | None:
+    """Of the usual camera above the ground, in the model's unit; None where no ground was seen."""
+    if len(cloud) < 30:
+        return None
+    turn = turn_upright(up.direction)
+    points = cloud.points @ turn.T
+    ground = find_ground(points, extent_of(points) / 100.0)
+    height = float(np.median((centres @ turn.T)[:, 2])) - ground.z_m
+    return height if ground.is_seen and height > 0.0 else None
+
+
+def _control(
+    model: ColmapModel, taken: _Taken, stated: Stated, names: Sequence[str]
+) -> tuple[Control, tuple[Finding, ...]]:
+    """Control points and distances in the model: points by the rays of the photos that show them."""
+    from planning.geo.enu import enu_from_geodetic
+
+    row_of = {name: row for row, name in enumerate(names)}
+    distances = []
+    for one, other, metres in stated.distances:
+        for name in (one, other):
+            if name not in taken.names:
+                raise InputError(say("--distance: there is no photo '{}'; name it as it lies below the folder", name))
+        if one in row_of and other in row_of:
+            distances.append((row_of[one], row_of[other], metres))
+    lenses = {photo.name: photo for photo in posed_photos(model, Similarity.identity(), Path())}
+    points, places, findings = [], [], []
+    for point in stated.control:
+        seen = [(lenses[name], x, y) for name, x, y in point.seen if name in lenses]
+        if len(seen) < 2:
+            text = say("control point '{}' is seen by fewer than two photos of the model; it is not used", point.name)
+            findings.append(Finding(Severity.WARNING, "control-unseen", text))
+            continue
+        points.append(_meeting(seen))
+        places.append((point.lat_deg, point.lon_deg, point.ellipsoid_height_m))
+    if not points or taken.origin is None:
+        return Control(NO_CONTROL.points, NO_CONTROL.points_enu_m, tuple(distances)), tuple(findings)
+    enu = enu_from_geodetic(taken.origin, *np.array(places).T)
+    return Control(np.array(points), enu, tuple(distances)), tuple(findings)
+
+
+def _meeting(seen: Sequence[tuple[PosedPhoto, float, float]]) -> Array:
+    """Where rays come nearest to each other, shape (3,)."""
+    normal, pull = np.zeros((3, 3)), np.zeros(3)
+    for photo, x, y in seen:
+        origins, directions = photo.rays(np.array([[x, y]]))
+        across = np.eye(3) - np.outer(directions[0], directions[0])
+        normal += across
+        pull += across @ origins[0]
+    return np.asarray(np.linalg.solve(normal, pull), np.float64)
+
+
+def _origin(taken: _Taken, stated: Stated, buildings: Buildings, cloud: Cloud) -> tuple[Origin, Array]:
+    """The site's origin, on the ground below the building's middle, and the shift from the provisional frame."""
+    corners = buildings.mesh.vertices_enu_m
+    flat = corners[:, :2] if len(corners) else cloud.points[:, :2]
+    middle = 0.5 * (flat.min(axis=0) + flat.max(axis=0)) if len(corners) else np.median(flat, axis=0)
+    foot = np.array([middle[0], middle[1], buildings.ground.z_m])
+    if taken.origin is not None:
+        place = geodetic_from_enu(taken.origin, foot[None])
+        lat, lon, height = (float(part[0]) for part in place)
+        return Origin(round(lat, 9), round(lon, 9), round(height, 4)), -foot
+    return stated.origin or Origin(0.0, 0.0, 0.0), -foot
+
+
+def _posed(model: ColmapModel, placed: Placed, folder: Path, taken: _Taken) -> tuple[PosedPhoto, ...]:
+    """Photos with the covariance that all have in common."""
+    times = {name: photo.taken_at for name, photo in zip(taken.names, taken.metadata, strict=True)}
+    residuals = placed.residuals_m[placed.is_used]
+    spread_m = float(np.sqrt((residuals**2).mean())) if len(residuals) else 0.0
+    position_m = max(0.02, spread_m / math.sqrt(max(1, len(residuals))))
+    covariance = np.diag([position_m**2] * 3 + [math.radians(0.1) ** 2] * 3)
+    return tuple(
+        replace(photo, pose=replace(photo.pose, covariance=covariance))
+        for photo in posed_photos(model, Similarity.identity(), folder, times)
+    )
+
+
+# What is said of it.
+
+
+def _left_out(names: Sequence[str], n_all: int) -> list[Finding]:
+    if not names:
+        return []
+    text = say("{} of {} photos found no place in the model, the first {}", len(names), n_all, names[0])
+    return [Finding(Severity.WARNING, "photos-left-out", text, "", float(len(names)), 0.0, "photos")]
+
+
+def _about_ground(buildings: Buildings) -> list[Finding]:
+    ground, found = buildings.ground, []
+    if not ground.is_seen:
+        text = say("no ground was seen: it is taken to be where the lowest points are")
+        found.append(Finding(Severity.WARNING, "ground-guessed", text))
+    elif ground.slope_deg > 3.0:
+        text = say("the ground falls by {:.1f} degrees; heights count from the building's foot", ground.slope_deg)
+        found.append(Finding(Severity.NOTE, "ground-slopes", text, "", ground.slope_deg, 3.0, "deg"))
+    found += [Finding(Severity.WARNING, "walls-missing", note) for note in buildings.notes]
+    guessed = [face for face in buildings.faces if face.wall is None]
+    if guessed:
+        share = sum(face.area_m2 for face in guessed) / max(1e-9, sum(face.area_m2 for face in buildings.faces))
+        text = say(
+            "{} of {} sides of the building were not seen and are guessed, {:.0f} % of its walls; fly around it before "
+            "you plan flights there",
+            len(guessed),
+            len(buildings.faces),
+            100.0 * share,
+        )
+        found.append(Finding(Severity.WARNING, "walls-guessed", text, "", 100.0 * share, None, "%"))
+    return found
+
+
+def _about_place(is_known: bool) -> list[Finding]:
+    if is_known:
+        return []
+    text = say("nothing says where on earth this is: give --origin before anything is flown")
+    return [Finding(Severity.WARNING, "place-unknown", text)]
+
+
+def write_sparse(folder: Path, coarse: CoarseModel) -> None:
+    """Write the sparse model as text, with a file that says of which frame it is."""
+    write_model(folder, coarse.model, "txt")
+    covariance = coarse.photos[0].pose.covariance
+    assert covariance is not None
+    position_m, angle_rad = math.sqrt(covariance[0, 0]), math.sqrt(covariance[3, 3])
+    write_frame(folder, Frame(position_m, math.degrees(angle_rad), coarse.origin))

@@ -1,0 +1,363 @@
+"""A model without place, size and north gets them: by control points, by where its photos were taken, or by a length.
+
+All that is known is adjusted together: receivers' positions with their covariances, angles of gimbals, control points,
+distances, and what is up. Receivers have outliers, so a first similarity is sampled (scale, heading and place of a
+model that stands upright already), and the adjustment is robust. Its normal matrix says how well scale, tilt and north
+are known; what nothing says is said.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import least_squares
+from scipy.spatial.transform import Rotation
+
+from planning.base.errors import InputError
+from planning.base.findings import Finding, Severity
+from planning.base.messages import say
+from reconstruction.coarse.cloud import Up, turn_upright
+from reconstruction.colmap.georeference import Similarity
+
+Array = NDArray[np.float64]
+
+ScaleFrom = Literal["control points", "positions", "stated distances", "height of eyes"]
+
+EYES_M = 1.6
+"""Of people who hold cameras, above the ground."""
+
+N_SAMPLES = 1000
+ROBUST_SIGMAS = 3.0
+
+LEAST_SIGMA_M = 0.005
+"""Positions are taken to be no better than this: RTK's own standard deviations leave out lever arm and timing."""
+
+CONTROL_SIGMA_M = 0.02
+"""Of control points in the model: surveyed to a centimetre, and measured in photos to a pixel."""
+
+WELL_KNOWN = 0.02
+"""Standard deviation of the scale from which on it is told."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Measured:
+    """What is known of a photo beside the model; None where nothing is.
+
+    Parameters
+    ----------
+    position_enu_m, covariance
+        Shapes (3,) and (3, 3), m^2.
+    cam_from_enu, angle_information
+        Rotation, and the inverse covariance of its angles in camera axes as one of all photos, shapes (3, 3).
+    """
+
+    position_enu_m: Array | None = None
+    covariance: Array | None = None
+    cam_from_enu: Array | None = None
+    angle_information: Array | None = None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Control:
+    """Points that are known in both frames, shapes (m, 3) and (m, 3), and cameras whose distance is known.
+
+    Parameters
+    ----------
+    distances
+        Rows of two cameras and the metres between them.
+    """
+
+    points: Array
+    points_enu_m: Array
+    distances: tuple[tuple[int, int, float], ...] = ()
+
+
+NO_CONTROL = Control(np.zeros((0, 3)), np.zeros((0, 3)))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Placed:
+    """Where a model lies.
+
+    Parameters
+    ----------
+    enu_from_model
+        Similarity.
+    scale_from
+        What its size is from.
+    sigma_scale, sigma_tilt_deg, sigma_north_deg
+        Standard deviations of the size, in parts of it, and of the turns; infinite where nothing says so.
+    residuals_m
+        Of the photos' positions, shape (n, 3), NaN where there is none.
+    is_used
+        Shape (n,): positions that do not contradict the model.
+    control_residuals_m
+        Shape (m, 3).
+    """
+
+    enu_from_model: Similarity
+    scale_from: ScaleFrom
+    sigma_scale: float
+    sigma_tilt_deg: float
+    sigma_north_deg: float
+    residuals_m: Array
+    is_used: NDArray[np.bool_]
+    control_residuals_m: Array
+    findings: tuple[Finding, ...] = ()
+
+
+def place_model(
+    centres: Array,
+    rotations: Array,
+    measured: Sequence[Measured],
+    up: Up,
+    control: Control = NO_CONTROL,
+    height_of_eyes: float | None = None,
+    seed: int = 0,
+) -> Placed:
+    """Fit a model to all that is known of it.
+
+    Parameters
+    ----------
+    centres, rotations
+        Of the model's cameras, shapes (n, 3) and (n, 3, 3), camera from model.
+    measured
+        Of each of them.
+    up
+        In the model.
+    height_of_eyes
+        Of the usual camera above the ground, in the model's unit: what gives a size where nothing else does.
+
+    Raises
+    ------
+    InputError
+        What is known does not fit the model, or gives it no size.
+    """
+    has_place = np.array([one.position_enu_m is not None for one in measured])
+    places = np.array([np.full(3, np.nan) if one.position_enu_m is None else one.position_enu_m for one in measured])
+    sigmas = np.array([math.sqrt(np.trace(_covariance(one)) / 3.0) for one in measured])
+    turn = turn_upright(up.direction)
+    known = _known_points(centres, places, sigmas, has_place, control)
+    spread_m = _spread(known[1])
+    start: Similarity | None = None
+    scale_from: ScaleFrom = "control points" if len(control.points) >= 2 else "positions"
+    if len(known[0]) >= 2 and _spread(known[0]) > 0.0 and spread_m > 0.0:
+        start = _sampled(*known, turn, seed)
+    if start is None or (control.distances and not len(control.points)):
+        start, scale_from = _stated(centres, turn, measured, rotations, control, height_of_eyes, start)
+    at, jacobian = _adjusted(start, scale_from, centres, rotations, measured, up, control)
+    placed = _as_similarity(at, start)
+    residuals = placed(centres) - places
+    used = np.zeros(len(centres), bool)
+    far = np.linalg.norm(residuals[has_place], axis=1) / sigmas[has_place]
+    unit = max(1.0, float(np.median(far)) / 1.538) if len(far) else 1.0
+    used[has_place] = far <= ROBUST_SIGMAS * math.sqrt(3.0) * unit
+    sigma = _sigmas(jacobian, unit)
+    findings = _findings(scale_from, sigma, used, has_place, spread_m)
+    return Placed(
+        placed,
+        scale_from,
+        sigma[1] if scale_from != "height of eyes" else math.inf,
+        math.degrees(sigma[0]),
+        math.degrees(sigma[2]),
+        residuals,
+        used,
+        placed(control.points) - control.points_enu_m if len(control.points) else np.zeros((0, 3)),
+        findings,
+    )
+
+
+def _known_points(
+    centres: Array, places: Array, sigmas: Array, has_place: NDArray[np.bool_], control: Control
+) -> tuple[Array, Array, Array]:
+    """Pairs of points in both frames, and their standard deviations; control points alone where there are enough."""
+    if len(control.points) >= 2:
+        return control.points, control.points_enu_m, np.full(len(control.points), CONTROL_SIGMA_M)
+    return centres[has_place], places[has_place], np.maximum(sigmas[has_place], LEAST_SIGMA_M)
+
+
+def _spread(points: Array) -> float:
+    """Largest standard deviation along an axis."""
+    return float(np.sqrt(points.var(axis=0).max())) if len(points) > 1 else 0.0
+
+
+def _sampled(a: Array, b: Array, sigmas: Array, turn: Array, seed: int) -> Similarity | None:
+    """Scale, heading and place of an upright model by the sample of two points that most others agree with."""
+    rng = np.random.default_rng(seed)
+    upright = a @ turn.T
+    n = len(a)
+    best, least = None, math.inf
+    pairs = [(i, j) for i in range(n) for j in range(i)]
+    if len(pairs) > N_SAMPLES:
+        pairs = [(int(i), int(j)) for i, j in rng.integers(0, n, (N_SAMPLES, 2)) if i != j]
+    wide = _spread(upright[:, :2])
+    for i, j in pairs:
+        one, other = upright[i] - upright[j], b[i] - b[j]
+        flat_one, flat_other = complex(one[0], one[1]), complex(other[0], other[1])
+        if abs(flat_one) < 0.2 * wide or abs(flat_other) == 0.0:
+            continue
+        scale = float(np.linalg.norm(other) / np.linalg.norm(one))
+        angle = float(np.angle(flat_other / flat_one))
+        heading = Rotation.from_rotvec([0.0, 0.0, angle]).as_matrix()
+        turned = scale * upright @ heading.T
+        shift = np.median(b - turned, axis=0)
+        away = float(np.median(np.linalg.norm(turned + shift - b, axis=1) / sigmas))
+        if away < least:
+            least, best = away, Similarity(scale, heading @ turn, shift)
+    return best
+
+
+def _stated(
+    centres: Array,
+    turn: Array,
+    measured: Sequence[Measured],
+    rotations: Array,
+    control: Control,
+    height_of_eyes: float | None,
+    by_places: Similarity | None,
+) -> tuple[Similarity, ScaleFrom]:
+    """A similarity whose size is that of stated distances, or else of people; north by gimbals where they say so."""
+    if control.distances:
+        parts = [metres / float(np.linalg.norm(centres[i] - centres[j])) for i, j, metres in control.distances]
+        scale, scale_from = float(np.median(parts)), "stated distances"
+    elif height_of_eyes is not None and height_of_eyes > 0.0:
+        scale, scale_from = EYES_M / height_of_eyes, "height of eyes"
+    else:
+        raise InputError(
+            say(
+                "nothing says how large the model is: the photos have no positions, and no ground was found below "
+                "them; state a distance (--distance) or control points (--gcp)"
+            )
+        )
+    turns = [
+        one.cam_from_enu.T @ rotation @ turn.T
+        for one, rotation in zip(measured, rotations, strict=True)
+        if one.cam_from_enu is not None
+    ]
+    heading = np.eye(3)
+    if by_places is not None:
+        heading = by_places.rotation @ turn.T
+    elif turns:
+        total = np.sum(turns, axis=0)
+        angle = math.atan2(total[1, 0] - total[0, 1], total[0, 0] + total[1, 1])
+        heading = Rotation.from_rotvec([0.0, 0.0, angle]).as_matrix()
+    rotation = heading @ turn
+    places = [
+        one.position_enu_m - scale * (rotation @ centre)
+        for one, centre in zip(measured, centres, strict=True)
+        if one.position_enu_m is not None
+    ]
+    shift = np.median(places, axis=0) if places else -scale * (rotation @ np.median(centres, axis=0))
+    return Similarity(scale, rotation, np.asarray(shift)), scale_from  # type: ignore[return-value]
+
+
+def _as_similarity(at: Array, start: Similarity) -> Similarity:
+    """Turn (ENU, on the left, about the place of the start's origin), log scale and shift on top of a start."""
+    turn = Rotation.from_rotvec(at[:3]).as_matrix()
+    return Similarity(start.scale * math.exp(at[3]), turn @ start.rotation, start.translation + at[4:])
+
+
+def _adjusted(
+    start: Similarity,
+    scale_from: ScaleFrom,
+    centres: Array,
+    rotations: Array,
+    measured: Sequence[Measured],
+    up: Up,
+    control: Control,
+) -> tuple[Array, Array]:
+    """The seven unknowns after a robust adjustment, and its Jacobian, all in standard deviations."""
+    middle = centres.mean(axis=0)
+    local = Similarity(start.scale, start.rotation, start(middle[None])[0])
+    rows = [i for i, one in enumerate(measured) if one.position_enu_m is not None]
+    whitened = [
+        np.linalg.inv(np.linalg.cholesky(_covariance(measured[i]) + LEAST_SIGMA_M**2 * np.eye(3))) for i in rows
+    ]
+    turned = [i for i, one in enumerate(measured) if one.cam_from_enu is not None and one.angle_information is not None]
+    roots = [np.linalg.cholesky(np.asarray(measured[i].angle_information)).T for i in turned]
+    uses_places = scale_from != "control points"
+
+    def residuals(at: Array) -> Array:
+        now = _as_similarity(at, local)
+        parts = []
+        if rows and uses_places:
+            off = now(centres[rows] - middle) - np.array([measured[i].position_enu_m for i in rows])
+            parts.append(np.einsum("nij,nj->ni", whitened, off).ravel())
+        for i, root in zip(turned, roots, strict=True):
+            apart = rotations[i] @ now.rotation.T @ np.asarray(measured[i].cam_from_enu).T
+            parts.append(root @ Rotation.from_matrix(apart).as_rotvec())
+        if len(control.points):
+            parts.append(((now(control.points - middle) - control.points_enu_m) / CONTROL_SIGMA_M).ravel())
+        for i, j, metres in control.distances:
+            length = now.scale * float(np.linalg.norm(centres[i] - centres[j]))
+            parts.append(np.array([math.log(length / metres) / 0.005]))
+        parts.append((now.rotation @ up.direction)[:2] / up.sigma_rad)
+        if scale_from == "height of eyes":
+            parts.append(np.array([at[3] / 1e-3]))
+        # What nothing fixes stays where it is.
+        parts.append(1e-6 * at)
+        return np.concatenate(parts)
+
+    scale = np.array([1e-3, 1e-3, 1e-3, 1e-3, 0.1, 0.1, 0.1])
+    found = least_squares(residuals, np.zeros(7), loss="soft_l1", f_scale=2.0, x_scale=scale)
+    at = found.x
+    # Back from turning about the cameras' middle to turning about the model's zero.
+    now = _as_similarity(at, local)
+    whole = Similarity(now.scale, now.rotation, now.translation - now.scale * (now.rotation @ middle))
+    turn = Rotation.from_matrix(whole.rotation @ start.rotation.T).as_rotvec()
+    shift = whole.translation - start.translation
+    return np.concatenate([turn, [math.log(whole.scale / start.scale)], shift]), np.asarray(found.jac)
+
+
+def _covariance(one: Measured) -> Array:
+    return np.eye(3) if one.covariance is None else one.covariance
+
+
+def _sigmas(jacobian: Array, unit: float) -> tuple[float, float, float]:
+    """Standard deviations of the tilt, the scale, and the heading; infinite for what nothing fixes."""
+    values, axes = np.linalg.eigh(jacobian.T @ jacobian)
+    variances = np.where(values > 1e-9, 1.0 / np.maximum(values, 1e-12), np.inf)
+    squares = axes**2
+    found = []
+    for rows in ((0, 1), (3,), (2,)):
+        parts = [float(np.sum(np.where(squares[row] > 1e-12, squares[row] * variances, 0.0))) for row in rows]
+        found.append(math.sqrt(max(parts)) * unit)
+    return found[0], found[1], found[2]
+
+
+def _findings(
+    scale_from: ScaleFrom,
+    sigma: tuple[float, float, float],
+    used: NDArray[np.bool_],
+    has_place: NDArray[np.bool_],
+    spread_m: float,
+) -> tuple[Finding, ...]:
+    found = []
+    if scale_from == "height of eyes":
+        text = say(
+            "the size is guessed: cameras are taken to be {:.1f} m above the ground; state a distance (--distance) or "
+            "control points (--gcp) before anything is flown",
+            EYES_M,
+        )
+        found.append(Finding(Severity.WARNING, "scale-guessed", text))
+    elif sigma[1] > WELL_KNOWN:
+        text = say(
+            "the size of the model is known to {:.0f} % only: the receivers are off by too much for photos that are "
+            "{:.0f} m apart; state a distance (--distance) or control points (--gcp)",
+            100.0 * sigma[1],
+            2.0 * spread_m,
+        )
+        found.append(Finding(Severity.WARNING, "scale-unsure", text, "", 100.0 * sigma[1], 100.0 * WELL_KNOWN, "%"))
+    if not math.isfinite(sigma[2]) or sigma[2] > math.radians(90.0):
+        text = say("nothing says where north is: it is taken to be ahead of the first photo")
+        found.append(Finding(Severity.WARNING, "north-unknown", text))
+    n_out = int((has_place & ~used).sum())
+    if n_out:
+        text = say("the positions of {} of {} photos contradict the model", n_out, int(has_place.sum()))
+        found.append(Finding(Severity.WARNING, "positions-contradict", text, "", float(n_out), 0.0, "photos"))
+    return tuple(found)
