@@ -321,12 +321,13 @@ def _covariance(one: Measured) -> Array:
 def _sigmas(jacobian: Array, unit: float) -> tuple[float, float, float]:
     """Standard deviations of the tilt, the scale, and the heading; infinite for what nothing fixes."""
     values, axes = np.linalg.eigh(jacobian.T @ jacobian)
-    variances = np.where(values > 1e-9, 1.0 / np.maximum(values, 1e-12), np.inf)
+    fixed = values > 1e-9
+    variances = np.where(fixed, 1.0 / np.where(fixed, values, 1.0), 0.0)
     squares = axes**2
     found = []
     for rows in ((0, 1), (3,), (2,)):
-        parts = [float(np.sum(np.where(squares[row] > 1e-12, squares[row] * variances, 0.0))) for row in rows]
-        found.append(math.sqrt(max(parts)) * unit)
+        is_open = bool((squares[list(rows)][:, ~fixed] > 1e-6).any())
+        found.append(math.inf if is_open else math.sqrt(float((squares[list(rows)] @ variances).max())) * unit)
     return found[0], found[1], found[2]
 
 

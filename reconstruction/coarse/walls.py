@@ -182,6 +182,10 @@ MANHATTAN_DEG = 3.0
 """Walls whose directions are this near the main axes are made to have them."""
 
 NEIGHBOURS = 60
+LEVEL_NEIGHBOURS = 12
+
+LEAST_SHARE = 0.08
+"""Of a wall that has to be seen: frames of panes are a tenth of a facade, and mirror images line up by chance."""
 
 
 def find_walls(cloud: Cloud, ground: Ground, parameters: BuildingParameters, monitor: Monitor = QUIET) -> list[Wall]:
@@ -195,7 +199,7 @@ def find_walls(cloud: Cloud, ground: Ground, parameters: BuildingParameters, mon
         return []
     tolerance = float(np.clip(3.0 * np.median(sigmas), parameters.tolerance_m, 3.0 * parameters.tolerance_m))
     rng = np.random.default_rng(parameters.seed)
-    left = np.arange(len(points))
+    left = np.flatnonzero(~_is_level(points))
     lines: list[_Line] = []
     misses = 0
     while len(lines) < parameters.n_walls and len(left) >= 12 and misses < 3:
@@ -222,6 +226,18 @@ def find_walls(cloud: Cloud, ground: Ground, parameters: BuildingParameters, mon
         wall for normal, offset, rows in lines if (wall := _wall(normal, offset, points[rows], parameters)) is not None
     ]
     return sorted(walls, key=lambda wall: -wall.length_m * (wall.top_m - wall.bottom_m))
+
+
+def _is_level(points: Array) -> NDArray[np.bool_]:
+    """Which points lie on a floor or a roof, by the planes of their neighbours: a wall could cut across those."""
+    from scipy.spatial import cKDTree
+
+    k = min(LEVEL_NEIGHBOURS, len(points))
+    near = points[np.asarray(cKDTree(points).query(points, k)[1]).reshape(len(points), k)]
+    off = near - near.mean(axis=1, keepdims=True)
+    values, axes = np.linalg.eigh(np.einsum("nki,nkj->nij", off, off))
+    is_plane = values[:, 0] < 0.1 * values[:, 1]
+    return np.asarray(is_plane & (np.abs(axes[:, 2, 0]) > 0.7))
 
 
 def _height(points: Array, ground: Ground) -> Array:
@@ -341,6 +357,8 @@ def _wall(normal: Array, offset: float, points: Array, parameters: BuildingParam
     n_all = math.ceil((stop - start) / cell) * math.ceil((top - bottom) / cell)
     rms = float(np.sqrt(np.mean((points[:, :2] @ normal - offset) ** 2)))
     share = min(1.0, len(seen) / max(1, n_all))
+    if share < LEAST_SHARE:
+        return None
     return Wall(normal, offset, (float(start), float(stop)), float(bottom), float(top), rms, share, len(points))
 
 

@@ -1,0 +1,133 @@
+"""A made model in a frame of its own, brought back to where it was by what is known of it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from planning.base.errors import InputError
+from reconstruction.base.cameras import cam_from_enu
+from reconstruction.coarse.cloud import FoundPlane, Up, turn_upright, up_of_cameras, up_of_planes
+from reconstruction.coarse.placing import Control, Measured, place_model
+from reconstruction.colmap.georeference import Similarity
+
+TRUTH = Similarity(3.7, Rotation.from_euler("zyx", [0.7, 0.4, -1.1]).as_matrix(), np.array([12.0, -5.0, 30.0]))
+"""From the model to the local frame."""
+
+
+def orbit(n=24, radius_m=40.0):
+    """Cameras that look at the middle, and their rotations from the local frame."""
+    angles = 2.0 * np.pi * np.arange(n) / n
+    places = np.column_stack([radius_m * np.sin(angles), radius_m * np.cos(angles), 20.0 + 5.0 * np.cos(3.0 * angles)])
+    turns = [cam_from_enu(math.degrees(angle) + 180.0, -20.0) for angle in angles]
+    return places, np.array(turns)
+
+
+def as_model(places, turns):
+    back = TRUTH.inverse()
+    return back(places), np.array([turn @ TRUTH.rotation for turn in turns])
+
+
+def up_in_model(sigma_deg=0.3):
+    return Up(TRUTH.rotation.T @ np.array([0.0, 0.0, 1.0]), math.radians(sigma_deg))
+
+
+def noisy(places, sigma_m, seed=0, wild=()):
+    rng = np.random.default_rng(seed)
+    off = places + rng.normal(0.0, sigma_m, places.shape)
+    off[list(wild)] += 60.0
+    return [Measured(place, sigma_m**2 * np.eye(3)) for place in off]
+
+
+def test_receivers_with_outliers_place_a_model_within_their_mean_error():
+    places, turns = orbit()
+    centres, rotations = as_model(places, turns)
+    placed = place_model(centres, rotations, noisy(places, 1.5, wild=(3, 11)), up_in_model())
+    assert placed.scale_from == "positions"
+    assert set(np.flatnonzero(~placed.is_used)) == {3, 11}
+    off = np.linalg.norm(placed.enu_from_model(centres) - places, axis=1)
+    assert np.median(off) < 1.0
+    assert placed.enu_from_model.scale == pytest.approx(TRUTH.scale, rel=4.0 * placed.sigma_scale)
+    assert 0.003 < placed.sigma_scale < 0.03
+    assert placed.sigma_tilt_deg < 0.4
+
+
+def test_fixed_receivers_place_it_to_centimetres():
+    places, turns = orbit()
+    centres, rotations = as_model(places, turns)
+    placed = place_model(centres, rotations, noisy(places, 0.02), up_in_model())
+    assert np.linalg.norm(placed.enu_from_model(centres) - places, axis=1).max() < 0.03
+    assert placed.findings == ()
+
+
+def test_control_points_go_before_receivers():
+    places, turns = orbit()
+    centres, rotations = as_model(places, turns)
+    points = np.array([[-10.0, -8.0, 0.0], [10.0, -8.0, 0.5], [10.0, 8.0, 0.0], [-10.0, 8.0, 12.0]])
+    control = Control(TRUTH.inverse()(points), points)
+    placed = place_model(centres, rotations, noisy(places + 7.0, 2.0), up_in_model(), control)
+    assert placed.scale_from == "control points"
+    assert np.linalg.norm(placed.enu_from_model(centres) - places, axis=1).max() < 0.02
+    assert np.abs(placed.control_residuals_m).max() < 0.01
+
+
+def test_a_stated_distance_gives_the_size_and_north_is_said_to_be_unknown():
+    places, turns = orbit()
+    centres, rotations = as_model(places, turns)
+    metres = float(np.linalg.norm(places[0] - places[6]))
+    control = Control(np.zeros((0, 3)), np.zeros((0, 3)), ((0, 6, metres),))
+    placed = place_model(centres, rotations, [Measured()] * len(centres), up_in_model(), control)
+    assert placed.enu_from_model.scale == pytest.approx(TRUTH.scale, rel=1e-6)
+    assert not math.isfinite(placed.sigma_north_deg)
+    assert [found.code for found in placed.findings] == ["north-unknown"]
+    up = placed.enu_from_model.rotation @ up_in_model().direction
+    np.testing.assert_allclose(up, [0.0, 0.0, 1.0], atol=1e-6)
+
+
+def test_a_guessed_size_is_told_and_no_size_is_refused():
+    places, turns = orbit()
+    centres, rotations = as_model(places, turns)
+    nothing = [Measured()] * len(centres)
+    placed = place_model(centres, rotations, nothing, up_in_model(), height_of_eyes=1.6 / TRUTH.scale)
+    assert placed.enu_from_model.scale == pytest.approx(TRUTH.scale)
+    assert "scale-guessed" in {found.code for found in placed.findings}
+    with pytest.raises(InputError, match="--distance"):
+        place_model(centres, rotations, nothing, up_in_model())
+
+
+def test_telephones_near_each_other_say_little_of_the_size():
+    places, turns = orbit(radius_m=8.0)
+    centres, rotations = as_model(places, turns)
+    placed = place_model(centres, rotations, noisy(places, 5.0), up_in_model())
+    assert "scale-unsure" in {found.code for found in placed.findings}
+    assert placed.sigma_scale > 0.05
+
+
+def test_level_cameras_say_what_is_up():
+    _, turns = orbit()
+    up = up_of_cameras(turns[:, 0], turns[:, 1])
+    assert math.degrees(math.acos(min(1.0, float(up.direction[2])))) < 0.01
+    ahead = np.repeat(turns[:1], 5, axis=0)
+    alone = up_of_cameras(ahead[:, 0], ahead[:, 1])
+    assert alone.sigma_rad > 2.0 * up.sigma_rad
+
+
+def test_walls_make_up_exact():
+    start = Up(np.array([0.04, -0.03, 1.0]) / np.linalg.norm([0.04, -0.03, 1.0]), math.radians(3.0))
+    normals = [np.array([1.0, 0.0, 0.0]), np.array([0.0, -1.0, 0.0]), np.array([0.0, 0.0, 1.0])]
+    planes = [FoundPlane(normal, 0.0, np.arange(50), 1e-3) for normal in normals]
+    up = up_of_planes(start, planes)
+    assert math.degrees(math.acos(min(1.0, float(up.direction[2])))) < 0.1
+    assert up.n_walls == 2
+    assert up.sigma_rad < start.sigma_rad
+
+
+@pytest.mark.parametrize("up", [(0.0, 0.0, 1.0), (0.0, 0.0, -1.0), (0.6, 0.0, 0.8), (1.0, 0.0, 0.0)])
+def test_turning_upright(up):
+    turn = turn_upright(np.array(up))
+    np.testing.assert_allclose(turn @ up, [0.0, 0.0, 1.0], atol=1e-12)
+    np.testing.assert_allclose(turn @ turn.T, np.eye(3), atol=1e-12)
+    assert np.linalg.det(turn) == pytest.approx(1.0)
