@@ -273,7 +273,8 @@ class Site:
 
     A site without panels has a building mesh: the coarse model on which photos of a first flight show them. Or it is
     bare: a place alone, to look at missions that were imported.
-    `place_from` is `ifc-site` where the origin is what a BIM file says of its place, and nobody has said it since.
+    `place_from` is `ifc-site` where the origin is what a BIM file says of its place, and nobody has said it since, and
+    `unknown` where photos say no place, or no size.
     """
 
     name: str

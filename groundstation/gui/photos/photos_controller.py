@@ -11,6 +11,7 @@ from PySide6.QtCore import QObject, Signal
 
 from groundstation.gui.application.context import ApplicationContext
 from groundstation.services.jobs.runner import JobContext
+from groundstation.services.photos.coarse import SPARSE, CoarseFiles, CoarseRequest, coarse_apart
 from groundstation.services.photos.found_panels import (
     PanelDraft,
     Reposed,
@@ -31,7 +32,9 @@ from groundstation.services.photos.intake import (
 from groundstation.services.photos.poses import BetterPoses
 from groundstation.services.photos.tradeoff import Trial, facade_trials
 from groundstation.services.project.document import Document
+from groundstation.services.project.input_files import read_input_site
 from groundstation.services.project.session import History
+from groundstation.services.site.sources import with_new_site
 from planning.base.errors import GroundStationError
 from planning.base.findings import Severity
 from planning.plan import Plan
@@ -77,6 +80,7 @@ class PhotosController(QObject):
         super().__init__(parent)
         self._context = context
         self.folder: Path | None = None
+        self.colmap: Path | None = None
         self.intake: PhotoIntake | None = None
         self.cards: tuple[PhotoCard, ...] = ()
         self.trials: tuple[Trial, ...] = ()
@@ -134,8 +138,38 @@ class PhotosController(QObject):
             return self.folder
         return None if project is None else project / PHOTOS_FOLDER
 
-    def read(self, folder: Path) -> None:
-        """Read a folder of photos over the site."""
+    def make_coarse(self, photos: Path, out: Path) -> None:
+        """Make a site of a folder of photos alone, open it, and read the photos over it."""
+
+        def work(context: JobContext) -> tuple[CoarseFiles, SiteModel]:
+            made = context.apart(coarse_apart, CoarseRequest(photos, out))
+            return made, read_input_site(made.site)
+
+        def done(result: tuple[CoarseFiles, SiteModel]) -> None:
+            made, model = result
+            for found in made.findings:
+                self._context.say(found.severity, self._context.words(found.message))
+            document = with_new_site(self._context.document, model)
+            self._context.change(self.tr("Make a coarse model"), document)
+            self._context.select(None)
+            text = self.tr("The coarse model is made: {0} of {1} photos found their place, walls: {2}. It lies in {3}")
+            n_walls = len(made.report["walls"])
+            self._context.say(Severity.OK, text.format(made.report["registered"], made.report["photos"], n_walls, out))
+            self.read(photos, out / SPARSE)
+
+        self._start(self.tr("Make a coarse model"), work, done)
+
+    def read(self, folder: Path, colmap: Path | None = None) -> None:
+        """Read a folder of photos over the site.
+
+        Parameters
+        ----------
+        colmap
+            COLMAP model with the photos' poses; None for the one that these photos were read with before, if any.
+        """
+        if colmap is not None or folder != self.folder:
+            self.colmap = colmap
+        poses = self.colmap
         model, basis = self._context.document.site, self._basis()
         if model is None:
             self._context.say(Severity.ERROR, self.tr("Open or import a site first: photos are placed on it."))
@@ -144,7 +178,7 @@ class PhotosController(QObject):
         self.folder = folder
 
         def work(context: JobContext) -> PhotoIntake:
-            return take_in_photos(folder, model, flown, monitor=context)
+            return take_in_photos(folder, model, flown, colmap=poses, monitor=context)
 
         def done(intake: PhotoIntake) -> None:
             if _is_same_place(model, self._context.document.site):

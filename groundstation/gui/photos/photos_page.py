@@ -247,6 +247,7 @@ class PhotosPage(QObject):
         self.findings, self.table, self.tools = FindingsList(), FacadeTable(), ToolBox()
         self.trials, self.sightings, self.poses = TrialChart(), PanelSightings(), PoseBox(self.controller)
         self.read, self.choose = QPushButton(self.tr("Read photos")), QPushButton(self.tr("Choose folder ..."))
+        self.coarse = QPushButton(self.tr("From photos alone ..."))
         self.find, self.use = QPushButton(self.tr("Find panels")), QPushButton(self.tr("Use these panels"))
         self.data_set = QPushButton(self.tr("Make data set ..."))
         self.folder, self.coverage, self.state = QLabel(), QLabel(), QLabel()
@@ -286,6 +287,10 @@ class PhotosPage(QObject):
         self.read.setToolTip(self.tr("Poses, sharpness, exposure and the coverage that was achieved"))
         self.folder.setProperty("role", "muted")
         self.coverage.setWordWrap(True)
+        self.coarse.setToolTip(
+            self.tr("Make a coarse model and a site of the photos of a first flight: poses, walls, roofs and ground")
+        )
+        top.addWidget(self.coarse)
         top.addWidget(self.choose)
         top.addWidget(self.read)
         top.addWidget(self.find)
@@ -337,6 +342,7 @@ class PhotosPage(QObject):
 
     def _connect(self) -> None:
         controller, context, view = self.controller, self._context, self.pane.view
+        self.coarse.clicked.connect(self._make_coarse)
         self.choose.clicked.connect(self._choose_folder)
         self.read.clicked.connect(self._read)
         self.find.clicked.connect(controller.find)
@@ -375,6 +381,16 @@ class PhotosPage(QObject):
         folder = self.questions.folder(self._shared_view.window(), self.tr("Folder of photos"), *places)
         if folder is not None:
             self.controller.read(folder)
+
+    def _make_coarse(self) -> None:
+        window, project = self._shared_view.window(), self._context.session.folder
+        photos = self.questions.folder(window, self.tr("Photos of the first flight"), project)
+        if photos is None:
+            return
+        proposed = photos.with_name(f"{photos.name}-coarse") if project is None else project / "coarse"
+        out = self.questions.new_folder(window, self.tr("Folder for the coarse model"), proposed)
+        if out is not None:
+            self.controller.make_coarse(photos, out)
 
     def _read(self) -> None:
         folder = self.controller.usual_folder()
@@ -483,6 +499,7 @@ class PhotosPage(QObject):
         folder = controller.usual_folder()
         self.folder.setText("" if folder is None else self.tr("Folder: {0}").format(_short(folder)))
         self.folder.setToolTip("" if folder is None else str(folder))
+        self.coarse.setEnabled(not controller.is_busy)
         self.choose.setEnabled(has_site and not controller.is_busy)
         self.read.setEnabled(has_site and folder is not None and not controller.is_busy)
         self.find.setEnabled(
@@ -493,9 +510,7 @@ class PhotosPage(QObject):
         )
         self.trials.measure.setEnabled(self.pane.place() is not None and not controller.is_busy)
         draft = controller.draft
-        model = self._context.document.site
-        has_panels = model is not None and model.site.n_panels > 0
-        self.data_set.setEnabled(self.find.isEnabled() and has_panels)
+        self.data_set.setEnabled(self.find.isEnabled())
         self.use.setEnabled(draft is not None and not draft.unsolved)
         self.state.setText(self._where_it_stands())
         self.coverage.setText(self.coverage_shown.words())

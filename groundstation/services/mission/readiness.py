@@ -206,6 +206,12 @@ def _place(case: Case) -> Iterator[Finding]:
             "give its --origin"
         )
         yield Finding(Severity.WARNING, "place", text)
+    if case.site_model.site.place_from == "unknown":
+        text = say(
+            "nobody has said where the site is, or how large: make its coarse model again with --origin, and with "
+            "--distance or --gcp, or set its origin on the Site tab once its size is known"
+        )
+        yield Finding(Severity.ERROR, "place", text)
 
 
 def _items(case: Case) -> Iterator[Finding]:

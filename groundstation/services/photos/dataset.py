@@ -68,9 +68,9 @@ def prepare_read(intake: PhotoIntake, model: SiteModel, out: Path, monitor: Moni
     Raises
     ------
     InputError
-        The site has no panels, there are no photos with a pose, none can be read, or the data set cannot be written.
+        There are no photos with a pose, none can be read, or the data set cannot be written.
     """
-    return prepare(intake.photos, model, out, monitor=monitor)
+    return prepare(intake.photos, model, out, monitor=monitor, cloud=intake.better.points_enu_m)
 
 
 def prepared_summary(prepared: PreparedFiles) -> dict[str, Any]:

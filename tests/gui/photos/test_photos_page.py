@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from dataclasses import replace
 
 import pytest
@@ -12,7 +13,7 @@ from groundstation.services.photos.intake import PhotoMark
 from groundstation.services.project.document import Document
 from groundstation.services.site.edits import HeightReference, set_origin
 from planning.base.findings import Severity
-from tests.gui.driving import choose, click_on, clicked, escape, turn_until
+from tests.gui.driving import choose, click_on, clicked, escape, turn_until, turn_until_idle
 from tests.services.photo_cases import site_model
 
 
@@ -180,3 +181,32 @@ def test_a_data_set_is_made_of_the_photos_and_what_was_left_out_is_said(applicat
     said = [message.text for message in page.messages]
     assert any("The data set is written" in text for text in said), said
     assert any("cannot be decoded; it was left out" in text for text in said), said
+
+
+def test_a_coarse_model_is_asked_for_by_its_button_and_what_is_wrong_is_said(page, controller, folder, tmp_path):
+    few = tmp_path / "few"
+    few.mkdir()
+    for path in sorted(folder.iterdir())[:2]:
+        shutil.copy(path, few)
+    with clicked(choose(few), choose(tmp_path / "coarse")):
+        click_on(controller.window, page.tab.coarse)
+    page.idle()
+    assert any("at least 3 photos, got 2" in message.text for message in page.messages)
+    assert page.tab.coarse.isEnabled()
+
+
+@pytest.mark.slow
+def test_photos_alone_become_a_site_by_one_button(page, controller, shared_data, tmp_path):
+    pytest.importorskip("pycolmap", reason="pycolmap is not installed (pip install .[colmap])")
+    photos = tmp_path / "door"
+    photos.mkdir()
+    for number in range(1, 7):
+        shutil.copy(shared_data / "multiview" / "lund_door" / f"DSC_{number:04d}.JPG", photos)
+    with clicked(choose(photos), choose(tmp_path / "coarse")):
+        click_on(controller.window, page.tab.coarse)
+    turn_until_idle(page.application, controller, 400.0)
+    page.idle()
+    assert any("6 of 6 photos found their place" in message.text for message in page.messages)
+    assert controller.context.document.site.site.name == "coarse"
+    assert len(page.tab.controller.intake.photos) == 6
+    assert page.tab.data_set.isEnabled()
