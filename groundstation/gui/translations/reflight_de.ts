@@ -3835,6 +3835,14 @@ Blickrichtung: {3}</translation>
 <context>
     <name>PhotosController</name>
     <message>
+        <source>Make a coarse model</source>
+        <translation>Grobmodell machen</translation>
+    </message>
+    <message>
+        <source>The coarse model is made: {0} of {1} photos found their place, walls: {2}. It lies in {3}</source>
+        <translation>Das Grobmodell ist fertig: {0} von {1} Fotos haben ihren Platz gefunden, Wände: {2}. Es liegt in {3}</translation>
+    </message>
+    <message>
         <source>Open or import a site first: photos are placed on it.</source>
         <translation>Öffnen oder importieren Sie zuerst einen Standort: darauf werden die Fotos eingeordnet.</translation>
     </message>
@@ -3882,6 +3890,10 @@ Blickrichtung: {3}</translation>
         <translation>Ordner wählen ...</translation>
     </message>
     <message>
+        <source>From photos alone ...</source>
+        <translation>Nur aus Fotos ...</translation>
+    </message>
+    <message>
         <source>Find panels</source>
         <translation>Scheiben suchen</translation>
     </message>
@@ -3896,6 +3908,10 @@ Blickrichtung: {3}</translation>
     <message>
         <source>Poses, sharpness, exposure and the coverage that was achieved</source>
         <translation>Lagen, Schärfe, Belichtung und die erreichte Abdeckung</translation>
+    </message>
+    <message>
+        <source>Make a coarse model and a site of the photos of a first flight: poses, walls, roofs and ground</source>
+        <translation>Aus den Fotos eines ersten Flugs ein Grobmodell und einen Standort machen: Posen, Wände, Dächer und Boden</translation>
     </message>
     <message>
         <source>What is wrong with photos stands here.</source>
@@ -3928,6 +3944,14 @@ Blickrichtung: {3}</translation>
     <message>
         <source>What accuracy costs in time</source>
         <translation>Was Genauigkeit an Zeit kostet</translation>
+    </message>
+    <message>
+        <source>Photos of the first flight</source>
+        <translation>Fotos des ersten Flugs</translation>
+    </message>
+    <message>
+        <source>Folder for the coarse model</source>
+        <translation>Ordner für das Grobmodell</translation>
     </message>
     <message>
         <source>Folder for the data set</source>
@@ -5908,6 +5932,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>, {0} kleinere</translation>
     </message>
     <message>
+        <source>--distance: there is no photo &apos;{0}&apos;; name it as it lies below the folder</source>
+        <translation>--distance: es gibt kein Foto &apos;{0}&apos;; nennen Sie es so, wie es unter dem Ordner liegt</translation>
+    </message>
+    <message>
         <source>--effects, --wind and --speedup are for --link sim; the vehicle at a link has its own</source>
         <translation>--effects, --wind und --speedup sind für --link sim; das Fluggerät an einem Link hat eigene</translation>
     </message>
@@ -6056,12 +6084,20 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>ein Cluster ({0}) braucht Dask: pip install &apos;reflight-groundstation[cluster]&apos;</translation>
     </message>
     <message>
+        <source>a coarse model needs at least {0} photos, got {1}</source>
+        <translation>ein Grobmodell braucht mindestens {0} Fotos, es sind {1}</translation>
+    </message>
+    <message>
         <source>a fence has a radius of {0} m; expected more than 0</source>
         <translation>ein Geofence hat einen Radius von {0} m; erwartet wird mehr als 0</translation>
     </message>
     <message>
         <source>a fence has {0} corners; expected at least {1}</source>
         <translation>ein Geofence hat {0} Ecken; erwartet werden mindestens {1}</translation>
+    </message>
+    <message>
+        <source>a file of control points or of a camera</source>
+        <translation>eine Datei mit Passpunkten oder einer Kamera</translation>
     </message>
     <message>
         <source>a full battery</source>
@@ -6124,6 +6160,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Argument %(argument_name)s: %(message)s</translation>
     </message>
     <message>
+        <source>arranging blocks</source>
+        <translation>Baukörper werden gebildet</translation>
+    </message>
+    <message>
         <source>at most {0} longer than the shortest</source>
         <translation>höchstens {0} länger als die kürzeste</translation>
     </message>
@@ -6174,6 +6214,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>coarsest pixel</source>
         <translation>gröbstes Pixel</translation>
+    </message>
+    <message>
+        <source>comparing photos</source>
+        <translation>Fotos werden verglichen</translation>
+    </message>
+    <message>
+        <source>control point &apos;{0}&apos; is seen by fewer than two photos of the model; it is not used</source>
+        <translation>Passpunkt &apos;{0}&apos; ist in weniger als zwei Fotos des Modells zu sehen; er wird nicht verwendet</translation>
     </message>
     <message>
         <source>cost</source>
@@ -6294,6 +6342,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>erwartet wird ein graues oder farbiges Bild mit 8 Bit, gefunden {0} der Form {1}; es zuerst umwandeln (etwa in PNG oder JPEG mit 8 Bit)</translation>
     </message>
     <message>
+        <source>expected a line with the coordinate system, then lines &apos;X Y Z column row photo name&apos;</source>
+        <translation>erwartet: eine Zeile mit dem Koordinatensystem, dann Zeilen &apos;X Y Z column row photo name&apos;</translation>
+    </message>
+    <message>
         <source>expected a list such as a,b, got &apos;{0}&apos;</source>
         <translation>erwartet wird eine Liste wie a,b, angegeben &apos;{0}&apos;</translation>
     </message>
@@ -6402,6 +6454,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>erwartet werden endliche Zahlen, gefunden &apos;{0}&apos;</translation>
     </message>
     <message>
+        <source>expected fx_px, or focal_length_mm and sensor_width_mm, beside image_width_px and image_height_px</source>
+        <translation>erwartet: fx_px, oder focal_length_mm und sensor_width_mm, dazu image_width_px und image_height_px</translation>
+    </message>
+    <message>
         <source>expected heads lin0 to lin4 for {0} features, as {1} has them</source>
         <translation>erwartet werden Köpfe lin0 bis lin4 für {0} Merkmale, wie {1} sie hat</translation>
     </message>
@@ -6412,6 +6468,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>expected it once, or once for each of {0} --panel-grid, got {1}</source>
         <translation>erwartet wird es einmal, oder einmal für jedes von {0} --panel-grid, angegeben {1}</translation>
+    </message>
+    <message>
+        <source>expected latitude, longitude and height such as 48.774,2.302,90, got &apos;{0}&apos;</source>
+        <translation>erwartet: Breite, Länge und Höhe wie 48.774,2.302,90, gefunden: &apos;{0}&apos;</translation>
     </message>
     <message>
         <source>expected more than 0, got {0}</source>
@@ -6458,6 +6518,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>erwartet wird der Ordner eines Modells; &apos;records FOLDER make --objects SITE&apos; legt einen für Einträge allein an</translation>
     </message>
     <message>
+        <source>expected the numbers of one camera, found {0}</source>
+        <translation>erwartet: die Zahlen einer Kamera, gefunden: {0}</translation>
+    </message>
+    <message>
         <source>expected the weights of AlexNet or VGG16 as torchvision names them; {0}</source>
         <translation>erwartet werden die Gewichte von AlexNet oder VGG16, wie torchvision sie nennt; {0}</translation>
     </message>
@@ -6472,6 +6536,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>expected three points with blanks between them, got &apos;{0}&apos;</source>
         <translation>erwartet werden drei Punkte mit Leerzeichen dazwischen, angegeben &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>expected two photos and metres such as A.JPG,B.JPG,12.5, got &apos;{0}&apos;</source>
+        <translation>erwartet: zwei Fotos und Meter wie A.JPG,B.JPG,12.5, gefunden: &apos;{0}&apos;</translation>
     </message>
     <message>
         <source>expected two viewpoints or more, got {0}</source>
@@ -6526,6 +6594,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Fassade {0}, vom Erreichbaren</translation>
     </message>
     <message>
+        <source>finding walls</source>
+        <translation>Wände werden gesucht</translation>
+    </message>
+    <message>
         <source>findings: {0}</source>
         <translation>Befunde: {0}</translation>
     </message>
@@ -6564,6 +6636,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>has no &apos;{0}&apos;, so these are points and not splats</source>
         <translation>hat kein &apos;{0}&apos;, das sind also Punkte und keine Splats</translation>
+    </message>
+    <message>
+        <source>has no panels, and {0} learns what panels mirror; leave --method out for plain splats, or find the panels first (&apos;panels&apos;)</source>
+        <translation>hat keine Scheiben, und {0} lernt, was Scheiben spiegeln; lassen Sie --method weg für einfache Splats, oder suchen Sie zuerst die Scheiben (&apos;panels&apos;)</translation>
     </message>
     <message>
         <source>has no photo &apos;{0}&apos;, which is to be scored; name photos of its views</source>
@@ -6698,6 +6774,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>ist keine PLY-Datei (sie beginnt nicht mit &apos;ply&apos;)</translation>
     </message>
     <message>
+        <source>is no camera: {0}</source>
+        <translation>ist keine Kamera: {0}</translation>
+    </message>
+    <message>
         <source>is no file; {0}</source>
         <translation>ist keine Datei; {0}</translation>
     </message>
@@ -6766,6 +6846,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Zeile {0} des Kopfes wird nicht verstanden: &apos;{1}&apos;</translation>
     </message>
     <message>
+        <source>line {0}: expected &apos;X Y Z column row photo name&apos;, found &apos;{1}&apos;</source>
+        <translation>Zeile {0}: erwartet &apos;X Y Z column row photo name&apos;, gefunden &apos;{1}&apos;</translation>
+    </message>
+    <message>
         <source>local-search needs a symmetric instance; add --method pyvrp</source>
         <translation>local-search braucht eine symmetrische Instanz; --method pyvrp dazunehmen</translation>
     </message>
@@ -6784,6 +6868,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>lowest flight {0} m above the ground{1} (take-off and landing apart)</source>
         <translation>niedrigster Flug {0} m über dem Boden{1} (ohne Start und Landung)</translation>
+    </message>
+    <message>
+        <source>matching photos needs pycolmap, which is not installed; install it with: pip install &apos;reflight-groundstation[colmap]&apos;</source>
+        <translation>Fotos miteinander zu vergleichen braucht pycolmap, das nicht installiert ist; installieren Sie es mit: pip install &apos;reflight-groundstation[colmap]&apos;</translation>
     </message>
     <message>
         <source>matt concrete with punched windows</source>
@@ -6850,6 +6938,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>kein Flug kann mehr als {0} abdecken, das sind also {1} % des Möglichen</translation>
     </message>
     <message>
+        <source>no ground was seen: it is taken to be where the lowest points are</source>
+        <translation>es war kein Boden zu sehen: er wird dort angenommen, wo die tiefsten Punkte sind</translation>
+    </message>
+    <message>
         <source>no method found a tour</source>
         <translation>kein Verfahren fand eine Rundtour</translation>
     </message>
@@ -6874,8 +6966,20 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>kein Ergänzungsflug wurde geschrieben; --all schreibt ihn trotzdem</translation>
     </message>
     <message>
+        <source>no wall was found: the points say too little; come closer, and take photos that overlap more</source>
+        <translation>es wurde keine Wand gefunden: die Punkte sagen zu wenig; gehen Sie näher heran, und machen Sie Fotos, die sich mehr überlappen</translation>
+    </message>
+    <message>
+        <source>nobody has said where the site is, or how large: make its coarse model again with --origin, and with --distance or --gcp, or set its origin on the Site tab once its size is known</source>
+        <translation>niemand hat gesagt, wo der Standort ist, oder wie groß: machen Sie sein Grobmodell noch einmal mit --origin und mit --distance oder --gcp, oder setzen Sie seinen Ursprung im Reiter Standort, sobald seine Größe bekannt ist</translation>
+    </message>
+    <message>
         <source>none of its {0} photos says where the camera looked; name the plan that was flown as well (--plan)</source>
         <translation>keines seiner {0} Fotos sagt, wohin die Kamera blickte; auch den geflogenen Plan nennen (--plan)</translation>
+    </message>
+    <message>
+        <source>none of the {0} images of the COLMAP model is a photo in {1}; are the names in the model the paths below the folder of photos?</source>
+        <translation>keines der {0} Bilder des COLMAP-Modells ist ein Foto in {1}; sind die Namen im Modell die Pfade unter dem Ordner der Fotos?</translation>
     </message>
     <message>
         <source>none of the {0} views to be scored has {1} pixels that lie whole on a panel; take larger or more photos</source>
@@ -6916,6 +7020,18 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>nothing is missing</source>
         <translation>nichts fehlt</translation>
+    </message>
+    <message>
+        <source>nothing says how large the model is: the photos have no positions, and no ground was found below them; state a distance (--distance) or control points (--gcp)</source>
+        <translation>nichts sagt, wie groß das Modell ist: die Fotos haben keine Positionen, und unter ihnen wurde kein Boden gefunden; geben Sie eine Strecke (--distance) oder Passpunkte (--gcp) an</translation>
+    </message>
+    <message>
+        <source>nothing says where north is: it is taken to be ahead of the first photo</source>
+        <translation>nichts sagt, wo Norden ist: es wird in Blickrichtung des ersten Fotos angenommen</translation>
+    </message>
+    <message>
+        <source>nothing says where on earth this is: give --origin before anything is flown</source>
+        <translation>nichts sagt, wo auf der Erde das ist: geben Sie --origin an, bevor geflogen wird</translation>
     </message>
     <message>
         <source>nothing to take back</source>
@@ -7052,6 +7168,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>ready to fly, but read {0} above</source>
         <translation>flugbereit, aber {0} oben lesen</translation>
+    </message>
+    <message>
+        <source>receivers are off by {0} m in the middle, {1} m at most</source>
+        <translation>die Empfänger liegen im Mittel um {0} m daneben, höchstens um {1} m</translation>
     </message>
     <message>
         <source>record {0}, no sortie of the plan</source>
@@ -7246,6 +7366,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>folgende Argumente fehlen: %s</translation>
     </message>
     <message>
+        <source>the ground falls by {0} degrees; heights count from the building&apos;s foot</source>
+        <translation>der Boden fällt um {0} Grad; Höhen zählen vom Fuß des Gebäudes</translation>
+    </message>
+    <message>
         <source>the image name at byte {0} has no end; the file is damaged</source>
         <translation>der Bildname bei Byte {0} hat kein Ende; die Datei ist beschädigt</translation>
     </message>
@@ -7276,6 +7400,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the output cannot be written ({0})</source>
         <translation>die Ausgabe ist nicht zu schreiben ({0})</translation>
+    </message>
+    <message>
+        <source>the photos do not say where they were taken, so the COLMAP model counts as one in the frame of the site</source>
+        <translation>die Fotos sagen nicht, wo sie aufgenommen wurden, deshalb gilt das COLMAP-Modell als eines im System des Standorts</translation>
+    </message>
+    <message>
+        <source>the photos of this coarse model were in {0}, which is not there</source>
+        <translation>die Fotos dieses Grobmodells lagen in {0}, das es nicht mehr gibt</translation>
     </message>
     <message>
         <source>the photos show {0} of the {1} sections that the plan promised ({2} %)</source>
@@ -7310,6 +7442,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>die Punkte bestimmen kein Polynom vom Grad {0}: sie liegen auf einer Linie</translation>
     </message>
     <message>
+        <source>the positions of {0} of {1} photos contradict the model</source>
+        <translation>die Positionen von {0} von {1} Fotos widersprechen dem Modell</translation>
+    </message>
+    <message>
         <source>the reader of IFC files crashed on this one (status {0}), so something in it goes in circles or beyond all bounds; open and export it again in a BIM program</source>
         <translation>der Leser von IFC-Dateien stürzte bei dieser ab (Status {0}), etwas darin geht also im Kreis oder über alle Grenzen; sie in einem BIM-Programm öffnen und neu exportieren</translation>
     </message>
@@ -7342,6 +7478,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>der Standort würde über die Datei geschrieben, aus der er importiert wird; eine andere Datei nennen</translation>
     </message>
     <message>
+        <source>the size is guessed: cameras are taken to be {0} m above the ground; state a distance (--distance) or control points (--gcp) before anything is flown</source>
+        <translation>die Größe ist geraten: Kameras werden {0} m über dem Boden angenommen; geben Sie eine Strecke (--distance) oder Passpunkte (--gcp) an, bevor geflogen wird</translation>
+    </message>
+    <message>
+        <source>the size of the model is known to {0} % only: the receivers are off by too much for photos that are {1} m apart; state a distance (--distance) or control points (--gcp)</source>
+        <translation>die Größe des Modells ist nur auf {0} % bekannt: die Empfänger liegen zu weit daneben für Fotos, die {1} m auseinander sind; geben Sie eine Strecke (--distance) oder Passpunkte (--gcp) an</translation>
+    </message>
+    <message>
         <source>the table is empty; expected a line with the names of its columns</source>
         <translation>die Tabelle ist leer; erwartet wird eine Zeile mit den Namen ihrer Spalten</translation>
     </message>
@@ -7352,6 +7496,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the template&apos;s heights are {0}, but the wayline is flown in {1}; the wayline counts here, while a program that starts from the template would fly elsewhere</source>
         <translation>die Höhen des Templates sind {0}, die Wayline wird aber in {1} geflogen; hier zählt die Wayline, ein Programm, das vom Template ausgeht, flöge woanders</translation>
+    </message>
+    <message>
+        <source>the walls do not close to blocks; each got a depth of {0} m</source>
+        <translation>die Wände schließen sich nicht zu Baukörpern; jede bekam eine Tiefe von {0} m</translation>
     </message>
     <message>
         <source>time in the air</source>
@@ -7374,8 +7522,32 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Flugweg</translation>
     </message>
     <message>
+        <source>writing the coarse model</source>
+        <translation>das Grobmodell wird geschrieben</translation>
+    </message>
+    <message>
+        <source>written</source>
+        <translation>geschrieben</translation>
+    </message>
+    <message>
         <source>{0} % of the pixels are next to white</source>
         <translation>{0} % der Pixel sind fast weiß</translation>
+    </message>
+    <message>
+        <source>{0} of {1} found their place, {2} points, {3} of {4} pairs matched, image points off by {5} px</source>
+        <translation>{0} von {1} haben ihren Platz gefunden, {2} Punkte, {3} von {4} Paaren verglichen, Bildpunkte liegen um {5} px daneben</translation>
+    </message>
+    <message>
+        <source>{0} of {1} photos do not say their focal length: it is found with the model</source>
+        <translation>{0} von {1} Fotos sagen ihre Brennweite nicht: sie wird mit dem Modell gefunden</translation>
+    </message>
+    <message>
+        <source>{0} of {1} photos found no place in the model, the first {2}</source>
+        <translation>{0} von {1} Fotos fanden keinen Platz im Modell, das erste: {2}</translation>
+    </message>
+    <message>
+        <source>{0} of {1} sides of the building were not seen and are guessed, {2} % of its walls; fly around it before you plan flights there</source>
+        <translation>{0} von {1} Seiten des Gebäudes waren nicht zu sehen und sind geraten, {2} % seiner Wände; umfliegen Sie es, bevor Sie dort Flüge planen</translation>
     </message>
     <message>
         <source>{0} unseen view</source>
@@ -7384,6 +7556,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>{0} unseen views</source>
         <translation>{0} neue Ansichten</translation>
+    </message>
+    <message>
+        <source>{0} walls, {1} roofs; {2} m2 of walls, of them {3} m2 holes that were closed and {4} m2 guessed</source>
+        <translation>{0} Wände, {1} Dächer; {2} m2 Wandfläche, davon {3} m2 geschlossene Lücken und {4} m2 geraten</translation>
     </message>
     <message>
         <source>{0}{1} - {2} ({3} {4}, tolerance {5}; costs about {6} s)</source>
@@ -13340,10 +13516,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>um Kameras zu verfeinern, braucht es mindestens {0} Fotos mit Pose, gefunden wurden {1}</translation>
     </message>
     <message>
-        <source>refining cameras needs pycolmap, which is not installed; install it with: pip install &apos;reflight-groundstation[colmap]&apos;, or go on with the poses that the photos have</source>
-        <translation>um Kameras zu verfeinern, braucht es pycolmap, das nicht installiert ist; installieren Sie es mit: pip install &apos;reflight-groundstation[colmap]&apos;, oder arbeiten Sie mit den Posen der Fotos weiter</translation>
-    </message>
-    <message>
         <source>the {0} photos do not fit together: expected features that at least {1} of them share; photos must overlap by two thirds, and show more than mirroring glass</source>
         <translation>die {0} Fotos passen nicht zusammen: erwartet wurden Merkmale, die mindestens {1} von ihnen gemeinsam haben; Fotos müssen sich zu zwei Dritteln überlappen und mehr zeigen als spiegelndes Glas</translation>
     </message>
@@ -13742,10 +13914,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>has no dataset.json; name a folder that `prepare` or `scene render` has finished</source>
         <translation>hat keine dataset.json; nennen Sie einen Ordner, den `prepare` oder `scene render` fertiggestellt hat</translation>
-    </message>
-    <message>
-        <source>lists no panels, so there is no glass to learn from</source>
-        <translation>nennt keine Scheiben; es gibt kein Glas, aus dem gelernt werden könnte</translation>
     </message>
     <message>
         <source>panels: expected indices 1, 2, 3 and so on; was the file edited?</source>
