@@ -38,6 +38,9 @@ MAX_EXTENDED_BYTES = 4 * 2**20
 MAX_FILL_BYTES = 1024
 """Between two segments; any number is allowed, and none is usual."""
 
+MAX_STRAY_BYTES = 65536
+"""Between all segments of a header, which belong to none: some programs leave the rest of a longer part there."""
+
 CHUNK_BYTES = 65536
 
 MAX_SEARCHED_BYTES = 64 * 2**20
@@ -117,12 +120,10 @@ def _header(file: BinaryIO, label: str) -> JpegHeader:
 
 def _segments(file: BinaryIO, label: str) -> Iterator[tuple[int, int]]:
     """Marker and number of content bytes of each segment up to the picture; whatever is not read is skipped."""
-    for _ in range(MAX_SEGMENTS):
-        if _read(file, 1, label) != b"\xff":
-            raise _damaged(label)
-        marker = next((byte for _ in range(MAX_FILL_BYTES) if (byte := _read(file, 1, label)[0]) != 0xFF), 0xFF)
-        if marker in NO_MARKERS:
-            raise _damaged(label)
+    n_left = MAX_STRAY_BYTES
+    for number in range(MAX_SEGMENTS):
+        marker, n_stray = _next_marker(file, n_left if number else 0, label)
+        n_left -= n_stray
         if marker in WITHOUT_LENGTH:
             continue
         if marker in (SOS, EOI):
@@ -134,6 +135,21 @@ def _segments(file: BinaryIO, label: str) -> Iterator[tuple[int, int]]:
         yield marker, length
         file.seek(after)
     raise InputError.say("the JPEG header has more than {} parts; refused as hostile", MAX_SEGMENTS, place=label)
+
+
+def _next_marker(file: BinaryIO, n_most: int, label: str) -> tuple[int, int]:
+    """The next marker, and the number of bytes before it that belong to nothing: decoders skip those, too."""
+    n_stray, n_fill = 0, 0
+    after_fill = False
+    while n_stray <= n_most and n_fill <= MAX_FILL_BYTES:
+        byte = _read(file, 1, label)[0]
+        if byte == 0xFF:
+            n_fill, after_fill = n_fill + after_fill, True
+        elif after_fill and byte not in NO_MARKERS:
+            return byte, n_stray
+        else:
+            n_stray, n_fill, after_fill = n_stray + 1 + after_fill, 0, False
+    raise _damaged(label)
 
 
 def _damaged(label: str) -> InputError:

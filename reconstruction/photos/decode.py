@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from planning.base.errors import InputError
 from planning.base.files import MIB, FileLimit, read_given
 from planning.base.messages import say
-from planning.photos.jpeg import PHOTO_FILE
+from planning.photos.jpeg import MAX_STRAY_BYTES, PHOTO_FILE
 from planning.photos.record import PhotoMetadata
 
 # What is wrong with a picture is said in an error, and once.
@@ -159,11 +159,11 @@ def picture_size(content: bytes) -> tuple[int, int] | None:
         return _size_of_tiff(content, _TIFF[content[:4]])
     if not content.startswith(JPEG_START):
         return None
-    place = 2
-    while place + 9 <= len(content) and content[place] == 0xFF:
+    place, n_stray = 2, 0
+    while place + 9 <= len(content) and n_stray <= MAX_STRAY_BYTES:
         marker = content[place + 1]
-        if marker == 0xFF:  # fill bytes may stand before a marker
-            place += 1
+        if content[place] != 0xFF or marker in (0x00, 0xFF):  # fill bytes, and such that belong to nothing
+            place, n_stray = place + 1, n_stray + 1
             continue
         if 0xC0 <= marker <= 0xCF and marker not in _NO_SIZE:
             height, width = struct.unpack(">HH", content[place + 5 : place + 9])

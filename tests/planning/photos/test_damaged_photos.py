@@ -12,6 +12,7 @@ from planning.base.errors import InputError
 from planning.photos.exif import Tag, read_exif
 from planning.photos.metadata import read_photo
 from planning.photos.xmp import MAX_PROPERTIES, read_xmp
+from reconstruction.photos.decode import picture_size
 from tests.planning.photos.photo_writer import exif_part, extended_segments, gps_tags, jpeg, packet, save
 from tests.slow import slow
 
@@ -155,3 +156,17 @@ def test_extended_xmp_of_any_size_is_not_kept(tmp_path):
     started = time.process_time()
     assert read_photo(path).gimbal_heading_deg == 30.0
     assert time.process_time() - started < LONGEST_S
+
+
+def test_bytes_that_belong_to_no_segment_are_passed_over(tmp_path):
+    exif = exif_part({0x010F: "KODAK"}, {0x920A: 6.0})
+    content = jpeg(exif)
+    end = 4 + int.from_bytes(content[4:6], "big")
+    for number, stray in enumerate((b"\0", b"\x12\x34\x56", b"\xff\0" + bytes(500), b"\xff\xff")):
+        path = save(tmp_path / f"{number}.jpg", content[:end] + stray + content[end:])
+        photo = read_photo(path)
+        assert (photo.make, photo.focal_length_mm, photo.width_px) == ("KODAK", 6.0, 64)
+        assert picture_size(path.read_bytes()) == (64, 48)
+    far = save(tmp_path / "far.jpg", content[:end] + bytes(70_000) + content[end:])
+    with pytest.raises(InputError, match="damaged"):
+        read_photo(far)
