@@ -42,15 +42,16 @@ class PanelPlanes:
     Parameters
     ----------
     corners_enu_m
-        Shape (m, 4, 3), counter-clockwise from outside, the lower left one first.
+        Shape (m, 4, 3), counter-clockwise from outside, the lower left one first; m is 0 for plain splats, and the box
+        one metre around zero then.
     """
 
     corners_enu_m: Array
 
     def __post_init__(self) -> None:
         shape = self.corners_enu_m.shape
-        if len(shape) != 3 or shape[1:] != (4, 3) or not len(self.corners_enu_m):
-            raise ValueError(f"corners_enu_m: expected shape (m, 4, 3) with a panel at least, got {shape}")
+        if len(shape) != 3 or shape[1:] != (4, 3):
+            raise ValueError(f"corners_enu_m: expected shape (m, 4, 3), got {shape}")
 
     @property
     def normals_enu(self) -> Array:
@@ -60,12 +61,16 @@ class PanelPlanes:
     @property
     def middle_enu_m(self) -> Array:
         """Of the box, shape (3,)."""
+        if not len(self.corners_enu_m):
+            return np.zeros(3)
         places = self.corners_enu_m.reshape(-1, 3)
         return np.asarray(0.5 * (places.min(axis=0) + places.max(axis=0)))
 
     @property
     def half_side_m(self) -> float:
         """Of the box."""
+        if not len(self.corners_enu_m):
+            return 1.0
         return float(0.5 * np.ptp(self.corners_enu_m.reshape(-1, 3), axis=0).max())
 
     def rescaled(self, points_enu_m: Array) -> Array:

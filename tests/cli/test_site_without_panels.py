@@ -78,7 +78,6 @@ COMMANDS = {
     "brief": f"brief {PLAN} {{site}} -o {{out}}/b.html",
     "tradeoff plan": "tradeoff plan {site} -o {out}/t --views 4 --time-budget 2 --methods greedy --jobs 1",
     "photos with a plan": f"photos {{bare}}/photos {{site}} --plan {PLAN}",
-    "prepare": "prepare {bare}/photos {site} -o {out}/data",
 }
 """Every command that counts what is seen of panels."""
 

@@ -12,6 +12,7 @@ import open3d as o3d
 import pytest
 from numpy.typing import NDArray
 
+from groundstation.services.reconstruct.training import _config_of_data_set
 from planning.base.effects import decide
 from planning.base.errors import InputError, OperationCancelled
 from planning.base.progress import Monitor
@@ -40,6 +41,8 @@ from reconstruction.dataset.prepare import (
     prepare,
 )
 from reconstruction.dataset.refined_mesh import frame_width_m, grown_corners, refine_mesh
+from reconstruction.light.photo_set import read_photo_set
+from reconstruction.training.parameters import TrainRequest
 from tests.reconstruction.dataset.test_panel_images import grid
 from tests.reconstruction.panels.rectify.scenes import looking_at, surface_mesh
 from tests.reconstruction.panels.rectify.test_surface import surface
@@ -107,6 +110,29 @@ def test_what_is_written_is_read_by_others_and_agrees(tmp_path: Path) -> None:
     described = json.loads((tmp_path / "out" / "dataset.json").read_text())
     assert [panel["index"] for panel in described["panels"]] == list(range(1, 25))
     assert {effect["effect"] for effect in described["effects"]} == {"lens distortion", "hidden panels"}
+
+
+def test_without_panels_it_is_a_data_set_for_plain_splats(tmp_path: Path) -> None:
+    photos = photos_in(tmp_path / "in")
+    model = site_model()
+    bare = replace(model, site=replace(model.site, facades=(), building_mesh="made.ply"))
+    known = np.array([[0.0, 1.0, 2.0], [3.0, 4.0, 5.0]])
+    prepared = prepare(photos, bare, tmp_path / "out", QUICK, cloud=known)
+    assert [photo.name for photo in prepared.photos] == [photo.name for photo in photos]
+    name = f"{photos[0].name}.png"
+    assert (cv2.imread(str(tmp_path / "out" / "masks" / name), cv2.IMREAD_UNCHANGED) == 255).all()
+    assert not cv2.imread(str(tmp_path / "out" / "panels" / name), cv2.IMREAD_UNCHANGED).any()
+    assert cv2.imread(str(tmp_path / "out" / "normals" / name), cv2.IMREAD_UNCHANGED).any()
+    found = read_photo_set(tmp_path / "out")
+    assert len(found.panels.corners_enu_m) == 0
+    assert len(found.photos) == 3
+    points = read_model(tmp_path / "out" / "sparse" / "0").points.xyz
+    assert len(points) == 502
+    np.testing.assert_allclose(points[:2], known)
+    plain = _config_of_data_set(tmp_path / "out", TrainRequest("smoke"))
+    assert not plain.trained_by.knows_panels
+    with pytest.raises(InputError, match="has no panels, and reflight learns"):
+        _config_of_data_set(tmp_path / "out", TrainRequest("smoke", "reflight"))
 
 
 def test_layers_show_panels_facade_and_flat_glass(tmp_path: Path) -> None:

@@ -15,12 +15,13 @@ from groundstation.services.photos.poses import LENS_UNKNOWN, BetterPoses, Refin
 from planning.base.errors import InputError
 from planning.base.findings import Finding, Severity
 from planning.photos.folder import read_photos
-from reconstruction.colmap.folder import write_model
+from reconstruction.colmap.folder import Frame, write_frame, write_model
 from reconstruction.colmap.georeference import georeference, model_of
 from reconstruction.colmap.pycolmap_run import RefineParameters
 from reconstruction.colmap.refine import Refinement
 from reconstruction.colmap.refined_folder import write_refined
 from reconstruction.photos.poses import pose_photos
+from tests.planning.photos.photo_writer import plain_jpeg, save
 from tests.reconstruction.colmap.models import covariance, turned
 from tests.services.photo_cases import draft_of, site_model, true_photos, with_paths, write_photos
 
@@ -148,6 +149,32 @@ def test_other_poses_change_coverage_and_findings_and_the_way_back_leads_where_i
     np.testing.assert_array_equal(back.coverage.counts, before.coverage.counts)
     with pytest.raises(ValueError, match="same photos"):
         with_poses(before, BetterPoses(before.photos[:1]), model, None)
+
+
+def test_a_model_that_says_its_frame_is_taken_as_it_is(flight, tmp_path):
+    folder, posed = flight
+    moved = [turned(photo, np.array([7.0, 0.0, 0.0]), TURN_RAD) for photo in posed.photos]
+    write_model(tmp_path / "sparse", model_of(moved), "txt")
+    write_frame(tmp_path / "sparse", Frame(0.3, 0.2))
+    found = better_poses(posed, folder, tmp_path / "sparse")
+    for photo, meant in zip(found.photos, moved, strict=True):
+        np.testing.assert_allclose(photo.pose.position_enu_m, meant.pose.position_enu_m, atol=1e-9)
+        assert photo.pose.covariance[0, 0] == pytest.approx(0.09)
+
+
+def test_photos_that_say_nothing_get_the_poses_of_a_model(flight, tmp_path):
+    folder, posed = flight
+    plain = tmp_path / "plain"
+    for path in folder.iterdir():
+        save(plain / path.name, plain_jpeg((800, 600)))
+    write_model(tmp_path / "sparse", model_of(posed.photos))
+    intake = take_in_photos(plain, site_model(), colmap=tmp_path / "sparse")
+    assert [photo.name for photo in intake.photos] == sorted(photo.name for photo in posed.photos)
+    assert {finding.code for finding in intake.findings} >= {"model-as-it-is"}
+    other = tmp_path / "other"
+    save(other / "else.jpg", plain_jpeg())
+    with pytest.raises(InputError, match="is a photo in"):
+        take_in_photos(other, site_model(), colmap=tmp_path / "sparse")
 
 
 def test_lenses_that_were_refined_are_no_longer_called_unknown(flight, tmp_path):
