@@ -58,9 +58,9 @@ def compile_kernels() -> None:
     court = bundled_scene("court")
     eastwards = court.panes.corners_enu_m[0].mean(axis=0) + np.array([12.0, 0.0, 0.0])
     facing = PosedPhoto("", Path(), lens, Pose.looking(eastwards, -90.0, 0.0))
-    wishes: tuple[EffectSetting, ...] = ("on", "off")
-    for near in wishes:
-        settings = RenderSettings(samples=1, wishes={NEAR_FIELD: near}, environment_rows=16)
+    both: tuple[EffectSetting, ...] = ("on", "off")
+    for near in both:
+        settings = RenderSettings(samples=1, effects={NEAR_FIELD: near}, environment_rows=16)
         Renderer(court, settings).render(facing)
 
 

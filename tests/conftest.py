@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import itertools
+import math
 import os
 import random
 import shutil
@@ -25,7 +26,8 @@ THOROUGH = hypothesis.settings(
 )
 hypothesis.settings.register_profile("thorough", THOROUGH)
 # Most failures that a hundred examples find, the first twenty find; `make test-all` tries all.
-hypothesis.settings.register_profile("reflight", THOROUGH, max_examples=20)
+MOST_EXAMPLES = 20
+hypothesis.settings.register_profile("reflight", THOROUGH, max_examples=MOST_EXAMPLES)
 hypothesis.settings.load_profile("reflight")
 
 _STATUS = pytest.StashKey[int]()
@@ -66,7 +68,15 @@ def pytest_collection() -> Generator[None, object, object]:
 
 @pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Another order, the same in all processes: what a test leaves behind must be of no consequence for the next."""
+    """Another order, the same in all processes: what a test leaves behind must be of no consequence for the next.
+
+    Properties that ask for more examples than usual get them from `make test-all`.
+    """
+    for function in {getattr(item, "function", None) for item in items}:
+        own = getattr(function, "_hypothesis_internal_use_settings", None)
+        most = MOST_EXAMPLES if hypothesis.settings.default.max_examples == MOST_EXAMPLES else math.inf
+        if own is not None and own.max_examples > most:
+            function._hypothesis_internal_use_settings = hypothesis.settings(own, max_examples=MOST_EXAMPLES)
     seed = config.getoption("--shuffle")
     if seed is None:
         return

@@ -204,6 +204,47 @@ def test_no_test_answers_in_place_of_a_dialog():
     assert found == []
 
 
+SAID = {"Finding", "Assessment", "FlightEvent", "note", "append", "about", "glue"}
+"""What shows its texts to users, beside errors and what is assigned to `text`, `message` and `reason`."""
+
+WRONG_CALLS = {"ValueError", "TypeError", "RuntimeError", "AttributeError", "KeyError"}
+
+
+def plain_sentences(source):
+    """Lines with an f-string of several words that is shown to users; what has tags in it is a page."""
+    tree = ast.parse(source)
+    parents = {child: node for node in ast.walk(tree) for child in ast.iter_child_nodes(node)}
+    for node in ast.walk(tree):
+        parts = getattr(node, "values", ()) if isinstance(node, ast.JoinedStr) else ()
+        text = " ".join(part.value for part in parts if isinstance(part, ast.Constant))
+        if len(re.findall("[a-z]{2,}", text)) < 3 or "<" in text:
+            continue
+        above = parents[node]
+        while not isinstance(above, (ast.Call, ast.stmt)):
+            above = parents[above]
+        name = ast.unparse(above.func).split(".")[-1] if isinstance(above, ast.Call) else ""
+        target = ast.unparse(above.targets[0]) if isinstance(above, ast.Assign) else ""
+        if (
+            name in SAID
+            or (name.endswith("Error") and name not in WRONG_CALLS)
+            or target in ("text", "message", "reason")
+        ):
+            yield node.lineno
+
+
+def test_sentences_for_users_are_messages_that_can_be_translated():
+    sentences = 'x = 1\nraise InputError(f"there is no {x}; name one")\ntext = f"{x} is not one"'
+    assert set(plain_sentences(sentences)) == {2, 3}
+    found = [
+        f"{path.relative_to(ROOT)}:{line}"
+        for house in ("planning", "missions", "reconstruction", "groundstation")
+        for path in sorted((ROOT / house).rglob("*.py"))
+        if path.parent.name != "colmap"
+        for line in plain_sentences(path.read_text())
+    ]
+    assert found == [], "make them by planning.base.messages.say: an f-string stays English"
+
+
 def test_tests_that_were_compiled_before_are_found_so_by_pytest(tmp_path):
     """In a fresh clone each of several test processes would compile all of them."""
     shutil.copy(ROOT / "tests" / "rewritten.py", tmp_path)

@@ -228,8 +228,13 @@ class PluginNames(Collection[str]):
         return [plugin for group in self._groups for plugin in installed_plugins(group)]
 
     def help_on_plugins(self) -> str:
-        """Lines for the end of a help; empty where there are no plug-ins."""
-        lines = [f"  {plugin.name:<13} {plugin.package}\n" for plugin in self._plugins()]
+        """Lines for the end of a help: plug-ins, each of which is tried; empty where none can be used."""
+        if not self._plugins():
+            return ""
+        from groundstation.services.plugins import plugin_rows
+
+        usable = [row.plugin for row in plugin_rows() if row.plugin.group in self._groups and row.problem is None]
+        lines = [f"  {plugin.name:<13} {plugin.package}\n" for plugin in usable]
         return "".join(("\nfrom plug-ins:\n", *lines)) if lines else ""
 
 

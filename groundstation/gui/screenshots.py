@@ -480,6 +480,7 @@ class _Tour(QObject):
         for name in self._in_each_look():
             self._window.show_tab("reconstruct")
             page().pane.bar.setValue("", "depth" if name == "feet" else "picture", "photo")
+            page().details.setCurrentWidget(page().progress)
             rest()
             self._take(f"{name}-reconstruct")
             page().details.setCurrentIndex(0)

@@ -101,7 +101,7 @@ def change_text(change: ParameterChange) -> str:
             change.old,
             change.new,
         )
-    return f"{change.name} is {change.old:g}; the plan was made for {change.new:g}"
+    return say("{} is {:g}; the plan was made for {:g}", change.name, change.old, change.new)
 
 
 def simulation_names(autopilot: Autopilot) -> tuple[str, ...]:

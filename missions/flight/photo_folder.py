@@ -81,7 +81,7 @@ def _usable(photos: Sequence[PhotoMetadata], label: str, findings: list[Finding]
     visible = [photo for photo in photos if photo.image_source != INFRARED]
     if visible and len(visible) < len(photos):
         n = len(photos) - len(visible)
-        text = f"{n} thermal photos are left out; they were taken together with the others"
+        text = say("{} thermal photos are left out; they were taken together with the others", n)
         findings.append(Finding(Severity.NOTE, "photos-thermal", text, "", float(n)))
         photos = visible
     usable = []
@@ -89,15 +89,20 @@ def _usable(photos: Sequence[PhotoMetadata], label: str, findings: list[Finding]
     by_exposure = all(photo.exposed_at is not None for photo in photos)
     for photo in photos:
         if photo.lat_deg is None:
-            missing["a position"] += 1
+            missing[say("a position")] += 1
         elif photo.taken_at is None and not by_exposure:
-            missing["a time"] += 1
+            missing[say("a time")] += 1
         elif absolute_height_m(photo) is None and photo.height_above_takeoff_m is None:
-            missing["a height"] += 1
+            missing[say("a height")] += 1
         else:
             usable.append(photo)
     for what, n in missing.items():
-        text = f"{n} of {len(photos)} photos do not say {what} and are left out; use the files as the camera wrote them"
+        text = say(
+            "{} of {} photos do not say {} and are left out; use the files as the camera wrote them",
+            n,
+            len(photos),
+            what,
+        )
         findings.append(Finding(Severity.WARNING, "photos-incomplete", text, "", float(n), 0.0, "photos"))
     if not usable:
         what = joined(", ", (say("{} without {}", n, what) for what, n in missing.items()))
@@ -134,7 +139,7 @@ def _sorties(photos: Sequence[PhotoMetadata], times_s: Floats) -> list[list[int]
 
 def _record(photos: Sequence[PhotoMetadata], times_s: Floats, points: Floats, group: list[int]) -> FlightRecord:
     first = photos[group[0]]
-    name = first.drone_model or " ".join(part for part in (first.make, first.model) if part) or "an unknown camera"
+    name = first.drone_model or " ".join(part for part in (first.make, first.model) if part) or say("an unknown camera")
     zero_s = float(times_s[group[0]])
     taken = tuple(
         _taken(photos[index], count, float(times_s[index]) - zero_s, points[index])
@@ -142,7 +147,7 @@ def _record(photos: Sequence[PhotoMetadata], times_s: Floats, points: Floats, gr
     )
     nothing, nowhere = np.zeros(0), np.zeros((0, 3))
     track = Track(nothing, nowhere, nowhere, nothing, nothing, nothing, nothing)
-    return FlightRecord(sortie=0, vehicle=f"photos of {name}", track=track, photos=taken)
+    return FlightRecord(sortie=0, vehicle=say("photos of {}", name), track=track, photos=taken)
 
 
 def _taken(photo: PhotoMetadata, count: int, time_s: float, point: Floats) -> TakenPhoto:

@@ -61,10 +61,19 @@ def encode_dji(plan: Plan, missions: Sequence[Mission], options: ExportOptions) 
     """A DJI KMZ for each sortie."""
     from missions.dji.check import check_dji
     from missions.dji.wpml import parts_of_kmz
-    from missions.dji.write import DjiOptions, kmz_bytes
+    from missions.dji.write import MAX_SPEED_M_S, DjiOptions, kmz_bytes
 
     created_ms = round(options.clock() * 1000.0)
     rth_height_m, findings = dji_return_height(plan, missions, options)
+    planned_m_s = max(mission.speed_m_s for mission in missions)
+    if planned_m_s > MAX_SPEED_M_S:
+        text = say(
+            "the aircraft flies at {:g} m/s, which is all that DJI's format takes, and not at the plan's {:g} m/s: the "
+            "flight takes longer than planned; plan with the lower speed",
+            MAX_SPEED_M_S,
+            planned_m_s,
+        )
+        findings.append(Finding(Severity.WARNING, "speed-limited", text, "", planned_m_s, MAX_SPEED_M_S, "m/s"))
     dji_options = DjiOptions(
         rth_height_m, created_ms, options.height_reference, options.link_loss, _security_height_m(plan, options)
     )

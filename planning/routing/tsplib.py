@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from planning.base.errors import InputError
 from planning.base.files import MIB, FileLimit, check_lines, read_given
-from planning.base.messages import about
+from planning.base.messages import about, say
 
 Array = NDArray[np.float64]
 
@@ -80,7 +80,7 @@ class _File:
     sections: dict[str, tuple[int, list[_Line]]]
 
     def error(self, number: int, field: str, message: str) -> InputError:
-        return InputError(f"{self.path}, line {number}: {field}: {message}")
+        return InputError(about(f"{self.path}, line {number}: {field}", message))
 
     def field(self, name: str, expected: str) -> _Line:
         if name not in self.fields:
@@ -92,9 +92,9 @@ class _File:
         try:
             value = int(line.text)
         except ValueError:
-            raise self.error(line.number, name, f"expected a whole number, found '{line.text}'") from None
+            raise self.error(line.number, name, say("expected a whole number, found '{}'", line.text)) from None
         if not low <= value <= high:
-            raise self.error(line.number, name, f"expected {low} to {high}, found {value}")
+            raise self.error(line.number, name, say("expected {} to {}, found {}", low, high, value))
         return value
 
     def section(self, name: str) -> tuple[int, list[_Line]]:
@@ -112,12 +112,14 @@ class _File:
                 values.extend(map(float, words))
             except ValueError:
                 wrong = next(word for word in words if not _is_number(word))
-                raise self.error(line.number, name, f"expected numbers, found '{wrong}'") from None
+                raise self.error(line.number, name, say("expected numbers, found '{}'", wrong)) from None
             lines.extend([line.number] * len(words))
         array = np.array(values, float)
         is_usable = np.abs(array) <= LARGEST  # neither is what is not finite
         if not is_usable.all():
-            raise self.error(lines[int(np.argmin(is_usable))], name, f"expected finite numbers, at most {LARGEST:g}")
+            raise self.error(
+                lines[int(np.argmin(is_usable))], name, say("expected finite numbers, at most {:g}", LARGEST)
+            )
         return array, np.array(lines, np.int64)
 
     def records(self, name: str, n_records: int, width: int, what: str) -> tuple[Array, NDArray[np.int64]]:
@@ -125,7 +127,7 @@ class _File:
         values, lines = self.numbers(name)
         if len(values) != n_records * width:
             number = int(lines[-1]) if len(lines) else self.section(name)[0]
-            message = f"expected {n_records} x {width} numbers ({what}), found {len(values)}"
+            message = say("expected {} x {} numbers ({}), found {}", n_records, width, what, len(values))
             raise self.error(number, name, message)
         return values.reshape(n_records, width), lines[::width]
 
@@ -133,7 +135,7 @@ class _File:
         """Same values as integers."""
         for value, number in zip(values, lines, strict=True):
             if value != math.floor(value):
-                raise self.error(int(number), name, f"expected a whole number, found {value}")
+                raise self.error(int(number), name, say("expected a whole number, found {}", value))
         return [int(value) for value in values]
 
 
@@ -172,7 +174,7 @@ def _read(path: Path) -> _File:
         elif body is not None:
             body.append(_Line(number, raw))
         elif raw.strip():
-            message = f"expected 'KEYWORD : value' or a section, found '{raw.strip()[:40]}'"
+            message = say("expected 'KEYWORD : value' or a section, found '{}'", raw.strip()[:40])
             raise InputError(about(f"{path}, line {number}", message))
     return _File(path, fields, sections)
 
@@ -192,10 +194,12 @@ def read_instance(path: Path) -> Instance:
     kind_line = file.field("TYPE", "TSP, ATSP or CVRP")
     kind = (kind_line.text.split() or [""])[0].upper()
     if kind not in ("TSP", "ATSP", "CVRP"):
-        raise file.error(kind_line.number, "TYPE", f"expected TSP, ATSP or CVRP, found '{kind_line.text}'")
+        raise file.error(kind_line.number, "TYPE", say("expected TSP, ATSP or CVRP, found '{}'", kind_line.text))
     for name in ("FIXED_EDGES_SECTION", "EDGE_DATA_SECTION"):
         if name in file.sections:
-            raise file.error(file.sections[name][0], name, "not supported; expected an instance without fixed edges")
+            raise file.error(
+                file.sections[name][0], name, say("not supported; expected an instance without fixed edges")
+            )
     n = file.integer("DIMENSION", 1, MAX_POINTS)
     weights = file.field("EDGE_WEIGHT_TYPE", "how distances are given")
     if weights.text.upper() == "EXPLICIT":
@@ -204,10 +208,12 @@ def read_instance(path: Path) -> Instance:
         ids, cost = _from_coordinates(file, n, weights.text.upper())
     else:
         known = ", ".join([*DISTANCES, "EXPLICIT"])
-        raise file.error(weights.number, "EDGE_WEIGHT_TYPE", f"expected one of {known}, found '{weights.text}'")
+        raise file.error(weights.number, "EDGE_WEIGHT_TYPE", say("expected one of {}, found '{}'", known, weights.text))
     if kind != "ATSP" and not np.array_equal(cost, cost.T):
         i, j = np.argwhere(cost != cost.T)[0]
-        message = f"the weights {cost[i, j]:g} and {cost[j, i]:g} between {ids[i]} and {ids[j]} differ; expected ATSP"
+        message = say(
+            "the weights {:g} and {:g} between {} and {} differ; expected ATSP", cost[i, j], cost[j, i], ids[i], ids[j]
+        )
         raise file.error(kind_line.number, "TYPE", message)
     name = file.fields["NAME"].text if "NAME" in file.fields else path.stem
     if kind != "CVRP":
@@ -217,7 +223,9 @@ def read_instance(path: Path) -> Instance:
 
 def _from_coordinates(file: _File, n: int, weight_type: str) -> tuple[tuple[int, ...], Array]:
     dimensions, distance = DISTANCES[weight_type]
-    table, lines = file.records("NODE_COORD_SECTION", n, 1 + dimensions, f"number and {dimensions} coordinates a point")
+    table, lines = file.records(
+        "NODE_COORD_SECTION", n, 1 + dimensions, say("number and {} coordinates a point", dimensions)
+    )
     ids = file.whole("NODE_COORD_SECTION", table[:, 0], lines)
     _check_distinct(file, "NODE_COORD_SECTION", ids, lines)
     cost = distance(table[:, 1:])
@@ -229,19 +237,19 @@ def _check_distinct(file: _File, name: str, ids: list[int], lines: NDArray[np.in
     seen: set[int] = set()
     for number, line in zip(ids, lines, strict=True):
         if number in seen:
-            raise file.error(int(line), name, f"expected distinct point numbers, {number} occurs twice")
+            raise file.error(int(line), name, say("expected distinct point numbers, {} occurs twice", number))
         seen.add(number)
 
 
 def _demands(file: _File, ids: tuple[int, ...]) -> Array:
-    table, lines = file.records("DEMAND_SECTION", len(ids), 2, "number and demand a point")
+    table, lines = file.records("DEMAND_SECTION", len(ids), 2, say("number and demand a point"))
     numbers = file.whole("DEMAND_SECTION", table[:, 0], lines)
     _check_distinct(file, "DEMAND_SECTION", numbers, lines)
     index = {number: i for i, number in enumerate(ids)}
     demand = np.zeros(len(ids))
     for number, line, value in zip(numbers, lines, table[:, 1], strict=True):
         if number not in index:
-            raise file.error(int(line), "DEMAND_SECTION", f"there is no point {number}")
+            raise file.error(int(line), "DEMAND_SECTION", say("there is no point {}", number))
         demand[index[number]] = value
     return demand
 
@@ -252,9 +260,9 @@ def _depots(file: _File, ids: tuple[int, ...]) -> tuple[int, ...]:
     depots = numbers[: numbers.index(-1)] if -1 in numbers else numbers
     for number, line in zip(depots, lines, strict=False):
         if number not in ids:
-            raise file.error(int(line), "DEPOT_SECTION", f"there is no point {number}")
+            raise file.error(int(line), "DEPOT_SECTION", say("there is no point {}", number))
     if not depots:
-        raise file.error(file.section("DEPOT_SECTION")[0], "DEPOT_SECTION", "expected at least one depot")
+        raise file.error(file.section("DEPOT_SECTION")[0], "DEPOT_SECTION", say("expected at least one depot"))
     return tuple(ids.index(number) for number in depots)
 
 
@@ -273,16 +281,16 @@ def _explicit(file: _File, n: int) -> Array:
         rows, columns = np.triu_indices(n, 0 if diagonal else 1) if upper else np.tril_indices(n, 0 if diagonal else -1)
     else:
         known = ", ".join(["FULL_MATRIX", *TRIANGLES])
-        raise file.error(layout.number, "EDGE_WEIGHT_FORMAT", f"expected one of {known}, found '{layout.text}'")
+        raise file.error(layout.number, "EDGE_WEIGHT_FORMAT", say("expected one of {}, found '{}'", known, layout.text))
     values, lines = file.numbers("EDGE_WEIGHT_SECTION")
     if len(values) != len(rows):
         number = int(lines[-1]) if len(lines) else file.section("EDGE_WEIGHT_SECTION")[0]
-        message = f"expected {len(rows)} numbers ({name} of {n} points), found {len(values)}"
+        message = say("expected {} numbers ({} of {} points), found {}", len(rows), name, n, len(values))
         raise file.error(number, "EDGE_WEIGHT_SECTION", message)
     is_wrong = (values < 0.0) & (rows != columns)
     if is_wrong.any():
         first = int(np.argmax(is_wrong))
-        message = f"expected no negative weight, found {values[first]:g}"
+        message = say("expected no negative weight, found {:g}", values[first])
         raise file.error(int(lines[first]), "EDGE_WEIGHT_SECTION", message)
     cost = np.zeros((n, n))
     if name != "FULL_MATRIX":
@@ -318,7 +326,7 @@ def read_tour(path: Path) -> tuple[int, ...]:
     numbers = file.whole("TOUR_SECTION", values, lines)
     tour = numbers[: numbers.index(-1)] if -1 in numbers else numbers
     if not tour:
-        raise file.error(file.section("TOUR_SECTION")[0], "TOUR_SECTION", "expected point numbers, found none")
+        raise file.error(file.section("TOUR_SECTION")[0], "TOUR_SECTION", say("expected point numbers, found none"))
     _check_distinct(file, "TOUR_SECTION", tour, lines[: len(tour)])
     return tuple(tour)
 

@@ -476,8 +476,9 @@ def output_folder(path: Path) -> Iterator[Path]:
                 file.replace(path / file.name)
             made = []
     except OSError as error:
-        text = f"{path}: this folder cannot be made or written into ({error.strerror or error}); name another"
-        raise InputError(text) from error
+        raise InputError.say(
+            "this folder cannot be made or written into ({}); name another", error.strerror or error, place=path
+        ) from error
     finally:
         for folder in made:
             with suppress(OSError):  # it was never made, or holds something

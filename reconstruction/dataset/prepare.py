@@ -57,7 +57,7 @@ class LensDistortion:
         lenses = {photo.intrinsics for photo in scene}
         size = max((most_moved_px(lens) for lens in lenses), default=0.0)
         megapixels = sum(photo.intrinsics.width_px * photo.intrinsics.height_px for photo in scene) / 1e6
-        reason = f"the lens moves pixels by up to {size:.1f} px" if size else "the photos are straight"
+        reason = say("the lens moves pixels by up to {:.1f} px", size) if size else say("the photos are straight")
         return Assessment(size, reason, UNDISTORT_S_PER_MEGAPIXEL * megapixels)
 
 
@@ -105,9 +105,9 @@ class HiddenPanels:
         size = hidden / seen if seen else 0.0
         pixels = sum(photo.intrinsics.width_px * photo.intrinsics.height_px for photo in scene.photos)
         reason = (
-            f"something stands in front of panels in {photos} of {len(scene.photos[::step])} photos looked at"
+            say("something stands in front of panels in {} of {} photos looked at", photos, len(scene.photos[::step]))
             if hidden
-            else "nothing stands between the photos and the panels"
+            else say("nothing stands between the photos and the panels")
         )
         return Assessment(size, reason, RAY_S * pixels)
 

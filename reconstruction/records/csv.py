@@ -15,7 +15,7 @@ from typing import Any
 from planning.base.errors import InputError
 from planning.base.files import MIB, FileLimit, check_lines, make_folder, read_given
 from planning.base.json_file import write_together
-from planning.base.messages import say
+from planning.base.messages import joined, say
 from reconstruction.records.book import RecordBook
 from reconstruction.records.changes import Changes
 from reconstruction.records.entries import (
@@ -298,7 +298,7 @@ class TableError(InputError):
 
     def __init__(self, path: Path, problems: tuple[str, ...], shown: int = 20) -> None:
         more = say("; and {} more", len(problems) - shown) if len(problems) > shown else ""
-        super().__init__(f"{path}: nothing was taken over: {'; '.join(problems[:shown])}{more}")
+        super().__init__(say("nothing was taken over: {}", joined("; ", problems[:shown]) + more, place=path))
         self.path, self.problems = path, problems
 
 
@@ -383,7 +383,7 @@ def _take(table: _Table, kind: Kind, objects: _Objects, changes: Changes) -> Tak
     for line, entry in entries:
         mark = (entry.global_id, entry.name) if isinstance(entry, Attribute) else (entry.key,)
         if mark[-1] and mark in seen:
-            problems.add(line, "key", InputError(f"'{mark[-1]}' stands in line {seen[mark]} already"))
+            problems.add(line, "key", InputError(say("'{}' stands in line {} already", mark[-1], seen[mark])))
         seen[mark] = line
     for line, entry in () if problems.texts else entries:
         try:

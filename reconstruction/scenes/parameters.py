@@ -63,7 +63,7 @@ class RenderSettings:
     ----------
     samples
         Rays along each side of a pixel; `auto` takes one, and several where detail calls for it.
-    wishes
+    effects
         By effect, those of `EFFECTS`: on, off, or left to scene and flight; what is not named is left to them.
     tolerance
         How much more than its stated tolerance an effect may change pictures and still be left out.
@@ -82,7 +82,7 @@ class RenderSettings:
     """
 
     samples: int | Literal["auto"] = "auto"
-    wishes: Mapping[str, EffectSetting] = field(default_factory=dict)
+    effects: Mapping[str, EffectSetting] = field(default_factory=dict)
     tolerance: float = parameter(
         1.0,
         "times each effect's own tolerance",
@@ -104,7 +104,7 @@ class RenderSettings:
     )
 
     def __post_init__(self) -> None:
-        unknown = [name for name in self.wishes if name not in EFFECTS]
+        unknown = [name for name in self.effects if name not in EFFECTS]
         if unknown:
             raise InputError(say("there is no effect '{}'; expected one of {}", unknown[0], ", ".join(EFFECTS)))
         if self.samples != "auto" and not 1 <= self.samples <= 32:
@@ -117,11 +117,11 @@ class RenderSettings:
 
     def decided(self, decisions: Iterable[Decision]) -> RenderSettings:
         """With decisions in place of what was left to scene and flight."""
-        return replace(self, wishes={**self.wishes, **{d.effect: "on" if d.on else "off" for d in decisions}})
+        return replace(self, effects={**self.effects, **{d.effect: "on" if d.on else "off" for d in decisions}})
 
     def is_on(self, effect: str) -> bool:
         """Whether an effect is simulated; what nobody has decided yet is."""
-        return self.wishes.get(effect, "auto") != "off"
+        return self.effects.get(effect, "auto") != "off"
 
 
 @dataclass(frozen=True, slots=True)

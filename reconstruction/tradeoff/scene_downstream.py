@@ -156,9 +156,9 @@ def effects_worth(
     everything = folder / "everything"
     worths = []
     for number, effect in enumerate(("", *asked)):
-        wishes = {**decided, effect: "off"} if effect else decided
+        settings = {**decided, effect: "off"} if effect else decided
         here = folder / f"without-{number}" if effect else everything
-        seconds = _rendered_s(scene, photos, RenderSettings(wishes=wishes), here, monitor)
+        seconds = _rendered_s(scene, photos, RenderSettings(effects=settings), here, monitor)
         found = downstream_psnr(here, everything, model, config, monitor)
         own = found.score if not effect else score_views(found.trained, read_photo_set(here), found.held_out, monitor)
         worths.append(EffectWorth(effect, seconds, found.score.mean_db, found.score.worst_db, own.mean_db))

@@ -275,12 +275,12 @@ def scene_settings(
     for decision in decisions:
         if decision.effect in variants.effects:
             turned: Literal["on", "off"] = "off" if decision.on else "on"
-            wishes = {**decided.wishes, decision.effect: turned}
-            found.append(SceneSetting("effect", f"{decision.effect} {turned}", replace(decided, wishes=wishes)))
+            effects = {**decided.effects, decision.effect: turned}
+            found.append(SceneSetting("effect", f"{decision.effect} {turned}", replace(decided, effects=effects)))
     if variants.effects:
         for turned in ("on", "off"):
-            wishes = {decision.effect: turned for decision in decisions}
-            found.append(SceneSetting("all effects", turned, replace(decided, wishes=wishes)))
+            effects = {decision.effect: turned for decision in decisions}
+            found.append(SceneSetting("all effects", turned, replace(decided, effects=effects)))
     return tuple(found)
 
 
@@ -292,7 +292,7 @@ def make_truth(
     clock: Clock = time.perf_counter,
 ) -> Truth:
     """Photographs with every effect, by a physically based renderer and its rays a pixel, or by the embedded one."""
-    settings = RenderSettings(samples=TRUTH_SAMPLES, wishes=dict.fromkeys(EFFECTS, "on"))
+    settings = RenderSettings(samples=TRUTH_SAMPLES, effects=dict.fromkeys(EFFECTS, "on"))
     renderer = Renderer(scene, settings) if make is None else make[0](scene, settings, make[1])
     passes, started = (1 if make is None else 2), clock()
     taken: list[list[Photograph]] = [[] for _ in range(passes)]

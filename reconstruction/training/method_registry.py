@@ -187,6 +187,6 @@ def method_named(name: str) -> Method:
         return METHODS[name]
     if name not in training_methods():
         problem = told_problem(PluginGroup.TRAINING_METHODS, name)
-        expected = f"method: expected {', '.join(training_methods())}, got '{name}'"
+        expected = say("method: expected {}, got '{}'", ", ".join(training_methods()), name)
         raise ValueError(expected if problem is None else str(problem))
     return training_methods()[name]

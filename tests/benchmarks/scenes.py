@@ -44,7 +44,7 @@ def _samples(name: str, scene: Scene, photo: PosedPhoto, truth: NDArray[np.float
     """Time and error of a photo, everything else as the scene decides."""
     decided = RenderSettings().decided(decide_effects(scene, [photo], RenderSettings()).values())
     for samples in (*SAMPLES, "auto"):
-        settings = RenderSettings(samples=samples, wishes=decided.wishes)  # type: ignore[arg-type]
+        settings = RenderSettings(samples=samples, effects=decided.effects)  # type: ignore[arg-type]
         renderer = Renderer(scene, settings)
         renderer.render(photo)
         with stopwatch() as seconds:
@@ -62,7 +62,7 @@ def _near_field(name: str, scene: Scene, photo: PosedPhoto, truth: NDArray[np.fl
     """What is lost where one picture of the surroundings stands in for what is near."""
     decision = decide_effects(scene, [photo], RenderSettings())[NEAR_FIELD]
     with_it, without = (
-        _psnr_db(_grey(scene, photo, RenderSettings(wishes={NEAR_FIELD: setting})), truth) for setting in ("on", "off")
+        _psnr_db(_grey(scene, photo, RenderSettings(effects={NEAR_FIELD: setting})), truth) for setting in ("on", "off")
     )
     lost = with_it - without
     target, met = (

@@ -45,7 +45,7 @@ SAMPLES: tuple[int, ...] = (1, 2, 4)
 EFFECTS_OF_LIGHT = (
     NEAR_FIELD, FRESNEL, SECOND_BOUNCE, TILT, CURVATURE, DOUBLING, SHADOW, OCCLUSION, SKY_OCCLUSION,
 )  # fmt: skip
-JUDGED = RenderSettings(wishes={INTERIOR: "off", SUN_GLARE: "off"})
+JUDGED = RenderSettings(effects={INTERIOR: "off", SUN_GLARE: "off"})
 """Without what Mitsuba's scene has not."""
 
 CLOSE_DB = 38.0
@@ -115,10 +115,10 @@ def _embedded(case: _Case) -> Iterator[Row]:
         )
     on = [effect for effect in EFFECTS_OF_LIGHT if decided.is_on(effect)]
     for effect in on:
-        without = case.error_db(_taken(case, replace(decided, wishes={**decided.wishes, effect: "off"}))[0].linear)
+        without = case.error_db(_taken(case, replace(decided, effects={**decided.effects, effect: "off"}))[0].linear)
         yield Row(case.name, f"lost without {effect}", round(best - without, 2), "dB", None, f"{without:.1f} dB")
-    everything = {**decided.wishes, **dict.fromkeys(EFFECTS_OF_LIGHT, "on")}
-    brought = case.error_db(_taken(case, replace(decided, wishes=everything))[0].linear) - best  # type: ignore[arg-type]
+    everything = {**decided.effects, **dict.fromkeys(EFFECTS_OF_LIGHT, "on")}
+    brought = case.error_db(_taken(case, replace(decided, effects=everything))[0].linear) - best  # type: ignore[arg-type]
     left_out = ", ".join(effect for effect in EFFECTS_OF_LIGHT if effect not in on) or "none"
     yield Row(case.name, "brought by what the scene leaves out", round(brought, 2), "dB", None, left_out)
 

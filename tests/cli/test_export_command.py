@@ -97,6 +97,33 @@ def test_heights_and_autopilot_can_be_chosen(reflight, pane, tmp_path, file_form
     assert read_missions(out)[0].n_photos == 6
 
 
+@pytest.mark.parametrize(
+    ("file_format", "options", "left_out"),
+    [
+        ("kml", ["--heights", "amsl", "--site", "SITE"], ["--heights"]),
+        ("dji-kmz", ["--autopilot", "px4", "--link-loss", "go-home"], ["--autopilot"]),
+        ("mavlink-wpl", ["--return-height", 45, "--link-loss", "go-home"], ["--link-loss", "--return-height"]),
+        ("csv", ["--preset", "small", "--components", "A"], ["--preset", "--components"]),
+    ],
+)
+def test_options_that_a_format_has_no_use_for_are_named(reflight, pane, tmp_path, file_format, options, left_out):
+    options = [pane / "site.json" if option == "SITE" else option for option in options]
+    out = tmp_path / f"m{ENDINGS[file_format]}"
+    done = reflight("export", pane / "plan.json", "--format", file_format, "-o", out, *options)
+    assert done.status == 0
+    told = [line for line in done.err.splitlines() if "has no use for it" in line]
+    assert told == [f"warning: {each} is left out: the format {file_format} has no use for it" for each in left_out]
+
+
+def test_a_plan_faster_than_dji_s_format_is_flown_slower_which_is_said(reflight, pane, changed, tmp_path):
+    plan = changed(changed(pane / "plan.json", "aircraft", "max_speed_m_s", 20.0), "site_sha256", "")
+    done = reflight("export", plan, "--format", "dji-kmz", "-o", tmp_path / "m.kmz", "--json")
+    (finding,) = (finding for finding in done.json["findings"] if finding["code"] == "speed-limited")
+    assert (finding["value"], finding["limit"]) == (20.0, 15.0)
+    done = reflight("export", pane / "plan.json", "--format", "dji-kmz", "-o", tmp_path / "m.kmz", "--json")
+    assert "speed-limited" not in {finding["code"] for finding in done.json["findings"]}
+
+
 def test_mavlink_has_no_heights_above_the_ellipsoid(reflight, pane, tmp_path):
     error = reflight(
         "export", pane / "plan.json", "--format", "mavlink-plan", "-o", tmp_path / "m.plan", "--heights", "ellipsoid"

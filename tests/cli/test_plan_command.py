@@ -190,6 +190,13 @@ def test_wrong_values_are_refused_with_the_option_that_was_typed(reflight, pane,
     assert list(tmp_path.iterdir()) == []
 
 
+def test_a_method_of_a_settings_file_that_there_is_not_is_refused_with_file_and_key(reflight, pane, tmp_path):
+    settings = tmp_path / "mine.toml"
+    settings.write_text('method = "swarm"\n')
+    error = reflight("plan", pane / "site.json", "-o", tmp_path / "p.json", "--settings", settings).error
+    assert f"{settings}: method: there is no planning method 'swarm'; known are: greedy, pso, noto, orbit" in error
+
+
 def test_files_that_are_no_site_are_refused_and_nothing_is_written(reflight, bad_file, tmp_path):
     out = tmp_path / "p.json"
     out.write_text("old")

@@ -124,4 +124,4 @@ def test_an_effect_is_taken_by_the_command_decided_and_named_in_messages(haze):
     with pytest.raises(InputError, match=r"--effects.*haze"):
         scene._request(parser.parse_args([*words, "--effects", "absent=on"]))
     with pytest.raises(InputError, match=r"there is no effect 'absent'; expected one of .*, haze"):
-        parameters.RenderSettings(wishes={"absent": "on"})
+        parameters.RenderSettings(effects={"absent": "on"})

@@ -74,6 +74,13 @@ def test_a_mission_format_of_a_plug_in_is_offered_and_written(reflight, flight, 
     assert len((tmp_path / "a.table").read_text().splitlines()) == 1 + 4
 
 
+def test_the_help_lists_no_plug_in_that_is_left_out(reflight):
+    done = reflight("export", "-h")
+    listed = done.stdout.partition("from plug-ins:\n")[2]
+    assert sorted(line.split()[0] for line in listed.splitlines()) == ["bare-points", "failing", "flight-table"]
+    assert "the plug-in 'kml' of reflight-broken 1.0 is left out: there is another one of that name" in done.stderr
+
+
 def test_a_mission_format_that_fails_is_named_and_nothing_is_written(reflight, flight, tmp_path):
     done = reflight("export", "plan.json", "--format", "failing", "-o", "a.failing", status=1)
     assert "error: the plug-in 'failing' of reflight-broken 1.0 failed: AttributeError: " in done.stderr

@@ -8,11 +8,29 @@ from typing import Any
 
 from groundstation.cli.console import print_findings, print_json, print_notes, run_job, tell
 from groundstation.cli.options import PluginNames, add_parameter, in_words_of_options, number, typed_values, words
-from groundstation.services.model.export import EXPORTERS, GROUP, ModelExport, ModelExporter, export_model
+from groundstation.services.model.export import (
+    EXPORTERS,
+    GROUP,
+    ModelExport,
+    ModelExporter,
+    export_model,
+    model_exporter,
+)
+from planning.base.messages import say
 from planning.base.parameters import declared, with_values
 from planning.base.plugins import PluginGroup
 
 MISSIONS = ("dji-kmz", "mavlink-plan", "mavlink-wpl", "kml", "csv")
+DJI, MAVLINK = MISSIONS[:1], MISSIONS[1:3]
+OF_MISSIONS = {
+    "--site": MISSIONS,
+    "--heights": DJI + MAVLINK,
+    "--autopilot": MAVLINK,
+    "--link-loss": DJI,
+    "--return-height": DJI,
+}
+"""Formats of this program that an option is for; those of plug-ins get all of them."""
+
 ALL_MODELS = PluginNames(EXPORTERS, PluginGroup.MODEL_FORMATS)
 ALL_FORMATS = PluginNames((*MISSIONS, *EXPORTERS), PluginGroup.MISSION_FORMATS, PluginGroup.MODEL_FORMATS)
 
@@ -58,11 +76,10 @@ def add_parser(subparsers: Any) -> None:
     add(
         "--heights",
         choices=("above-takeoff", "amsl", "ellipsoid"),
-        default="above-takeoff",
         help="reference of heights in the file (default above-takeoff)",
     )
     add("--autopilot", choices=("ardupilot", "px4"), help="whose rules MAVLink files follow (default: by profile)")
-    add("--link-loss", choices=("continue", "go-home"), default="continue", help="DJI: what to do without radio link")
+    add("--link-loss", choices=("continue", "go-home"), help="DJI: what to do without radio link (default continue)")
     add(
         "--return-height",
         type=number,
@@ -81,18 +98,36 @@ def run(options: argparse.Namespace) -> int:
     return _export_model(options) if options.format in ALL_MODELS else _export_plan(options)
 
 
-def _export_model(options: argparse.Namespace) -> int:
+def _left_out(options: argparse.Namespace) -> list[str]:
+    """Notes on options that were typed and that the format has no use for."""
+    name = options.format
+    of_models = {each.parameter.option: key for key, each in declared(ModelExport).items()}
+    of_models["--components"] = "components"
+    typed = {option: getattr(options, option[2:].replace("-", "_"), None) for option in (*OF_MISSIONS, *of_models)}
+    if name in ALL_MODELS:
+        exporter = model_exporter(name)
+        useful = {option for option, key in of_models.items() if exporter.takes(key, typed["--gaussians"])}
+    else:
+        useful = {option for option, formats in OF_MISSIONS.items() if name in formats or name not in MISSIONS}
+    return [
+        say("{} is left out: the format {} has no use for it", option, name)
+        for option, value in typed.items()
+        if value is not None and option not in useful
+    ]
 
+
+def _export_model(options: argparse.Namespace) -> int:
+    left_out = _left_out(options)
     with in_words_of_options(ModelExport):
         typed = typed_values(options, ModelExport)
         wanted = with_values(ModelExport(options.format, components=options.components), typed)
     done = run_job("export", lambda context: export_model(options.plan, options.out, wanted, context))
+    notes = [*left_out, *done.notes]
     if options.json:
-        content = {"file": str(done.path), "format": options.format, "bytes": done.n_bytes, "notes": list(done.notes)}
-        print_json(content)
+        print_json({"file": str(done.path), "format": options.format, "bytes": done.n_bytes, "notes": notes})
         return 0
     tell("{:.3g} MB", done.n_bytes / 1e6, place=done.path)
-    print_notes(done.notes)
+    print_notes(notes)
     return 0
 
 
@@ -103,21 +138,24 @@ def _export_plan(options: argparse.Namespace) -> int:
     from missions.formats.encode import ExportOptions
     from missions.mavlink.autopilots import Autopilot
     from missions.mission.model import HeightReference
-    from planning.base.findings import Severity
+    from planning.base.findings import Finding, Severity
 
+    heights = HeightReference(options.heights or "above-takeoff")
     export_options = ExportOptions(
-        height_reference=HeightReference(options.heights),
+        height_reference=heights,
         autopilot=None if options.autopilot is None else Autopilot(options.autopilot),
-        link_loss=LinkLoss(options.link_loss),
+        link_loss=LinkLoss(options.link_loss or "continue"),
         rth_height_m=options.return_height,
     )
-    paths, findings = export_plan(options.plan, options.format, options.out, options.site, export_options)
+    left_out = [Finding(Severity.WARNING, "option-left-out", text) for text in _left_out(options)]
+    paths, found = export_plan(options.plan, options.format, options.out, options.site, export_options)
+    findings = (*left_out, *found)
     if options.json:
         print_json(
             {
                 "files": [str(path) for path in paths],
                 "format": options.format,
-                "heights": options.heights,
+                "heights": heights.value,
                 "findings": [finding_summary(finding) for finding in findings],
             }
         )

@@ -22,7 +22,7 @@ from groundstation.cli.options import (
 from planning.base.errors import InputError
 from planning.base.messages import glue, joined, say
 from planning.base.parameters import declared, with_values
-from planning.parameters import FLIGHT, GOAL, HOW, WHICH, PlanParameters
+from planning.parameters import FLIGHT, GOAL, HOW, METHOD_NAMES, WHICH, PlanParameters
 
 if TYPE_CHECKING:
     from planning.planner import Planned
@@ -105,6 +105,9 @@ def request_of(options: argparse.Namespace) -> PlanRequest:
     base = PlanParameters()
     if options.settings is not None:
         base = settings_over(base, read_toml(options.settings, dict[str, Any]), options.settings)
+        if base.method not in METHOD_NAMES:
+            known, place = ", ".join(METHOD_NAMES), f"{options.settings}: method"
+            raise InputError.say("there is no planning method '{}'; known are: {}", base.method, known, place=place)
     typed = typed_values(options, PlanParameters)
     if any((name,) in typed for name in GOALS):
         base = replace(base, n_views=None, share=None, n_batteries=None)

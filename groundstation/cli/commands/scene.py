@@ -127,7 +127,7 @@ def _request(options: argparse.Namespace) -> SceneRequest:
         raise InputError(say("--rays is for Mitsuba; add --renderer mitsuba, or leave it out"))
     with in_words_of_options(SceneRequest):
         files = {name: getattr(options, name) for name in ("scene", "plan", "flight", "look", "camera")}
-        asked = SceneRequest(**files, profile_id=options.profile, settings=RenderSettings(wishes=settings))
+        asked = SceneRequest(**files, profile_id=options.profile, settings=RenderSettings(effects=settings))
         return with_values(asked, typed)
 
 

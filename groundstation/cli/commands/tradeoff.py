@@ -158,7 +158,7 @@ def _scene_request(options: argparse.Namespace) -> SceneRequest:
             look=options.look,
             seed=checked_seed(options.seed),
             width_px=options.width,
-            settings=RenderSettings(wishes=settings, tolerance=options.tolerance),
+            settings=RenderSettings(effects=settings, tolerance=options.tolerance),
         )
 
 

@@ -119,7 +119,7 @@ class SimulationController(QObject):
             autopilot=choice.autopilot,
             speed_up=choice.speed_up,
             conditions=self.conditions,
-            wishes=dict(self.effect_settings),
+            effects=dict(self.effect_settings),
             charge=charge,
         )
 

@@ -67,12 +67,7 @@ class ExportDialog(QDialog):
     def _show_format(self) -> None:
         exporter = model_exporter(self._kind())
         self.about.setText(translated(exporter.about, UnitSystem.METRIC))
-        self.part.setEnabled(exporter.has_parts)
-        is_compressed = exporter.has_gaussians and self.rows["gaussians"].value() == "spz"
-        for name, is_asked in (
-            ("baked", exporter.has_colours),
-            ("degree", exporter.has_colours),
-            ("gaussians", exporter.has_gaussians),
-            ("preset", exporter.has_presets or is_compressed),
-        ):
-            self.rows[name].widget.setEnabled(is_asked)
+        gaussians = self.rows["gaussians"].value()
+        self.part.setEnabled(exporter.takes("components", gaussians))
+        for name, row in self.rows.items():
+            row.widget.setEnabled(exporter.takes(name, gaussians))

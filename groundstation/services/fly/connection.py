@@ -40,6 +40,7 @@ from missions.simulator.server import MAX_SPEEDUP, FlownClock, serve
 from missions.simulator.vehicle import SimulatedVehicle
 from planning.base.effects import Decision, EffectSetting
 from planning.base.errors import GroundStationError, InputError
+from planning.base.messages import say
 from planning.base.progress import Clock
 from planning.checks.case import Case
 from planning.geo.enu import geodetic_from_enu
@@ -300,7 +301,7 @@ class Simulation:
 
     Parameters
     ----------
-    wishes
+    effects
         On, off or auto by the name of an effect.
     charge
         Of the battery when the link is opened, 1 full to 0 empty.
@@ -317,7 +318,7 @@ class Simulation:
     autopilot: Autopilot = Autopilot.ARDUPILOT
     speed_up: float = 1.0
     conditions: Conditions = CALM
-    wishes: Mapping[str, EffectSetting] = field(default_factory=dict)
+    effects: Mapping[str, EffectSetting] = field(default_factory=dict)
     charge: float = 1.0
     seed: int = 0
     stands_enu_m: Vec3 | None = None
@@ -331,7 +332,7 @@ class Simulation:
     @property
     def name(self) -> str:
         """For the flight record."""
-        return f"simulation, {self.speed_up:g} times as fast"
+        return say("simulation, {:g} times as fast", self.speed_up)
 
     def open(self, orders: SortieOrders, clock: Clock, observe: FrameObserver) -> OpenedLink:
         """Put the aircraft at home, switched on a while ago."""
@@ -341,7 +342,7 @@ class Simulation:
             self.site_model,
             sortie,
             conditions=self.conditions,
-            settings=self.wishes,
+            settings=self.effects,
             home_enu_m=self.stands_enu_m,
             seed=self.seed,
             autopilot=self.autopilot,

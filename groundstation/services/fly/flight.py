@@ -618,7 +618,7 @@ class LiveFlight:
         """Keep what was flown of a sortie that is not over."""
         run = self._run
         if run is not None and run.recorder is not None and run.phase is Phase.FLYING:
-            run.note("disconnected", "the ground station disconnected; the aircraft went on by itself")
+            run.note("disconnected", say("the ground station disconnected; the aircraft went on by itself"))
             record = run.recorder.record(run.orders.site, run.orders.number)
             error = LinkError(
                 say("disconnected in flight; the aircraft goes on by itself, what was recorded ends there")

@@ -430,7 +430,7 @@ def fly_files(
     flown = fly_plan(read_input_plan(plan_path), read_input_site(site_path), request, show, monitor, between)
     write_flight(out, flown.flight)
     if flown.error is not None:
-        raise type(flown.error)(f"{flown.error}; what was flown before is in {out}") from flown.error
+        raise type(flown.error)(say("{}; what was flown before is in {}", flown.error, out)) from flown.error
     return flown
 
 

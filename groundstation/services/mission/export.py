@@ -118,7 +118,12 @@ def export_plan(
 def _name_findings(out: Path, file_format: str) -> Iterator[Finding]:
     suffixes = mission_format(file_format).endings
     if out.suffix.lower() not in suffixes:
-        text = f"{out.name}: other programs look for {file_format} files with names that end in {' or '.join(suffixes)}"
+        text = say(
+            "{}: other programs look for {} files with names that end in {}",
+            out.name,
+            file_format,
+            " or ".join(suffixes),
+        )
         yield Finding(Severity.WARNING, "file-name", text)
 
 

@@ -382,6 +382,17 @@ class ModelExporter:
     has_colours: bool = True
     has_gaussians: bool = False
 
+    def takes(self, name: str, gaussians: Gaussians | None) -> bool:
+        """Whether a parameter of `ModelExport` changes what is written, with Gaussians in this way."""
+        is_compressed = self.has_gaussians and gaussians == "spz"
+        return {
+            "baked": self.has_colours,
+            "degree": self.has_colours,
+            "preset": self.has_presets or is_compressed,
+            "components": self.has_parts,
+            "gaussians": self.has_gaussians,
+        }[name]
+
     def __post_init__(self) -> None:
         if not all(ending.startswith(".") for ending in self.endings):
             raise ValueError(f"endings: expected such as ('.ply',), got {self.endings}")

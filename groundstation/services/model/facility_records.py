@@ -483,9 +483,9 @@ def export_ifc(
     names = {row.global_id: row.name for row in book.objects(with_absent=True)}
     found = extend_copy(original, out, property_sets(book), frozenset(names), monitor)
     if not found.extended and not found.missing:
-        return Exported((out,), ("there are no records to write",))
+        return Exported((out,), (say("there are no records to write"),))
     missing = [names[global_id] for global_id in found.missing]
-    notes = (f"without an element in this file, so not written: {_listed(missing)}",) if missing else ()
+    notes = (say("without an element in this file, so not written: {}", _listed(missing)),) if missing else ()
     return Exported((out,), notes)
 
 

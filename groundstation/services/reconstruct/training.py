@@ -305,6 +305,6 @@ def train_tradeoff(
         base = replace(base, score_every_s=min(base.score_every_s, base.time_limit_s / POINTS))
     settings = settings_of(base, knobs)
     check_finished(dataset)
-    title = f"{dataset.name}: facades of unseen views"
+    title = say("{}: facades of unseen views", dataset.name)
     subject: Subject[tuple[Trial, ...]] = Subject("train", ERROR_AXIS, trial_rows, lambda _: title, trial_panels)
     return compare(subject, out, lambda _: run_settings(dataset, settings, monitor))

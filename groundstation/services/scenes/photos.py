@@ -277,9 +277,12 @@ def _walled_in(photos: Sequence[PosedPhoto], model: SiteModel) -> Iterator[Findi
     clearances_m = solids.clearance_m(np.array([photo.pose.position_enu_m for photo in photos]).reshape(-1, 3))
     n = int((clearances_m < 0.0).sum())
     if n:
-        text = (
-            f"{n} of {len(photos)} views stand inside buildings opposite or trees, which the scene adds to the site; "
-            f"plan over the {SITE_FILE} beside the photos, which has them, or give the site a look with a wider street"
+        text = say(
+            "{} of {} views stand inside buildings opposite or trees, which the scene adds to the site; plan over the "
+            "{} beside the photos, which has them, or give the site a look with a wider street",
+            n,
+            len(photos),
+            SITE_FILE,
         )
         yield Finding(Severity.WARNING, "views-walled-in", text, "", float(n), 0.0, "photos")
 

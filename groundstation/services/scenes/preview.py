@@ -169,7 +169,7 @@ class _Studio:
         self.key = request.scene_key
         self._scene = build_scene(model, request.look, request.seed)
         self._solids = Solids.of(join(list(self._scene.site.obstacles)).corners_enu_m)
-        self._quick = Renderer(self._scene, RenderSettings(wishes=LEFT_OUT))
+        self._quick = Renderer(self._scene, RenderSettings(effects=LEFT_OUT))
         self._fine: tuple[frozenset[str], Renderer] | None = None
         """With the effects that it simulates."""
 
@@ -205,7 +205,7 @@ class _Studio:
         chosen = frozenset(found.effect for found in decisions if found.on)
         if self._fine is None or self._fine[0] != chosen:
             self._fine = None  # before the next one is made: each holds the scene's geometry
-            self._fine = chosen, Renderer(self._scene, RenderSettings(wishes=LEFT_OUT).decided(decisions))
+            self._fine = chosen, Renderer(self._scene, RenderSettings(effects=LEFT_OUT).decided(decisions))
         return self._fine[1], tuple(decisions)
 
 

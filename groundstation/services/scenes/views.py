@@ -102,7 +102,9 @@ def _photos_of(flight: Flight, record: int) -> Iterator[tuple[PhotoRef, TakenPho
 
 
 def _without_direction(n: int, n_all: int) -> Finding:
-    text = f"{n} of {n_all} photos do not say where the camera looked, and are left out; name the plan that was flown"
+    text = say(
+        "{} of {} photos do not say where the camera looked, and are left out; name the plan that was flown", n, n_all
+    )
     return Finding(Severity.WARNING, "photo-direction", text, "", float(n), 0.0, "photos")
 
 

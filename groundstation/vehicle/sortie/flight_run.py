@@ -181,7 +181,7 @@ def _set_parameters(run: SortieRun, changes: tuple[ParameterChange, ...]) -> Ste
         outcome: ParameterOutcome = yield ParameterCall(change.name, change.new, autopilot, address)
         if outcome.status is ParameterStatus.SET:
             is_restart_due |= change.needs_reboot
-            run.note("parameter", f"{change.name} was {outcome.former:g} and is {change.new:g} now")
+            run.note("parameter", say("{} was {:g} and is {:g} now", change.name, outcome.former, change.new))
         elif not outcome.is_as_wanted:
             run.note("parameter", f"{change.name}: {outcome.status.value}")
     if is_restart_due:
@@ -455,7 +455,7 @@ def _fly(run: SortieRun) -> Steps:
     if run.camera_reports.count is not None:
         run.camera_reports.ask_count()
     yield from _wait(run, lambda _state: run.camera_reports.is_settled, REPORTS_S)
-    run.note("landed", f"{len(run.state.photos)} photos were reported")
+    run.note("landed", say("{} photos were reported", len(run.state.photos)))
 
 
 def _up_m(run: SortieRun) -> float:
@@ -551,7 +551,7 @@ def _put(run: SortieRun, ours: BoardList) -> Steps:
     outcome: Verified | NotVerified = yield VerifiedUpload(ours.route, ours.messages, vehicle_of(run)[0])
     if isinstance(outcome, NotVerified):
         raise LinkRejected(say("the {} is not on the vehicle: {}", ours.what, outcome))
-    run.note("uploaded", f"{ours.what}: {len(outcome.items)} items, read back and equal")
+    run.note("uploaded", say("{}: {} items, read back and equal", ours.what, len(outcome.items)))
     run.lists = (*run.lists, ours)
     run.on_board = run.on_board.known(ours.route.mission_type, True)
 

@@ -209,12 +209,16 @@ HAS_FIX = 3
 
 def read_dataflash(content: bytes, monitor: Monitor = QUIET) -> RawLog:
     """Everything a dataflash log says of the vehicle."""
-    log = RawLog("ArduPilot, dataflash log", autopilot=Autopilot.ARDUPILOT)
+    log = RawLog(say("ArduPilot, dataflash log"), autopilot=Autopilot.ARDUPILOT)
     is_binary = looks_binary(content[:2])
     tables, n_lost = (binary_tables if is_binary else text_tables)(content, WANTED, monitor)
     if n_lost > (512 if is_binary else 0):  # a page of memory may end a binary log
-        unit = "bytes of the log are no records" if is_binary else "lines of the log make no sense"
-        log.note("log-damaged", f"{n_lost} {unit} and were skipped", n_lost)
+        text = (
+            say("{} bytes of the log are no records and were skipped", n_lost)
+            if is_binary
+            else say("{} lines of the log make no sense and were skipped", n_lost)
+        )
+        log.note("log-damaged", text, n_lost)
     _positions(log, tables)
     _attitude(log, tables)
     _battery(log, tables)
@@ -245,7 +249,7 @@ def _positions(log: RawLog, tables: dict[str, Table]) -> None:
         ]
         log.positions = rows if status is None else [r for r, s in zip(rows, status, strict=False) if s >= HAS_FIX]
         if log.positions:
-            log.note("raw-positions", "the log has no fused positions (POS); those of the GNSS receiver are taken")
+            log.note("raw-positions", say("the log has no fused positions (POS); those of the GNSS receiver are taken"))
     for name in ("XKF1", "NKF1", "EKF1"):
         log.velocities = log.velocities or _rows(_first_instance(tables.get(name, {}), "C"), "VN", "VE", "VD")
 

@@ -70,7 +70,7 @@ def flights_of(log: RawLog, site: Site, label: str, heights: HeightSource = "tak
     photos = log.photos or log.triggers
     findings = [*log.findings, *place.findings]
     if photos and not log.photos:
-        text = "the log tells when photos were triggered, not that they were taken"
+        text = say("the log tells when photos were triggered, not that they were taken")
         findings.append(Finding(Severity.WARNING, "triggers-only", text))
     records = []
     for interval in _intervals(log, place.time_s):
@@ -106,7 +106,7 @@ class _Place:
         findings = []
         back_s = float(np.max(-np.diff(rows[:, 0]), initial=0.0))
         if back_s > 1.0:
-            text = f"time goes back in the log, by {back_s:.1f} s at most; what it says was put in order"
+            text = say("time goes back in the log, by {:.1f} s at most; what it says was put in order", back_s)
             findings.append(Finding(Severity.WARNING, "time-went-back", text, "", back_s))
         values = table(log.positions, 5)
         values = values[_is_on_globe(values[:, 1:4])]
@@ -121,7 +121,7 @@ class _Place:
                 Finding(Severity.NOTE, "positions-dropped", say("{} positions are none and were left out", n))
             )
         if heights == "takeoff" and not np.isfinite(values[:, 4]).any():
-            text = "the log has no heights above take-off; those above sea level are taken"
+            text = say("the log has no heights above take-off; those above sea level are taken")
             findings.append(Finding(Severity.WARNING, "height-reference", text))
             heights = "sea-level"
         points = _enu_m(values[:, 1:], site, heights)
@@ -185,8 +185,10 @@ def _height_findings(rows: Floats, site: Site, points: Floats, heights: HeightSo
     median_m = float(np.median(apart[np.isfinite(apart)]))
     if abs(median_m) <= HEIGHT_DIFFERENCE_M:
         return []
-    used, not_used = ("take-off", say("sea level")) if heights == "takeoff" else (say("sea level"), "take-off")
-    text = f"heights are counted from {used}; counted from {not_used} they would be {median_m:+.1f} m"
+    used, not_used = (
+        (say("take-off"), say("sea level")) if heights == "takeoff" else (say("sea level"), say("take-off"))
+    )
+    text = say("heights are counted from {}; counted from {} they would be {:+.1f} m", used, not_used, median_m)
     return [Finding(Severity.NOTE, "height-reference", text, "", median_m, HEIGHT_DIFFERENCE_M, "m")]
 
 
@@ -228,7 +230,7 @@ def _record(log: RawLog, place: _Place, photos: list[RawPhoto], interval: _Inter
     events = [event for event in log.events if start_s <= event.time_s <= end_s]
     for before, pause in zip(time_s[:-1], np.diff(time_s), strict=True):
         if pause > GAP_S:
-            events.append(FlightEvent(float(before), "gap", f"the log says nothing for {pause:.1f} s"))
+            events.append(FlightEvent(float(before), "gap", say("the log says nothing for {:.1f} s", pause)))
     shifted = (FlightEvent(event.time_s - zero_s, event.code, event.text) for event in events)
     return FlightRecord(
         sortie=0,

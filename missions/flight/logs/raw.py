@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from missions.flight.record import FlightEvent
 from missions.mavlink.autopilots import Autopilot
 from planning.base.findings import Finding, Severity
+from planning.base.messages import say
 
 # When a photo of CAMERA_FEEDBACK was taken: its UNIX time, by the vehicle's clock since power-up.
 #
@@ -180,7 +181,7 @@ class RawLog:
 
     def camera_failed(self, time_s: float, index: int) -> None:
         """Note that the camera was told to take a photo and did not."""
-        self.events.append(FlightEvent(time_s, "camera-failed", f"the camera says that photo {index} failed"))
+        self.events.append(FlightEvent(time_s, "camera-failed", say("the camera says that photo {} failed", index)))
 
     def mode(self, time_s: float, name: str) -> None:
         """Note the flight mode; only changes are kept."""

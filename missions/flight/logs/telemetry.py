@@ -127,7 +127,9 @@ class TelemetryReader:
             if self._boot_s is not None and boot_s < self._boot_s - REBOOT_S:
                 self._base_s += self._boot_s + min(max(0.0, received_s - self._received_s), MAX_PAUSE_S) - boot_s
                 self._photo_clock, self._is_camera_on_time = PhotoClock(), False
-                self._log.events.append(FlightEvent(self._base_s + boot_s, "reboot", "the time since boot began again"))
+                self._log.events.append(
+                    FlightEvent(self._base_s + boot_s, "reboot", say("the time since boot began again"))
+                )
             self._boot_s, self._received_s = boot_s, received_s
             self.now_s = self._base_s + boot_s
 
@@ -288,9 +290,9 @@ def read_tlog(content: bytes, monitor: Monitor = QUIET) -> RawLog:
         if at % 4096 < size:
             monitor.report("reading the log", at, len(content))
     log = reader.read()
-    log.vehicle = f"{VEHICLES.get(reader.autopilot, 'MAVLink')}, telemetry log"
+    log.vehicle = say("{}, telemetry log", VEHICLES.get(reader.autopilot, "MAVLink"))
     if n_lost:
-        log.note("log-damaged", f"{n_lost} bytes of the log are no messages and were skipped", n_lost)
+        log.note("log-damaged", say("{} bytes of the log are no messages and were skipped", n_lost), n_lost)
     return log
 
 

@@ -90,10 +90,10 @@ def read_ulog(content: bytes, label: str, monitor: Monitor = QUIET) -> RawLog:
         ) from error
     topics = _topics(source)
     if source.file_corruption:
-        log.note("log-damaged", "parts of the log are damaged and were skipped")
+        log.note("log-damaged", say("parts of the log are damaged and were skipped"))
     if source.dropouts:
         lost_s = sum(dropout.duration for dropout in source.dropouts) / 1e3
-        log.note("log-gaps", f"the log has {len(source.dropouts)} gaps, {lost_s:.1f} s together", lost_s)
+        log.note("log-gaps", say("the log has {} gaps, {:.1f} s together", len(source.dropouts), lost_s), lost_s)
     _positions(log, topics)
     _attitude(log, topics)
     log.battery = [row for row in _rows(topics, "battery_status", "remaining") if 0.0 <= row[1] <= 1.0]
@@ -183,7 +183,7 @@ def _positions(log: RawLog, topics: dict[str, Columns]) -> None:
     log.positions = [(*row, row[3] - home_amsl_m) for row in fused]
     if not log.positions and (receiver := _receiver_rows(topics)):
         log.positions = [(*row, row[3] - home_amsl_m) for row in receiver]
-        log.note("raw-positions", "the log has no fused positions; those of the GNSS receiver are taken")
+        log.note("raw-positions", say("the log has no fused positions; those of the GNSS receiver are taken"))
     log.velocities = _rows(topics, "vehicle_local_position", "vx", "vy", "vz")
 
 

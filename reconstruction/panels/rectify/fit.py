@@ -314,10 +314,14 @@ class Curvature:
         cost_s = COST_S_PER_MEGAPIXEL * megapixels
         significance = scene.cylinder.curvature_significance
         if significance < SIGNIFICANT:
-            return Assessment(0.0, f"its curvature is {significance:.1f} standard deviations, which is noise", cost_s)
+            return Assessment(
+                0.0, say("its curvature is {:.1f} standard deviations, which is noise", significance), cost_s
+            )
         size = bent_by_px(scene)
         radius = 1.0 / abs(scene.cylinder.surface.curvature_per_m)
-        return Assessment(size, f"a radius of {radius:.1f} m bends lines of the grid by up to {size:.1f} px", cost_s)
+        return Assessment(
+            size, say("a radius of {:.1f} m bends lines of the grid by up to {:.1f} px", radius, size), cost_s
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -334,7 +338,7 @@ class Unrolling:
         angle = abs(scene.surface.curvature_per_m) * half_width_m
         squeezed_m = half_width_m * (1.0 - float(np.sinc(min(angle, 0.5 * np.pi) / np.pi)))
         size = squeezed_m * scene.px_per_m
-        return Assessment(size, f"the window spans {np.degrees(2.0 * angle):.1f} degrees of the cylinder", 0.0)
+        return Assessment(size, say("the window spans {:.1f} degrees of the cylinder", np.degrees(2.0 * angle)), 0.0)
 
 
 def decide_view(views: Sequence[SurfaceView], kind: ViewKind = "auto") -> Decision:

@@ -88,10 +88,12 @@ class Fusion:
         """The share of sightings that is missing: of each line in each photo that shows its place."""
         n = len(scene.grids)
         if n < 2:
-            return Assessment(0.0, "there is one photo", 0.0)
+            return Assessment(0.0, say("there is one photo"), 0.0)
         n_bare = sum(len(grid.rows) < 2 or len(grid.columns) < 2 for grid in scene.grids.values())
-        bare = f", {n_bare} of them without a grid" if n_bare else ""
-        return Assessment(doubt(scene), f"how far {n} photos disagree on their lines{bare}", COST_S_PER_PHOTO * n)
+        bare = say(", {} of them without a grid", n_bare) if n_bare else ""
+        return Assessment(
+            doubt(scene), say("how far {} photos disagree on their lines{}", n, bare), COST_S_PER_PHOTO * n
+        )
 
 
 def doubt(found: FoundSingly) -> float:

@@ -18,7 +18,7 @@ import msgspec
 from planning.base.errors import InputError
 from planning.base.files import read_given
 from planning.base.json_file import check_output, encoded, write_atomically
-from planning.base.messages import about, packed, say, unpacked
+from planning.base.messages import about, glue, packed, say, unpacked
 from planning.base.progress import QUIET, Monitor
 from planning.base.step_physical_file import END, IFC_FILE, check_ends, real_name
 from reconstruction.records.book import RecordBook
@@ -295,9 +295,9 @@ def read_ifc_records(book: RecordBook, path: Path, all_sets: bool = False, monit
                     notes.append(about(names[element.global_id], error))
         n_changed = changes.n_changed
     if not read.elements:
-        notes.append(f"none of the {len(names)} objects has its GlobalId in this file")
+        notes.append(say("none of the {} objects has its GlobalId in this file", len(names)))
     more = len(notes) - MAX_NOTES
-    shown = (*notes[:MAX_NOTES], f"{more} more values were left out") if more > 0 else tuple(notes)
+    shown = (*notes[:MAX_NOTES], say("{} more values were left out", more)) if more > 0 else tuple(notes)
     return IfcTaken(len(read.elements), n_changed, shown)
 
 
@@ -311,7 +311,7 @@ def entries_of_element(element: Element, name: str, all_sets: bool, notes: list[
         try:
             attribute = _attribute(found, element.global_id)
         except InputError as error:
-            notes.append(f"{name}: {found.set}.{found.property.name}: {error}")
+            notes.append(about(name, about(f"{found.set}.{found.property.name}", error)))
             continue
         if attribute is not None and (found.origin != "whole" or attribute.name in FROM_WHOLE):
             attributes.setdefault(attribute.name, attribute)
@@ -335,7 +335,7 @@ def _ours(element: Element, name: str, notes: list[str]) -> Iterator[Entry]:
             try:
                 entry = entry_of_property(each, record, element.global_id)
             except InputError as error:
-                notes.append(f"{name}: {set_name}.{error}")
+                notes.append(glue(name, ": ", set_name, ".", error))
                 continue
             if entry is not None:
                 n_found += 1
@@ -349,7 +349,7 @@ def _latest(properties: Mapping[str, Property], global_id: str, name: str, notes
     try:
         found = latest_inspection(properties, global_id, global_id_of(global_id, SET_OF[Inspection]))
     except InputError as error:
-        notes.append(f"{name}: {SET_OF[Inspection]}: {error}")
+        notes.append(about(name, about(SET_OF[Inspection], error)))
         return
     if found is not None:
         yield found
@@ -399,7 +399,7 @@ def _condition(element: Element, name: str, notes: list[str]) -> Iterator[Inspec
             key=global_id_of(element.global_id, f"Pset_Condition {date}"),
         )
     except InputError as error:
-        notes.append(f"{name}: Pset_Condition: {error}")
+        notes.append(about(name, about("Pset_Condition", error)))
 
 
 def _by_origin(found: Iterable[Found]) -> list[Found]:

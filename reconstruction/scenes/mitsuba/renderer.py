@@ -312,7 +312,7 @@ class MitsubaRenderer:
         self._without: Renderer | None = None
         if any(map(settings.is_on, LACKING)):
             off: dict[str, EffectSetting] = dict.fromkeys(LACKING, "off")
-            self._without = Renderer(scene, replace(settings, samples=SAMPLES, wishes={**settings.wishes, **off}))
+            self._without = Renderer(scene, replace(settings, samples=SAMPLES, effects={**settings.effects, **off}))
         self._middle = middle_enu_m(scene)
         self._scene = mitsuba_scene(mi, scene, switches_of(settings))
 

@@ -149,9 +149,13 @@ def _files(future: Any, name: str, folder: Path) -> dict[str, str]:
         return sums or written(folder, contents)
     error = future.exception()
     if isinstance(error, KilledWorker):
-        text = f"{error.allowed_failures + 1} workers ended while they rendered it, perhaps for want of memory"
+        text = say("{} workers ended while they rendered it, perhaps for want of memory", error.allowed_failures + 1)
     else:
-        text = str(error) if isinstance(error, GroundStationError) else f"a worker could not render it: {error!r}"
+        text = (
+            str(error)
+            if isinstance(error, GroundStationError)
+            else say("a worker could not render it: {}", repr(error))
+        )
     raise ReconstructionError(about(name, text)) from error
 
 
@@ -174,9 +178,9 @@ def _studios(client: Any, photographer: Callable[[], RenderWorker], folder: Path
 
 
 def _another_program(place: str, program: object) -> InputError:
-    found = f"cannot run it ({program})" if isinstance(program, Exception) else "runs another version of it"
-    return InputError(
-        f"scheduler and workers need the same program and libraries as here; {place} {found}: install it there"
+    found = say("cannot run it ({})", program) if isinstance(program, Exception) else say("runs another version of it")
+    return InputError.say(
+        "scheduler and workers need the same program and libraries as here; {} {}: install it there", place, found
     )
 
 

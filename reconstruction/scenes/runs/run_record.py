@@ -38,13 +38,16 @@ RunRecord = dict[str, Any]
 def run_record(job: PhotoJob, decisions: Sequence[Decision]) -> RunRecord:
     """What a run is made from; the cameras of all photos are alike."""
     scene, lens = job.scene, job.photos[0].intrinsics
+    settings = asdict(job.settings)
+    # As files have called it since the first of them.
+    settings["wishes"] = settings.pop("effects")
     record = {
         "format": SCENE_PHOTOS_FORMAT,
         "scene": scene.name,
         "seed": scene.seed,
         "made_from": dict(job.made_from),
         "scene_sha256": checksum(scene),
-        "settings": asdict(job.settings),
+        "settings": settings,
         "taking": asdict(job.camera_model),
         "effects": [asdict(decision) for decision in decisions],
         "camera": asdict(lens),

@@ -15,6 +15,8 @@ import torch
 from torch import Tensor
 from torch.optim import Optimizer
 
+from planning.base.messages import say
+from planning.base.parameters import check, parameter
 from reconstruction.splats.densification.strategy import (
     CUT,
     NOTHING,
@@ -66,31 +68,23 @@ class AdaptiveParameters:
         Steps after a reset in which nothing is pruned for its opacity.
     """
 
-    start: int = 500
-    stop: int = 15_000
-    every: int = 100
-    gradient: float = 0.2
-    least_px: float = 0.72
-    split_px: float = 1.5
-    least_opacity: float = 0.02
-    reset_every: int = 3000
-    reset_opacity: float = 0.1
-    grace: int = 300
+    start: int = parameter(500, least=0)
+    stop: int = parameter(15_000, least=0)
+    every: int = parameter(100, least=1)
+    gradient: float = parameter(0.2, above=0.0)
+    least_px: float = parameter(0.72, least=0.0)
+    split_px: float = parameter(1.5, least=0.0)
+    least_opacity: float = parameter(0.02, above=CUT, below=1.0)
+    reset_every: int = parameter(3000, least=0)
+    reset_opacity: float = parameter(0.1, above=CUT, below=1.0)
+    grace: int = parameter(300, least=0)
 
     def __post_init__(self) -> None:
-        if not (0 <= self.start <= self.stop and self.every >= 1):
-            raise ValueError(f"expected 0 <= start <= stop, every >= 1, got {self.start}, {self.stop}, {self.every}")
-        if not (self.gradient > 0.0 and 0.0 <= self.least_px <= self.split_px):
-            raise ValueError(
-                f"expected gradient above 0 and 0 <= least_px <= split_px, got {self.gradient}, {self.least_px}, "
-                f"{self.split_px}"
-            )
-        if not CUT < self.least_opacity < self.reset_opacity < 1.0:
-            raise ValueError(
-                f"expected 1/255 < least_opacity < reset_opacity < 1, got {self.least_opacity}, {self.reset_opacity}"
-            )
-        if self.reset_every < 0 or self.grace < 0:
-            raise ValueError(f"expected reset_every, grace of 0 or more, got {self.reset_every}, {self.grace}")
+        check(self)
+        for low, high in (("start", "stop"), ("least_px", "split_px"), ("least_opacity", "reset_opacity")):
+            least, most = getattr(self, low), getattr(self, high)
+            if least > most:
+                raise ValueError(say("expected no more than {}, {:g}, got {:g}", high, most, least, place=low))
 
 
 class AdaptiveControl:

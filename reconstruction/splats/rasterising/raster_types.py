@@ -7,6 +7,9 @@ from dataclasses import dataclass
 
 from torch import Tensor
 
+from planning.base.messages import say
+from planning.base.parameters import Choice, check, parameter
+
 FLAT_ENOUGH_RAD = math.radians(80.0)
 """Between line of sight and normal: so far even splats smaller than a pixel have the depth of their plane."""
 
@@ -56,31 +59,22 @@ class RasterSettings:
         How many to use; 0 stands for all cores. Changes time, not one bit of the result.
     """
 
-    low_pass_px: float = math.sqrt(0.5)
-    blur_px: float = math.sqrt(0.3)
+    low_pass_px: float = parameter(math.sqrt(0.5), above=0.0)
+    blur_px: float = parameter(math.sqrt(0.3), above=0.0)
     antialiased: bool = False
-    near_m: float = 0.1
-    min_alpha: float = 1.0 / 255.0
-    max_alpha: float = 0.99
-    min_transmittance: float = 1e-4
-    tile_px: int = 16
-    threads: int = 0
+    near_m: float = parameter(0.1, above=0.0)
+    min_alpha: float = parameter(1.0 / 255.0, least=LEAST_ALPHA, below=1.0)
+    max_alpha: float = parameter(0.99, above=0.0, below=1.0)
+    min_transmittance: float = parameter(1e-4, least=0.0, below=1.0)
+    tile_px: int = parameter(16, choices=tuple(Choice(8 * n) for n in range(1, 9)))
+    threads: int = parameter(0, least=0)
 
     def __post_init__(self) -> None:
-        for name in ("low_pass_px", "blur_px", "near_m"):
-            value = getattr(self, name)
-            if not (math.isfinite(value) and value > 0.0):
-                raise ValueError(f"{name}: expected a positive number, got {value}")
-        if not LEAST_ALPHA <= self.min_alpha < self.max_alpha < 1.0:
+        check(self)
+        if self.min_alpha >= self.max_alpha:
             raise ValueError(
-                f"expected {LEAST_ALPHA} <= min_alpha < max_alpha < 1, got {self.min_alpha}, {self.max_alpha}"
+                say("expected less than max_alpha, {:g}, got {:g}", self.max_alpha, self.min_alpha, place="min_alpha")
             )
-        if not 0.0 <= self.min_transmittance < 1.0:
-            raise ValueError(f"min_transmittance: expected 0 to 1, got {self.min_transmittance}")
-        if not (8 <= self.tile_px <= 64 and self.tile_px % 8 == 0):
-            raise ValueError(f"tile_px: expected 8, 16, ... 64, got {self.tile_px}")
-        if self.threads < 0:
-            raise ValueError(f"threads: expected 0 or more, got {self.threads}")
 
     @property
     def faintest(self) -> float:

@@ -52,15 +52,15 @@ def grey(
     return grey_levels(renderer.render(taken, seed, moved_enu_m).linear.astype(float))
 
 
-def judge(made: Scene, wishes: dict[str, EffectSetting] | None = None, n_rays: int = N_RAYS) -> MitsubaRenderer:
-    return MitsubaRenderer(made, RenderSettings(wishes=wishes or {}), n_rays, "scalar_rgb")
+def judge(made: Scene, effects: dict[str, EffectSetting] | None = None, n_rays: int = N_RAYS) -> MitsubaRenderer:
+    return MitsubaRenderer(made, RenderSettings(effects=effects or {}), n_rays, "scalar_rgb")
 
 
 def assert_agree_unless(
     broken: Callable[[Scene], Scene],
     made: Scene,
     taken: PosedPhoto,
-    wishes: dict[str, EffectSetting] | None = None,
+    effects: dict[str, EffectSetting] | None = None,
     n_rays: int = N_RAYS,
     moved_enu_m: Array | None = None,
 ) -> None:
@@ -69,7 +69,7 @@ def assert_agree_unless(
     renderer = judge(made, None, n_rays)
     lights = [renderer.render(taken, seed, moved_enu_m).linear.astype(float) for seed in (1, 2)]
     one, two, both = (grey_levels(light) for light in (*lights, 0.5 * (lights[0] + lights[1])))
-    wrong = grey(judge(broken(made), wishes, n_rays), taken, 1, moved_enu_m)
+    wrong = grey(judge(broken(made), effects, n_rays), taken, 1, moved_enu_m)
     noise = 0.25 * float(np.mean((one - two) ** 2))
     off = float(np.mean((embedded - both) ** 2)) - noise
     off_broken = float(np.mean((embedded - wrong) ** 2)) - 2.0 * noise
@@ -262,7 +262,7 @@ def test_rooms_that_mitsuba_lacks_are_added_and_light_adds_up() -> None:
         judge(made, {INTERIOR: setting, SUN_GLARE: "off"}, 2).render(taken, 3) for setting in ("on", "off")
     )
     wanted, plain = (
-        Renderer(made, RenderSettings(samples=SAMPLES, wishes={INTERIOR: setting, SUN_GLARE: "off"}))
+        Renderer(made, RenderSettings(samples=SAMPLES, effects={INTERIOR: setting, SUN_GLARE: "off"}))
         .render(taken)
         .linear
         for setting in ("on", "off")

@@ -48,7 +48,7 @@ def scene() -> Scene:
 def taken_job(scene: Scene, folder: Path, lens: Intrinsics = LENS, **changes: Any) -> PhotoJob:
     """Three photos of a bent camera in motion; the second looks up to the sky."""
     job = job_for(
-        scene, folder, camera_model=CAMERA_MODEL, moments=MOMENTS, settings=RenderSettings(wishes={GIMBAL_ERROR: "on"})
+        scene, folder, camera_model=CAMERA_MODEL, moments=MOMENTS, settings=RenderSettings(effects={GIMBAL_ERROR: "on"})
     )
     photos = [replace(photo, intrinsics=lens) for photo in job.photos]
     middle = photos[1].pose
@@ -134,9 +134,9 @@ def test_each_photo_has_its_own_exposure_in_thirds_of_a_stop(written: ScenePhoto
 
 
 def test_what_is_off_leaves_no_trace(scene: Scene, tmp_path: Path) -> None:
-    wishes = dict.fromkeys((DISTORTION, EXPOSURE, MOTION_BLUR), "off")
+    effects = dict.fromkeys((DISTORTION, EXPOSURE, MOTION_BLUR), "off")
     folder = tmp_path / "off"
-    photos = photograph(taken_job(scene, folder, settings=RenderSettings(wishes=wishes)), folder, 1).photos
+    photos = photograph(taken_job(scene, folder, settings=RenderSettings(effects=effects)), folder, 1).photos
     record = record_of(folder)
     assert all(photo.intrinsics.is_straight for photo in photos)
     assert record["camera"]["distortion"] == [0.0] * 5

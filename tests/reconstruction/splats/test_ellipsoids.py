@@ -291,7 +291,7 @@ def test_sizes_are_two_or_three() -> None:
     for shape in ((4, 1), (4, 4), (3, 3), (4,)):
         with pytest.raises(ValueError, match=r"scales: expected shape \(4, 2\) or \(4, 3\), got"):
             rasterise(means, quats, torch.ones(shape, dtype=torch.float64), opacities, features, view)
-    with pytest.raises(ValueError, match="blur_px: expected a positive number"):
+    with pytest.raises(ValueError, match="blur_px: expected more than 0"):
         RasterSettings(blur_px=0.0)
 
 

@@ -149,7 +149,7 @@ def test_what_cannot_be_done_now_is_refused_in_words(flight):
 
 def test_start_is_refused_while_the_list_is_not_well(flight):
     """A wind above the aircraft's limit stands on the list; its lulls, which come, are no reason to wait for."""
-    live, follower = flight(simulation(conditions=Conditions(wind_m_s=18.0), wishes={"wind": "on"}))
+    live, follower = flight(simulation(conditions=Conditions(wind_m_s=18.0), effects={"wind": "on"}))
     follower.until_may(Request.UPLOAD)
     live.request(Request.UPLOAD)
     follower.until(lambda event: isinstance(event, Answered) and event.request is Request.UPLOAD)

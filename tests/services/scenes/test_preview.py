@@ -67,7 +67,7 @@ def test_the_fine_picture_is_the_photo_that_would_be_rendered_whole(monkeypatch,
     seen = site_photo(model, request_for(model))
     scene = build_scene(model, ALONE)
     photo = PosedPhoto("a", tmp_path / "a", lens_of(CAMERA, 96), Pose.of(VIEW))
-    settings = RenderSettings(wishes=LEFT_OUT)
+    settings = RenderSettings(effects=LEFT_OUT)
     whole = Renderer(scene, settings.decided(seen.decisions)).render(photo)
     assert (seen.picture == developed(whole)).all()
     assert {found.effect for found in seen.decisions} | OF_FILES | set(LEFT_OUT) == set(EFFECTS)

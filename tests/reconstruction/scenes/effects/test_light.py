@@ -34,7 +34,7 @@ def both(made: Scene, camera: PosedPhoto, effect: str, samples: int = 1) -> tupl
     """Photos with all effects of light, and without one."""
     photos = []
     for setting in ("on", "off"):
-        settings = RenderSettings(samples=samples, wishes={effect: setting, VIGNETTING: "off", NOISE: "off"})
+        settings = RenderSettings(samples=samples, effects={effect: setting, VIGNETTING: "off", NOISE: "off"})
         photos.append(Renderer(made, settings).render(camera))
     return photos[0], photos[1]
 

@@ -51,8 +51,8 @@ def blobs(size_m: float) -> Texture:
 
 def both(made: Scene, camera: PosedPhoto, effect: str, *off: str) -> tuple[Photograph, Photograph]:
     """Photos with all effects but those that are off, and without one more."""
-    with_it = RenderSettings(samples=1, wishes=dict.fromkeys(off, "off"), environment_rows=400)
-    without = replace(with_it, wishes=dict.fromkeys((*off, effect), "off"))
+    with_it = RenderSettings(samples=1, effects=dict.fromkeys(off, "off"), environment_rows=400)
+    without = replace(with_it, effects=dict.fromkeys((*off, effect), "off"))
     return Renderer(made, with_it).render(camera), Renderer(made, without).render(camera)
 
 
@@ -182,7 +182,7 @@ def test_dark_corners_are_simulated_where_they_show(loss: float, used: bool) -> 
     light = 0.18 * vignette(192, 256, loss)
     change = float(grey_levels(np.array(0.18)) - grey_levels(light[0, 0]))
     assert decided.on == used == (change > decided.tolerance)
-    settings = RenderSettings(wishes={NOISE: "off"})
+    settings = RenderSettings(effects={NOISE: "off"})
     picture = developed(Renderer(made, settings).render(camera), sensor=sensor)
     assert np.abs(picture.astype(float)[..., 0] - grey_levels(light)).max() <= 0.5 + 1e-6
 
@@ -191,7 +191,7 @@ def test_dark_corners_are_simulated_where_they_show(loss: float, used: bool) -> 
 def test_noise_is_simulated_where_it_is_more_than_rounding(full_well_e: float, used: bool) -> None:
     made, camera, sensor = scene(corners=np.zeros((0, 4, 3))), photo(), Sensor(full_well_e=full_well_e)
     decided = decide_effects(made, [camera], RenderSettings(), CameraModel(sensor=sensor))[NOISE]
-    settings = RenderSettings(wishes={VIGNETTING: "off"})
+    settings = RenderSettings(effects={VIGNETTING: "off"})
     taken = Renderer(made, settings).render(camera, seed=3)
     noise = developed(taken, sensor=sensor).astype(float) - grey_levels(np.array(0.18))
     # Rounding adds the variance of one twelfth.
@@ -222,17 +222,17 @@ def test_bundled_scenes_are_near_or_far_as_they_say(name: str, near: bool) -> No
 
 def test_the_user_overrules_scenes_and_moves_tolerances() -> None:
     made, camera = scene(board()), photo()
-    wishes = RenderSettings(wishes={TILT: "on", NEAR_FIELD: "off"})
-    decided = decide_effects(made, [camera], wishes)
+    chosen = RenderSettings(effects={TILT: "on", NEAR_FIELD: "off"})
+    decided = decide_effects(made, [camera], chosen)
     assert tuple(decided) == EFFECTS
     assert (decided[TILT].on, decided[TILT].decided_by) == (True, "user")
     assert (decided[NEAR_FIELD].on, decided[NEAR_FIELD].decided_by) == (False, "user")
-    settings = wishes.decided(decided.values())
+    settings = chosen.decided(decided.values())
     assert all(settings.is_on(name) == decided[name].on for name in EFFECTS)
     patient = decide_effects(made, [camera], RenderSettings(tolerance=1e6))
     assert not any(d.on for d in patient.values())
     with pytest.raises(InputError, match="at least one"):
-        decide_effects(made, [], wishes)
+        decide_effects(made, [], chosen)
 
 
 def test_without_glass_in_sight_no_effect_of_glass_is_on() -> None:

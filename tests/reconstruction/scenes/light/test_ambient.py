@@ -128,7 +128,7 @@ def changed(made: Scene, view: PosedPhoto) -> float:
     """What the switch changes in a picture, root mean square in grey levels."""
     silent = {VIGNETTING: "off", NOISE: "off"}
     on, off = (
-        Renderer(made, RenderSettings(samples=1, wishes={**silent, SKY_OCCLUSION: setting})).render(view)  # type: ignore[dict-item]
+        Renderer(made, RenderSettings(samples=1, effects={**silent, SKY_OCCLUSION: setting})).render(view)  # type: ignore[dict-item]
         for setting in ("on", "off")
     )
     exposure = metered_exposure(on)

@@ -99,9 +99,9 @@ def test_what_stands_before_the_sun_hides_its_mirror_image(near_field: str) -> N
     made = scene(ground(), sky=BEHIND)
     wall = Body("wall", Layer.NEAR, box_mesh(np.array([-9.0, -31.0, 0.0]), np.array([3.0, -30.0, 40.0])))
     camera = photo(heading_deg=-4.0, pitch_deg=9.0, width_px=64, height_px=48, focal_px=300.0)
-    wishes = {"near-field reflection": near_field}
+    effects = {"near-field reflection": near_field}
     free, hidden = (
-        Renderer(one, RenderSettings(samples=1, wishes=wishes, environment_rows=128)).render(camera).linear.max()
+        Renderer(one, RenderSettings(samples=1, effects=effects, environment_rows=128)).render(camera).linear.max()
         for one in (made, replace(made, bodies=(*made.bodies, wall)))
     )
     assert free > 1000.0
@@ -126,7 +126,7 @@ def test_no_sun_is_mirrored_where_there_is_none(sky: Sky, position: tuple[float,
 def test_a_sun_in_the_picture_makes_it_neither_black_nor_grey() -> None:
     made = scene(ground(), corners=facing_south(), sky=replace(Sky(), sun_heading_deg=10.0, sun_elevation_deg=30.0))
     camera = photo((0.0, -20.0, 10.0), 0.0, 15.0, width_px=64, height_px=48, focal_px=60.0)
-    settings = [RenderSettings(samples=1, wishes={SUN_GLARE: setting}) for setting in ("on", "off")]
+    settings = [RenderSettings(samples=1, effects={SUN_GLARE: setting}) for setting in ("on", "off")]
     with_sun, without = (Renderer(made, one).render(camera) for one in settings)
     assert with_sun.linear.max() > 1000.0 > without.linear.max()
     assert metered_exposure(with_sun) == pytest.approx(metered_exposure(without), rel=0.1)

@@ -22,7 +22,7 @@ FROM_NORTH = Sky(
 )
 """Light on what faces the panes; all else is black."""
 
-PLAIN = RenderSettings(wishes={"shadow": "off", "sky occlusion": "off"})
+PLAIN = RenderSettings(effects={"shadow": "off", "sky occlusion": "off"})
 SMALL = {"width_px": 128, "height_px": 24, "focal_px": 300.0}
 DIRECT_M, MIRRORED_M = 10.0, 30.0
 """From the camera to the board, and to its mirror image."""
@@ -96,7 +96,7 @@ def test_light_is_kept(moved_m: float) -> None:
 def test_a_camera_that_is_held_still_costs_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     still = taken(0.0, 0.0)
     monkeypatch.setattr(Renderer, "_blur", None)
-    off = taken(0.0, 0.3, replace(PLAIN, wishes={**PLAIN.wishes, MOTION_BLUR: "off"}))
+    off = taken(0.0, 0.3, replace(PLAIN, effects={**PLAIN.effects, MOTION_BLUR: "off"}))
     without = Renderer(half_board(), PLAIN).render(photo(heading_deg=0.0, **SMALL))
     for other in (off, without):
         assert (other.linear == still.linear).all()

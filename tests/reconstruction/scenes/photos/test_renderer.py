@@ -76,7 +76,7 @@ def test_tilted_and_bowed_panes_mirror_by_the_normal_of_each_point(
         scene(board(texture=ramp(RAMP_M))), tilts_rad=np.array([tilt], float), bows_per_m=np.array([bow], float)
     )
     camera = photo((-1.0, -8.0, 9.0), 6.0, 5.0)
-    taken = Renderer(made, RenderSettings(samples=1, wishes={"sky occlusion": "off"})).render(camera)
+    taken = Renderer(made, RenderSettings(samples=1, effects={"sky occlusion": "off"})).render(camera)
     rows, columns = np.nonzero(taken.is_glass)
     origins, d = camera.rays(np.column_stack([columns, rows]) + 0.5)
     p = origins
@@ -220,7 +220,7 @@ def test_a_lens_bends_the_picture_unless_that_is_switched_off() -> None:
     edge = bent.pixels(np.array([[-4.0, 0.0, 10.0]]))[0]
     taken = Renderer(made, RenderSettings(samples=1)).render(bent)
     assert abs(np.flatnonzero(taken.is_glass[int(edge[1])])[0] - edge[0]) <= 0.5
-    off = Renderer(made, RenderSettings(samples=1, wishes={"lens distortion": "off"})).render(bent)
+    off = Renderer(made, RenderSettings(samples=1, effects={"lens distortion": "off"})).render(bent)
     assert np.array_equal(off.linear, take(made).linear)
     assert not np.array_equal(off.linear, taken.linear)
 
@@ -228,7 +228,7 @@ def test_a_lens_bends_the_picture_unless_that_is_switched_off() -> None:
 @pytest.mark.parametrize(
     ("wrong", "said"),
     [
-        ({"wishes": {"fog": "on"}}, "no effect 'fog'"),
+        ({"effects": {"fog": "on"}}, "no effect 'fog'"),
         ({"samples": 0}, "samples"),
         ({"tolerance": 0.0}, "tolerance"),
         ({"environment_rows": 1}, "environment_rows"),
@@ -241,7 +241,7 @@ def test_settings_that_make_no_sense_are_refused(wrong: dict[str, object], said:
 
 def test_a_scene_without_anything_is_sky() -> None:
     nothing: NDArray[np.float64] = np.zeros((0, 4, 3))
-    taken = Renderer(scene(corners=nothing), RenderSettings(wishes={"near-field reflection": "off"})).render(
+    taken = Renderer(scene(corners=nothing), RenderSettings(effects={"near-field reflection": "off"})).render(
         replace(photo(), intrinsics=Intrinsics(1, 1, 10.0, 10.0, 0.5, 0.5))
     )
     assert np.allclose(taken.linear, 0.5)

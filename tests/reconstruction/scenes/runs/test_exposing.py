@@ -41,7 +41,7 @@ def two(first_deg: float = 90.0, second_deg: float = -90.0) -> tuple[PosedPhoto,
 def job(
     made: Scene, camera_model: CameraModel = METERED, setting: EffectSetting = "on", exposure_s: float = 0.002
 ) -> PhotoJob:
-    settings = RenderSettings(wishes={EXPOSURE: setting})
+    settings = RenderSettings(effects={EXPOSURE: setting})
     return PhotoJob(made, two(), settings, {}, camera_model=camera_model, moments=(Moment(exposure_s=exposure_s),) * 2)
 
 
