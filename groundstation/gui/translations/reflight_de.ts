@@ -5852,6 +5852,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>&apos;{0}&apos; ist zweimal angegeben</translation>
     </message>
     <message>
+        <source>&apos;{0}&apos; stands in line {1} already</source>
+        <translation>&apos;{0}&apos; steht schon in Zeile {1}</translation>
+    </message>
+    <message>
         <source>&apos;{0}&apos; wins with {1} of what can be covered, after {2} ({3} views)</source>
         <translation>&apos;{0}&apos; gewinnt mit {1} des Möglichen, nach {2} ({3} Aufnahmen)</translation>
     </message>
@@ -5924,6 +5928,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>, {0} davon behalten</translation>
     </message>
     <message>
+        <source>, {0} of them without a grid</source>
+        <translation>, {0} davon ohne Raster</translation>
+    </message>
+    <message>
         <source>, {0} s left</source>
         <translation>, noch {0} s</translation>
     </message>
@@ -5990,6 +5998,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>A folder with splats and panels in tiles, placed on Earth, as CesiumJS shows them.</source>
         <translation>Ein Ordner mit Splats und Scheiben in Kacheln, auf der Erde verortet, wie CesiumJS sie zeigt.</translation>
+    </message>
+    <message>
+        <source>ArduPilot, dataflash log</source>
+        <translation>ArduPilot, Dataflash-Log</translation>
     </message>
     <message>
         <source>COLMAP model: the rational distortion of camera {0} is {1} px from the nearest polynomial; expected at most {2} px; undistort the images in COLMAP (image_undistorter)</source>
@@ -6124,8 +6136,20 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>ein Prozess beim Rendern endete von selbst, vielleicht aus Mangel an Speicher; fertige Fotos bleiben in {0}: noch einmal mit weniger Prozessen (--jobs 1) oder kleineren Bildern (--width) starten</translation>
     </message>
     <message>
+        <source>a radius of {0} m bends lines of the grid by up to {1} px</source>
+        <translation>ein Radius von {0} m biegt Linien des Rasters um bis zu {1} px</translation>
+    </message>
+    <message>
         <source>a site alone has no viewpoints to fly to; name a plan as well</source>
         <translation>ein Standort allein hat keine Aufnahmepunkte zum Anfliegen; auch einen Plan nennen</translation>
+    </message>
+    <message>
+        <source>a time</source>
+        <translation>eine Zeit</translation>
+    </message>
+    <message>
+        <source>a worker could not render it: {0}</source>
+        <translation>ein Worker konnte es nicht rendern: {0}</translation>
     </message>
     <message>
         <source>a {0} has no field &apos;{1}&apos;; known are {2}</source>
@@ -6154,6 +6178,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>an aircraft that leaves its mission returns {0} m above take-off, where {1} m would do: DJI&apos;s remote controllers take no less</source>
         <translation>ein Fluggerät, das seine Mission verlässt, kehrt {0} m über dem Startplatz zurück, wo {1} m genügen würden: weniger nehmen DJIs Fernsteuerungen nicht an</translation>
+    </message>
+    <message>
+        <source>an unknown camera</source>
+        <translation>einer unbekannten Kamera</translation>
     </message>
     <message>
         <source>argument %(argument_name)s: %(message)s</source>
@@ -6202,6 +6230,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>cannot be written; check the folder, or that no other program holds the file</source>
         <translation>nicht zu schreiben; den Ordner prüfen, und ob ein anderes Programm die Datei offen hält</translation>
+    </message>
+    <message>
+        <source>cannot run it ({0})</source>
+        <translation>kann es nicht ausführen ({0})</translation>
     </message>
     <message>
         <source>certificate</source>
@@ -6286,6 +6318,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>endet bei Byte {0} mitten in einem Eintrag; die Datei neu schreiben</translation>
     </message>
     <message>
+        <source>expected &apos;KEYWORD : value&apos; or a section, found &apos;{0}&apos;</source>
+        <translation>erwartet: &apos;KEYWORD : Wert&apos; oder ein Abschnitt, gefunden: &apos;{0}&apos;</translation>
+    </message>
+    <message>
         <source>expected 0, 9, 24 or 45 columns f_rest_0 and so on, found {0}</source>
         <translation>erwartet werden 0, 9, 24 oder 45 Spalten f_rest_0 und so weiter, gefunden {0}</translation>
     </message>
@@ -6300,6 +6336,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>expected 2 to {0}, got {1}</source>
         <translation>erwartet wird 2 bis {0}, angegeben {1}</translation>
+    </message>
+    <message>
+        <source>expected TSP, ATSP or CVRP, found &apos;{0}&apos;</source>
+        <translation>erwartet: TSP, ATSP oder CVRP, gefunden: &apos;{0}&apos;</translation>
     </message>
     <message>
         <source>expected UTF-8, found other bytes; save it as CSV UTF-8</source>
@@ -6410,6 +6450,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>erwartet wird eine ganze Zahl ab 1, angegeben &apos;{0}&apos;</translation>
     </message>
     <message>
+        <source>expected a whole number, found &apos;{0}&apos;</source>
+        <translation>erwartet: eine ganze Zahl, gefunden: &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>expected a whole number, found {0}</source>
+        <translation>erwartet: eine ganze Zahl, gefunden: {0}</translation>
+    </message>
+    <message>
         <source>expected a whole number, got &apos;{0}&apos;</source>
         <translation>erwartet wird eine ganze Zahl, gefunden &apos;{0}&apos;</translation>
     </message>
@@ -6438,6 +6486,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>erwartet wird mindestens ein Wert</translation>
     </message>
     <message>
+        <source>expected at least one depot</source>
+        <translation>mindestens ein Depot wird erwartet</translation>
+    </message>
+    <message>
         <source>expected at most one argument</source>
         <translation>erwartet wird höchstens ein Wert</translation>
     </message>
@@ -6448,6 +6500,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>expected columns x0, y0, x1, y1 of numbers, found {0}</source>
         <translation>erwartet werden Spalten x0, y0, x1, y1 mit Zahlen, gefunden {0}</translation>
+    </message>
+    <message>
+        <source>expected distinct point numbers, {0} occurs twice</source>
+        <translation>erwartet: lauter verschiedene Punktnummern, {0} kommt zweimal vor</translation>
+    </message>
+    <message>
+        <source>expected finite numbers, at most {0}</source>
+        <translation>erwartet: endliche Zahlen, höchstens {0}</translation>
     </message>
     <message>
         <source>expected finite numbers, found &apos;{0}&apos;</source>
@@ -6474,12 +6534,28 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>erwartet: Breite, Länge und Höhe wie 48.774,2.302,90, gefunden: &apos;{0}&apos;</translation>
     </message>
     <message>
+        <source>expected less than max_alpha, {0}, got {1}</source>
+        <translation>erwartet: weniger als max_alpha, {0}, gefunden: {1}</translation>
+    </message>
+    <message>
         <source>expected more than 0, got {0}</source>
         <translation>erwartet wird mehr als 0, angegeben {0}</translation>
     </message>
     <message>
         <source>expected named tensors, found {0}; name a file of weights</source>
         <translation>erwartet werden benannte Tensoren, gefunden {0}; eine Datei mit Gewichten nennen</translation>
+    </message>
+    <message>
+        <source>expected no more than {0}, {1}, got {2}</source>
+        <translation>erwartet: nicht mehr als {0}, {1}, gefunden: {2}</translation>
+    </message>
+    <message>
+        <source>expected no negative weight, found {0}</source>
+        <translation>erwartet: kein negatives Gewicht, gefunden: {0}</translation>
+    </message>
+    <message>
+        <source>expected numbers, found &apos;{0}&apos;</source>
+        <translation>erwartet: Zahlen, gefunden: &apos;{0}&apos;</translation>
     </message>
     <message>
         <source>expected objects with labelname and two x and y each, shares from 0 to 1, found: {0}</source>
@@ -6498,6 +6574,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>erwartet wird ein Kanal mit Scheibennummern, gefunden ein farbiges Bild</translation>
     </message>
     <message>
+        <source>expected one of {0}, found &apos;{1}&apos;</source>
+        <translation>erwartet: eines von {0}, gefunden: &apos;{1}&apos;</translation>
+    </message>
+    <message>
         <source>expected one of {0}, got &apos;{1}&apos;</source>
         <translation>erwartet wird eines von {0}, angegeben &apos;{1}&apos;</translation>
     </message>
@@ -6512,6 +6592,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>expected places such as [[0.1, 0.2], ...], got &apos;{0}&apos;</source>
         <translation>erwartet werden Stellen wie [[0.1, 0.2], ...], gefunden &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>expected point numbers, found none</source>
+        <translation>erwartet: Punktnummern, gefunden: keine</translation>
     </message>
     <message>
         <source>expected the folder of a model; &apos;records FOLDER make --objects SITE&apos; makes one for records alone</source>
@@ -6562,6 +6646,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>erwartet werden {0} Zellen mit &apos;{1}&apos; dazwischen, gefunden {2}</translation>
     </message>
     <message>
+        <source>expected {0} numbers ({1} of {2} points), found {3}</source>
+        <translation>erwartet: {0} Zahlen ({1} von {2} Punkten), gefunden: {3}</translation>
+    </message>
+    <message>
         <source>expected {0} numbers for {1}, got {2}</source>
         <translation>erwartet werden {0} Zahlen für {1}, gefunden {2}</translation>
     </message>
@@ -6582,8 +6670,16 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>erwartet werden {0} bis {1} Pixel, angegeben {2}</translation>
     </message>
     <message>
+        <source>expected {0} to {1}, found {2}</source>
+        <translation>erwartet: {0} bis {1}, gefunden: {2}</translation>
+    </message>
+    <message>
         <source>expected {0} to {1}, got {2}</source>
         <translation>erwartet wird {0} bis {1}, angegeben {2}</translation>
+    </message>
+    <message>
+        <source>expected {0} x {1} numbers ({2}), found {3}</source>
+        <translation>erwartet: {0} x {1} Zahlen ({2}), gefunden: {3}</translation>
     </message>
     <message>
         <source>expected {0}, got &apos;{1}&apos;</source>
@@ -6670,6 +6766,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Richtung</translation>
     </message>
     <message>
+        <source>heights are counted from {0}; counted from {1} they would be {2} m</source>
+        <translation>Höhen zählen ab {0}; ab {1} gezählt wären sie {2} m</translation>
+    </message>
+    <message>
         <source>holds a COLMAP model already ({0}); name an empty folder</source>
         <translation>enthält schon ein COLMAP-Modell ({0}); einen leeren Ordner nennen</translation>
     </message>
@@ -6704,6 +6804,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>holds {0} {1} twice, by id or by name</source>
         <translation>enthält {0} {1} zweimal, nach Nummer oder Name</translation>
+    </message>
+    <message>
+        <source>how far {0} photos disagree on their lines{1}</source>
+        <translation>wie weit {0} Fotos bei ihren Linien auseinanderliegen{1}</translation>
     </message>
     <message>
         <source>ignored explicit argument %r</source>
@@ -6794,6 +6898,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>sein Inhalt ist kein Fluglog; erwartet wird Telemetrie (.tlog), ArduPilot (.BIN, .log) oder PX4 (.ulg)</translation>
     </message>
     <message>
+        <source>its curvature is {0} standard deviations, which is noise</source>
+        <translation>seine Krümmung ist {0} Standardabweichungen groß, also Rauschen</translation>
+    </message>
+    <message>
         <source>its description is not as it was written ({0})</source>
         <translation>seine Beschreibung ist nicht, wie sie geschrieben wurde ({0})</translation>
     </message>
@@ -6880,6 +6988,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>mean</source>
         <translation>Mittel</translation>
+    </message>
+    <message>
+        <source>method: expected {0}, got &apos;{1}&apos;</source>
+        <translation>Methode: erwartet {0}, gefunden &apos;{1}&apos;</translation>
     </message>
     <message>
         <source>missed</source>
@@ -6982,6 +7094,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>keines der {0} Bilder des COLMAP-Modells ist ein Foto in {1}; sind die Namen im Modell die Pfade unter dem Ordner der Fotos?</translation>
     </message>
     <message>
+        <source>none of the {0} objects has its GlobalId in this file</source>
+        <translation>keines der {0} Objekte hat seine GlobalId in dieser Datei</translation>
+    </message>
+    <message>
         <source>none of the {0} views to be scored has {1} pixels that lie whole on a panel; take larger or more photos</source>
         <translation>keine der {0} zu bewertenden Ansichten hat {1} Pixel, die ganz auf einer Scheibe liegen; größere oder mehr Fotos nehmen</translation>
     </message>
@@ -6996,6 +7112,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>not ready to fly: see the errors above</source>
         <translation>nicht flugbereit: siehe die Fehler oben</translation>
+    </message>
+    <message>
+        <source>not supported; expected an instance without fixed edges</source>
+        <translation>nicht unterstützt; erwartet wird eine Aufgabe ohne feste Kanten</translation>
     </message>
     <message>
         <source>not written</source>
@@ -7034,8 +7154,16 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>nichts sagt, wo auf der Erde das ist: geben Sie --origin an, bevor geflogen wird</translation>
     </message>
     <message>
+        <source>nothing stands between the photos and the panels</source>
+        <translation>nichts steht zwischen den Fotos und den Scheiben</translation>
+    </message>
+    <message>
         <source>nothing to take back</source>
         <translation>nichts zurückzunehmen</translation>
+    </message>
+    <message>
+        <source>nothing was taken over: {0}</source>
+        <translation>nichts wurde übernommen: {0}</translation>
     </message>
     <message>
         <source>nothing yet</source>
@@ -7044,6 +7172,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>now in format &apos;{0}{1}&apos; (see project.json)</source>
         <translation>jetzt im Format &apos;{0}{1}&apos; (siehe project.json)</translation>
+    </message>
+    <message>
+        <source>number and demand a point</source>
+        <translation>Nummer und Bedarf je Punkt</translation>
+    </message>
+    <message>
+        <source>number and {0} coordinates a point</source>
+        <translation>Nummer und {0} Koordinaten je Punkt</translation>
     </message>
     <message>
         <source>of all sections</source>
@@ -7106,6 +7242,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Scheiben des Fotos &apos;{0}&apos; sind gegeben, das keines der {1} Fotos mit einer Pose ist; die Datei des Fotos im Feld &apos;image&apos; nennen oder die Scheibendatei aus dem Ordner nehmen</translation>
     </message>
     <message>
+        <source>parts of the log are damaged and were skipped</source>
+        <translation>Teile des Logs sind beschädigt und wurden übersprungen</translation>
+    </message>
+    <message>
         <source>passphrase: </source>
         <translation>Passphrase: </translation>
     </message>
@@ -7116,6 +7256,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>photos</source>
         <translation>Fotos</translation>
+    </message>
+    <message>
+        <source>photos of {0}</source>
+        <translation>Fotos von {0}</translation>
     </message>
     <message>
         <source>photos: {0} of {1} views</source>
@@ -7202,6 +7346,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Lauf</translation>
     </message>
     <message>
+        <source>runs another version of it</source>
+        <translation>führt eine andere Version davon aus</translation>
+    </message>
+    <message>
         <source>s a photo</source>
         <translation>s je Foto</translation>
     </message>
@@ -7220,6 +7368,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>says that it has {0} points; at most {1} are read</source>
         <translation>gibt {0} Punkte an; höchstens {1} werden gelesen</translation>
+    </message>
+    <message>
+        <source>scheduler and workers need the same program and libraries as here; {0} {1}: install it there</source>
+        <translation>Scheduler und Worker brauchen dasselbe Programm und dieselben Bibliotheken wie hier; {0} {1}: dort installieren</translation>
     </message>
     <message>
         <source>sections covered</source>
@@ -7254,6 +7406,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>simuliertes {0}</translation>
     </message>
     <message>
+        <source>simulation, {0} times as fast</source>
+        <translation>Simulation, {0}-mal so schnell</translation>
+    </message>
+    <message>
         <source>site &apos;{0}&apos;, {1}</source>
         <translation>Standort &apos;{0}&apos;, {1}</translation>
     </message>
@@ -7278,6 +7434,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>kleinster Abstand</translation>
     </message>
     <message>
+        <source>something stands in front of panels in {0} of {1} photos looked at</source>
+        <translation>auf {0} von {1} betrachteten Fotos steht etwas vor Scheiben</translation>
+    </message>
+    <message>
         <source>sound</source>
         <translation>unbeschädigt</translation>
     </message>
@@ -7296,6 +7456,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>steps</source>
         <translation>Schritte</translation>
+    </message>
+    <message>
+        <source>take-off</source>
+        <translation>Start</translation>
     </message>
     <message>
         <source>takeOffRefPoint {0},{1} is not on the globe and is not used</source>
@@ -7330,6 +7494,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>das Fluggerät flog nicht, während dieses Log geschrieben wurde; das Log des Fluges nehmen</translation>
     </message>
     <message>
+        <source>the aircraft flies at {0} m/s, which is all that DJI&apos;s format takes, and not at the plan&apos;s {1} m/s: the flight takes longer than planned; plan with the lower speed</source>
+        <translation>das Fluggerät fliegt mit {0} m/s, mehr lässt DJIs Format nicht zu, und nicht mit den {1} m/s des Plans: der Flug dauert länger als geplant; mit der kleineren Geschwindigkeit planen</translation>
+    </message>
+    <message>
         <source>the annotation has {0} x {1} pixels, its photo {2} x {3}</source>
         <translation>die Annotation hat {0} x {1} Pixel, ihr Foto {2} x {3}</translation>
     </message>
@@ -7340,6 +7508,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the building without panels</source>
         <translation>das Gebäude ohne Scheiben</translation>
+    </message>
+    <message>
+        <source>the camera says that photo {0} failed</source>
+        <translation>die Kamera meldet, dass Foto {0} nicht gelang</translation>
     </message>
     <message>
         <source>the cluster does not answer any more ({0}); complete photos stay in {1}: run it again to go on</source>
@@ -7370,16 +7542,48 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>der Boden fällt um {0} Grad; Höhen zählen vom Fuß des Gebäudes</translation>
     </message>
     <message>
+        <source>the ground station disconnected; the aircraft went on by itself</source>
+        <translation>die Bodenstation hat die Verbindung getrennt; das Fluggerät flog allein weiter</translation>
+    </message>
+    <message>
         <source>the image name at byte {0} has no end; the file is damaged</source>
         <translation>der Bildname bei Byte {0} hat kein Ende; die Datei ist beschädigt</translation>
+    </message>
+    <message>
+        <source>the lens moves pixels by up to {0} px</source>
+        <translation>das Objektiv verschiebt Pixel um bis zu {0} px</translation>
     </message>
     <message>
         <source>the link to the simulated vehicle is closed</source>
         <translation>der Link zum simulierten Fluggerät ist geschlossen</translation>
     </message>
     <message>
+        <source>the log has no fused positions (POS); those of the GNSS receiver are taken</source>
+        <translation>das Log hat keine fusionierten Positionen (POS); die des GNSS-Empfängers werden genommen</translation>
+    </message>
+    <message>
+        <source>the log has no fused positions; those of the GNSS receiver are taken</source>
+        <translation>das Log hat keine fusionierten Positionen; die des GNSS-Empfängers werden genommen</translation>
+    </message>
+    <message>
+        <source>the log has no heights above take-off; those above sea level are taken</source>
+        <translation>das Log hat keine Höhen über Start; die über Meer werden genommen</translation>
+    </message>
+    <message>
+        <source>the log has {0} gaps, {1} s together</source>
+        <translation>das Log hat {0} Lücken, zusammen {1} s</translation>
+    </message>
+    <message>
         <source>the log is empty; copy it from the vehicle again</source>
         <translation>das Log ist leer; noch einmal vom Fluggerät kopieren</translation>
+    </message>
+    <message>
+        <source>the log says nothing for {0} s</source>
+        <translation>das Log sagt {0} s lang nichts</translation>
+    </message>
+    <message>
+        <source>the log tells when photos were triggered, not that they were taken</source>
+        <translation>das Log sagt, wann Fotos ausgelöst wurden, nicht dass sie aufgenommen wurden</translation>
     </message>
     <message>
         <source>the lower bound</source>
@@ -7400,6 +7604,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the output cannot be written ({0})</source>
         <translation>die Ausgabe ist nicht zu schreiben ({0})</translation>
+    </message>
+    <message>
+        <source>the photos are straight</source>
+        <translation>die Fotos sind unverzeichnet</translation>
     </message>
     <message>
         <source>the photos do not say where they were taken, so the COLMAP model counts as one in the frame of the site</source>
@@ -7498,8 +7706,40 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>die Höhen des Templates sind {0}, die Wayline wird aber in {1} geflogen; hier zählt die Wayline, ein Programm, das vom Template ausgeht, flöge woanders</translation>
     </message>
     <message>
+        <source>the time since boot began again</source>
+        <translation>die Zeit seit dem Einschalten begann von vorn</translation>
+    </message>
+    <message>
         <source>the walls do not close to blocks; each got a depth of {0} m</source>
         <translation>die Wände schließen sich nicht zu Baukörpern; jede bekam eine Tiefe von {0} m</translation>
+    </message>
+    <message>
+        <source>the weights {0} and {1} between {2} and {3} differ; expected ATSP</source>
+        <translation>die Gewichte {0} und {1} zwischen {2} und {3} sind verschieden; erwartet: ATSP</translation>
+    </message>
+    <message>
+        <source>the window spans {0} degrees of the cylinder</source>
+        <translation>das Fenster umspannt {0} Grad des Zylinders</translation>
+    </message>
+    <message>
+        <source>there are no records to write</source>
+        <translation>es gibt keine Einträge zu schreiben</translation>
+    </message>
+    <message>
+        <source>there is no point {0}</source>
+        <translation>es gibt keinen Punkt {0}</translation>
+    </message>
+    <message>
+        <source>there is one photo</source>
+        <translation>es gibt ein Foto</translation>
+    </message>
+    <message>
+        <source>this folder cannot be made or written into ({0}); name another</source>
+        <translation>dieser Ordner kann nicht angelegt oder beschrieben werden ({0}); einen anderen nennen</translation>
+    </message>
+    <message>
+        <source>time goes back in the log, by {0} s at most; what it says was put in order</source>
+        <translation>im Log geht die Zeit zurück, um höchstens {0} s; was es sagt, wurde geordnet</translation>
     </message>
     <message>
         <source>time in the air</source>
@@ -7522,6 +7762,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Flugweg</translation>
     </message>
     <message>
+        <source>without an element in this file, so not written: {0}</source>
+        <translation>ohne Element in dieser Datei, also nicht geschrieben: {0}</translation>
+    </message>
+    <message>
         <source>writing the coarse model</source>
         <translation>das Grobmodell wird geschrieben</translation>
     </message>
@@ -7534,6 +7778,30 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>{0} % der Pixel sind fast weiß</translation>
     </message>
     <message>
+        <source>{0} bytes of the log are no messages and were skipped</source>
+        <translation>{0} Bytes des Logs sind keine Nachrichten und wurden übersprungen</translation>
+    </message>
+    <message>
+        <source>{0} bytes of the log are no records and were skipped</source>
+        <translation>{0} Bytes des Logs sind keine Datensätze und wurden übersprungen</translation>
+    </message>
+    <message>
+        <source>{0} is left out: the format {1} has no use for it</source>
+        <translation>{0} entfällt: das Format {1} kann damit nichts anfangen</translation>
+    </message>
+    <message>
+        <source>{0} is {1}; the plan was made for {2}</source>
+        <translation>{0} ist {1}; der Plan wurde für {2} gemacht</translation>
+    </message>
+    <message>
+        <source>{0} lines of the log make no sense and were skipped</source>
+        <translation>{0} Zeilen des Logs ergeben keinen Sinn und wurden übersprungen</translation>
+    </message>
+    <message>
+        <source>{0} more values were left out</source>
+        <translation>{0} weitere Werte wurden ausgelassen</translation>
+    </message>
+    <message>
         <source>{0} of {1} found their place, {2} points, {3} of {4} pairs matched, image points off by {5} px</source>
         <translation>{0} von {1} haben ihren Platz gefunden, {2} Punkte, {3} von {4} Paaren verglichen, Bildpunkte liegen um {5} px daneben</translation>
     </message>
@@ -7542,12 +7810,32 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>{0} von {1} Fotos sagen ihre Brennweite nicht: sie wird mit dem Modell gefunden</translation>
     </message>
     <message>
+        <source>{0} of {1} photos do not say where the camera looked, and are left out; name the plan that was flown</source>
+        <translation>{0} von {1} Fotos sagen nicht, wohin die Kamera sah, und werden ausgelassen; den geflogenen Plan nennen</translation>
+    </message>
+    <message>
+        <source>{0} of {1} photos do not say {2} and are left out; use the files as the camera wrote them</source>
+        <translation>{0} von {1} Fotos nennen nicht {2} und werden ausgelassen; die Dateien so nehmen, wie die Kamera sie schrieb</translation>
+    </message>
+    <message>
         <source>{0} of {1} photos found no place in the model, the first {2}</source>
         <translation>{0} von {1} Fotos fanden keinen Platz im Modell, das erste: {2}</translation>
     </message>
     <message>
         <source>{0} of {1} sides of the building were not seen and are guessed, {2} % of its walls; fly around it before you plan flights there</source>
         <translation>{0} von {1} Seiten des Gebäudes waren nicht zu sehen und sind geraten, {2} % seiner Wände; umfliegen Sie es, bevor Sie dort Flüge planen</translation>
+    </message>
+    <message>
+        <source>{0} of {1} views stand inside buildings opposite or trees, which the scene adds to the site; plan over the {2} beside the photos, which has them, or give the site a look with a wider street</source>
+        <translation>{0} von {1} Standpunkten liegen in Gebäuden gegenüber oder in Bäumen, die die Szene dem Standort hinzufügt; über {2} neben den Fotos planen, wo sie enthalten sind, oder dem Standort ein Aussehen mit breiterer Straße geben</translation>
+    </message>
+    <message>
+        <source>{0} photos were reported</source>
+        <translation>{0} Fotos wurden gemeldet</translation>
+    </message>
+    <message>
+        <source>{0} thermal photos are left out; they were taken together with the others</source>
+        <translation>{0} Wärmebilder werden ausgelassen; sie entstanden zusammen mit den anderen</translation>
     </message>
     <message>
         <source>{0} unseen view</source>
@@ -7560,6 +7848,34 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>{0} walls, {1} roofs; {2} m2 of walls, of them {3} m2 holes that were closed and {4} m2 guessed</source>
         <translation>{0} Wände, {1} Dächer; {2} m2 Wandfläche, davon {3} m2 geschlossene Lücken und {4} m2 geraten</translation>
+    </message>
+    <message>
+        <source>{0} was {1} and is {2} now</source>
+        <translation>{0} war {1} und ist jetzt {2}</translation>
+    </message>
+    <message>
+        <source>{0} workers ended while they rendered it, perhaps for want of memory</source>
+        <translation>{0} Worker endeten beim Rendern, vielleicht aus Mangel an Speicher</translation>
+    </message>
+    <message>
+        <source>{0}, telemetry log</source>
+        <translation>{0}, Telemetrie-Log</translation>
+    </message>
+    <message>
+        <source>{0}: facades of unseen views</source>
+        <translation>{0}: Fassaden ungesehener Standpunkte</translation>
+    </message>
+    <message>
+        <source>{0}: other programs look for {1} files with names that end in {2}</source>
+        <translation>{0}: andere Programme suchen {1}-Dateien mit Namen, die auf {2} enden</translation>
+    </message>
+    <message>
+        <source>{0}: {1} items, read back and equal</source>
+        <translation>{0}: {1} Elemente, zurückgelesen und gleich</translation>
+    </message>
+    <message>
+        <source>{0}; what was flown before is in {1}</source>
+        <translation>{0}; was vorher geflogen wurde, steht in {1}</translation>
     </message>
     <message>
         <source>{0}{1} - {2} ({3} {4}, tolerance {5}; costs about {6} s)</source>
