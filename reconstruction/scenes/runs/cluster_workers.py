@@ -148,14 +148,11 @@ def _files(future: Any, name: str, folder: Path) -> dict[str, str]:
         sums, contents = future.result()
         return sums or written(folder, contents)
     error = future.exception()
+    text: str = say("a worker could not render it: {}", repr(error))
     if isinstance(error, KilledWorker):
         text = say("{} workers ended while they rendered it, perhaps for want of memory", error.allowed_failures + 1)
-    else:
-        text = (
-            str(error)
-            if isinstance(error, GroundStationError)
-            else say("a worker could not render it: {}", repr(error))
-        )
+    elif isinstance(error, GroundStationError):
+        text = str(error)
     raise ReconstructionError(about(name, text)) from error
 
 
