@@ -122,7 +122,7 @@ def _difference(scene: str, found: dict[str, float], is_quick: bool) -> Row:
 
 # Made photos with one fault each.
 
-N_VIEWS, WIDTH_PX, FAULT_S = 48, 160, 35.0
+N_VIEWS, WIDTH_PX, FAULT_S = 36, 128, 24.0
 QUICK_N_VIEWS, QUICK_FAULT_WIDTH_PX = 8, 64
 
 GAIN_SPREAD, BALANCE_SPREAD = 0.25, 0.08
@@ -257,8 +257,8 @@ BENCHMARK = Benchmark(
     "Models of a real glass wall",
     "17 real photos of a partly glazed wall (../shared/data/glass/wall), 14 learned from, 3 held out, made smaller to "
     f"{WALL_WIDTH_PX} x {WALL_WIDTH_PX * 4 // 3} pixels. Frames are overexposed, the sky moved between photos, poses "
-    "were fitted to the panels' grid. Usual settings, one thread, as much processor time for each method; facades of "
-    "the views held out. LPIPS is AlexNet's.",
+    f"were fitted to the panels' grid. Usual settings, one thread, {WALL_S:g} s of processor for each method; facades "
+    "of the views held out. LPIPS is AlexNet's.",
     measure_wall,
 )
 
@@ -266,7 +266,7 @@ FAULTS_BENCHMARK = Benchmark(
     "photo-faults",
     "Photos with one fault",
     f"{N_VIEWS} rendered photos of {WIDTH_PX} x {WIDTH_PX * 3 // 4} pixels of the bundled planar scene, and the same "
-    "with one fault each, in the views held out, too. Usual settings, one thread, as much processor time for both; "
-    "facades of the views held out, whose exposure is fitted.",
+    f"with one fault each, in the views held out, too. Usual settings, one thread, {FAULT_S:g} s of processor for "
+    "both; facades of the views held out, whose exposure is fitted.",
     measure_faults,
 )
