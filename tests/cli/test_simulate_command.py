@@ -42,7 +42,7 @@ def test_a_flight_is_reported_and_written(fly, tmp_path):
     assert flight.report.summary.n_taken == 6
 
 
-@pytest.mark.parametrize("autopilot", ["ardupilot", "px4"])
+@pytest.mark.parametrize("autopilot", [slow("ardupilot"), "px4"])
 def test_json_is_one_object_with_what_others_need(fly, autopilot):
     content = fly("--autopilot", autopilot, "--json", "--seed", 7).json
     assert (content["n_taken"], content["n_views"]) == (6, 6)
@@ -148,7 +148,7 @@ def vehicle_at_a_port(pane, autopilot, forgets=(), home_up_m=0.0):
         link.close()
 
 
-@pytest.mark.parametrize("autopilot", list(Autopilot))
+@pytest.mark.parametrize("autopilot", [slow(Autopilot.ARDUPILOT), Autopilot.PX4])
 def test_an_address_of_this_machine_is_no_simulation(fly, pane, tmp_path, autopilot):
     """Routers listen there: only what the vehicle says of itself counts, and nothing is set on any other."""
     forgets = ("SIM_SPEEDUP",) if autopilot is Autopilot.ARDUPILOT else REAL_PX4

@@ -722,7 +722,7 @@ def test_connected_the_form_of_the_vehicle_makes_room_for_the_list_before_take_o
     assert page.connection.kind.isVisible()
 
 
-@pytest.mark.parametrize("autopilot", Autopilot)
+@pytest.mark.parametrize("autopilot", [slow(Autopilot.ARDUPILOT), Autopilot.PX4])
 def test_the_battery_and_the_time_of_a_sortie_agree_from_the_mission_tab_to_the_start(
     application, controller, page, autopilot
 ):
