@@ -119,12 +119,12 @@ def make_buildings(
     plan = _Plan.of(cloud, walls, ground, parameters)
     tops = [_top(cell, plan, walls, roofs, roof_points, cloud, ground) for cell in plan.cells]
     is_building = _labels(plan, walls, tops, ground)
-    blocks = _blocks(plan, tops, is_building)
+    floor = min(ground.z_m, min(wall.bottom_m for wall in walls))
+    blocks = _blocks(plan, tops, is_building, floor)
     notes: tuple[str, ...] = ()
     if not blocks:
         blocks = [(_behind(wall, parameters.depth_m), np.array([0.0, 0.0, wall.top_m])) for wall in walls]
         notes = (say("the walls do not close to blocks; each got a depth of {:g} m", parameters.depth_m),)
-    floor = min(ground.z_m, min(wall.bottom_m for wall in walls))
     meshes = [prism(polygon, floor, top) for polygon, top in blocks]
     corners = np.concatenate([mesh.corners_enu_m for mesh in meshes])
     faces = _faces(blocks, walls, floor)
@@ -426,9 +426,12 @@ def _cut(inside_cost: Array, outside_cost: Array, pairs: Sequence[tuple[int, int
     return label[:n]
 
 
-def _blocks(plan: _Plan, tops: Sequence[Array], is_building: Mask) -> list[tuple[shapely.Polygon, Array]]:
+def _blocks(
+    plan: _Plan, tops: Sequence[Array], is_building: Mask, floor_m: float
+) -> list[tuple[shapely.Polygon, Array]]:
     """Building cells with tops that nearly agree, joined; each with the plane of its top."""
-    chosen = [int(i) for i in np.flatnonzero(is_building)]
+    middles = [np.array([*cell.centroid.coords[0], 1.0]) for cell in plan.cells]
+    chosen = [int(i) for i in np.flatnonzero(is_building) if float(tops[int(i)] @ middles[int(i)]) > floor_m + 1.0]
     flat = [i for i in chosen if not tops[i][:2].any()]
     groups: list[list[int]] = []
     for i in sorted(flat, key=lambda i: tops[i][2]):
@@ -488,7 +491,7 @@ def _faces(blocks: Sequence[tuple[shapely.Polygon, Array]], walls: Sequence[Wall
                 if together.contains(shapely.Point(outside)):
                     continue
                 number, share = _wall_of(a, b, out, walls)
-                high = float(middle @ top[:2] + top[2])
+                high = max(float(middle @ top[:2] + top[2]), floor_m + 0.1)
                 ends = ((float(a[0]), float(a[1])), (float(b[0]), float(b[1])))
                 faces.append(Face(ends, floor_m, high, share, number))
     return tuple(faces)

@@ -162,8 +162,11 @@ def find_ground(points: Array, cell: float) -> Ground:
             z = float(np.median(lowest[near, 2]))
             continue
         found = np.linalg.lstsq(system, lowest[near, 2], rcond=None)[0]
-        steep = float(np.linalg.norm(found[1:]))
-        z, slope = float(found[0]), found[1:] * min(1.0, STEEPEST / max(steep, 1e-12))
+        if float(np.linalg.norm(found[1:])) > STEEPEST:
+            # A flight of steps, or a wall's foot: no ground.
+            z, slope = float(np.median(lowest[near, 2])), np.zeros(2)
+            break
+        z, slope = float(found[0]), np.asarray(found[1:], np.float64)
     on = np.abs(lowest[:, 2] - z - (lowest[:, :2] - middle) @ slope) <= cell
     spread = float(np.sqrt(np.linalg.eigvalsh(np.cov(lowest[on, :2].T))[0])) if on.sum() > 2 else 0.0
     slope_deg = math.degrees(math.atan(float(np.linalg.norm(slope))))

@@ -132,6 +132,7 @@ def request_of(options: argparse.Namespace) -> TrainRequest:
 
 
 def _print(made: TrainedFiles, options: argparse.Namespace) -> None:
+    from groundstation.services.photos.coarse import data_set_of
 
     trained = made.trained
     record = trained.record
@@ -143,7 +144,7 @@ def _print(made: TrainedFiles, options: argparse.Namespace) -> None:
         show(glue("  ", decision))
     tell("  {} in {:.0f} s{}", counted(trained.n_steps, "step"), trained.seconds, _told_quality(trained.quality))
     print_notes(trained.notes, sys.stderr)
-    print_next("score", made.folder, options.dataset)
+    print_next("score", made.folder, data_set_of(options.dataset))
 
 
 def _told_quality(quality: Quality | None) -> str:
