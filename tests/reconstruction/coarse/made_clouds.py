@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 
 from reconstruction.coarse.cloud import Cloud
@@ -36,6 +38,7 @@ def _block(rng, low, high, top, spacing):
     return [*sides, roof]
 
 
+@cache
 def made_cloud(seed: int = 0, glass_m: float = 0.0, mirrored: int = 0, spacing: float = 0.35) -> Cloud:
     """Points of both wings and the ground.
 
