@@ -22,7 +22,7 @@ from reconstruction.light.radiance_grid import GridBox, RadianceGrid
 from reconstruction.light.ray_table import RayTable
 from reconstruction.light.reflective_panels import ReflectivePanels
 from reconstruction.metrics.overlaps import index_image, pixel_overlaps
-from reconstruction.panels.search.segment import segment_rectified
+from reconstruction.panels.segment import segment_rectified
 from reconstruction.photos.quality import sharpness
 from reconstruction.scenes.parameters import NEAR_FIELD, RenderSettings
 from reconstruction.scenes.photos.renderer import Renderer

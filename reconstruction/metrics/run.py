@@ -36,7 +36,8 @@ from reconstruction.panels.rectify.surface import Rectification
 from reconstruction.panels.rectify.view import SurfaceView
 from reconstruction.panels.search.parameters import SegmentationParameters
 from reconstruction.panels.search.record import Segmentation
-from reconstruction.panels.search.segment import segment_image, segment_views
+from reconstruction.panels.search.segment import segment_views
+from reconstruction.panels.segment import segment_image
 from reconstruction.panels.solving.register import registered
 
 Mask = NDArray[np.bool_]

@@ -29,7 +29,7 @@ from reconstruction.metrics.sets import (
 from reconstruction.panels.panels_file import panels_record, write_panels
 from reconstruction.panels.search.parameters import SegmentationParameters
 from reconstruction.panels.search.record import Segmentation
-from reconstruction.panels.search.segment import segment_image
+from reconstruction.panels.segment import segment_image
 from reconstruction.scenes.facades.cases import wide_camera
 from reconstruction.tradeoff.search_tradeoff import (
     MIOU_AXIS,

@@ -17,7 +17,7 @@ from planning.photos.record import PhotoMetadata
 from reconstruction.panels.rectify.view import SurfaceView, surface_view
 from reconstruction.panels.search.parameters import SegmentationParameters
 from reconstruction.panels.search.record import FacadeGrid
-from reconstruction.panels.search.segment import segment_view
+from reconstruction.panels.segment import segment_view
 from reconstruction.panels.solving.record import SolvedFacade, SurfaceLine
 from reconstruction.panels.solving.solve import solve_facade
 from reconstruction.photos.decode import colour_picture

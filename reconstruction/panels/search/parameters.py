@@ -95,6 +95,14 @@ class SegmentationParameters:
     use_spacing: bool = parameter(True)
     use_stillness: bool = parameter(True)
     find_extent: bool = parameter(True)
+    network: EffectSetting = parameter(
+        "auto",
+        "panes by the network in place of lines: where it contradicts them (auto), on or off",
+        choices=(Choice("auto"), Choice("on"), Choice("off")),
+        expected="one of auto, on, off",
+        option="--network",
+        metavar="WHEN",
+    )
     inclined: EffectSetting = parameter("auto", choices=(Choice("auto"), Choice("on"), Choice("off")))
     seed: int = like(PlanParameters, "seed", 0, help="", option="", row="")
 

@@ -106,6 +106,8 @@ class FacadeGrid:
         Profiles that cut cells of the grid.
     decision
         Why inclined lines were looked for, or not; None where there is no grid.
+    network
+        Why its panels are those of the network for panes, or not; None where it was not asked.
     """
 
     id: str
@@ -116,6 +118,7 @@ class FacadeGrid:
     missing: tuple[tuple[int, int], ...] = ()
     inclined: tuple[InclinedLine, ...] = ()
     decision: Decision | None = None
+    network: Decision | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)

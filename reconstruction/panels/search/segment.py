@@ -1,11 +1,10 @@
-"""From a photo to its panels: rectify, find the grid, take the cells back into the photo."""
+"""From a rectified view to panels by lines: find the grid, measure it finer, take its cells back into the photo."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
-from typing import Any
 
 import cv2
 import numpy as np
@@ -15,7 +14,6 @@ from planning.base.errors import InfeasibleError, InputError
 from planning.base.jit import run_parallel
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
-from planning.site.importing.facades import facade_name
 from reconstruction.panels.rectify.surface import Rectification
 from reconstruction.panels.rectify.view import vanishing_view, warp
 from reconstruction.panels.search.cells import facade_grid
@@ -33,14 +31,14 @@ from reconstruction.panels.search.edges import (
 from reconstruction.panels.search.grid import Axes, Axis, find_grid
 from reconstruction.panels.search.outline import arranged
 from reconstruction.panels.search.parameters import SegmentationParameters
-from reconstruction.panels.search.record import FacadeGrid, GridLine, InclinedLine, Segmentation
+from reconstruction.panels.search.record import FacadeGrid, GridLine, InclinedLine
 from reconstruction.panels.search.vanishing import (
     VanishingPoint,
     straightening,
     straightening_of_grid,
     vanishing_points,
 )
-from reconstruction.panels.search.views import CorrectedView, WholePicture, checked_image, grey, scaled_view
+from reconstruction.panels.search.views import CorrectedView, WholePicture, grey, scaled_view
 
 Array = NDArray[np.float64]
 
@@ -347,69 +345,14 @@ LEAST_FINER = 1.1
 """Pixels of the finer picture per coarse one from which on a second look gains anything."""
 
 
-def segment_image(
-    image: NDArray[Any],
-    rectifications: Sequence[Rectification] | None = None,
-    parameters: SegmentationParameters | None = None,
-    monitor: Monitor = QUIET,
-    name: str = "",
-) -> Segmentation:
-    """Find the panels of all facades in a photo.
-
-    Parameters
-    ----------
-    image
-        Shape (h, w) or (h, w, 3), 8 bit.
-    rectifications
-        One view for each facade; None where no pose is known: they are found from vanishing points.
-    name
-        Of the photo, for the record.
-
-    Raises
-    ------
-    InputError
-        Not such a picture.
-    """
-    parameters = parameters or SegmentationParameters()
-    checked = checked_image(image)
-    height, width = checked.shape[:2]
-    if rectifications is None:
-        monitor.report(say("find vanishing points"), 0, 1)
-        views: Sequence[Rectification] = views_without_pose(
-            grey(checked), parameters.max_tilt_deg, parameters.long_side_px, parameters.seed
-        )
-    else:
-        views = rectifications
-    facades = []
-    for number, view in enumerate(views):
-        monitor.report(say("find facades"), number, len(views))
-        facades.append(segment_view(checked, view, parameters, monitor, facade_name(number)))
-    return Segmentation(name, width, height, tuple(facades))
-
-
-def segment_rectified(
-    picture: NDArray[Any], parameters: SegmentationParameters | None = None, monitor: Monitor = QUIET
-) -> FacadeGrid:
-    """Find the panels of one facade in a picture whose rows and columns run along the grid's lines.
-
-    Raises
-    ------
-    InputError
-        Not a picture of shape (h, w) or (h, w, 3) and 8 bit.
-    """
-    checked = checked_image(picture)
-    view = WholePicture(checked.shape[1], checked.shape[0])
-    return segment_view(checked, view, parameters or SegmentationParameters(), monitor, "A")
-
-
-def segment_view(
+def grid_by_lines(
     image: NDArray[np.uint8],
     view: Rectification,
     parameters: SegmentationParameters,
     monitor: Monitor,
     facade_id: str,
 ) -> FacadeGrid:
-    """Find the panels of one facade through its rectified view."""
+    """Find the panels of one facade through its rectified view, by the lines of its profiles alone."""
     scale = min(1.0, parameters.long_side_px / max(view.width_px, view.height_px))
     small = scaled_view(view, scale)
     picture, valid = _seen(image, small)

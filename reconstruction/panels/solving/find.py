@@ -31,7 +31,8 @@ from reconstruction.panels.rectify.view import SurfaceView, surface_view
 from reconstruction.panels.search.cells import facade_grid
 from reconstruction.panels.search.parameters import SegmentationParameters
 from reconstruction.panels.search.record import FacadeGrid, GridLine
-from reconstruction.panels.search.segment import segment_view, segment_views
+from reconstruction.panels.search.segment import segment_views
+from reconstruction.panels.segment import segment_view
 from reconstruction.panels.solving.association import TOGETHER, associate, seen_lines
 from reconstruction.panels.solving.facades import Facade, building_facades, files_by_photo, given_grid
 from reconstruction.panels.solving.record import SeenLine, SolvedFacade, SurfaceLine

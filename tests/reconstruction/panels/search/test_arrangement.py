@@ -14,7 +14,7 @@ from reconstruction.metrics.run import Answer, score_answer
 from reconstruction.metrics.sets import scored
 from reconstruction.panels.search.parameters import SegmentationParameters
 from reconstruction.panels.search.record import FacadeGrid
-from reconstruction.panels.search.segment import segment_image, segment_rectified
+from reconstruction.panels.segment import segment_image, segment_rectified
 from reconstruction.scenes.facades.cases import random_case, wide_camera
 from reconstruction.scenes.facades.record import Case, Disturbances, Layout
 from reconstruction.scenes.facades.render import make_facade

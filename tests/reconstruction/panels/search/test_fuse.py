@@ -12,8 +12,9 @@ from planning.base.errors import InputError
 from planning.base.progress import QUIET
 from reconstruction.panels.search.grid import Axes
 from reconstruction.panels.search.parameters import SegmentationParameters
-from reconstruction.panels.search.segment import fused, segment_view, segment_views
+from reconstruction.panels.search.segment import fused, segment_views
 from reconstruction.panels.search.views import WholePicture
+from reconstruction.panels.segment import segment_view
 from tests.reconstruction.panels.search.pictures import draw, spans
 
 Image = NDArray[np.uint8]

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from planning.base.errors import InputError
 from reconstruction.panels.search.parameters import DETECTORS, Detector, SegmentationParameters
 from reconstruction.panels.search.record import FacadeGrid
-from reconstruction.panels.search.segment import segment_image, segment_rectified
 from reconstruction.panels.search.vanishing import straightening
 from reconstruction.panels.search.views import CorrectedView, WholePicture
+from reconstruction.panels.segment import segment_image, segment_rectified
 from tests.reconstruction.panels.search.pictures import Drawn, draw, spans
 
 Array = NDArray[np.float64]

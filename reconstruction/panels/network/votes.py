@@ -1,0 +1,285 @@
+"""Panes from what the network says at each place: places that name the same four corners are one pane.
+
+A picture is looked at in several sizes, because the network knows panes of 8 to 48 pixels. In each size the places
+that say they lie on a pane are gathered by the middle of the corners they name; where many meet, there is a pane, its
+corners the median of what they name. How sure it is follows from the share of its own area that agrees. Of panes of
+several sizes that cover one another the surest stays.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.base.jit import kernel
+from planning.base.messages import say
+from planning.base.progress import QUIET, Monitor
+from reconstruction.panels.network.network import STRIDE, PaneNetwork, Picture, network, pane_votes, places_px
+from reconstruction.panels.rectify.surface import Rectification
+
+Array = NDArray[np.float64]
+
+LONG_SIDES_PX = (64, 96, 144, 216, 324, 486, 729, 1094)
+"""Sizes in which a picture is looked at, those above its own and the parameters' limit left out."""
+
+LEAST_PROBABILITY = 0.35
+"""Of a place that may vote."""
+
+LEAST_SIDE_PX, MOST_SIDE_PX = 6.5, 60.0
+"""Sides, root of the area, of panes that are believed in one size of the picture; others show in another."""
+
+NEAR, CORNERS_NEAR = 0.22, 0.35
+"""Votes whose middles and corners differ by less, as shares of the pane's side, are for the same pane."""
+
+LEAST_SHARE = 0.3
+"""Of a pane's seen area that must agree on it."""
+
+LEAST_PLACES = 3
+
+LEAST_DENSITY = 0.2
+"""Of a pane's places whose votes must meet nearly in one point for it to be looked at."""
+
+SAME = 0.45
+"""Intersection over union from which on two panes are the same one, found in two sizes of the picture."""
+
+OVERLAP = 0.3
+"""Of two panes that share more of the smaller one's area one is wrong."""
+
+TRUST_POWER = 3.0
+"""What panes are worth is their area times this power of their trust."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Pane:
+    """A pane in a photo.
+
+    Parameters
+    ----------
+    corners_px
+        Shape (4, 2): lower left, lower right, upper right, upper left; beyond the picture where it cuts the pane.
+    share
+        Of the places on it that name these corners, each counted by its probability, 0 to 1.
+    scatter
+        Median distance of the corners that are named from these, as a share of the pane's side.
+    side_px
+        Root of its area in the size of the picture in which it was found.
+    sigma_px
+        Standard deviation of a corner, pixels of the photo.
+    """
+
+    corners_px: Array
+    share: float
+    scatter: float
+    side_px: float
+    sigma_px: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FoundPanes:
+    """What the network says of a photo.
+
+    Parameters
+    ----------
+    panes
+        Those that no surer one covers, the surest first.
+    maps
+        For each size in which the photo was looked at, its pixels per pixel of the photo, and the probability that a
+        place lies on a pane, shape (h, w).
+    """
+
+    panes: tuple[Pane, ...]
+    maps: tuple[tuple[float, NDArray[np.float32]], ...] = ()
+
+    def probability_at(self, points_px: Array) -> Array:
+        """How probably places of the photo, shape (n, 2), lie on a pane, shape (n,): by the size that says it most."""
+        best = np.zeros(len(points_px))
+        for scale, probability in self.maps:
+            column, row = (np.clip(points_px[:, i] * scale / STRIDE, 0, probability.shape[1 - i] - 1) for i in (0, 1))
+            best = np.maximum(best, probability[row.astype(int), column.astype(int)])
+        return best
+
+    def within(self, view: Rectification) -> FoundPanes:
+        """Only the panes whose middle a rectified view shows, from its front."""
+        if not self.panes:
+            return self
+        middles = view.to_rectified(np.stack([pane.corners_px.mean(axis=0) for pane in self.panes]))
+        corners = view.to_rectified(np.concatenate([pane.corners_px for pane in self.panes])).reshape(-1, 4, 2)
+        shown = (middles >= 0.0).all(axis=1) & (middles <= [view.width_px, view.height_px]).all(axis=1)
+        shown &= np.isfinite(corners).all(axis=(1, 2)) & (_signed_areas(corners) > 0.0)
+        return FoundPanes(tuple(pane for pane, is_in in zip(self.panes, shown, strict=True) if is_in), self.maps)
+
+
+def find_panes(
+    image: Picture, long_side_px: int, with_network: PaneNetwork | None = None, monitor: Monitor = QUIET
+) -> FoundPanes:
+    """Panes in a photo, shape (h, w, 3), blue, green, red; looked at in sizes up to `long_side_px`."""
+    used = with_network or network()
+    longest = max(image.shape[:2])
+    most = min(long_side_px, longest, LONG_SIDES_PX[-1])
+    sizes = sorted({min(size, most) for size in LONG_SIDES_PX})
+    found: list[Pane] = []
+    maps = []
+    for number, size in enumerate(sizes):
+        monitor.report(say("look for panes"), number, len(sizes))
+        scale = size / longest
+        shape = max(1, round(image.shape[1] * scale)), max(1, round(image.shape[0] * scale))
+        smaller = np.asarray(cv2.resize(image, shape, interpolation=cv2.INTER_AREA), np.uint8)
+        probability, corners = pane_votes(smaller, used)
+        maps.append((scale, probability))
+        found += [
+            replace(pane, corners_px=pane.corners_px / scale, sigma_px=pane.sigma_px / scale)
+            for pane in gathered(probability, corners, (shape[1], shape[0]))
+        ]
+    return FoundPanes(tuple(surest(found)), tuple(maps))
+
+
+def gathered(probability: NDArray[np.float32], corners_px: NDArray[np.float32], size_px: tuple[int, int]) -> list[Pane]:
+    """Panes of one size of a picture of `size_px`, height and width, from `pane_votes`."""
+    height, width = probability.shape
+    quads, places = corners_px.reshape(-1, 4, 2).astype(float), places_px(height, width).reshape(-1, 2).astype(float)
+    weight = probability.reshape(-1).astype(float)
+    sides = np.sqrt(np.maximum(_signed_areas(quads), 0.0))
+    votes = np.nonzero((weight > LEAST_PROBABILITY) & (sides > LEAST_SIDE_PX) & (sides < MOST_SIDE_PX))[0]
+    quads, places, weight, sides = quads[votes], places[votes], weight[votes], sides[votes]
+    middles = quads.mean(axis=1)
+    density = _density(middles, weight, sides)
+    order = np.argsort(-density)[: int((density > LEAST_DENSITY).sum())]
+    free = np.ones(len(votes), bool)
+    panes = []
+    for seed in order:
+        if not free[seed]:
+            continue
+        pane, agreeing = _pane_of(seed, quads, places, middles, weight, sides, size_px)
+        free[agreeing] = False
+        free[seed] = False
+        if pane is not None:
+            panes.append(pane)
+    return panes
+
+
+def _pane_of(
+    seed: int, quads: Array, places: Array, middles: Array, weight: Array, sides: Array, size_px: tuple[int, int]
+) -> tuple[Pane | None, NDArray[np.intp]]:
+    """The pane that a place names, its corners by all that agree, and those that do."""
+    quad, side = quads[seed], float(sides[seed])
+    for _ in range(2):
+        agreeing = _agreeing(quads, middles, quad, quad.mean(axis=0), NEAR * side, CORNERS_NEAR * side)
+        if weight[agreeing].sum() * STRIDE**2 < LEAST_SHARE * _seen_area(quad, size_px):
+            return None, np.array([seed])
+        quad = np.median(quads[agreeing], axis=0)
+        side = float(np.sqrt(max(_signed_areas(quad[None])[0], 1.0)))
+    inside = _inside(quad, places[agreeing])
+    seen = _seen_area(quad, size_px) / STRIDE**2
+    if inside.sum() < LEAST_PLACES or seen < 1.0 or not cv2.isContourConvex(quad.astype(np.float32)):
+        return None, agreeing
+    share = float(min(1.0, weight[agreeing][inside].sum() / seen))
+    if share < LEAST_SHARE:
+        return None, agreeing
+    spread = np.median(np.abs(quads[agreeing] - quad), axis=0)
+    scatter = float(spread.mean()) / side
+    return Pane(quad.astype(float), share, scatter, side, 1.5 * float(spread.max()) + 0.01 * side), agreeing
+
+
+@kernel
+def _agreeing(
+    quads: Array, middles: Array, quad: Array, middle: Array, reach: float, corners_reach: float
+) -> NDArray[np.int64]:
+    """Votes whose middle and corners lie within so much of a pane's, the larger of both coordinates."""
+    found = np.empty(len(quads), np.int64)
+    n = 0
+    for i in range(len(quads)):
+        if abs(middles[i, 0] - middle[0]) >= reach or abs(middles[i, 1] - middle[1]) >= reach:
+            continue
+        agrees = True
+        for corner in range(4):
+            for axis in range(2):
+                agrees = agrees and abs(quads[i, corner, axis] - quad[corner, axis]) < corners_reach
+        if agrees:
+            found[n] = i
+            n += 1
+    return found[:n].copy()
+
+
+def _density(middles: Array, weight: Array, sides: Array) -> Array:
+    """How many votes meet at each vote's middle, as a share of the pane's places, shape (n,)."""
+    if len(middles) == 0:
+        return np.empty(0)
+    low = middles.min(axis=0)
+    cells = ((middles - low) / STRIDE).astype(int)
+    total = np.zeros(cells.max(axis=0)[::-1] + 3, np.float32)
+    np.add.at(total, (cells[:, 1] + 1, cells[:, 0] + 1), weight)
+    total = np.asarray(cv2.blur(total, (3, 3), borderType=cv2.BORDER_CONSTANT), np.float32) * 9.0
+    return np.asarray(np.minimum(total[cells[:, 1] + 1, cells[:, 0] + 1] * STRIDE**2 / sides**2, 1.0) * weight)
+
+
+def _signed_areas(quads: Array) -> Array:
+    """Areas, positive for corners from the lower left one counter-clockwise as seen (y downwards), shape (n,)."""
+    x, y = quads[..., 0], quads[..., 1]
+    return np.asarray(0.5 * (np.roll(x, -1, axis=-1) * y - x * np.roll(y, -1, axis=-1)).sum(axis=-1))
+
+
+def _inside(quad: Array, points: Array) -> NDArray[np.bool_]:
+    """Which points, shape (n, 2), lie within a convex quadrilateral."""
+    sides = np.roll(quad, -1, axis=0) - quad
+    to_points = points[:, None] - quad[None]
+    return np.asarray((sides[:, 0] * to_points[..., 1] - sides[:, 1] * to_points[..., 0] <= 0.0).all(axis=1))
+
+
+def _seen_area(quad: Array, size_px: tuple[int, int]) -> float:
+    """Of a convex quadrilateral within the picture, px²."""
+    height, width = size_px
+    frame = np.array([[0, 0], [width, 0], [width, height], [0, height]], np.float32)
+    area, _ = cv2.intersectConvexConvex(quad.astype(np.float32), frame)
+    return float(area)
+
+
+def shared_area(first: Array, second: Array) -> tuple[float, float, float]:
+    """Area that two convex polygons, shape (k, 2), share, and that of either, px²."""
+    a, b = first.astype(np.float32), second.astype(np.float32)
+    return float(cv2.intersectConvexConvex(a, b)[0]), float(cv2.contourArea(a)), float(cv2.contourArea(b))
+
+
+def surest(panes: list[Pane]) -> list[Pane]:
+    """Of panes that cover one another those that are most probably right, the surest first.
+
+    Of nearly the same ones the surest stays. Where small ones lie on a large one, either the large one holds mirror
+    images of things that look like panes, or it is a wall with windows: the side with the larger `worth` is right.
+    """
+    order = sorted(panes, key=lambda pane: -trust(pane))
+    quads = np.array([pane.corners_px for pane in order], np.float32).reshape(-1, 4, 2)
+    low, high = quads.min(axis=1), quads.max(axis=1)
+    areas = np.array([cv2.contourArea(quad) for quad in quads])
+    shared = np.zeros((len(order), len(order)))
+    for i in range(len(order)):
+        near = np.nonzero((low[i] < high[i + 1 :]).all(axis=1) & (high[i] > low[i + 1 :]).all(axis=1))[0] + i + 1
+        for j in near:
+            shared[i, j] = shared[j, i] = cv2.intersectConvexConvex(quads[i], quads[j])[0]
+    union = areas[:, None] + areas[None] - shared
+    left = _first_of(list(range(len(order))), shared > SAME * union)
+    covers = shared > OVERLAP * np.minimum(areas[:, None], areas[None])
+    worth = np.array([trust(pane) for pane in order]) ** TRUST_POWER * areas
+    chosen: list[int] = []
+    for i in sorted(left, key=lambda i: -worth[i]):
+        if any(covers[i, j] for j in chosen):
+            continue
+        smaller = [j for j in left if covers[i, j] and j != i and areas[j] < areas[i]]
+        if worth[_first_of(smaller, covers)].sum() <= worth[i]:
+            chosen.append(i)
+    return [order[i] for i in sorted(chosen)]
+
+
+def _first_of(numbers: list[int], conflicts: NDArray[np.bool_]) -> list[int]:
+    """Of numbers in order those that conflict with none chosen before."""
+    chosen: list[int] = []
+    for i in numbers:
+        if not conflicts[i, chosen].any():
+            chosen.append(i)
+    return chosen
+
+
+def trust(pane: Pane) -> float:
+    """How much a pane is to be believed against others, 0 to 1: by the votes for it, and how well they agree."""
+    return float(pane.share * np.exp(-4.0 * pane.scatter))

@@ -1,0 +1,205 @@
+"""From a photo to its panels: by the lines of profiles, by the network for panes, or by what the scene calls for."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.base.effects import Assessment, decide
+from planning.base.messages import say
+from planning.base.progress import QUIET, Monitor
+from planning.site.importing.facades import facade_name
+from reconstruction.panels.network.grids import grid_in_view, network_facades
+from reconstruction.panels.network.votes import FoundPanes, find_panes, shared_area, trust
+from reconstruction.panels.rectify.surface import Rectification
+from reconstruction.panels.search.parameters import SegmentationParameters
+from reconstruction.panels.search.record import FacadeGrid, FoundPanel, Segmentation
+from reconstruction.panels.search.segment import grid_by_lines, views_without_pose
+from reconstruction.panels.search.views import WholePicture, checked_image, grey
+
+Array = NDArray[np.float64]
+
+SAME_PANE = 0.5
+"""Intersection over union from which on a panel between lines and a pane of the network are the same."""
+
+GLASS = 0.3
+"""Probability that a place lies on a pane below which a panel there is doubted."""
+
+INNER = np.array([[0.5, 0.5], [0.25, 0.25], [0.75, 0.25], [0.75, 0.75], [0.25, 0.75]])
+"""Places on a panel at which the network is asked, as shares of its sides."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Compared:
+    """Panels between lines, and what the network says of the same photo."""
+
+    panels: Sequence[FoundPanel]
+    panes: FoundPanes
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
+class NetworkForPanes:
+    """The effect: panes by the network, where it contradicts the lines.
+
+    Lines measure a curtain wall's grid to a fraction of a pixel, and take anything straight for a grid. The network
+    tells glass from what is none, in close-ups, clutter and white light, and measures coarsely.
+    """
+
+    name: str = "network for panes"
+    unit: str = "of panels and panes"
+    tolerance: float = 0.35
+
+    def assess(self, scene: _Compared) -> Assessment:
+        """The larger share: of panels where the network sees no glass, or of its panes where there is no panel."""
+        no_glass, no_panel = doubt(scene.panels, scene.panes)
+        reason = say(
+            "the network sees no glass on {:.0f} % of {} panels, and {:.0f} % of its {} panes are no panels",
+            *(100.0 * no_glass, len(scene.panels), 100.0 * no_panel, len(scene.panes.panes)),
+        )
+        return Assessment(max(no_glass, no_panel), reason, scene.seconds)
+
+
+def doubt(panels: Sequence[FoundPanel], found: FoundPanes) -> tuple[float, float]:
+    """Share of panels on which the network sees no glass, and of its panes, by their trust, that are no panels."""
+    no_glass = 0.0
+    if panels:
+        asked = np.concatenate([_inner(panel.corners_px) for panel in panels])
+        told = found.probability_at(asked).reshape(len(panels), len(INNER)).mean(axis=1)
+        no_glass = float((told < GLASS).mean())
+    if not found.panes:
+        return no_glass, 0.0
+    trusted = np.array([trust(pane) for pane in found.panes])
+    is_panel = np.array([_is_among(pane.corners_px, panels) for pane in found.panes])
+    return no_glass, float(trusted[~is_panel].sum() / trusted.sum())
+
+
+def _inner(corners_px: Array) -> Array:
+    """Places on a panel, shape (5, 2)."""
+    quad = corners_px if len(corners_px) == 4 else corners_px[np.linspace(0, len(corners_px) - 1, 4).astype(int)]
+    s, t = INNER[:, :1], INNER[:, 1:]
+    a, b, c, d = quad
+    return np.asarray((1 - s) * (1 - t) * a + s * (1 - t) * b + s * t * c + (1 - s) * t * d)
+
+
+def _is_among(quad: Array, panels: Sequence[FoundPanel]) -> bool:
+    """Whether a pane is one of the panels."""
+    middle, side = quad.mean(axis=0), np.ptp(quad, axis=0).max()
+    for panel in panels:
+        if np.abs(panel.corners_px.mean(axis=0) - middle).max() < side:
+            shared, first, second = shared_area(panel.corners_px, quad)
+            if shared > SAME_PANE * (first + second - shared):
+                return True
+    return False
+
+
+def segment_image(
+    image: NDArray[Any],
+    rectifications: Sequence[Rectification] | None = None,
+    parameters: SegmentationParameters | None = None,
+    monitor: Monitor = QUIET,
+    name: str = "",
+) -> Segmentation:
+    """Find the panels of all facades in a photo.
+
+    Parameters
+    ----------
+    image
+        Shape (h, w) or (h, w, 3), 8 bit.
+    rectifications
+        One view for each facade; None where no pose is known: they are found from vanishing points.
+    name
+        Of the photo, for the record.
+
+    Raises
+    ------
+    InputError
+        Not such a picture.
+    """
+    parameters = parameters or SegmentationParameters()
+    checked = checked_image(image)
+    height, width = checked.shape[:2]
+    panes = _panes(checked, parameters, monitor)
+    if rectifications is not None:
+        facades = []
+        for number, view in enumerate(rectifications):
+            monitor.report(say("find facades"), number, len(rectifications))
+            facades.append(_in_view(checked, view, parameters, monitor, facade_name(number), panes))
+        return Segmentation(name, width, height, tuple(facades))
+    by_lines: tuple[FacadeGrid, ...] = ()
+    if parameters.network != "on":
+        monitor.report(say("find vanishing points"), 0, 1)
+        views = views_without_pose(grey(checked), parameters.max_tilt_deg, parameters.long_side_px, parameters.seed)
+        by_lines = tuple(
+            grid_by_lines(checked, view, parameters, monitor, facade_name(number)) for number, view in enumerate(views)
+        )
+    if panes is None:
+        return Segmentation(name, width, height, by_lines)
+    panels = [panel for grid in by_lines for panel in grid.panels]
+    decision = decide(NetworkForPanes(), _Compared(panels, *panes), parameters.network)
+    chosen = network_facades(panes[0], width, height, parameters.seed) if decision.on else by_lines
+    return Segmentation(name, width, height, tuple(replace(grid, network=decision) for grid in chosen))
+
+
+def segment_rectified(
+    picture: NDArray[Any], parameters: SegmentationParameters | None = None, monitor: Monitor = QUIET
+) -> FacadeGrid:
+    """Find the panels of one facade in a picture whose rows and columns run along the grid's lines.
+
+    Raises
+    ------
+    InputError
+        Not a picture of shape (h, w) or (h, w, 3) and 8 bit.
+    """
+    checked = checked_image(picture)
+    view = WholePicture(checked.shape[1], checked.shape[0])
+    return segment_view(checked, view, parameters or SegmentationParameters(), monitor, "A")
+
+
+def segment_view(
+    image: NDArray[np.uint8],
+    view: Rectification,
+    parameters: SegmentationParameters,
+    monitor: Monitor,
+    facade_id: str,
+) -> FacadeGrid:
+    """Find the panels of one facade through its rectified view."""
+    return _in_view(image, view, parameters, monitor, facade_id, _panes(image, parameters, monitor))
+
+
+def _panes(
+    image: NDArray[np.uint8], parameters: SegmentationParameters, monitor: Monitor
+) -> tuple[FoundPanes, float] | None:
+    """What the network says of a photo, and how long it took; None where it is not to be asked."""
+    if parameters.network == "off":
+        return None
+    colour = image if image.ndim == 3 else np.asarray(cv2.cvtColor(image, cv2.COLOR_GRAY2BGR), np.uint8)
+    started = time.perf_counter()
+    return find_panes(colour, parameters.long_side_px, monitor=monitor), time.perf_counter() - started
+
+
+def _in_view(
+    image: NDArray[np.uint8],
+    view: Rectification,
+    parameters: SegmentationParameters,
+    monitor: Monitor,
+    facade_id: str,
+    panes: tuple[FoundPanes, float] | None,
+) -> FacadeGrid:
+    if panes is None:
+        return grid_by_lines(image, view, parameters, monitor, facade_id)
+    here = panes[0].within(view)
+    grid = None if parameters.network == "on" else grid_by_lines(image, view, parameters, monitor, facade_id)
+    decision = decide(
+        NetworkForPanes(), _Compared(grid.panels if grid is not None else (), here, panes[1]), parameters.network
+    )
+    if decision.on or grid is None:
+        size = image.shape[1], image.shape[0]
+        return replace(grid_in_view(here, view, facade_id, size), network=decision)
+    return replace(grid, network=decision)
