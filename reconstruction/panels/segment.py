@@ -16,20 +16,23 @@ from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.site.importing.facades import facade_name
 from reconstruction.panels.network.grids import grid_in_view, network_facades
-from reconstruction.panels.network.votes import FoundPanes, find_panes, shared_area, trust
+from reconstruction.panels.network.votes import FoundPanes, find_panes
 from reconstruction.panels.rectify.surface import Rectification
 from reconstruction.panels.search.parameters import SegmentationParameters
-from reconstruction.panels.search.record import FacadeGrid, FoundPanel, Segmentation
+from reconstruction.panels.search.record import FacadeGrid, Segmentation
 from reconstruction.panels.search.segment import grid_by_lines, views_without_pose
 from reconstruction.panels.search.views import WholePicture, checked_image, grey
 
 Array = NDArray[np.float64]
 
-SAME_PANE = 0.5
-"""Intersection over union from which on a panel between lines and a pane of the network are the same."""
+NO_GLASS, GLASS = 0.3, 0.6
+"""Probability that a place lies on a pane below which a panel there is doubted, and from which a panel is missed."""
 
-GLASS = 0.3
-"""Probability that a place lies on a pane below which a panel there is doubted."""
+ASKED = 64
+"""Places along either side of the photo at which panels may be missed."""
+
+LEAST_GLASS = 0.01
+"""Of these places that must be glass for any to be missed."""
 
 INNER = np.array([[0.5, 0.5], [0.25, 0.25], [0.75, 0.25], [0.75, 0.75], [0.25, 0.75]])
 """Places on a panel at which the network is asked, as shares of its sides."""
@@ -37,10 +40,12 @@ INNER = np.array([[0.5, 0.5], [0.25, 0.25], [0.75, 0.25], [0.75, 0.75], [0.25, 0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Compared:
-    """Panels between lines, and what the network says of the same photo."""
+    """Panels between lines, and what the network says of the part of the same photo that shows their facade."""
 
-    panels: Sequence[FoundPanel]
+    grids: Sequence[FacadeGrid]
     panes: FoundPanes
+    view: Rectification
+    size_px: tuple[int, int]
     seconds: float
 
 
@@ -52,32 +57,54 @@ class NetworkForPanes:
     tells glass from what is none, in close-ups, clutter and white light, and measures coarsely.
     """
 
-    name: str = "network for panes"
-    unit: str = "of panels and panes"
-    tolerance: float = 0.35
+    name: str = say("network for panes")
+    unit: str = say("of panels or of glass")
+    tolerance: float = 0.4
 
     def assess(self, scene: _Compared) -> Assessment:
-        """The larger share: of panels where the network sees no glass, or of its panes where there is no panel."""
-        no_glass, no_panel = doubt(scene.panels, scene.panes)
+        """The larger share: of panels where the network sees no glass, or of its glass where there is no panel."""
+        no_glass, no_panel = doubt(scene.grids, scene.panes, scene.view, scene.size_px)
         reason = say(
-            "the network sees no glass on {:.0f} % of {} panels, and {:.0f} % of its {} panes are no panels",
-            *(100.0 * no_glass, len(scene.panels), 100.0 * no_panel, len(scene.panes.panes)),
+            "the network sees no glass on {:.0f} % of {} panels, and {:.0f} % of its glass lies outside them",
+            *(100.0 * no_glass, sum(len(grid.panels) for grid in scene.grids), 100.0 * no_panel),
         )
         return Assessment(max(no_glass, no_panel), reason, scene.seconds)
 
 
-def doubt(panels: Sequence[FoundPanel], found: FoundPanes) -> tuple[float, float]:
-    """Share of panels on which the network sees no glass, and of its panes, by their trust, that are no panels."""
+def doubt(
+    grids: Sequence[FacadeGrid], found: FoundPanes, view: Rectification, size_px: tuple[int, int]
+) -> tuple[float, float]:
+    """Share of panels on which the network sees no glass, and share of the glass it sees that no panel covers.
+
+    Parameters
+    ----------
+    view
+        Part of the photo that counts.
+    size_px
+        Width and height of the photo.
+    """
+    panels = [panel for grid in grids for panel in grid.panels]
     no_glass = 0.0
     if panels:
         asked = np.concatenate([_inner(panel.corners_px) for panel in panels])
         told = found.probability_at(asked).reshape(len(panels), len(INNER)).mean(axis=1)
-        no_glass = float((told < GLASS).mean())
-    if not found.panes:
+        no_glass = float((told < NO_GLASS).mean())
+    share = (np.arange(ASKED) + 0.5) / ASKED
+    x, y = (each.ravel() for each in np.meshgrid(share * view.width_px, share * view.height_px))
+    places = view.to_photo(np.column_stack([x, y]))
+    seen = np.isfinite(places).all(axis=1) & (places >= 0.0).all(axis=1) & (places < size_px).all(axis=1)
+    places = places[seen]
+    glass = places[found.probability_at(places) > GLASS] if len(places) else places
+    if len(glass) < LEAST_GLASS * ASKED**2:
         return no_glass, 0.0
-    trusted = np.array([trust(pane) for pane in found.panes])
-    is_panel = np.array([_is_among(pane.corners_px, panels) for pane in found.panes])
-    return no_glass, float(trusted[~is_panel].sum() / trusted.sum())
+    covered = np.zeros(len(glass), bool)
+    for grid in grids:
+        if len(grid.rows) > 1 and len(grid.columns) > 1:
+            at = grid.rectification.to_rectified(glass)
+            low = np.array([grid.columns[0].position_px, grid.rows[0].position_px])
+            high = np.array([grid.columns[-1].position_px, grid.rows[-1].position_px])
+            covered |= ((at >= low) & (at <= high)).all(axis=1)
+    return no_glass, float(1.0 - covered.mean())
 
 
 def _inner(corners_px: Array) -> Array:
@@ -86,17 +113,6 @@ def _inner(corners_px: Array) -> Array:
     s, t = INNER[:, :1], INNER[:, 1:]
     a, b, c, d = quad
     return np.asarray((1 - s) * (1 - t) * a + s * (1 - t) * b + s * t * c + (1 - s) * t * d)
-
-
-def _is_among(quad: Array, panels: Sequence[FoundPanel]) -> bool:
-    """Whether a pane is one of the panels."""
-    middle, side = quad.mean(axis=0), np.ptp(quad, axis=0).max()
-    for panel in panels:
-        if np.abs(panel.corners_px.mean(axis=0) - middle).max() < side:
-            shared, first, second = shared_area(panel.corners_px, quad)
-            if shared > SAME_PANE * (first + second - shared):
-                return True
-    return False
 
 
 def segment_image(
@@ -141,8 +157,9 @@ def segment_image(
         )
     if panes is None:
         return Segmentation(name, width, height, by_lines)
-    panels = [panel for grid in by_lines for panel in grid.panels]
-    decision = decide(NetworkForPanes(), _Compared(panels, *panes), parameters.network)
+    whole, size = WholePicture(width, height), (width, height)
+    compared = _Compared(by_lines, panes[0], whole, size, panes[1])
+    decision = decide(NetworkForPanes(), compared, parameters.network)
     chosen = network_facades(panes[0], width, height, parameters.seed) if decision.on else by_lines
     return Segmentation(name, width, height, tuple(replace(grid, network=decision) for grid in chosen))
 
@@ -194,12 +211,9 @@ def _in_view(
 ) -> FacadeGrid:
     if panes is None:
         return grid_by_lines(image, view, parameters, monitor, facade_id)
-    here = panes[0].within(view)
-    grid = None if parameters.network == "on" else grid_by_lines(image, view, parameters, monitor, facade_id)
-    decision = decide(
-        NetworkForPanes(), _Compared(grid.panels if grid is not None else (), here, panes[1]), parameters.network
-    )
-    if decision.on or grid is None:
-        size = image.shape[1], image.shape[0]
-        return replace(grid_in_view(here, view, facade_id, size), network=decision)
+    size = image.shape[1], image.shape[0]
+    by_lines = () if parameters.network == "on" else (grid_by_lines(image, view, parameters, monitor, facade_id),)
+    compared = _Compared(by_lines, panes[0], view, size, panes[1])
+    decision = decide(NetworkForPanes(), compared, parameters.network)
+    grid = grid_in_view(panes[0].within(view), view, facade_id, size) if decision.on else by_lines[0]
     return replace(grid, network=decision)

@@ -73,6 +73,8 @@ def run(options: argparse.Namespace) -> int:
             tell(
                 "{} in {} and {}, confidence {:.2f} or more", panels, rows, columns, least, place=f"facade {facade.id}"
             )
+    for text in dict.fromkeys(str(facade.network) for facade in done.found.facades if facade.network is not None):
+        print(text)
     if not done.found.panels:
         tell("no panels found: is the facade seen from its front, and are its frames visible?")
     print(f"{options.out} ({done.seconds:.1f} s)")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -92,7 +92,13 @@ def segmented_summary(done: SegmentedPhoto) -> dict[str, Any]:
         for facade in done.found.facades
         if facade.panels
     ]
-    return {"panels": len(done.found.panels), "facades": facades, "seconds": round(done.seconds, 3)}
+    decisions = [asdict(facade.network) for facade in done.found.facades if facade.network is not None]
+    return {
+        "panels": len(done.found.panels),
+        "facades": facades,
+        "network": decisions[0] if decisions else None,
+        "seconds": round(done.seconds, 3),
+    }
 
 
 @dataclass(frozen=True, slots=True)

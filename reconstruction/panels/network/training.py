@@ -304,7 +304,7 @@ def train(
         shown += 0.03 * (np.array([logits.item(), off.item()]) - shown) if number > 1 else [logits.item(), off.item()]
         if number % 100 == 0:
             tell(f"{number} steps, {100 * done:.0f} %: panes {shown[0]:.4f}, corners {shown[1]:.4f}")
-        if number % 20 == 0:
+        if number % 20 == 0 or not average:
             _averaged(average, net, min(0.98, number / (number + 100.0)))
         if number % 250 == 0:
             _write(average, out)
@@ -321,6 +321,9 @@ def _averaged(average: dict[str, Tensor], net: PaneNetwork, keep: float) -> None
 
 
 def _write(weights: dict[str, Tensor], out: Path) -> None:
-    """Weights in half precision: 2 MB."""
-    halved = {name: value.half() if value.is_floating_point() else value for name, value in weights.items()}
+    """Weights in half precision: 2 MB. Sums over batches keep theirs: variances may be beyond its range."""
+    halved = {
+        name: value.half() if value.is_floating_point() and "running" not in name else value
+        for name, value in weights.items()
+    }
     save_file({name: value.contiguous() for name, value in halved.items()}, out)

@@ -236,12 +236,6 @@ def _seen_area(quad: Array, size_px: tuple[int, int]) -> float:
     return float(area)
 
 
-def shared_area(first: Array, second: Array) -> tuple[float, float, float]:
-    """Area that two convex polygons, shape (k, 2), share, and that of either, px²."""
-    a, b = first.astype(np.float32), second.astype(np.float32)
-    return float(cv2.intersectConvexConvex(a, b)[0]), float(cv2.contourArea(a)), float(cv2.contourArea(b))
-
-
 def surest(panes: list[Pane]) -> list[Pane]:
     """Of panes that cover one another those that are most probably right, the surest first.
 

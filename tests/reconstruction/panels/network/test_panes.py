@@ -2,17 +2,32 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
+import cv2
 import numpy as np
 import pytest
+import torch
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
+from safetensors.torch import load_file
 
+from planning.base.progress import QUIET
+from reconstruction.metrics.metrics import PhotoScores
 from reconstruction.metrics.overlaps import index_image, pixel_overlaps
+from reconstruction.metrics.run import own_method, score_answer
+from reconstruction.metrics.sets import ScoredPhoto, folder_set, scored
+from reconstruction.panels.network import training
 from reconstruction.panels.network.grids import network_facades
-from reconstruction.panels.network.made_pictures import made_picture
-from reconstruction.panels.network.network import STRIDE
+from reconstruction.panels.network.made_pictures import MadePicture, made_picture
+from reconstruction.panels.network.network import STRIDE, PaneNetwork, network
+from reconstruction.panels.network.training import crop, make_pool, read_pool, train
 from reconstruction.panels.network.votes import FoundPanes, Pane, gathered, surest
+from reconstruction.panels.search.parameters import SegmentationParameters
+from reconstruction.panels.segment import segment_image
+from reconstruction.scenes.facades.cases import random_case, wide_camera
+from reconstruction.scenes.facades.render import make_facade
 
 Array = NDArray[np.float64]
 
@@ -130,3 +145,87 @@ def test_of_panes_that_cover_one_another_the_surest_stays() -> None:
 def test_nothing_is_found_where_nothing_is() -> None:
     assert network_facades(FoundPanes(()), 100, 100) == ()
     assert gathered(np.zeros((8, 8), np.float32), np.zeros((8, 8, 4, 2), np.float32), (32, 32)) == []
+
+
+GLASS = Path(__file__).parents[5] / "shared" / "data" / "glass"
+"""Photos of a real curtain wall; every second one, from the second on, was not learned from."""
+
+
+@pytest.fixture(scope="module")
+def glass() -> list[ScoredPhoto]:
+    if not GLASS.is_dir():
+        pytest.skip("the photos of real glass are not beside the project")
+    return list(folder_set(GLASS / "photos", GLASS / "truth").photos())[1::2]
+
+
+def scores(photos: list[ScoredPhoto], parameters: SegmentationParameters) -> list[PhotoScores]:
+    return [score_answer(photo, own_method(parameters)(photo, QUIET)) for photo in photos]
+
+
+@pytest.mark.slow
+def test_panes_of_real_glass_are_found_where_lines_find_none(glass: list[ScoredPhoto]) -> None:
+    by_lines, by_choice = (scores(glass, SegmentationParameters(network=setting)) for setting in ("off", "auto"))
+    individual = [np.mean([one.individual_miou for one in each]) for each in (by_lines, by_choice)]
+    assert individual[0] < 0.1
+    assert individual[1] > 0.4
+
+
+def test_the_network_is_on_where_lines_take_a_close_up_for_something_else(glass: list[ScoredPhoto]) -> None:
+    image = np.asarray(cv2.resize(glass[0].image, None, fx=0.25, fy=0.25, interpolation=cv2.INTER_AREA), np.uint8)
+    found = segment_image(image, None, SegmentationParameters())
+    decision = found.facades[0].network
+    assert decision is not None
+    assert decision.on
+    assert len(found.panels) >= 3
+    assert "the network sees no glass" in decision.reason
+    (off,) = {grid.network for grid in segment_image(image, None, SegmentationParameters(network="off")).facades}
+    assert off is None
+
+
+def test_lines_that_the_network_agrees_with_stay() -> None:
+    made = make_facade(random_case("planar", 3, wide_camera(640, 480)))
+    photo = scored(made)
+    views, lines = photo.views, SegmentationParameters(network="off")
+    (by_choice,), (by_lines,) = (
+        segment_image(made.image, views, setting).facades for setting in (SegmentationParameters(), lines)
+    )
+    assert by_choice.network is not None
+    assert not by_choice.network.on
+    assert [panel.id for panel in by_choice.panels] == [panel.id for panel in by_lines.panels]
+    for chosen, other in zip(by_choice.panels, by_lines.panels, strict=True):
+        assert np.array_equal(chosen.corners_px, other.corners_px)
+
+
+def test_the_networks_weights_are_small_and_finite() -> None:
+    weights = network().state_dict()
+    assert sum(value.numel() for value in weights.values()) < 1_500_000
+    assert all(bool(value.isfinite().all()) for value in weights.values())
+
+
+def test_training_learns_from_a_pool_and_writes_weights(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(training, "PER_FILE", 4)
+    monkeypatch.setattr(training, "BATCH", 2)
+    made = read_pool(make_pool(tmp_path / "pool", 8))
+    assert [picture.index.shape for picture in made] == 8 * [(320, 320)]
+    assert np.array_equal(made[5].image, made_picture(5, 320).image)
+    told: list[str] = []
+    train((made, [], []), 0.02, tmp_path / "panes.safetensors", tell=told.append)
+    trained = PaneNetwork()
+    trained.load_state_dict({name: value.float() for name, value in load_file(tmp_path / "panes.safetensors").items()})
+    assert not torch.equal(trained.state_dict()["head.bias"], PaneNetwork().state_dict()["head.bias"])
+
+
+@given(seed=st.integers(0, 10_000))
+def test_a_crops_truth_lies_where_its_picture_shows_it(seed: int) -> None:
+    """A picture that is its own truth, painted white where there are panes."""
+    made = made_picture(seed % 40, 192)
+    painted = np.repeat((255 * (made.index > 0)).astype(np.uint8)[..., None], 3, axis=2)
+    rng = np.random.default_rng(seed)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(training, "_jittered", lambda image, rng, is_photo: image)
+        found = crop(MadePicture(painted, made.index, made.corners_px), rng, is_photo=False)
+    if found is None:
+        return
+    dark, bright = found.image[2::4, 2::4].max(axis=2) < 40, found.image[2::4, 2::4].min(axis=2) > 200
+    assert (found.is_pane & dark).mean() < 0.01
+    assert (~found.is_pane & bright).mean() < 0.01
