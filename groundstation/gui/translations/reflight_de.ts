@@ -6970,6 +6970,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Log:      {0}</translation>
     </message>
     <message>
+        <source>look for panes</source>
+        <translation>Scheiben suchen</translation>
+    </message>
+    <message>
         <source>lost</source>
         <translation>verloren</translation>
     </message>
@@ -7020,6 +7024,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>needs the folder of its annotated photos; name it with --data</source>
         <translation>braucht den Ordner seiner annotierten Fotos; mit --data nennen</translation>
+    </message>
+    <message>
+        <source>network for panes</source>
+        <translation>neuronales Netz für Scheiben</translation>
     </message>
     <message>
         <source>never inspected</source>
@@ -7184,6 +7192,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>of all sections</source>
         <translation>von allen Sektoren</translation>
+    </message>
+    <message>
+        <source>of panels or of glass</source>
+        <translation>der Scheiben oder des Glases</translation>
     </message>
     <message>
         <source>of what can be covered</source>
@@ -7592,6 +7604,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the nearest neighbour ends where there is no leg back; take another method</source>
         <translation>der nächste Nachbar endet, wo keine Strecke zurückführt; ein anderes Verfahren nehmen</translation>
+    </message>
+    <message>
+        <source>the network sees no glass on {0} % of {1} panels, and {2} % of its glass lies outside them</source>
+        <translation>das Netz sieht auf {0} % von {1} Scheiben kein Glas, und {2} % seines Glases liegen außerhalb davon</translation>
     </message>
     <message>
         <source>the optimum</source>

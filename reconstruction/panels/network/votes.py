@@ -37,6 +37,9 @@ NEAR, CORNERS_NEAR = 0.22, 0.35
 LEAST_SHARE = 0.3
 """Of a pane's seen area that must agree on it."""
 
+LEAST_OF_USUAL = 0.5
+"""Panes whose side is a smaller share of the usual one of the photo are what panes mirror, or spots on a wall."""
+
 LEAST_PLACES = 3
 
 LEAST_DENSITY = 0.2
@@ -48,7 +51,7 @@ SAME = 0.45
 OVERLAP = 0.3
 """Of two panes that share more of the smaller one's area one is wrong."""
 
-TRUST_POWER = 3.0
+TRUST_POWER = 5.0
 """What panes are worth is their area times this power of their trust."""
 
 
@@ -133,7 +136,7 @@ def find_panes(
             replace(pane, corners_px=pane.corners_px / scale, sigma_px=pane.sigma_px / scale)
             for pane in gathered(probability, corners, (shape[1], shape[0]))
         ]
-    return FoundPanes(tuple(surest(found)), tuple(maps))
+    return FoundPanes(tuple(_of_usual_size(surest(found))), tuple(maps))
 
 
 def gathered(probability: NDArray[np.float32], corners_px: NDArray[np.float32], size_px: tuple[int, int]) -> list[Pane]:
@@ -263,6 +266,17 @@ def surest(panes: list[Pane]) -> list[Pane]:
         if worth[_first_of(smaller, covers)].sum() <= worth[i]:
             chosen.append(i)
     return [order[i] for i in sorted(chosen)]
+
+
+def _of_usual_size(panes: list[Pane]) -> list[Pane]:
+    """Without those that are small against the others; the usual side is the median by trust times side."""
+    if not panes:
+        return panes
+    sides = np.sqrt(np.maximum(_signed_areas(np.stack([pane.corners_px for pane in panes])), 1.0))
+    weight = np.array([trust(pane) for pane in panes]) * sides
+    order = np.argsort(sides)
+    usual = sides[order][np.searchsorted(np.cumsum(weight[order]), 0.5 * weight.sum())]
+    return [pane for pane, side in zip(panes, sides, strict=True) if side >= LEAST_OF_USUAL * usual]
 
 
 def _first_of(numbers: list[int], conflicts: NDArray[np.bool_]) -> list[int]:
