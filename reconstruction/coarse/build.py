@@ -536,7 +536,7 @@ def _control(
     for one, other, metres in stated.distances:
         for name in (one, other):
             if name not in taken.names:
-                raise InputError(say("--distance: there is no photo '{}'; name it as it lies below the folder", name))
+                raise InputError(say("distance: there is no photo '{}'; name it as it lies below the folder", name))
         if one in row_of and other in row_of:
             distances.append((row_of[one], row_of[other], metres))
     lenses = {photo.name: photo for photo in posed_photos(model, Similarity.identity(), Path())}

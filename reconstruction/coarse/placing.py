@@ -231,7 +231,7 @@ def _stated(
         raise InputError(
             say(
                 "nothing says how large the model is: the photos have no positions, and no ground was found below "
-                "them; state a distance (--distance) or control points (--gcp)"
+                "them; state a distance or control points"
             )
         )
     turns = [
@@ -341,15 +341,15 @@ def _findings(
     found = []
     if scale_from == "height of eyes":
         text = say(
-            "the size is guessed: cameras are taken to be {:.1f} m above the ground; state a distance (--distance) or "
-            "control points (--gcp) before anything is flown",
+            "the size is guessed: cameras are taken to be {:.1f} m above the ground; state a distance or "
+            "control points before anything is flown",
             EYES_M,
         )
         found.append(Finding(Severity.WARNING, "scale-guessed", text))
     elif sigma[1] > WELL_KNOWN:
         text = say(
             "the size of the model is known to {:.0f} % only: the receivers are off by too much for photos that are "
-            "{:.0f} m apart; state a distance (--distance) or control points (--gcp)",
+            "{:.0f} m apart; state a distance or control points",
             100.0 * sigma[1],
             2.0 * spread_m,
         )

@@ -5940,8 +5940,8 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>, {0} kleinere</translation>
     </message>
     <message>
-        <source>--distance: there is no photo &apos;{0}&apos;; name it as it lies below the folder</source>
-        <translation>--distance: es gibt kein Foto &apos;{0}&apos;; nennen Sie es so, wie es unter dem Ordner liegt</translation>
+        <source>distance: there is no photo &apos;{0}&apos;; name it as it lies below the folder</source>
+        <translation>Strecke: es gibt kein Foto &apos;{0}&apos;; nennen Sie es so, wie es unter dem Ordner liegt</translation>
     </message>
     <message>
         <source>--effects, --wind and --speedup are for --link sim; the vehicle at a link has its own</source>
@@ -6734,8 +6734,8 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>hat kein &apos;{0}&apos;, das sind also Punkte und keine Splats</translation>
     </message>
     <message>
-        <source>has no panels, and {0} learns what panels mirror; leave --method out for plain splats, or find the panels first (&apos;panels&apos;)</source>
-        <translation>hat keine Scheiben, und {0} lernt, was Scheiben spiegeln; lassen Sie --method weg für einfache Splats, oder suchen Sie zuerst die Scheiben (&apos;panels&apos;)</translation>
+        <source>has no panels, and {0} learns what panels mirror; train plain splats instead, or find its panels first</source>
+        <translation>hat keine Scheiben, und {0} lernt, was Scheiben spiegeln; trainieren Sie stattdessen einfache Splats, oder suchen Sie zuerst seine Scheiben</translation>
     </message>
     <message>
         <source>has no photo &apos;{0}&apos;, which is to be scored; name photos of its views</source>
@@ -7090,8 +7090,8 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>es wurde keine Wand gefunden: die Punkte sagen zu wenig; gehen Sie näher heran, und machen Sie Fotos, die sich mehr überlappen</translation>
     </message>
     <message>
-        <source>nobody has said where the site is, or how large: make its coarse model again with --origin, and with --distance or --gcp, or set its origin on the Site tab once its size is known</source>
-        <translation>niemand hat gesagt, wo der Standort ist, oder wie groß: machen Sie sein Grobmodell noch einmal mit --origin und mit --distance oder --gcp, oder setzen Sie seinen Ursprung im Reiter Standort, sobald seine Größe bekannt ist</translation>
+        <source>nobody has said where the site is, or how large: make its coarse model again with --origin, and with a distance or control points, or set its origin on the Site tab once its size is known</source>
+        <translation>niemand hat gesagt, wo der Standort ist, oder wie groß: machen Sie sein Grobmodell noch einmal mit --origin und mit einer Strecke oder Passpunkten, oder setzen Sie seinen Ursprung im Reiter Standort, sobald seine Größe bekannt ist</translation>
     </message>
     <message>
         <source>none of its {0} photos says where the camera looked; name the plan that was flown as well (--plan)</source>
@@ -7150,8 +7150,8 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>nichts fehlt</translation>
     </message>
     <message>
-        <source>nothing says how large the model is: the photos have no positions, and no ground was found below them; state a distance (--distance) or control points (--gcp)</source>
-        <translation>nichts sagt, wie groß das Modell ist: die Fotos haben keine Positionen, und unter ihnen wurde kein Boden gefunden; geben Sie eine Strecke (--distance) oder Passpunkte (--gcp) an</translation>
+        <source>nothing says how large the model is: the photos have no positions, and no ground was found below them; state a distance or control points</source>
+        <translation>nichts sagt, wie groß das Modell ist: die Fotos haben keine Positionen, und unter ihnen wurde kein Boden gefunden; geben Sie eine Strecke oder Passpunkte an</translation>
     </message>
     <message>
         <source>nothing says where north is: it is taken to be ahead of the first photo</source>
@@ -7702,12 +7702,12 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>der Standort würde über die Datei geschrieben, aus der er importiert wird; eine andere Datei nennen</translation>
     </message>
     <message>
-        <source>the size is guessed: cameras are taken to be {0} m above the ground; state a distance (--distance) or control points (--gcp) before anything is flown</source>
-        <translation>die Größe ist geraten: Kameras werden {0} m über dem Boden angenommen; geben Sie eine Strecke (--distance) oder Passpunkte (--gcp) an, bevor geflogen wird</translation>
+        <source>the size is guessed: cameras are taken to be {0} m above the ground; state a distance or control points before anything is flown</source>
+        <translation>die Größe ist geraten: Kameras werden {0} m über dem Boden angenommen; geben Sie eine Strecke oder Passpunkte an, bevor geflogen wird</translation>
     </message>
     <message>
-        <source>the size of the model is known to {0} % only: the receivers are off by too much for photos that are {1} m apart; state a distance (--distance) or control points (--gcp)</source>
-        <translation>die Größe des Modells ist nur auf {0} % bekannt: die Empfänger liegen zu weit daneben für Fotos, die {1} m auseinander sind; geben Sie eine Strecke (--distance) oder Passpunkte (--gcp) an</translation>
+        <source>the size of the model is known to {0} % only: the receivers are off by too much for photos that are {1} m apart; state a distance or control points</source>
+        <translation>die Größe des Modells ist nur auf {0} % bekannt: die Empfänger liegen zu weit daneben für Fotos, die {1} m auseinander sind; geben Sie eine Strecke oder Passpunkte an</translation>
     </message>
     <message>
         <source>the table is empty; expected a line with the names of its columns</source>

@@ -209,7 +209,7 @@ def _place(case: Case) -> Iterator[Finding]:
     if case.site_model.site.place_from == "unknown":
         text = say(
             "nobody has said where the site is, or how large: make its coarse model again with --origin, and with "
-            "--distance or --gcp, or set its origin on the Site tab once its size is known"
+            "a distance or control points, or set its origin on the Site tab once its size is known"
         )
         yield Finding(Severity.ERROR, "place", text)
 

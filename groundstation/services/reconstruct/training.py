@@ -206,8 +206,7 @@ def _config_of_data_set(dataset: Path, request: TrainRequest) -> TrainConfig:
         return config_of_request(replace(request, method=PLAIN_METHOD))
     raise InputError(
         say(
-            "has no panels, and {} learns what panels mirror; leave --method out for plain splats, or find the panels "
-            "first ('panels')",
+            "has no panels, and {} learns what panels mirror; train plain splats instead, or find its panels first",
             config.method,
             place=dataset,
         )

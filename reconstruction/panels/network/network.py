@@ -18,10 +18,7 @@ from safetensors.torch import load
 from torch import Tensor, nn
 from torch.nn import functional
 
-Picture = NDArray[np.uint8]
-
-STRIDE = 4
-"""Pixels of the picture per place of the result."""
+from reconstruction.panels.network.votes import STRIDE, Picture, places_px
 
 OFFSET_PX = 32.0
 """The network tells offsets in units of so many pixels."""
@@ -129,9 +126,3 @@ def pane_votes(
     probability = torch.sigmoid(told[0]).numpy()
     offsets = told[1:].permute(1, 2, 0).reshape(height, width, 4, 2).numpy() * OFFSET_PX
     return probability, offsets + places_px(height, width)[:, :, None]
-
-
-def places_px(height: int, width: int) -> NDArray[np.float32]:
-    """Middles of the result's places in the picture, shape (height, width, 2)."""
-    x, y = np.meshgrid(np.arange(width, dtype=np.float32), np.arange(height, dtype=np.float32))
-    return STRIDE * (np.stack([x, y], axis=-1) + np.float32(0.5))

@@ -20,7 +20,8 @@ from torch import Tensor
 from torch.nn import functional
 
 from reconstruction.panels.network.made_pictures import MadePicture, made_picture
-from reconstruction.panels.network.network import OFFSET_PX, STRIDE, PaneNetwork, places_px
+from reconstruction.panels.network.network import OFFSET_PX, PaneNetwork
+from reconstruction.panels.network.votes import STRIDE, places_px
 
 PER_FILE = 50
 """Made pictures in a file of the pool."""

@@ -9,6 +9,7 @@ several sizes that cover one another the surest stays.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import cv2
 import numpy as np
@@ -17,10 +18,16 @@ from numpy.typing import NDArray
 from planning.base.jit import kernel
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
-from reconstruction.panels.network.network import STRIDE, PaneNetwork, Picture, network, pane_votes, places_px
 from reconstruction.panels.rectify.surface import Rectification
 
+if TYPE_CHECKING:
+    from reconstruction.panels.network.network import PaneNetwork
+
 Array = NDArray[np.float64]
+Picture = NDArray[np.uint8]
+
+STRIDE = 4
+"""Pixels of the picture per place of the network's result."""
 
 LONG_SIDES_PX = (64, 96, 144, 216, 324, 486, 729, 1094)
 """Sizes in which a picture is looked at, those above its own and the parameters' limit left out."""
@@ -119,6 +126,8 @@ def find_panes(
     image: Picture, long_side_px: int, with_network: PaneNetwork | None = None, monitor: Monitor = QUIET
 ) -> FoundPanes:
     """Panes in a photo, shape (h, w, 3), blue, green, red; looked at in sizes up to `long_side_px`."""
+    from reconstruction.panels.network.network import network, pane_votes  # torch is heavy, and not always wanted
+
     used = with_network or network()
     longest = max(image.shape[:2])
     most = min(long_side_px, longest, LONG_SIDES_PX[-1])
@@ -137,6 +146,12 @@ def find_panes(
             for pane in gathered(probability, corners, (shape[1], shape[0]))
         ]
     return FoundPanes(tuple(_of_usual_size(surest(found))), tuple(maps))
+
+
+def places_px(height: int, width: int) -> NDArray[np.float32]:
+    """Middles of the result's places in the picture, shape (height, width, 2)."""
+    x, y = np.meshgrid(np.arange(width, dtype=np.float32), np.arange(height, dtype=np.float32))
+    return STRIDE * (np.stack([x, y], axis=-1) + np.float32(0.5))
 
 
 def gathered(probability: NDArray[np.float32], corners_px: NDArray[np.float32], size_px: tuple[int, int]) -> list[Pane]:

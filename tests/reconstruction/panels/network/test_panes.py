@@ -21,9 +21,9 @@ from reconstruction.metrics.sets import ScoredPhoto, folder_set, scored
 from reconstruction.panels.network import training
 from reconstruction.panels.network.grids import network_facades
 from reconstruction.panels.network.made_pictures import MadePicture, made_picture
-from reconstruction.panels.network.network import STRIDE, PaneNetwork, network
+from reconstruction.panels.network.network import PaneNetwork, network
 from reconstruction.panels.network.training import crop, make_pool, read_pool, train
-from reconstruction.panels.network.votes import FoundPanes, Pane, gathered, surest
+from reconstruction.panels.network.votes import STRIDE, FoundPanes, Pane, gathered, surest
 from reconstruction.panels.search.parameters import SegmentationParameters
 from reconstruction.panels.segment import segment_image
 from reconstruction.scenes.facades.cases import random_case, wide_camera
