@@ -16,7 +16,7 @@ from itertools import chain, islice
 from pathlib import Path
 
 from reconstruction.metrics.sets import PhotoSet, annotated_set, folder_set, made_set
-from reconstruction.panels.network.made_pictures import MadePicture
+from reconstruction.panels.network.random_pictures import MadePicture
 from reconstruction.panels.network.training import LONGEST_PX, learned_photo, make_pool, read_pool, train
 from reconstruction.scenes.facades.cases import wide_camera
 

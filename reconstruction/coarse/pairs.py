@@ -13,6 +13,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
@@ -22,7 +23,7 @@ from reconstruction.colmap.pycolmap_run import Pair
 Array = NDArray[np.float64]
 
 N_WORDS = 64
-"""Of the vocabulary: with as many, VLAD finds neighbours as well as trees of thousands of words do."""
+"""Of the vocabulary."""
 
 N_LEARNED = 40_000
 """Features that the vocabulary is learned from."""
@@ -150,17 +151,11 @@ def likeness_of(descriptors: Mapping[str, NDArray[np.uint8]], names: Sequence[st
 
 def _vocabulary(features: NDArray[np.float32], seed: int) -> NDArray[np.float32]:
     """Words, shape (`N_WORDS`, d), by k-means."""
-    rng = np.random.default_rng(seed)
-    sample = features[rng.permutation(len(features))[:N_LEARNED]]
-    words = sample[:N_WORDS].copy()
-    for _ in range(N_ROUNDS):
-        word = _nearest_word(sample, words)
-        counts = np.bincount(word, minlength=N_WORDS)
-        sums = np.zeros_like(words)
-        np.add.at(sums, word, sample)
-        used = counts > 0
-        words[used] = sums[used] / counts[used, None]
-    return words
+    sample = features[np.random.default_rng(seed).permutation(len(features))[:N_LEARNED]]
+    cv2.setRNGSeed(seed)
+    rounds = (cv2.TERM_CRITERIA_MAX_ITER, N_ROUNDS, 0.0)
+    _, _, words = cv2.kmeans(sample, N_WORDS, np.empty(0), rounds, 1, cv2.KMEANS_RANDOM_CENTERS)
+    return np.asarray(words, np.float32)
 
 
 def _nearest_word(features: NDArray[np.float32], words: NDArray[np.float32]) -> NDArray[np.int64]:

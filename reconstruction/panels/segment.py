@@ -5,13 +5,14 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.base.effects import Assessment, decide
+from planning.base.effects import Assessment, Decision, decide
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.site.importing.facades import facade_name
@@ -144,12 +145,12 @@ def segment_image(
     parameters = parameters or SegmentationParameters()
     checked = checked_image(image)
     height, width = checked.shape[:2]
-    panes = _panes(checked, parameters, monitor)
+    network = None if parameters.network == "off" else _Network(checked, parameters, monitor)
     if rectifications is not None:
         facades = []
         for number, view in enumerate(rectifications):
             monitor.report(say("find facades"), number, len(rectifications))
-            facades.append(_in_view(checked, view, parameters, monitor, facade_name(number), panes))
+            facades.append(_in_view(checked, view, parameters, monitor, facade_name(number), network))
         return Segmentation(name, width, height, tuple(facades))
     by_lines: tuple[FacadeGrid, ...] = ()
     if parameters.network != "on":
@@ -158,15 +159,10 @@ def segment_image(
         by_lines = tuple(
             grid_by_lines(checked, view, parameters, monitor, facade_name(number)) for number, view in enumerate(views)
         )
-    if panes is None:
+    if network is None:
         return Segmentation(name, width, height, by_lines)
-    whole, size = WholePicture(width, height), (width, height)
-    compared = _Compared(by_lines, panes[0], whole, size, panes[1])
-    decision = decide(NetworkForPanes(), compared, parameters.network)
-    chosen = by_lines
-    if decision.on:
-        found = find_panes(_colour(checked), parameters.long_side_px, monitor=monitor)
-        chosen = network_facades(found, width, height, parameters.seed)
+    decision = network.decide(by_lines, WholePicture(width, height))
+    chosen = network_facades(network.full, width, height, parameters.seed) if decision.on else by_lines
     return Segmentation(name, width, height, tuple(replace(grid, network=decision) for grid in chosen))
 
 
@@ -193,24 +189,34 @@ def segment_view(
     facade_id: str,
 ) -> FacadeGrid:
     """Find the panels of one facade through its rectified view."""
-    return _in_view(image, view, parameters, monitor, facade_id, _panes(image, parameters, monitor))
+    network = None if parameters.network == "off" else _Network(image, parameters, monitor)
+    return _in_view(image, view, parameters, monitor, facade_id, network)
 
 
-def _panes(
-    image: NDArray[np.uint8], parameters: SegmentationParameters, monitor: Monitor
-) -> tuple[FoundPanes, float] | None:
-    """What the network says at a first look, and what a full one costs in seconds; None where it is not to be asked."""
-    if parameters.network == "off":
-        return None
-    started = time.perf_counter()
-    looked_px = min(FIRST_LOOK_PX, parameters.long_side_px, max(image.shape[:2]))
-    found = find_panes(_colour(image), looked_px, monitor=monitor)
-    times = (min(parameters.long_side_px, LONG_SIDES_PX[-1], max(image.shape[:2])) / looked_px) ** 2
-    return found, times * (time.perf_counter() - started)
+class _Network:
+    """The network before one photo: what it says at a first look, and, once somebody asks for it, in full.
 
+    `seconds` is what a full look costs.
+    """
 
-def _colour(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    return image if image.ndim == 3 else np.asarray(cv2.cvtColor(image, cv2.COLOR_GRAY2BGR), np.uint8)
+    def __init__(self, image: NDArray[np.uint8], parameters: SegmentationParameters, monitor: Monitor) -> None:
+        colour = image if image.ndim == 3 else np.asarray(cv2.cvtColor(image, cv2.COLOR_GRAY2BGR), np.uint8)
+        self._image, self._parameters, self._monitor = colour, parameters, monitor
+        full_px = min(parameters.long_side_px, LONG_SIDES_PX[-1], max(image.shape[:2]))
+        looked_px = full_px if parameters.network == "on" else min(FIRST_LOOK_PX, full_px)
+        started = time.perf_counter()
+        self.first = find_panes(colour, looked_px, monitor=monitor)
+        self.seconds = (full_px / looked_px) ** 2 * (time.perf_counter() - started)
+
+    @cached_property
+    def full(self) -> FoundPanes:
+        return find_panes(self._image, self._parameters.long_side_px, self.first, self._monitor)
+
+    def decide(self, grids: Sequence[FacadeGrid], view: Rectification) -> Decision:
+        """Whether its panes are taken in place of these grids, in the part of the photo that a view shows."""
+        size = self._image.shape[1], self._image.shape[0]
+        compared = _Compared(grids, self.first, view, size, self.seconds)
+        return decide(NetworkForPanes(), compared, self._parameters.network)
 
 
 def _in_view(
@@ -219,17 +225,14 @@ def _in_view(
     parameters: SegmentationParameters,
     monitor: Monitor,
     facade_id: str,
-    panes: tuple[FoundPanes, float] | None,
+    network: _Network | None,
 ) -> FacadeGrid:
-    if panes is None:
-        return grid_by_lines(image, view, parameters, monitor, facade_id)
-    size = image.shape[1], image.shape[0]
     by_lines: tuple[FacadeGrid, ...] = ()
     if parameters.network != "on":
         by_lines = (grid_by_lines(image, view, parameters, monitor, facade_id),)
-    compared = _Compared(by_lines, panes[0], view, size, panes[1])
-    decision = decide(NetworkForPanes(), compared, parameters.network)
-    if not decision.on:
-        return replace(by_lines[0], network=decision)
-    found = find_panes(_colour(image), parameters.long_side_px, monitor=monitor)
-    return replace(grid_in_view(found.within(view), view, facade_id, size), network=decision)
+    if network is None:
+        return by_lines[0]
+    decision = network.decide(by_lines, view)
+    size = image.shape[1], image.shape[0]
+    grid = grid_in_view(network.full.within(view), view, facade_id, size) if decision.on else by_lines[0]
+    return replace(grid, network=decision)

@@ -27,7 +27,7 @@ from planning.site.importing.placement import LocalFrame, Placement
 from planning.site.importing.source import SourceModel
 from planning.site.records import Obstacle, SiteModel
 from reconstruction.coarse.build import CoarseModel, CoarseParameters, Stated, build_coarse, write_sparse
-from reconstruction.coarse.given_files import read_control_points, read_lens
+from reconstruction.coarse.control_and_camera import read_control_points, read_lens
 from reconstruction.photos.lens import CameraKind
 
 SITE_FILE, MESH_FILE, OBSTACLES_FILE, REPORT_FILE = "site.json", "coarse.ply", "obstacles.ply", "coarse.json"

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from planning.base.errors import InfeasibleError
 from planning.site.importing.facades import facade_name
-from reconstruction.panels.network.votes import FoundPanes, Pane, trust
+from reconstruction.panels.network.votes import FoundPanes, Pane, trust, weighted_median
 from reconstruction.panels.rectify.surface import Rectification
 from reconstruction.panels.rectify.view import vanishing_view
 from reconstruction.panels.search.record import FacadeGrid, FoundPanel, GridLine
@@ -223,19 +223,13 @@ def _stripes(first: Array, last: Array, weight: Array) -> list[_Stripe]:
     breaks = np.nonzero(np.diff(middle[order]) > SAME * size)[0] + 1
     return [
         _Stripe(
-            _median(first[members], weight[members]),
-            _median(last[members], weight[members]),
+            weighted_median(first[members], weight[members]),
+            weighted_median(last[members], weight[members]),
             float(np.median(np.abs(first[members] - np.median(first[members])))) + 0.01 * size,
             members,
         )
         for members in np.split(order, breaks)
     ]
-
-
-def _median(values: Array, weight: Array) -> float:
-    order = np.argsort(values)
-    share = np.cumsum(weight[order])
-    return float(values[order][np.searchsorted(share, 0.5 * share[-1])])
 
 
 def _lines(stripes: Sequence[_Stripe], confidence: float) -> tuple[GridLine, ...]:

@@ -106,9 +106,7 @@ def network() -> PaneNetwork:
     return loaded.eval()
 
 
-def pane_votes(
-    image: Picture, with_network: PaneNetwork | None = None
-) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+def pane_votes(image: Picture) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     """What each place of a picture says.
 
     Returns
@@ -119,10 +117,9 @@ def pane_votes(
         Shape (h / 4, w / 4, 4, 2): where the corners of that pane are in the picture; lower left, lower right, upper
         right, upper left.
     """
-    used = with_network or network()
     height, width = -(-image.shape[0] // STRIDE), -(-image.shape[1] // STRIDE)
     with torch.inference_mode():
-        told = used(as_input(image))[0, :, :height, :width]
+        told = network()(as_input(image))[0, :, :height, :width]
     probability = torch.sigmoid(told[0]).numpy()
     offsets = told[1:].permute(1, 2, 0).reshape(height, width, 4, 2).numpy() * OFFSET_PX
     return probability, offsets + places_px(height, width)[:, :, None]

@@ -19,9 +19,10 @@ from safetensors.torch import load_file, save_file
 from torch import Tensor
 from torch.nn import functional
 
-from reconstruction.panels.network.made_pictures import MadePicture, made_picture
 from reconstruction.panels.network.network import OFFSET_PX, PaneNetwork
-from reconstruction.panels.network.votes import STRIDE, places_px
+from reconstruction.panels.network.random_pictures import MadePicture, made_picture
+from reconstruction.panels.network.votes import STRIDE, places_px, signed_areas
+from reconstruction.panels.search.cells import from_lower_left
 
 PER_FILE = 50
 """Made pictures in a file of the pool."""
@@ -105,14 +106,11 @@ def _corners(mask: NDArray[np.bool_]) -> NDArray[np.float32]:
     quad = cv2.approxPolyN(cv2.convexHull(outline), 4).reshape(-1, 2).astype(np.float32)
     if len(quad) != 4 or cv2.contourArea(quad) > 1.25 * max(cv2.contourArea(outline), 1.0):
         return unknown
-    return from_lower_left_px(quad + 0.5)
-
-
-def from_lower_left_px(quad: NDArray[np.float32]) -> NDArray[np.float32]:
-    """A quadrilateral's corners, shape (4, 2), in the order lower left, lower right, upper right, upper left."""
     off = quad - quad.mean(axis=0)
-    ordered = quad[np.argsort(-np.arctan2(off[:, 1], off[:, 0]))]  # counter-clockwise as seen, y downwards
-    return np.asarray(np.roll(ordered, -int(np.argmax(ordered @ [-1.0, 1.0])), axis=0), np.float32)
+    ordered = quad[np.argsort(-np.arctan2(off[:, 1], off[:, 0]))].astype(
+        float
+    )  # counter-clockwise as seen, y downwards
+    return np.asarray(from_lower_left(ordered + 0.5, np.array([0.0, -1.0])), np.float32)
 
 
 # Crops of pictures, each another size, brightness and side.
@@ -151,11 +149,11 @@ def crop(picture: MadePicture, rng: np.random.Generator, is_photo: bool) -> Crop
     scale = float(np.exp(rng.uniform(np.log(0.5), np.log(1.5)))) * CROP_PX / MADE_PX
     if len(known) and rng.random() < 0.9:
         quad = picture.corners_px[rng.choice(known)].astype(float)
-        size = np.sqrt(max(_areas(quad[None])[0], 1.0))
+        size = np.sqrt(max(signed_areas(quad[None])[0], 1.0))
         scale = float(np.exp(rng.uniform(*np.log(PANE_PX)))) / size
         centre = quad.mean(axis=0) + rng.uniform(-0.45, 0.45, 2) * CROP_PX / scale
     scale = float(np.clip(scale, min(1.05 * CROP_PX / min(height, width), MOST_SCALE), MOST_SCALE))
-    if len(known) and np.sqrt(np.median(_areas(picture.corners_px[known].astype(float)))) * scale > LEARNED_PX[1]:
+    if len(known) and np.sqrt(np.median(signed_areas(picture.corners_px[known].astype(float)))) * scale > LEARNED_PX[1]:
         return None
     angle = np.radians(rng.normal(0.0, 3.0))
     stretch = float(np.exp(rng.normal(0.0, 0.08)))
@@ -182,11 +180,6 @@ def crop(picture: MadePicture, rng: np.random.Generator, is_photo: bool) -> Crop
     return _truth(_jittered(np.asarray(seen, np.uint8), rng, is_photo), index, corners, is_inside)
 
 
-def _areas(quads: NDArray[np.float64]) -> NDArray[np.float64]:
-    x, y = quads[..., 0], quads[..., 1]
-    return np.asarray(0.5 * np.abs((x * np.roll(y, -1, axis=-1) - y * np.roll(x, -1, axis=-1)).sum(axis=-1)))
-
-
 def _truth(
     image: NDArray[np.uint8],
     index: NDArray[np.uint16],
@@ -196,7 +189,7 @@ def _truth(
     is_pane = index > 0
     told = np.concatenate([np.full((1, 4, 2), np.nan, np.float32), corners])[index]
     offsets = told - places_px(*index.shape)[:, :, None]
-    size = np.sqrt(np.concatenate([[1.0], np.maximum(_areas(np.nan_to_num(corners.astype(float))), 1.0)]))[index]
+    size = np.sqrt(np.concatenate([[1.0], np.maximum(signed_areas(np.nan_to_num(corners.astype(float))), 1.0)]))[index]
     is_learned = (size > LEARNED_PX[0]) & (size < LEARNED_PX[1]) | ~np.isfinite(told).all(axis=(2, 3))
     # Relative to the pane; small panes count as much as large ones of many places, nearly. What lies far beyond the
     # crop can only be guessed.
@@ -236,8 +229,8 @@ def _jittered(image: NDArray[np.uint8], rng: np.random.Generator, is_photo: bool
 
 BATCH = 32
 
-PANE_SHARE, SHARP = 1.0, 0.05
-"""Weight of the logits beside the offsets, and where the loss of an offset turns from square to linear."""
+SHARP = 0.05
+"""Where the loss of an offset turns from square to linear, as a share of the pane's side."""
 
 SOURCES = (0.72, 0.1, 0.18)
 """Shares of pictures made by chance, of traced facades, and of photos."""
@@ -298,7 +291,7 @@ def train(
         truth = (np.stack([getattr(one, name) for one in crops]) for name in ("is_pane", "counts", "offsets", "weight"))
         logits, off = loss_of(told, *(torch.from_numpy(each).float() for each in truth))
         optimiser.zero_grad(set_to_none=True)
-        torch.autograd.backward([PANE_SHARE * logits + off])
+        torch.autograd.backward([logits + off])
         torch.nn.utils.clip_grad_norm_(net.parameters(), 5.0)
         optimiser.step()
         number += 1

@@ -8,8 +8,8 @@ several sizes that cover one another the surest stays.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 
 import cv2
 import numpy as np
@@ -19,9 +19,6 @@ from planning.base.jit import kernel
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from reconstruction.panels.rectify.surface import Rectification
-
-if TYPE_CHECKING:
-    from reconstruction.panels.network.network import PaneNetwork
 
 Array = NDArray[np.float64]
 Picture = NDArray[np.uint8]
@@ -74,8 +71,6 @@ class Pane:
         Of the places on it that name these corners, each counted by its probability, 0 to 1.
     scatter
         Median distance of the corners that are named from these, as a share of the pane's side.
-    side_px
-        Root of its area in the size of the picture in which it was found.
     sigma_px
         Standard deviation of a corner, pixels of the photo.
     """
@@ -83,8 +78,26 @@ class Pane:
     corners_px: Array
     share: float
     scatter: float
-    side_px: float
     sigma_px: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Look:
+    """What one size of a photo shows.
+
+    Parameters
+    ----------
+    scale
+        Its pixels per pixel of the photo.
+    probability
+        Shape (h, w): that a place lies on a pane.
+    panes
+        All that places agree on, in the photo, whatever other sizes show.
+    """
+
+    scale: float
+    probability: NDArray[np.float32]
+    panes: tuple[Pane, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -95,20 +108,20 @@ class FoundPanes:
     ----------
     panes
         Those that no surer one covers, the surest first.
-    maps
-        For each size in which the photo was looked at, its pixels per pixel of the photo, and the probability that a
-        place lies on a pane, shape (h, w).
+    looks
+        By the longer side of the photo as it was looked at, px.
     """
 
     panes: tuple[Pane, ...]
-    maps: tuple[tuple[float, NDArray[np.float32]], ...] = ()
+    looks: Mapping[int, Look] = field(default_factory=dict)
 
     def probability_at(self, points_px: Array) -> Array:
         """How probably places of the photo, shape (n, 2), lie on a pane, shape (n,): by the size that says it most."""
         best = np.zeros(len(points_px))
-        for scale, probability in self.maps:
-            column, row = (np.clip(points_px[:, i] * scale / STRIDE, 0, probability.shape[1 - i] - 1) for i in (0, 1))
-            best = np.maximum(best, probability[row.astype(int), column.astype(int)])
+        for look in self.looks.values():
+            last = np.array(look.probability.shape[::-1]) - 1
+            column, row = np.clip(points_px * look.scale / STRIDE, 0, last).astype(int).T
+            best = np.maximum(best, look.probability[row, column])
         return best
 
     def within(self, view: Rectification) -> FoundPanes:
@@ -118,34 +131,39 @@ class FoundPanes:
         middles = view.to_rectified(np.stack([pane.corners_px.mean(axis=0) for pane in self.panes]))
         corners = view.to_rectified(np.concatenate([pane.corners_px for pane in self.panes])).reshape(-1, 4, 2)
         shown = (middles >= 0.0).all(axis=1) & (middles <= [view.width_px, view.height_px]).all(axis=1)
-        shown &= np.isfinite(corners).all(axis=(1, 2)) & (_signed_areas(corners) > 0.0)
-        return FoundPanes(tuple(pane for pane, is_in in zip(self.panes, shown, strict=True) if is_in), self.maps)
+        shown &= np.isfinite(corners).all(axis=(1, 2)) & (signed_areas(corners) > 0.0)
+        return FoundPanes(tuple(pane for pane, is_in in zip(self.panes, shown, strict=True) if is_in), self.looks)
 
 
 def find_panes(
-    image: Picture, long_side_px: int, with_network: PaneNetwork | None = None, monitor: Monitor = QUIET
+    image: Picture, long_side_px: int, seen: FoundPanes | None = None, monitor: Monitor = QUIET
 ) -> FoundPanes:
-    """Panes in a photo, shape (h, w, 3), blue, green, red; looked at in sizes up to `long_side_px`."""
-    from reconstruction.panels.network.network import network, pane_votes  # torch is heavy, and not always wanted
+    """Panes in a photo, shape (h, w, 3), blue, green, red; looked at in sizes up to `long_side_px`.
 
-    used = with_network or network()
+    Parameters
+    ----------
+    seen
+        What smaller sizes of the same photo showed: they are not looked at again.
+    """
+    from reconstruction.panels.network.network import pane_votes  # torch is heavy, and not always wanted
+
     longest = max(image.shape[:2])
     most = min(long_side_px, longest, LONG_SIDES_PX[-1])
-    sizes = sorted({min(size, most) for size in LONG_SIDES_PX})
-    found: list[Pane] = []
-    maps = []
+    looks = {} if seen is None else dict(seen.looks)
+    sizes = sorted({min(size, most) for size in LONG_SIDES_PX} - {size for size in looks if size <= most})
     for number, size in enumerate(sizes):
         monitor.report(say("look for panes"), number, len(sizes))
         scale = size / longest
         shape = max(1, round(image.shape[1] * scale)), max(1, round(image.shape[0] * scale))
         smaller = np.asarray(cv2.resize(image, shape, interpolation=cv2.INTER_AREA), np.uint8)
-        probability, corners = pane_votes(smaller, used)
-        maps.append((scale, probability))
-        found += [
+        probability, corners = pane_votes(smaller)
+        panes = tuple(
             replace(pane, corners_px=pane.corners_px / scale, sigma_px=pane.sigma_px / scale)
             for pane in gathered(probability, corners, (shape[1], shape[0]))
-        ]
-    return FoundPanes(tuple(_of_usual_size(surest(found))), tuple(maps))
+        )
+        looks[size] = Look(scale, probability, panes)
+    every = [pane for look in looks.values() for pane in look.panes]
+    return FoundPanes(tuple(_of_usual_size(surest(every))), looks)
 
 
 def places_px(height: int, width: int) -> NDArray[np.float32]:
@@ -159,7 +177,7 @@ def gathered(probability: NDArray[np.float32], corners_px: NDArray[np.float32], 
     height, width = probability.shape
     quads, places = corners_px.reshape(-1, 4, 2).astype(float), places_px(height, width).reshape(-1, 2).astype(float)
     weight = probability.reshape(-1).astype(float)
-    sides = np.sqrt(np.maximum(_signed_areas(quads), 0.0))
+    sides = np.sqrt(np.maximum(signed_areas(quads), 0.0))
     votes = np.nonzero((weight > LEAST_PROBABILITY) & (sides > LEAST_SIDE_PX) & (sides < MOST_SIDE_PX))[0]
     quads, places, weight, sides = quads[votes], places[votes], weight[votes], sides[votes]
     middles = quads.mean(axis=1)
@@ -188,7 +206,7 @@ def _pane_of(
         if weight[agreeing].sum() * STRIDE**2 < LEAST_SHARE * _seen_area(quad, size_px):
             return None, np.array([seed])
         quad = np.median(quads[agreeing], axis=0)
-        side = float(np.sqrt(max(_signed_areas(quad[None])[0], 1.0)))
+        side = float(np.sqrt(max(signed_areas(quad[None])[0], 1.0)))
     inside = _inside(quad, places[agreeing])
     seen = _seen_area(quad, size_px) / STRIDE**2
     if inside.sum() < LEAST_PLACES or seen < 1.0 or not cv2.isContourConvex(quad.astype(np.float32)):
@@ -198,7 +216,7 @@ def _pane_of(
         return None, agreeing
     spread = np.median(np.abs(quads[agreeing] - quad), axis=0)
     scatter = float(spread.mean()) / side
-    return Pane(quad.astype(float), share, scatter, side, 1.5 * float(spread.max()) + 0.01 * side), agreeing
+    return Pane(quad.astype(float), share, scatter, 1.5 * float(spread.max()) + 0.01 * side), agreeing
 
 
 @kernel
@@ -233,7 +251,7 @@ def _density(middles: Array, weight: Array, sides: Array) -> Array:
     return np.asarray(np.minimum(total[cells[:, 1] + 1, cells[:, 0] + 1] * STRIDE**2 / sides**2, 1.0) * weight)
 
 
-def _signed_areas(quads: Array) -> Array:
+def signed_areas(quads: Array) -> Array:
     """Areas, positive for corners from the lower left one counter-clockwise as seen (y downwards), shape (n,)."""
     x, y = quads[..., 0], quads[..., 1]
     return np.asarray(0.5 * (np.roll(x, -1, axis=-1) * y - x * np.roll(y, -1, axis=-1)).sum(axis=-1))
@@ -287,11 +305,17 @@ def _of_usual_size(panes: list[Pane]) -> list[Pane]:
     """Without those that are small against the others; the usual side is the median by trust times side."""
     if not panes:
         return panes
-    sides = np.sqrt(np.maximum(_signed_areas(np.stack([pane.corners_px for pane in panes])), 1.0))
+    sides = np.sqrt(np.maximum(signed_areas(np.stack([pane.corners_px for pane in panes])), 1.0))
     weight = np.array([trust(pane) for pane in panes]) * sides
-    order = np.argsort(sides)
-    usual = sides[order][np.searchsorted(np.cumsum(weight[order]), 0.5 * weight.sum())]
+    usual = weighted_median(sides, weight)
     return [pane for pane, side in zip(panes, sides, strict=True) if side >= LEAST_OF_USUAL * usual]
+
+
+def weighted_median(values: Array, weight: Array) -> float:
+    """The value, shape (n,), below which half of the weight lies."""
+    order = np.argsort(values)
+    share = np.cumsum(weight[order])
+    return float(values[order][np.searchsorted(share, 0.5 * share[-1])])
 
 
 def _first_of(numbers: list[int], conflicts: NDArray[np.bool_]) -> list[int]:

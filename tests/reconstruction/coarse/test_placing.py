@@ -94,7 +94,7 @@ def test_a_guessed_size_is_told_and_no_size_is_refused():
     placed = place_model(centres, rotations, nothing, up_in_model(), height_of_eyes=1.6 / TRUTH.scale)
     assert placed.enu_from_model.scale == pytest.approx(TRUTH.scale)
     assert "scale-guessed" in {found.code for found in placed.findings}
-    with pytest.raises(InputError, match="--distance"):
+    with pytest.raises(InputError, match="state a distance"):
         place_model(centres, rotations, nothing, up_in_model())
 
 

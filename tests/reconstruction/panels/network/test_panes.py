@@ -20,10 +20,10 @@ from reconstruction.metrics.run import own_method, score_answer
 from reconstruction.metrics.sets import ScoredPhoto, folder_set, scored
 from reconstruction.panels.network import training
 from reconstruction.panels.network.grids import network_facades
-from reconstruction.panels.network.made_pictures import MadePicture, made_picture
 from reconstruction.panels.network.network import PaneNetwork, network
+from reconstruction.panels.network.random_pictures import MadePicture, made_picture
 from reconstruction.panels.network.training import crop, make_pool, read_pool, train
-from reconstruction.panels.network.votes import STRIDE, FoundPanes, Pane, gathered, surest
+from reconstruction.panels.network.votes import STRIDE, FoundPanes, Look, Pane, gathered, surest
 from reconstruction.panels.search.parameters import SegmentationParameters
 from reconstruction.panels.segment import segment_image
 from reconstruction.scenes.facades.cases import random_case, wide_camera
@@ -31,7 +31,7 @@ from reconstruction.scenes.facades.render import make_facade
 
 Array = NDArray[np.float64]
 
-GLASS_EVERYWHERE = ((0.01, np.ones((2, 3), np.float32)),)
+GLASS_EVERYWHERE = {10: Look(0.01, np.ones((2, 3), np.float32))}
 
 
 def true_votes(seed: int, noise: float) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.uint16]]:
@@ -82,7 +82,7 @@ def facade_panes(
             quad = 900.0 * seen[:, :2] / seen[:, 2:] + [500.0, 400.0]
             places.append((row, column))
             corners.append(quad)
-            panes.append(Pane(quad + noise_px * rng.standard_normal((4, 2)), 0.9, 0.02, 30.0, max(noise_px, 0.3)))
+            panes.append(Pane(quad + noise_px * rng.standard_normal((4, 2)), 0.9, 0.02, max(noise_px, 0.3)))
     return panes, places, np.array(corners)
 
 
@@ -130,7 +130,7 @@ def test_two_facades_of_a_corner_are_two_grids() -> None:
     left, places, _ = facade_panes(np.random.default_rng(11), 4, 5, 0.2, 0.2)
     right, more, _ = facade_panes(np.random.default_rng(12), 5, 4, 0.2, 0.2)
     aside = np.array([1100.0, 0.0])
-    moved = [Pane(pane.corners_px + aside, pane.share, pane.scatter, 30.0, 0.3) for pane in right]
+    moved = [Pane(pane.corners_px + aside, pane.share, pane.scatter, 0.3) for pane in right]
     facades = network_facades(FoundPanes((*left, *moved)), 2100, 800)
     assert sorted(len(facade.panels) for facade in facades) == sorted([len(places), len(more)])
     assert [facade.id for facade in facades] == ["A", "B"]
@@ -138,7 +138,7 @@ def test_two_facades_of_a_corner_are_two_grids() -> None:
 
 def test_of_panes_that_cover_one_another_the_surest_stays() -> None:
     quad = np.array([[0.0, 40.0], [30.0, 40.0], [30.0, 0.0], [0.0, 0.0]])
-    panes = [Pane(quad + shift, share, 0.02, 30.0, 0.5) for shift, share in ((0.0, 0.6), (3.0, 0.9), (31.0, 0.5))]
+    panes = [Pane(quad + shift, share, 0.02, 0.5) for shift, share in ((0.0, 0.6), (3.0, 0.9), (31.0, 0.5))]
     assert surest(panes) == [panes[1], panes[2]]
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from planning.base.errors import InputError
 from reconstruction.base.cameras import Intrinsics
-from reconstruction.coarse.given_files import read_control_points, read_lens
+from reconstruction.coarse.control_and_camera import read_control_points, read_lens
 
 SIZES = {"a.jpg": (4000, 3000), "b.jpg": (4000, 3000)}
 
