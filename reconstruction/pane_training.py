@@ -4,7 +4,7 @@ r"""Training the network for panes.
         --out reconstruction/panels/network/data/panes.safetensors
 
 It learns from pictures made by chance, which POOL keeps, from traced facades, and from every second photo of two sets
-whose licence allows it; the other photos are left to measure with. docs/concepts/panes-by-network.md is its data card.
+whose licence allows it; the other photos are left to measure with. docs/concepts/segmentation.md has its data card.
 """
 
 from __future__ import annotations

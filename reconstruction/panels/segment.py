@@ -17,7 +17,7 @@ from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.site.importing.facades import facade_name
 from reconstruction.panels.network.grids import grid_in_view, network_facades
-from reconstruction.panels.network.votes import LONG_SIDES_PX, FoundPanes, find_panes
+from reconstruction.panels.network.votes import LONG_SIDES_PX, FoundPanes, Looks, find_panes, look_at
 from reconstruction.panels.rectify.surface import Rectification
 from reconstruction.panels.search.parameters import SegmentationParameters
 from reconstruction.panels.search.record import FacadeGrid, Segmentation
@@ -47,7 +47,7 @@ class _Compared:
     """Panels between lines, and what the network says of the part of the same photo that shows their facade."""
 
     grids: Sequence[FacadeGrid]
-    panes: FoundPanes
+    looks: Looks
     view: Rectification
     size_px: tuple[int, int]
     seconds: float
@@ -67,7 +67,7 @@ class NetworkForPanes:
 
     def assess(self, scene: _Compared) -> Assessment:
         """The larger share: of panels where the network sees no glass, or of its glass where there is no panel."""
-        no_glass, no_panel = doubt(scene.grids, scene.panes, scene.view, scene.size_px)
+        no_glass, no_panel = doubt(scene.grids, scene.looks, scene.view, scene.size_px)
         reason = say(
             "the network sees no glass on {:.0f} % of {} panels, and {:.0f} % of its glass lies outside them",
             *(100.0 * no_glass, sum(len(grid.panels) for grid in scene.grids), 100.0 * no_panel),
@@ -76,7 +76,7 @@ class NetworkForPanes:
 
 
 def doubt(
-    grids: Sequence[FacadeGrid], found: FoundPanes, view: Rectification, size_px: tuple[int, int]
+    grids: Sequence[FacadeGrid], looks: Looks, view: Rectification, size_px: tuple[int, int]
 ) -> tuple[float, float]:
     """Share of panels on which the network sees no glass, and share of the glass it sees that no panel covers.
 
@@ -91,14 +91,14 @@ def doubt(
     no_glass = 0.0
     if panels:
         asked = np.concatenate([_inner(panel.corners_px) for panel in panels])
-        told = found.probability_at(asked).reshape(len(panels), len(INNER)).mean(axis=1)
+        told = looks.probability_at(asked).reshape(len(panels), len(INNER)).mean(axis=1)
         no_glass = float((told < NO_GLASS).mean())
     share = (np.arange(ASKED) + 0.5) / ASKED
     x, y = (each.ravel() for each in np.meshgrid(share * view.width_px, share * view.height_px))
     places = view.to_photo(np.column_stack([x, y]))
     seen = np.isfinite(places).all(axis=1) & (places >= 0.0).all(axis=1) & (places < size_px).all(axis=1)
     places = places[seen]
-    glass = places[found.probability_at(places) > GLASS] if len(places) else places
+    glass = places[looks.probability_at(places) > GLASS] if len(places) else places
     if len(glass) < LEAST_GLASS * ASKED**2:
         return no_glass, 0.0
     covered = np.zeros(len(glass), bool)
@@ -205,12 +205,12 @@ class _Network:
         full_px = min(parameters.long_side_px, LONG_SIDES_PX[-1], max(image.shape[:2]))
         looked_px = full_px if parameters.network == "on" else min(FIRST_LOOK_PX, full_px)
         started = time.perf_counter()
-        self.first = find_panes(colour, looked_px, monitor=monitor)
+        self.first = look_at(colour, looked_px, monitor=monitor)
         self.seconds = (full_px / looked_px) ** 2 * (time.perf_counter() - started)
 
     @cached_property
     def full(self) -> FoundPanes:
-        return find_panes(self._image, self._parameters.long_side_px, self.first, self._monitor)
+        return find_panes(look_at(self._image, self._parameters.long_side_px, self.first, self._monitor))
 
     def decide(self, grids: Sequence[FacadeGrid], view: Rectification) -> Decision:
         """Whether its panes are taken in place of these grids, in the part of the photo that a view shows."""

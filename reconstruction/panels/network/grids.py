@@ -337,6 +337,6 @@ def _fill(
             inside = np.isfinite(points).all(axis=1) & (points >= 0).all(axis=1) & (points < size_px).all(axis=1)
             if inside.mean() < 0.6 or not np.isfinite(corners).all():
                 continue
-            sure = float(found.probability_at(points[inside]).mean())
+            sure = float(found.looks.probability_at(points[inside]).mean())
             if sure >= FILLED:
                 panels[place] = FoundPanel("", *place, corners, 0.7 * sure)

@@ -83,46 +83,56 @@ class Pane:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Look:
-    """What one size of a photo shows.
+    """What the network says of one size of a photo.
 
     Parameters
     ----------
+    size_px
+        Width and height in which it was looked at.
     scale
-        Its pixels per pixel of the photo.
+        Pixels of that size per pixel of the photo.
     probability
         Shape (h, w): that a place lies on a pane.
-    panes
-        All that places agree on, in the photo, whatever other sizes show.
+    corners_px
+        Shape (h, w, 4, 2), in that size: where that pane's corners are.
     """
 
+    size_px: tuple[int, int]
     scale: float
     probability: NDArray[np.float32]
-    panes: tuple[Pane, ...] = ()
+    corners_px: NDArray[np.float32]
+
+    def panes(self) -> list[Pane]:
+        """All that places agree on, in the photo, whatever other sizes show."""
+        found = gathered(self.probability, self.corners_px, self.size_px)
+        return [
+            replace(pane, corners_px=pane.corners_px / self.scale, sigma_px=pane.sigma_px / self.scale)
+            for pane in found
+        ]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class FoundPanes:
-    """What the network says of a photo.
+class Looks:
+    """What the network says of a photo, by the longer side in which it was looked at, px."""
 
-    Parameters
-    ----------
-    panes
-        Those that no surer one covers, the surest first.
-    looks
-        By the longer side of the photo as it was looked at, px.
-    """
-
-    panes: tuple[Pane, ...]
-    looks: Mapping[int, Look] = field(default_factory=dict)
+    by_size: Mapping[int, Look] = field(default_factory=dict)
 
     def probability_at(self, points_px: Array) -> Array:
         """How probably places of the photo, shape (n, 2), lie on a pane, shape (n,): by the size that says it most."""
         best = np.zeros(len(points_px))
-        for look in self.looks.values():
+        for look in self.by_size.values():
             last = np.array(look.probability.shape[::-1]) - 1
             column, row = np.clip(points_px * look.scale / STRIDE, 0, last).astype(int).T
             best = np.maximum(best, look.probability[row, column])
         return best
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FoundPanes:
+    """Panes of a photo, those that no surer one covers, the surest first, and what they were found in."""
+
+    panes: tuple[Pane, ...]
+    looks: Looks = field(default_factory=Looks)
 
     def within(self, view: Rectification) -> FoundPanes:
         """Only the panes whose middle a rectified view shows, from its front."""
@@ -135,10 +145,8 @@ class FoundPanes:
         return FoundPanes(tuple(pane for pane, is_in in zip(self.panes, shown, strict=True) if is_in), self.looks)
 
 
-def find_panes(
-    image: Picture, long_side_px: int, seen: FoundPanes | None = None, monitor: Monitor = QUIET
-) -> FoundPanes:
-    """Panes in a photo, shape (h, w, 3), blue, green, red; looked at in sizes up to `long_side_px`.
+def look_at(image: Picture, long_side_px: int, seen: Looks | None = None, monitor: Monitor = QUIET) -> Looks:
+    """Look at a photo, shape (h, w, 3), blue, green, red, in sizes up to `long_side_px`.
 
     Parameters
     ----------
@@ -149,20 +157,20 @@ def find_panes(
 
     longest = max(image.shape[:2])
     most = min(long_side_px, longest, LONG_SIDES_PX[-1])
-    looks = {} if seen is None else dict(seen.looks)
-    sizes = sorted({min(size, most) for size in LONG_SIDES_PX} - {size for size in looks if size <= most})
+    looks = {} if seen is None else dict(seen.by_size)
+    sizes = sorted({min(size, most) for size in LONG_SIDES_PX} - set(looks))
     for number, size in enumerate(sizes):
         monitor.report(say("look for panes"), number, len(sizes))
         scale = size / longest
-        shape = max(1, round(image.shape[1] * scale)), max(1, round(image.shape[0] * scale))
-        smaller = np.asarray(cv2.resize(image, shape, interpolation=cv2.INTER_AREA), np.uint8)
-        probability, corners = pane_votes(smaller)
-        panes = tuple(
-            replace(pane, corners_px=pane.corners_px / scale, sigma_px=pane.sigma_px / scale)
-            for pane in gathered(probability, corners, (shape[1], shape[0]))
-        )
-        looks[size] = Look(scale, probability, panes)
-    every = [pane for look in looks.values() for pane in look.panes]
+        width, height = max(1, round(image.shape[1] * scale)), max(1, round(image.shape[0] * scale))
+        smaller = np.asarray(cv2.resize(image, (width, height), interpolation=cv2.INTER_AREA), np.uint8)
+        looks[size] = Look((width, height), scale, *pane_votes(smaller))
+    return Looks(looks)
+
+
+def find_panes(looks: Looks) -> FoundPanes:
+    """Panes that the places of all sizes agree on."""
+    every = [pane for look in looks.by_size.values() for pane in look.panes()]
     return FoundPanes(tuple(_of_usual_size(surest(every))), looks)
 
 
@@ -173,7 +181,7 @@ def places_px(height: int, width: int) -> NDArray[np.float32]:
 
 
 def gathered(probability: NDArray[np.float32], corners_px: NDArray[np.float32], size_px: tuple[int, int]) -> list[Pane]:
-    """Panes of one size of a picture of `size_px`, height and width, from `pane_votes`."""
+    """Panes of one size of a picture of `size_px`, width and height, from `pane_votes`."""
     height, width = probability.shape
     quads, places = corners_px.reshape(-1, 4, 2).astype(float), places_px(height, width).reshape(-1, 2).astype(float)
     weight = probability.reshape(-1).astype(float)
@@ -266,7 +274,7 @@ def _inside(quad: Array, points: Array) -> NDArray[np.bool_]:
 
 def _seen_area(quad: Array, size_px: tuple[int, int]) -> float:
     """Of a convex quadrilateral within the picture, px²."""
-    height, width = size_px
+    width, height = size_px
     frame = np.array([[0, 0], [width, 0], [width, height], [0, height]], np.float32)
     area, _ = cv2.intersectConvexConvex(quad.astype(np.float32), frame)
     return float(area)

@@ -65,7 +65,6 @@ def edited(own, change):
     ("change", "words"),
     [
         (lambda d: d.update(format="reflight-plan/1"), "reflight-dataset/1"),
-        (lambda d: d.update(panels=[]), "no panels"),
         (lambda d: d["panels"][0].update(index=7), "indices"),
         (lambda d: d["panels"][0]["corners_enu_m"].pop(), "four corners"),
         (lambda d: d["panels"][1].update(corners_enu_m=[[0, 0, 0]] * 4), "panel 2 has next to no area"),
@@ -131,3 +130,10 @@ def test_at_least_one_view_is_held_out_and_one_is_not():
     for share in (0.0, 1.0):
         with pytest.raises(ValueError, match="share"):
             held_out_names(NAMES, share, 0)
+
+
+def test_a_building_without_panels_is_a_set_for_plain_splats(own):
+    edited(own, lambda description: description.update(panels=[]))
+    panels = read_photo_set(own).panels
+    assert panels.corners_enu_m.shape == (0, 4, 3)
+    assert panels.half_side_m == 1.0

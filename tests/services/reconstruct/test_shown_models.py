@@ -19,7 +19,10 @@ from reconstruction.training.train import train_model
 from tests.reconstruction.training.made_data_set import write_data_set
 
 LIGHT = ReflectionConfig(environment_rows=8, steps=10, batch=256)
-CONFIG = TrainConfig(iterations=3, n_splats=300, max_splats=400, reflections=LIGHT, score_every_s=1e9)
+# With light apart, so that pictures say which panel a pixel is of.
+CONFIG = TrainConfig(
+    light="environment-map", iterations=3, n_splats=300, max_splats=400, reflections=LIGHT, score_every_s=1e9
+)
 
 
 @contextmanager

@@ -139,7 +139,7 @@ def reweighted(saved, change):
         (lambda c: c["config"]["reflections"].update(environment_rows=1 << 20), "at most 4096"),
         (lambda c: c["light"].update(name="radiance-grid", box=None), "weights of another model"),
         (lambda c: c.update(corner_square=0.0), "corner_square: expected more than 0"),
-        (lambda c: c["site"].update(panels=[]), "panels: expected at least one"),
+        (lambda c: c["site"].update(panels=[]), "has splats on panel 6 of 0"),
         (lambda c: c["learned"].append("more.png"), "weights of another model"),
     ],
 )
