@@ -232,7 +232,7 @@ BATCH = 32
 SHARP = 0.05
 """Where the loss of an offset turns from square to linear, as a share of the pane's side."""
 
-SOURCES = (0.72, 0.1, 0.18)
+SOURCES = (0.62, 0.08, 0.3)
 """Shares of pictures made by chance, of traced facades, and of photos."""
 
 
