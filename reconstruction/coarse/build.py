@@ -18,14 +18,17 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
 from planning.base.errors import InputError
+from planning.base.files import open_given
 from planning.base.findings import Finding, Severity
 from planning.base.json_file import read_json, write_atomically
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.geo.enu import geodetic_from_enu
 from planning.geo.frames import Origin, Vec3
+from planning.photos.jpeg import PHOTO_FILE
 from planning.photos.places import PhotoHeights, absolute_height_m, photo_places, photos_near
 from planning.photos.record import PhotoMetadata
 from reconstruction.base.cameras import Intrinsics, PosedPhoto
@@ -37,6 +40,7 @@ from reconstruction.coarse.cloud import (
     cloud_of,
     extent_of,
     find_planes,
+    in_ring,
     thinned,
     turn_upright,
     up_of_cameras,
@@ -57,7 +61,7 @@ from reconstruction.colmap.pycolmap_run import (
     load_colmap,
     transform,
 )
-from reconstruction.colmap.record import ColmapModel
+from reconstruction.colmap.record import NO_POINT, ColmapImage, ColmapModel, quaternion_of
 from reconstruction.photos.lens import CameraKind, lens_of, of_camera
 from reconstruction.photos.poses import DEFAULT_ACCURACY, measured_pose
 
@@ -74,10 +78,13 @@ class CoarseParameters:
         Photos are reduced to this for features.
     max_features
         Of each photo.
+    least_contrast
+        Of a feature: less than is usual, since walls are what is looked for, and many are plain.
     """
 
     max_image_size_px: int = 1600
     max_features: int = 6000
+    least_contrast: float = 0.003
     pairs: PairParameters = field(default_factory=PairParameters)
     seed: int = 0
 
@@ -223,9 +230,11 @@ def build_coarse(
     shutil.rmtree(scratch, ignore_errors=True)
     clock.lap("place")
     cloud = believed(cloud_of(model))
-    cell = float(np.clip(extent_of(cloud.points) / 150.0, 0.05, 0.4))
+    forwards = np.array([image.cam_from_world[2] for image in model.images.values()])
+    looked_at = cloud.of(in_ring(cloud.points, cloud.centres, forwards))
+    cell = float(np.clip(extent_of(looked_at.points) / 150.0, 0.05, 0.4))
     sizes = BuildingParameters(cell_m=cell, tolerance_m=max(0.04, 0.25 * cell), seed=parameters.seed)
-    buildings = make_buildings(cloud, sizes, monitor=monitor)
+    buildings = make_buildings(looked_at, sizes, monitor=monitor, around=cloud)
     clock.lap("buildings")
     origin, shift = _origin(taken, stated, buildings, cloud)
     model = in_enu(model, Similarity(1.0, np.eye(3), shift))
@@ -356,14 +365,18 @@ def _is_turned(photo: PhotoMetadata) -> bool:
 
 SETTINGS, MAPPED = "settings.json", "mapped.json"
 
+START_BYTES = 1 << 16
+"""Of a photo's file, which tell it from others of the same size: its metadata, and the first of its picture."""
+
 
 def _prepare_folder(kept: Path, taken: _Taken, parameters: CoarseParameters) -> None:
     """Take away what is of other photos or other settings."""
     files = [
-        (name, photo.path.stat().st_size, photo.path.stat().st_mtime_ns, repr(lens))
+        (name, photo.path.stat().st_size, _start_of(photo.path), repr(lens))
         for name, photo, lens in zip(taken.names, taken.metadata, taken.lenses, strict=True)
     ]
-    settings = [parameters.max_image_size_px, parameters.max_features, sorted(files)]
+    work = [parameters.max_image_size_px, parameters.max_features, parameters.least_contrast]
+    settings = [*work, sorted(files)]
     digest = hashlib.sha256(json.dumps(settings).encode()).hexdigest()
     path = kept / SETTINGS
     if not path.is_file() or read_json(path) != {"sha256": digest}:
@@ -375,6 +388,12 @@ def _prepare_folder(kept: Path, taken: _Taken, parameters: CoarseParameters) -> 
     write_atomically(path, json.dumps({"sha256": digest}).encode())
 
 
+def _start_of(path: Path) -> str:
+    """Digest of a file's start: copying keeps it, where it does not keep the time."""
+    with open_given(path, PHOTO_FILE) as file:
+        return hashlib.sha256(file.read(START_BYTES)).hexdigest()
+
+
 def _run(
     colmap: Any, kept: Path, folder: Path, taken: _Taken, parameters: CoarseParameters, monitor: Monitor
 ) -> ColmapRun:
@@ -383,7 +402,10 @@ def _run(
         for name, group, lens, one in zip(taken.names, taken.groups, taken.lenses, taken.measured, strict=True)
     ]
     settings = RefineParameters(
-        max_image_size_px=parameters.max_image_size_px, max_features=parameters.max_features, seed=parameters.seed
+        max_image_size_px=parameters.max_image_size_px,
+        max_features=parameters.max_features,
+        least_contrast=parameters.least_contrast,
+        seed=parameters.seed,
     )
     return ColmapRun(colmap, kept, folder, started, settings, monitor)
 
@@ -441,7 +463,93 @@ def _in_place(
     model = as_model(free, scratch / "placed")
     placed, findings = _place(model, taken, stated, parameters)
     model = in_enu(model, placed.enu_from_model)
+    if placed.scale_from == "positions" and int(placed.is_used.sum()) >= LEAST_PHOTOS:
+        added = _by_receivers(run, model, placed, fixed, taken, scratch)
+        if added is not None:
+            free = added
+            model = as_model(free, scratch / "added")
+            placed, findings = _place(model, taken, stated, parameters)
+            model = in_enu(model, placed.enu_from_model)
     return placed, model, float(free.compute_mean_reprojection_error()), findings
+
+
+LEAST_SEEN = 15
+"""Points of the model that a photo shows which was placed by its receiver: fewer say nothing of it."""
+
+ERRORS_PX = (16.0, 4.0, 4.0)
+"""Of the points of photos placed by their receivers, round by round: before and after these are adjusted."""
+
+
+STAYED = 1.5
+"""Times the largest distance of a photo from its receiver before, within which all remain."""
+
+
+def _by_receivers(
+    run: ColmapRun, model: ColmapModel, placed: Placed, fixed: set[int], taken: _Taken, scratch: Path
+) -> Any | None:
+    """The model with the photos that found no place, or a wrong one, where receiver and gimbal say that they were.
+
+    Plain walls and glass give few matches. They do not suffice to find a photo's place, but to mend it; the gimbal's
+    common error is known from the other photos. None where there is no such photo, or none shows what others show.
+    """
+    row_of = {name: row for row, name in enumerate(taken.names)}
+    images = list(model.images.values())
+    good = [image for image, is_used in zip(images, placed.is_used, strict=True) if is_used]
+    told = [(image, taken.measured[row_of[image.name]].cam_from_enu) for image in good]
+    turns = [image.cam_from_world @ turn.T for image, turn in told if turn is not None]
+    there = {image.name for image in good}
+    lost = [
+        (name, one.cam_from_enu, one)
+        for name, one in zip(taken.names, taken.measured, strict=True)
+        if name not in there and one.cam_from_enu is not None and one.position_enu_m is not None
+    ]
+    if not lost or not turns:
+        return None
+    off = Rotation.from_matrix(np.array(turns)).mean().as_matrix()
+    most_m = STAYED * float(np.linalg.norm(placed.residuals_m[placed.is_used], axis=1).max())
+    identities = run.identities()
+    all_images = dict(model.images)
+    receivers = {image.id: taken.measured[row_of[image.name]] for image in good}
+    for name, turn, one in lost:
+        number, camera = identities[name]
+        if camera not in model.cameras:
+            continue
+        receivers[number] = one
+        rotation = off @ turn
+        x, y, z = (-rotation @ np.asarray(one.position_enu_m)).tolist()
+        nothing = np.zeros((0, 2)), np.zeros(0, np.int64)
+        all_images[number] = ColmapImage(number, quaternion_of(rotation), (x, y, z), camera, name, *nothing)
+    found, shown = replace(model, images=all_images), all_images
+    for number, error_px in enumerate(ERRORS_PX):
+        folder = scratch / f"receivers-{number}"
+        added = run.triangulate(replace(found, images=shown), folder, error_px)
+        run.adjust(added, fixed)
+        found = as_model(added, folder / "adjusted")
+        shown = {key: image for key, image in found.images.items() if _is_there(image, receivers.get(key), most_m)}
+        if number == 0:
+            # Where a receiver was wrong alone, the model was right.
+            wrong = {key for key in receivers if key in found.images and _n_seen(found.images[key]) < LEAST_SEEN}
+            shown |= {key: model.images[key] for key in wrong & set(model.images)}
+            receivers = {key: one for key, one in receivers.items() if key not in wrong}
+        elif len(shown) == len(found.images):
+            break
+    else:
+        added = run.triangulate(replace(found, images=shown), scratch / "receivers", ERRORS_PX[-1])
+    return added if len(shown) > len(good) else None
+
+
+def _n_seen(image: ColmapImage) -> int:
+    return int((image.point_ids != NO_POINT).sum())
+
+
+def _is_there(image: ColmapImage, receiver: Measured | None, most_m: float) -> bool:
+    """Whether a photo shows points of the model, and has stayed where its receiver says that it was taken.
+
+    Mirror images pull photos away that show little else.
+    """
+    if _n_seen(image) < LEAST_SEEN:
+        return False
+    return receiver is None or float(np.linalg.norm(image.centre_world - np.asarray(receiver.position_enu_m))) <= most_m
 
 
 def _place(

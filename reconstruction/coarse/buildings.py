@@ -98,7 +98,11 @@ SAME_TOP_M = 0.75
 
 
 def make_buildings(
-    cloud: Cloud, parameters: BuildingParameters | None = None, ground: Ground | None = None, monitor: Monitor = QUIET
+    cloud: Cloud,
+    parameters: BuildingParameters | None = None,
+    ground: Ground | None = None,
+    monitor: Monitor = QUIET,
+    around: Cloud | None = None,
 ) -> Buildings:
     """Ground, walls, roofs and blocks of a cloud, ENU metres.
 
@@ -106,7 +110,10 @@ def make_buildings(
     ----------
     ground
         Where it is known; else it is found.
+    around
+        The same cloud with all that stands beside the building; without it, all is the building's.
     """
+    around = cloud if around is None else around
     parameters = parameters or BuildingParameters()
     ground = ground or find_ground(cloud.points, parameters.cell_m)
     walls = find_walls(cloud, ground, parameters, monitor)
@@ -128,7 +135,7 @@ def make_buildings(
     meshes = [prism(polygon, floor, top) for polygon, top in blocks]
     corners = np.concatenate([mesh.corners_enu_m for mesh in meshes])
     faces = _faces(blocks, walls, floor)
-    others = _others(cloud, blocks, ground, parameters)
+    others = _others(around, blocks, ground, parameters)
     return Buildings(ground, tuple(walls), tuple(roofs), from_corners(corners), faces, others, notes)
 
 
@@ -205,9 +212,11 @@ class _Plan:
             along = np.array([-normal[1], normal[0]])
             middle = normal * offset + along * (along @ ring.mean(axis=0))
             line = shapely.LineString([middle - reach * along, middle + reach * along])
-            lines.append(line.intersection(box))
-        noded = shapely.unary_union([shapely.set_precision(line, 1e-4) for line in lines])
-        cells = [cell for cell in shapely.get_parts(shapely.polygonize([noded])) if cell.area > 0.05]
+            # They cross the box's outline: such that ended on it would end short of it, by rounding, and cut nothing.
+            lines.append(line)
+        noded = shapely.unary_union(lines, grid_size=1e-4)
+        found = shapely.get_parts(shapely.polygonize([noded]))
+        cells = [cell for cell in found if cell.area > 0.05 and box.contains(cell.representative_point())]
         x, y = ring.min(axis=0), ring.max(axis=0)
         size = max(parameters.cell_m, float(np.max(y - x)) / 400.0)
         shape = np.ceil((y - x) / size).astype(int) + 1
@@ -269,7 +278,6 @@ def _lowest_sights(
     # The end itself is not free.
     lengths = np.linalg.norm(ends - starts, axis=1)
     share = np.minimum(share, 1.0 - 1.5 * cell_m / np.maximum(lengths, 1e-9))
-    steps = np.arange(0.0, 1.0, 1.0)
     keys, heights = [], []
     flat = np.linalg.norm((ends - starts)[:, :2], axis=1)
     n_steps = int(np.ceil(np.clip(flat / (STEP * cell_m), 1, 2000)).max())
@@ -283,7 +291,6 @@ def _lowest_sights(
         inside = ((cells >= 0) & (cells < (shape[1], shape[0]))).all(axis=1)
         keys.append(cells[inside, 1] * shape[1] + cells[inside, 0])
         heights.append(places[inside, 2])
-    del steps
     lowest = np.full(shape[0] * shape[1], np.inf)
     key = np.concatenate(keys) if keys else np.zeros(0, np.int64)
     height = np.concatenate(heights) if heights else np.zeros(0)
@@ -513,15 +520,19 @@ def _wall_of(a: Array, b: Array, out: Array, walls: Sequence[Wall]) -> tuple[int
     return best, 0.0 if best is None else most * walls[best].seen_share
 
 
-MOST_OTHERS = 40
+MOST_OTHERS = 150
 LEAST_OTHER_M = 1.5
+
+FILLED, LEAST_BOX = 0.4, 4
+"""A box is cut in two where less of its cells is filled, and it has so many along a side: rows of houses that stand at
+an angle would be one box with the site inside it."""
 
 
 def _others(
     cloud: Cloud, blocks: Sequence[tuple[shapely.Polygon, Array]], ground: Ground, parameters: BuildingParameters
 ) -> tuple[tuple[Array, Array], ...]:
     """Boxes around points that stand on the ground beside the blocks."""
-    from scipy.ndimage import find_objects, label
+    from scipy.ndimage import label
 
     near = shapely.unary_union([polygon for polygon, _ in blocks]).buffer(1.0)
     points = cloud.points[cloud.points[:, 2] > ground.z_m + LEAST_OTHER_M]
@@ -539,15 +550,30 @@ def _others(
     marks, _ = label(filled >= 2, np.ones((3, 3)))
     own = marks[cells[:, 0], cells[:, 1]]
     boxes = []
-    for number, _ in enumerate(find_objects(marks), 1):
-        inside = points[own == number]
-        if len(inside) < 8:
-            continue
-        lowest = np.array([*inside[:, :2].min(axis=0), ground.z_m])
-        highest = inside.max(axis=0)
-        boxes.append((len(inside), lowest, highest + 0.2))
+    for number in np.unique(own[own > 0]):
+        rows = np.flatnonzero(own == number)
+        for part in _parts_of(cells[rows]) if len(rows) >= 8 else ():
+            inside = points[rows[part]]
+            lowest = np.array([*inside[:, :2].min(axis=0), ground.z_m])
+            boxes.append((len(inside), lowest, inside.max(axis=0) + 0.2))
     boxes.sort(key=lambda box: -box[0])
     return tuple((lowest, highest) for _, lowest, highest in boxes[:MOST_OTHERS])
+
+
+def _parts_of(cells: NDArray[np.int64]) -> list[NDArray[np.int64]]:
+    """Rows of cells, shape (n, 2), in parts whose boxes are well filled."""
+    waiting, parts = [np.arange(len(cells))], []
+    while waiting:
+        rows = waiting.pop()
+        low, sides = cells[rows].min(axis=0), np.ptp(cells[rows], axis=0) + 1
+        n_filled = len(np.unique(cells[rows], axis=0))
+        longer = int(np.argmax(sides))
+        if n_filled >= FILLED * sides.prod() or sides[longer] < LEAST_BOX:
+            parts.append(rows)
+            continue
+        is_low = cells[rows, longer] < low[longer] + sides[longer] // 2
+        waiting += [half for half in (rows[is_low], rows[~is_low]) if len(half)]
+    return parts
 
 
 def moved(buildings: Buildings, shift: Array) -> Buildings:

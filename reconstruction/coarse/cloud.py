@@ -143,6 +143,49 @@ def extent_of(points: Array) -> float:
     return 4.0 * float(np.median(np.linalg.norm(points - np.median(points, axis=0), axis=1)))
 
 
+WIDEST_GAP_RAD = np.radians(100.0)
+"""Between two cameras of a ring, seen from its middle; cameras that leave more open stand before something."""
+
+INWARDS = np.cos(np.radians(40.0))
+"""Cameras look at the middle of their ring at least so nearly, most of them."""
+
+BESIDE_RING = 0.85
+"""Of the ring's size, within which the building is: aircraft keep their distance."""
+
+
+def in_ring(points: Array, centres: Array, forwards: Array) -> Mask:
+    """Which points stand inside a ring of cameras that look inwards; all where the cameras are no such ring.
+
+    Parameters
+    ----------
+    points, centres
+        Shapes (n, 3) and (m, 3), z up.
+    forwards
+        Unit directions in which the cameras look, shape (m, 3).
+    """
+    everything = np.ones(len(points), bool)
+    level = forwards[:, :2] / np.maximum(np.linalg.norm(forwards[:, :2], axis=1, keepdims=True), 1e-9)
+    across = np.eye(2) - level[:, :, None] * level[:, None, :]
+    # Straight down there is no direction.
+    across[np.linalg.norm(forwards[:, :2], axis=1) < 0.2] = 0.0
+    normal = across.sum(axis=0)
+    if len(centres) < 6 or np.linalg.cond(normal) > 30.0:
+        return everything
+    middle = np.linalg.solve(normal, np.einsum("mij,mj->i", across, centres[:, :2]))
+    out = centres[:, :2] - middle
+    away = np.maximum(np.linalg.norm(out, axis=1), 1e-9)
+    bearings = np.sort(np.arctan2(out[:, 1], out[:, 0]))
+    gaps = np.diff(np.append(bearings, bearings[0] + 2.0 * np.pi))
+    is_inwards = -(level * out).sum(axis=1) / away > INWARDS
+    if gaps.max() > WIDEST_GAP_RAD or is_inwards.mean() < 0.7:
+        return everything
+    # How far the ring reaches in each direction, between its cameras.
+    order = np.argsort(np.arctan2(out[:, 1], out[:, 0]))
+    beside = points[:, :2] - middle
+    reach = np.interp(np.arctan2(beside[:, 1], beside[:, 0]), bearings, away[order], period=2.0 * np.pi)
+    return np.asarray(np.linalg.norm(beside, axis=1) < BESIDE_RING * reach)
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class FoundPlane:
     """A plane, normal . p = offset, the normal towards the cameras.

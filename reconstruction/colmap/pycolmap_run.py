@@ -8,7 +8,7 @@ from __future__ import annotations
 import importlib
 import threading
 from collections.abc import Callable, Hashable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -21,7 +21,7 @@ from planning.base.jit import n_threads
 from planning.base.messages import say
 from planning.base.progress import Monitor
 from reconstruction.base.cameras import Intrinsics, PosedPhoto
-from reconstruction.colmap.folder import read_model
+from reconstruction.colmap.folder import read_model, write_model
 from reconstruction.colmap.georeference import Similarity, position_covariance
 from reconstruction.colmap.record import ColmapModel, camera_of
 
@@ -85,12 +85,15 @@ class RefineParameters:
         Photos nearest in space that each is matched with.
     exhaustive_up_to
         Sets up to this many photos are matched all with all.
+    least_contrast
+        Of a feature (COLMAP's peak threshold): plaster and concrete have few that stand out.
     """
 
     max_image_size_px: int = 1600
     max_features: int = 4096
     n_neighbours: int = 20
     exhaustive_up_to: int = 40
+    least_contrast: float = 0.0067
     seed: int = 0
 
     def __post_init__(self) -> None:
@@ -127,6 +130,7 @@ class ColmapRun:
         options.num_threads, options.use_gpu = n_threads(), False
         options.max_image_size = self.parameters.max_image_size_px
         options.sift.max_num_features = self.parameters.max_features
+        options.sift.peak_threshold = self.parameters.least_contrast
         names_of: dict[Hashable, list[StartPhoto]] = {}
         for photo in self.photos:
             names_of.setdefault(photo.group, []).append(photo)
@@ -291,6 +295,46 @@ class ColmapRun:
                 )
             )
         return max(models.values(), key=lambda model: int(model.num_reg_images()))
+
+    def identities(self) -> dict[str, tuple[int, int]]:
+        """Numbers of each photo and of its camera in the database, by its name."""
+        with self.colmap.Database.open(self.database) as database:
+            return {image.name: (image.image_id, image.camera_id) for image in database.read_all_images()}
+
+    def triangulate(self, model: ColmapModel, folder: Path, most_error_px: float) -> Any:
+        """A model of the same poses with the points that the matches give.
+
+        Parameters
+        ----------
+        model
+            With the images' and cameras' numbers of the database; its points are left out.
+        folder
+            New folder for files in between.
+        most_error_px
+            Points that are further off are left out.
+        """
+        poses, found = folder / "poses", folder / "points"
+        poses.mkdir(parents=True)
+        found.mkdir()
+        empty = np.zeros((0, 2)), np.zeros(0, np.int64)
+        bare = {
+            number: replace(image, points_px=empty[0], point_ids=empty[1]) for number, image in model.images.items()
+        }
+        write_model(poses, ColmapModel(model.cameras, bare))
+        options = self.colmap.IncrementalPipelineOptions()
+        options.num_threads, options.random_seed = n_threads(), self.parameters.seed
+        options.mapper.filter_max_reproj_error = most_error_px
+        start = self.colmap.Reconstruction(poses)
+
+        def work(cancellation_token: Any) -> Any:
+            del cancellation_token  # this step takes none; it is short
+            made = self.colmap.triangulate_points(
+                start, self.database, self.folder, found, clear_points=True, options=options
+            )
+            made.extract_colors_for_all_images(self.folder)
+            return made
+
+        return self._run(say("placing photos by their receivers"), work)
 
     def adjust(self, model: Any, fixed_cameras: set[int]) -> None:
         """Bundle adjustment with the photos' positions, in place."""

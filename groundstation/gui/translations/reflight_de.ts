@@ -7282,6 +7282,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Neigung</translation>
     </message>
     <message>
+        <source>placing photos by their receivers</source>
+        <translation>Fotos werden nach ihren Empfängern gesetzt</translation>
+    </message>
+    <message>
         <source>plan ready</source>
         <translation>Plan fertig</translation>
     </message>

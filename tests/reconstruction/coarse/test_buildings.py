@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from planning.geo.mesh import closed_parts
 from reconstruction.base.ray_casting import RayCaster
 from reconstruction.coarse.buildings import make_buildings, moved, prism
+from reconstruction.coarse.cloud import in_ring
 from reconstruction.coarse.walls import BuildingParameters, find_ground
-from tests.reconstruction.coarse.made_clouds import LOW, TALL, made_cloud
+from tests.reconstruction.coarse.made_clouds import LOW, TALL, cameras, made_cloud
 
 SIZES = BuildingParameters(cell_m=0.35, tolerance_m=0.08)
 
@@ -67,6 +70,22 @@ def test_what_was_closed_is_told(plain, glazed):
     assert seen_m2(glazed) < seen_m2(plain) - 40.0
 
 
+@pytest.mark.parametrize("angle_deg", [0.05, 0.3, 31.0])
+def test_two_walls_are_sides_of_the_block_whatever_way_it_stands(angle_deg):
+    cloud = made_cloud()
+    x, y, z = cloud.points.T
+    is_seen = ((np.abs(y + 6.0) < 0.15) & (x < 8.0)) | ((np.abs(x + 12.0) < 0.15) & (np.abs(y) < 6.0))
+    is_frame = np.random.default_rng(0).random(len(x)) < 0.15
+    c, s = np.cos(np.radians(angle_deg)), np.sin(np.radians(angle_deg))
+    turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    few = cloud.of((is_seen & is_frame) | (np.abs(z) < 0.1))
+    few = replace(few, points=few.points @ turn.T, centres=few.centres @ turn.T, towards=few.towards @ turn.T)
+    found = make_buildings(few, SIZES)
+    assert {face.wall for face in found.faces if face.wall is not None} == {0, 1}
+    hits = RayCaster(found.mesh).cast((turn @ [-4.0, -50.0, 5.0])[None], (turn @ [0.0, 1.0, 0.0])[None])
+    assert float(hits.distance_m[0]) == pytest.approx(44.0, abs=0.05)
+
+
 def test_ground_is_the_lowest_wide_level(plain):
     cloud = made_cloud()
     strays = np.column_stack([np.random.default_rng(0).uniform(-20.0, 20.0, (10, 2)), np.full(10, -3.0)])
@@ -75,6 +94,50 @@ def test_ground_is_the_lowest_wide_level(plain):
     assert ground.z_m == pytest.approx(0.0, abs=0.05)
     assert ground.slope_deg < 0.5
     assert plain.ground.z_m == pytest.approx(0.0, abs=0.05)
+
+
+def inwards(centres):
+    level = -centres * [1.0, 1.0, 0.0]
+    return level / np.linalg.norm(level, axis=1, keepdims=True)
+
+
+def test_the_building_is_what_a_ring_of_cameras_looks_at():
+    centres = cameras()
+    points = np.array([[0.0, 0.0, 5.0], [20.0, -20.0, 0.0], [39.0, 0.0, 3.0], [0.0, 70.0, 9.0]])
+    assert in_ring(points, centres, inwards(centres)).tolist() == [True, True, False, False]
+    # Around one side only, or looking out, or past the middle: all may be the building.
+    half = centres[centres[:, 1] < 0.0]
+    assert in_ring(points, half, inwards(half)).all()
+    assert in_ring(points, centres, -inwards(centres)).all()
+    assert in_ring(points, centres, inwards(centres)[:, [1, 0, 2]] * [1.0, -1.0, 1.0]).all()
+
+
+def test_houses_opposite_are_obstacles_that_leave_the_site_free(plain):
+    rng, cloud = np.random.default_rng(0), made_cloud()
+    n = 3000
+    row, side = rng.uniform(-55.0, 55.0, (2, n // 2))
+    north = np.column_stack([row, np.full(n // 2, 55.0), rng.uniform(0.0, 12.0, n // 2)])
+    east = np.column_stack([np.full(n // 2, 55.0), side, rng.uniform(0.0, 12.0, n // 2)])
+    street = np.concatenate([north, east])
+    whole = replace(
+        cloud,
+        points=np.concatenate([cloud.points, street]),
+        starts=np.concatenate([cloud.starts, cloud.starts[-1] + np.arange(1, n + 1)]),
+        cameras=np.concatenate([cloud.cameras, np.zeros(n, np.int64)]),
+        **{
+            name: np.concatenate([getattr(cloud, name), np.resize(getattr(cloud, name), (n, *shape))])
+            for name, shape in (("rgb", (3,)), ("sigmas", ()), ("towards", (3,)), ("n_views", ()))
+        },
+    )
+    looked_at = whole.of(in_ring(whole.points, whole.centres, inwards(whole.centres)))
+    found = make_buildings(looked_at, SIZES, around=whole)
+    assert wall_errors(found).max() < 0.05
+    assert len(found.faces) == len(plain.faces)
+    low, high = (np.array(corners) for corners in zip(*found.others, strict=True))
+    for x, y, _ in street[::100]:
+        assert ((low[:, :2] <= [x, y]) & (high[:, :2] >= [x, y])).all(axis=1).any()
+    is_near = (low[:, :2] < 45.0).all(axis=1) & (high[:, :2] > -45.0).all(axis=1)
+    assert not is_near.any()
 
 
 def test_a_building_moves_as_a_whole(plain):
