@@ -16,8 +16,9 @@ from planning.base.effects import Assessment, Decision, decide
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.site.importing.facades import facade_name
+from reconstruction.panels.network.belief import find_panes
 from reconstruction.panels.network.grids import grid_in_view, network_facades
-from reconstruction.panels.network.votes import LONG_SIDES_PX, FoundPanes, Looks, find_panes, look_at
+from reconstruction.panels.network.votes import LEAST_SIDE_PX, LONG_SIDES_PX, FoundPanes, Looks, look_at
 from reconstruction.panels.rectify.surface import Rectification
 from reconstruction.panels.search.parameters import SegmentationParameters
 from reconstruction.panels.search.record import FacadeGrid, Segmentation
@@ -63,7 +64,7 @@ class NetworkForPanes:
 
     name: str = say("network for panes")
     unit: str = say("of panels or of glass")
-    tolerance: float = 0.4
+    tolerance: float = 0.22
 
     def assess(self, scene: _Compared) -> Assessment:
         """The larger share: of panels where the network sees no glass, or of its glass where there is no panel."""
@@ -80,6 +81,8 @@ def doubt(
 ) -> tuple[float, float]:
     """Share of panels on which the network sees no glass, and share of the glass it sees that no panel covers.
 
+    Both are 0 where panels are too small to show in the sizes that were looked at: there the network tells nothing.
+
     Parameters
     ----------
     view
@@ -90,6 +93,10 @@ def doubt(
     panels = [panel for grid in grids for panel in grid.panels]
     no_glass = 0.0
     if panels:
+        scale = max((look.scale for look in looks.by_size.values()), default=0.0)
+        sides = [float(np.sqrt(cv2.contourArea(panel.corners_px.astype(np.float32)))) for panel in panels]
+        if np.median(sides) * scale < LEAST_SIDE_PX:
+            return 0.0, 0.0
         asked = np.concatenate([_inner(panel.corners_px) for panel in panels])
         told = looks.probability_at(asked).reshape(len(panels), len(INNER)).mean(axis=1)
         no_glass = float((told < NO_GLASS).mean())

@@ -7,7 +7,7 @@ believed less than one that stands in a row, and a cell in which no pane was fou
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from planning.base.errors import InfeasibleError
 from planning.site.importing.facades import facade_name
-from reconstruction.panels.network.votes import FoundPanes, Pane, trust, weighted_median
+from reconstruction.panels.network.votes import FoundPanes, Pane, inside, weighted_median
 from reconstruction.panels.rectify.surface import Rectification
 from reconstruction.panels.rectify.view import vanishing_view
 from reconstruction.panels.search.record import FacadeGrid, FoundPanel, GridLine
@@ -33,22 +33,22 @@ MOST_DIRECTION_RAD = np.radians(15.0)
 N_PAIRS, N_NEAR = 300, 8
 """Pairs of panes that are tried as the start of a facade, each of one pane and one of so many next to it."""
 
-MOST_FACADES = 12
+MOST_FACADES = 60
 
 APART = 3.0
 """Panes of one grid have a neighbour within so many of their own sizes."""
 
-SAME = 0.5
+SAME = 0.2
 """Middles within so much of a pane's size are of one row or column."""
 
-SNAP = 0.16
+SNAP = 0.08
 """An edge within so much of a pane's size of the others' along its line is theirs; one farther off is its own."""
 
-FILLED = 0.6
-"""A cell without a pane is one where its places say so on average."""
+FILLED = 0.8
+"""A cell without a pane is one where its places say so on average, and no pane lies on it."""
 
-ALONE, IN_A_ROW = 0.62, 0.4
-"""Trust from which a pane is believed: by itself, and in a grid with more of them."""
+BELIEVED = 0.45
+"""Confidence from which a pane is believed."""
 
 MANY = 4
 """Panes of a grid from which on they speak for one another."""
@@ -66,7 +66,7 @@ class _Group:
 def network_facades(found: FoundPanes, width_px: int, height_px: int, seed: int = 0) -> tuple[FacadeGrid, ...]:
     """Grids of the facades in a photo of that size, without a pose, the one with most panes first."""
     size = width_px, height_px
-    left = [pane for pane in found.panes if trust(pane) >= IN_A_ROW]
+    left = [pane for pane in found.panes if pane.confidence >= BELIEVED]
     rng = np.random.default_rng(seed)
     grids: list[FacadeGrid] = []
     for _ in range(MOST_FACADES):
@@ -74,7 +74,7 @@ def network_facades(found: FoundPanes, width_px: int, height_px: int, seed: int 
             break
         group = _largest(left, rng)
         view = _view(group, width_px, height_px)
-        members = max(_apart(group.panes, view), key=lambda part: sum(trust(pane) for pane in part))
+        members = max(_apart(group.panes, view), key=lambda part: sum(pane.confidence for pane in part))
         left = [pane for pane in left if not any(pane is member for member in members)]
         grid = _grid(members, view, found, size)
         if grid is not None:
@@ -88,7 +88,7 @@ def grid_in_view(found: FoundPanes, view: Rectification, facade_id: str, size_px
 
     It has no lines and no panels where the network found none.
     """
-    panes = [pane for pane in found.panes if trust(pane) >= IN_A_ROW]
+    panes = [pane for pane in found.panes if pane.confidence >= BELIEVED]
     grid = _grid(panes, view, found, size_px) if panes else None
     return _named(grid, facade_id) if grid is not None else FacadeGrid(facade_id, view, (), (), ())
 
@@ -104,7 +104,7 @@ def _named(grid: FacadeGrid, name: str) -> FacadeGrid:
 def _largest(panes: Sequence[Pane], rng: np.random.Generator) -> _Group:
     """The vanishing points that most panes agree with; one that goes with no other is a group of its own."""
     quads = np.stack([pane.corners_px for pane in panes])
-    weight = np.array([trust(pane) for pane in panes])
+    weight = np.array([pane.confidence for pane in panes])
     sigma = np.array([pane.sigma_px for pane in panes])
     n = len(panes)
     middles = quads.mean(axis=1)
@@ -250,12 +250,8 @@ def _lines(stripes: Sequence[_Stripe], confidence: float) -> tuple[GridLine, ...
 
 def _grid(panes: Sequence[Pane], view: Rectification, found: FoundPanes, size_px: tuple[int, int]) -> FacadeGrid | None:
     """Panes that stand together as rows and columns; None where none of them is to be believed."""
-    least = IN_A_ROW if len(panes) >= MANY else ALONE
-    panes = [pane for pane in panes if trust(pane) >= least]
-    if not panes:
-        return None
     boxes = np.stack([_box(pane, view) for pane in panes])
-    weight = np.array([trust(pane) for pane in panes])
+    weight = np.array([pane.confidence for pane in panes])
     columns, rows = (_stripes(boxes[:, i], boxes[:, i + 2], weight) for i in (0, 1))
     column_of, row_of = _stripe_of(columns, len(panes)), _stripe_of(rows, len(panes))
     panels: dict[tuple[int, int], FoundPanel] = {}
@@ -334,9 +330,14 @@ def _fill(
             )
             points = view.to_photo(np.column_stack([x.ravel(), y.ravel()]))
             corners = view.to_photo(_corners_of(np.array([column.first, row.first, column.last, row.last])))
-            inside = np.isfinite(points).all(axis=1) & (points >= 0).all(axis=1) & (points < size_px).all(axis=1)
-            if inside.mean() < 0.6 or not np.isfinite(corners).all():
+            shown = np.isfinite(points).all(axis=1) & (points >= 0).all(axis=1) & (points < size_px).all(axis=1)
+            if shown.mean() < 0.6 or not np.isfinite(corners).all() or _is_covered(points, panels.values()):
                 continue
-            sure = float(found.looks.probability_at(points[inside]).mean())
+            sure = float(found.looks.probability_at(points[shown]).mean())
             if sure >= FILLED:
                 panels[place] = FoundPanel("", *place, corners, 0.7 * sure)
+
+
+def _is_covered(points: Array, panels: Iterable[FoundPanel]) -> bool:
+    """Whether any of these points, shape (n, 2), lies on a panel."""
+    return any(inside(panel.corners_px, points).any() for panel in panels)

@@ -2,8 +2,7 @@
 
 A picture is looked at in several sizes, because the network knows panes of 8 to 48 pixels. In each size the places
 that say they lie on a pane are gathered by the middle of the corners they name; where many meet, there is a pane, its
-corners the median of what they name. How sure it is follows from the share of its own area that agrees. Of panes of
-several sizes that cover one another the surest stays.
+corners the median of what they name. How probably it is there is weighed in `belief`.
 """
 
 from __future__ import annotations
@@ -41,22 +40,10 @@ NEAR, CORNERS_NEAR = 0.22, 0.35
 LEAST_SHARE = 0.3
 """Of a pane's seen area that must agree on it."""
 
-LEAST_OF_USUAL = 0.5
-"""Panes whose side is a smaller share of the usual one of the photo are what panes mirror, or spots on a wall."""
-
 LEAST_PLACES = 3
 
 LEAST_DENSITY = 0.2
 """Of a pane's places whose votes must meet nearly in one point for it to be looked at."""
-
-SAME = 0.45
-"""Intersection over union from which on two panes are the same one, found in two sizes of the picture."""
-
-OVERLAP = 0.3
-"""Of two panes that share more of the smaller one's area one is wrong."""
-
-TRUST_POWER = 5.0
-"""What panes are worth is their area times this power of their trust."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -73,12 +60,15 @@ class Pane:
         Median distance of the corners that are named from these, as a share of the pane's side.
     sigma_px
         Standard deviation of a corner, pixels of the photo.
+    confidence
+        How probably it is there, 0 to 1: `belief` tells.
     """
 
     corners_px: Array
     share: float
     scatter: float
     sigma_px: float
+    confidence: float = 1.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -129,7 +119,7 @@ class Looks:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FoundPanes:
-    """Panes of a photo, those that no surer one covers, the surest first, and what they were found in."""
+    """Panes of a photo, none of which covers another, the most probable first, and what they were found in."""
 
     panes: tuple[Pane, ...]
     looks: Looks = field(default_factory=Looks)
@@ -166,12 +156,6 @@ def look_at(image: Picture, long_side_px: int, seen: Looks | None = None, monito
         smaller = np.asarray(cv2.resize(image, (width, height), interpolation=cv2.INTER_AREA), np.uint8)
         looks[size] = Look((width, height), scale, *pane_votes(smaller))
     return Looks(looks)
-
-
-def find_panes(looks: Looks) -> FoundPanes:
-    """Panes that the places of all sizes agree on."""
-    every = [pane for look in looks.by_size.values() for pane in look.panes()]
-    return FoundPanes(tuple(_of_usual_size(surest(every))), looks)
 
 
 def places_px(height: int, width: int) -> NDArray[np.float32]:
@@ -211,15 +195,15 @@ def _pane_of(
     quad, side = quads[seed], float(sides[seed])
     for _ in range(2):
         agreeing = _agreeing(quads, middles, quad, quad.mean(axis=0), NEAR * side, CORNERS_NEAR * side)
-        if weight[agreeing].sum() * STRIDE**2 < LEAST_SHARE * _seen_area(quad, size_px):
+        if weight[agreeing].sum() * STRIDE**2 < LEAST_SHARE * seen_area(quad, size_px):
             return None, np.array([seed])
         quad = np.median(quads[agreeing], axis=0)
         side = float(np.sqrt(max(signed_areas(quad[None])[0], 1.0)))
-    inside = _inside(quad, places[agreeing])
-    seen = _seen_area(quad, size_px) / STRIDE**2
-    if inside.sum() < LEAST_PLACES or seen < 1.0 or not cv2.isContourConvex(quad.astype(np.float32)):
+    within = inside(quad, places[agreeing])
+    seen = seen_area(quad, size_px) / STRIDE**2
+    if within.sum() < LEAST_PLACES or seen < 1.0 or not cv2.isContourConvex(quad.astype(np.float32)):
         return None, agreeing
-    share = float(min(1.0, weight[agreeing][inside].sum() / seen))
+    share = float(min(1.0, weight[agreeing][within].sum() / seen))
     if share < LEAST_SHARE:
         return None, agreeing
     spread = np.median(np.abs(quads[agreeing] - quad), axis=0)
@@ -265,14 +249,14 @@ def signed_areas(quads: Array) -> Array:
     return np.asarray(0.5 * (np.roll(x, -1, axis=-1) * y - x * np.roll(y, -1, axis=-1)).sum(axis=-1))
 
 
-def _inside(quad: Array, points: Array) -> NDArray[np.bool_]:
+def inside(quad: Array, points: Array) -> NDArray[np.bool_]:
     """Which points, shape (n, 2), lie within a convex quadrilateral."""
     sides = np.roll(quad, -1, axis=0) - quad
     to_points = points[:, None] - quad[None]
     return np.asarray((sides[:, 0] * to_points[..., 1] - sides[:, 1] * to_points[..., 0] <= 0.0).all(axis=1))
 
 
-def _seen_area(quad: Array, size_px: tuple[int, int]) -> float:
+def seen_area(quad: Array, size_px: tuple[int, int]) -> float:
     """Of a convex quadrilateral within the picture, px²."""
     width, height = size_px
     frame = np.array([[0, 0], [width, 0], [width, height], [0, height]], np.float32)
@@ -280,61 +264,8 @@ def _seen_area(quad: Array, size_px: tuple[int, int]) -> float:
     return float(area)
 
 
-def surest(panes: list[Pane]) -> list[Pane]:
-    """Of panes that cover one another those that are most probably right, the surest first.
-
-    Of nearly the same ones the surest stays. Where small ones lie on a large one, either the large one holds mirror
-    images of things that look like panes, or it is a wall with windows: the side with the larger `worth` is right.
-    """
-    order = sorted(panes, key=lambda pane: -trust(pane))
-    quads = np.array([pane.corners_px for pane in order], np.float32).reshape(-1, 4, 2)
-    low, high = quads.min(axis=1), quads.max(axis=1)
-    areas = np.array([cv2.contourArea(quad) for quad in quads])
-    shared = np.zeros((len(order), len(order)))
-    for i in range(len(order)):
-        near = np.nonzero((low[i] < high[i + 1 :]).all(axis=1) & (high[i] > low[i + 1 :]).all(axis=1))[0] + i + 1
-        for j in near:
-            shared[i, j] = shared[j, i] = cv2.intersectConvexConvex(quads[i], quads[j])[0]
-    union = areas[:, None] + areas[None] - shared
-    left = _first_of(list(range(len(order))), shared > SAME * union)
-    covers = shared > OVERLAP * np.minimum(areas[:, None], areas[None])
-    worth = np.array([trust(pane) for pane in order]) ** TRUST_POWER * areas
-    chosen: list[int] = []
-    for i in sorted(left, key=lambda i: -worth[i]):
-        if any(covers[i, j] for j in chosen):
-            continue
-        smaller = [j for j in left if covers[i, j] and j != i and areas[j] < areas[i]]
-        if worth[_first_of(smaller, covers)].sum() <= worth[i]:
-            chosen.append(i)
-    return [order[i] for i in sorted(chosen)]
-
-
-def _of_usual_size(panes: list[Pane]) -> list[Pane]:
-    """Without those that are small against the others; the usual side is the median by trust times side."""
-    if not panes:
-        return panes
-    sides = np.sqrt(np.maximum(signed_areas(np.stack([pane.corners_px for pane in panes])), 1.0))
-    weight = np.array([trust(pane) for pane in panes]) * sides
-    usual = weighted_median(sides, weight)
-    return [pane for pane, side in zip(panes, sides, strict=True) if side >= LEAST_OF_USUAL * usual]
-
-
 def weighted_median(values: Array, weight: Array) -> float:
     """The value, shape (n,), below which half of the weight lies."""
     order = np.argsort(values)
     share = np.cumsum(weight[order])
     return float(values[order][np.searchsorted(share, 0.5 * share[-1])])
-
-
-def _first_of(numbers: list[int], conflicts: NDArray[np.bool_]) -> list[int]:
-    """Of numbers in order those that conflict with none chosen before."""
-    chosen: list[int] = []
-    for i in numbers:
-        if not conflicts[i, chosen].any():
-            chosen.append(i)
-    return chosen
-
-
-def trust(pane: Pane) -> float:
-    """How much a pane is to be believed against others, 0 to 1: by the votes for it, and how well they agree."""
-    return float(pane.share * np.exp(-4.0 * pane.scatter))

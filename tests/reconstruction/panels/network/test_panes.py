@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+from dataclasses import replace
 from pathlib import Path
 
 import cv2
@@ -19,11 +21,20 @@ from reconstruction.metrics.overlaps import index_image, pixel_overlaps
 from reconstruction.metrics.run import own_method, score_answer
 from reconstruction.metrics.sets import ScoredPhoto, folder_set, scored
 from reconstruction.panels.network import training
+from reconstruction.panels.network.belief import (
+    Candidates,
+    Joined,
+    candidates_of,
+    find_panes,
+    first_features,
+    second_features,
+)
+from reconstruction.panels.network.calibration import Source, are_there, calibrated, write_regressions
 from reconstruction.panels.network.grids import network_facades
 from reconstruction.panels.network.network import PaneNetwork, network
 from reconstruction.panels.network.random_pictures import MadePicture, made_picture
 from reconstruction.panels.network.training import crop, make_pool, read_pool, train
-from reconstruction.panels.network.votes import STRIDE, FoundPanes, Look, Looks, Pane, gathered, surest
+from reconstruction.panels.network.votes import STRIDE, FoundPanes, Look, Looks, Pane, gathered, look_at
 from reconstruction.panels.search.parameters import SegmentationParameters
 from reconstruction.panels.segment import segment_image
 from reconstruction.scenes.facades.cases import random_case, wide_camera
@@ -136,14 +147,73 @@ def test_two_facades_of_a_corner_are_two_grids() -> None:
     assert [facade.id for facade in facades] == ["A", "B"]
 
 
-def test_of_panes_that_cover_one_another_the_surest_stays() -> None:
-    quad = np.array([[0.0, 40.0], [30.0, 40.0], [30.0, 0.0], [0.0, 0.0]])
-    panes = [Pane(quad + shift, share, 0.02, 0.5) for shift, share in ((0.0, 0.6), (3.0, 0.9), (31.0, 0.5))]
-    assert surest(panes) == [panes[1], panes[2]]
+QUAD = np.array([[0.0, 40.0], [30.0, 40.0], [30.0, 0.0], [0.0, 0.0]])
+
+
+def blank_look(scale: float = 0.5) -> Look:
+    return Look((50, 50), scale, np.ones((13, 13), np.float32), np.zeros((13, 13, 4, 2), np.float32))
+
+
+def test_of_panes_that_cover_one_another_the_most_probable_stays_and_equals_measure_it() -> None:
+    shifts = (0.0, 3.0, 31.0)
+    panes = [Pane(QUAD + shift, 0.8, 0.02, 0.5) for shift in shifts]
+    found = Candidates(panes, [blank_look()] * 3).joined(np.array([0.6, 0.9, 0.5]), np.zeros((3, 13)))
+    assert len(found.panes) == 2
+    assert found.probability.tolist() == [0.9, 0.5]
+    weights = np.array([0.6, 0.9]) ** 2
+    assert found.panes[0].corners_px == pytest.approx(QUAD + 3.0 * weights[1] / weights.sum())
+    assert np.array_equal(found.panes[1].corners_px, QUAD + 31.0)
+
+
+def test_features_of_panes_tell_sizes_that_agree_and_neighbours_that_are_alike() -> None:
+    panes = [Pane(QUAD + np.array([40.0 * i, 0.0]), 0.8, 0.0, 0.5) for i in range(3)]
+    looks = [blank_look(), blank_look(), blank_look()]
+    alone = first_features(Candidates(panes, looks))
+    again = first_features(Candidates([*panes, replace(panes[0], share=0.5)], [*looks, blank_look(0.3)]))
+    assert alone[:, 7].tolist() == [0.0, 0.0, 0.0]
+    assert again[:, 7] == pytest.approx([0.5, 0.0, 0.0, 0.8])
+    assert again[:3, [0, 1, 3]] == pytest.approx(np.tile([0.8, 0.0, np.log(0.75)], (3, 1)))
+    beside = second_features(Joined(panes, np.full(3, 0.6), alone))
+    other = Pane(QUAD[:, ::-1] @ np.array([[0.0, -1.0], [1.0, 0.0]]) + [200.0, 0.0], 0.8, 0.0, 0.5)
+    assert beside[:, 1] == pytest.approx(np.log1p(1.2))
+    assert beside[:, 2] == pytest.approx(np.log1p(1.2))
+    assert beside[:, 3] == pytest.approx(0.0)
+    apart = second_features(Joined([panes[0], other], np.full(2, 0.6), alone[:2]))
+    assert (apart[:, 1] < 0.1).all()
+
+
+def test_confidences_fitted_to_pictures_are_probabilities_of_others(tmp_path: Path) -> None:
+    def pictures(first: int) -> list[tuple[NDArray[np.uint8], NDArray[np.uint16]]]:
+        made = [made_picture(7_000_000 + first + seed, 256) for seed in range(12)]
+        return [(one.image, one.index) for one in made]
+
+    told: list[str] = []
+    fitted = calibrated([Source(pictures(0), 1.0)], told.append)
+    assert len(told) == 1
+    write_regressions(fitted, tmp_path / "confidence.json")
+    assert {"first", "second"} == set(json.loads((tmp_path / "confidence.json").read_text()))
+    sure, there = [], []
+    for image, index in pictures(100):
+        candidates = candidates_of(look_at(image, 1600))
+        sure.append(fitted[0].probability(first_features(candidates)))
+        there.append(are_there(list(candidates.quads), index))
+    probability, is_there = np.concatenate(sure), np.concatenate(there)
+    assert abs(probability.mean() - is_there.mean()) < 0.1
+    assert is_there[probability > 0.8].mean() > 0.7
+    assert is_there[probability < 0.2].mean() < 0.2
+
+
+def test_a_quadrilateral_is_there_where_it_covers_a_pane_by_more_than_half() -> None:
+    index = index_image([QUAD + 5.0], 60, 60)
+    quads = [QUAD + 5.0, QUAD + np.array([12.0, 5.0]), QUAD + np.array([28.0, 5.0]), QUAD + 500.0]
+    assert are_there(quads, index).tolist() == [True, True, False, False]
 
 
 def test_nothing_is_found_where_nothing_is() -> None:
     assert network_facades(FoundPanes(()), 100, 100) == ()
+    assert find_panes(Looks()).panes == ()
+    dark = look_at(np.zeros((40, 40, 3), np.uint8), 40)
+    assert all(pane.confidence < 0.5 for pane in find_panes(dark).panes)
     assert gathered(np.zeros((8, 8), np.float32), np.zeros((8, 8, 4, 2), np.float32), (32, 32)) == []
 
 

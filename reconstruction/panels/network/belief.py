@@ -1,0 +1,328 @@
+"""How probably panes are there: by what all sizes of a photo say of each, and by what stands beside it.
+
+Two logistic regressions, fitted to real and made photos (`calibration`). The first weighs what the places say, in the
+size in which the pane was found and in the others: of candidates that cover one another the most probable one stays,
+its corners the mean of those that name the same pane. The second weighs the neighbours as well: panes of a facade
+have equals beside, above and below them. What it tells is a calibrated probability: of panes found with 0.9, nine in
+ten are there.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from functools import cache
+from importlib import resources
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.base.jit import kernel
+from planning.base.messages import say
+from planning.base.progress import QUIET, Monitor
+from reconstruction.panels.network.votes import (
+    STRIDE,
+    FoundPanes,
+    Look,
+    Looks,
+    Pane,
+    seen_area,
+    signed_areas,
+    weighted_median,
+)
+
+Array = NDArray[np.float64]
+
+COEFFICIENTS = "confidence.json"
+
+WORTH_A_LOOK = 0.12
+"""Probability by the first regression from which a pane is looked at together with its neighbours."""
+
+SAME = 0.45
+"""Intersection over union from which on two panes are the same one."""
+
+MEASURES = 0.6
+"""And from which on the one helps to measure the other's corners,"""
+
+LEAST_MEASURES = 0.3
+"""if it is at least so probable, as a share of the other."""
+
+OVERLAP = 0.3
+"""Of two panes that share more of the smaller one's area one is wrong."""
+
+ALIKE = 0.12
+"""Panes whose corners lie so far from one another, moved to one middle, as a share of their side, are hardly alike."""
+
+BESIDE = 8.0
+"""Panes within so many of a pane's sides are its neighbours."""
+
+INTO, OUT_PX = (0.75, 0.45, 0.15), 4.0
+"""Where places inside a pane are asked, as shares of the way to its outline, and how far outside it, in a look."""
+
+FIRST = (
+    "share", "scatter", "log side", "log aspect", "seen", "inside", "around", "agrees", "agreeing", "in larger",
+    "smaller in it", "skew", "sigma",
+)  # fmt: skip
+"""What the first regression weighs; `first_features` says what they are."""
+
+SECOND = (
+    "log odds", "alike", "alike in row", "alike in column", "log size", "odd size", "neighbours",
+    *(FIRST[i] for i in (0, 1, 3, 4, 5, 6, 7, 8, 9, 10)),
+)  # fmt: skip
+"""What the second one weighs: log odds of the first, neighbours, and again what that saw."""
+
+SEEN_AGAIN = [FIRST.index(name) for name in SECOND[7:]]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Regression:
+    """A logistic regression: weight of each feature, and the log odds where all are 0."""
+
+    weight: Array
+    bias: float
+
+    def probability(self, features: Array) -> Array:
+        """Of panes with these features, shape (n, k)."""
+        return np.asarray(1.0 / (1.0 + np.exp(-np.clip(features @ self.weight + self.bias, -30.0, 30.0))))
+
+
+@cache
+def regressions() -> tuple[Regression, Regression]:
+    """The two that come with the program."""
+    stored: dict[str, Any] = json.loads((resources.files(__package__) / "data" / COEFFICIENTS).read_text("utf-8"))
+    first, second = (
+        Regression(np.array([stored[part]["weights"][name] for name in names]), float(stored[part]["bias"]))
+        for part, names in (("first", FIRST), ("second", SECOND))
+    )
+    return first, second
+
+
+def find_panes(looks: Looks, monitor: Monitor = QUIET) -> FoundPanes:
+    """Panes of a photo, the most probable first, whatever little probability they have."""
+    monitor.report(say("look for panes"), len(looks.by_size), len(looks.by_size))
+    candidates = candidates_of(looks)
+    first, second = regressions()
+    features = first_features(candidates)
+    joined = candidates.joined(first.probability(features), features)
+    told = second.probability(second_features(joined))
+    order = np.argsort(-told)
+    panes = tuple(replace(joined.panes[i], confidence=float(told[i])) for i in order)
+    return FoundPanes(panes, looks)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Candidates:
+    """Panes of all sizes of a photo.
+
+    Parameters
+    ----------
+    looks
+        The one that each was found in.
+    quads
+        Their corners, shape (n, 4, 2).
+    shared
+        Areas that they share, shape (n, n), px²; 0 on the diagonal.
+    areas
+        Their areas, shape (n,).
+    """
+
+    panes: Sequence[Pane]
+    looks: Sequence[Look]
+    quads: Array = field(init=False)
+    shared: Array = field(init=False)
+    areas: Array = field(init=False)
+
+    def __post_init__(self) -> None:
+        quads = np.array([pane.corners_px for pane in self.panes], float).reshape(-1, 4, 2)
+        object.__setattr__(self, "quads", quads)
+        object.__setattr__(self, "shared", _shared(quads))
+        object.__setattr__(self, "areas", np.maximum(signed_areas(quads), 1e-6))
+
+    @property
+    def iou(self) -> Array:
+        """Intersections over union, shape (n, n), 0 on the diagonal."""
+        return np.asarray(self.shared / (self.areas[:, None] + self.areas[None] - self.shared))
+
+    def joined(self, probability: Array, features: Array) -> Joined:
+        """Of those that cover one another the most probable, measured by all that name the same pane."""
+        iou = self.iou
+        conflicts = (iou > SAME) | (self.shared > OVERLAP * np.minimum(self.areas[:, None], self.areas[None]))
+        chosen: list[int] = []
+        for i in np.argsort(-probability):
+            if probability[i] < WORTH_A_LOOK:
+                break
+            if not conflicts[i, chosen].any():
+                chosen.append(int(i))
+        sigma = np.array([pane.sigma_px for pane in self.panes])
+        panes = []
+        for i in chosen:
+            same = np.nonzero((iou[i] > MEASURES) & (probability > LEAST_MEASURES * probability[i]))[0]
+            same = np.append(same, i)
+            weight = (probability[same] / sigma[same]) ** 2
+            corners = np.einsum("n,nij->ij", weight / weight.sum(), self.quads[same])
+            panes.append(replace(self.panes[i], corners_px=corners))
+        return Joined(panes, probability[chosen], features[chosen])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Joined:
+    """Panes that do not cover one another, the probability that the first regression gives them, what it weighed."""
+
+    panes: Sequence[Pane]
+    probability: Array
+    features: Array
+
+
+def candidates_of(looks: Looks) -> Candidates:
+    """All panes that places of any size agree on."""
+    every = [(pane, look) for look in looks.by_size.values() for pane in look.panes()]
+    return Candidates([pane for pane, _ in every], [look for _, look in every])
+
+
+def _shared(quads: Array) -> Array:
+    """Areas that convex quadrilaterals share, shape (n, n), 0 on the diagonal."""
+    single = quads.astype(np.float32)
+    shared = np.zeros((len(quads), len(quads)))
+    for i, j in _near(quads):
+        shared[i, j] = shared[j, i] = cv2.intersectConvexConvex(single[i], single[j])[0]
+    return shared
+
+
+def _near(quads: Array) -> NDArray[np.intp]:
+    """Pairs whose bounding boxes touch, shape (m, 2)."""
+    low, high = quads.min(axis=1), quads.max(axis=1)
+    touch = np.triu((low[:, None] < high[None]).all(axis=2) & (high[:, None] > low[None]).all(axis=2), 1)
+    return np.argwhere(touch)
+
+
+# What the regressions weigh.
+
+
+def first_features(candidates: Candidates) -> Array:
+    """Of each candidate, shape (n, 13), as `FIRST` names them.
+
+    Share, scatter and sigma are the pane's; side (in its look), aspect and skew its shape's; seen is the share of it
+    within the photo; inside and around are probabilities of places. Agrees and agreeing compare with panes of other
+    sizes: the surest that is nearly the same, and all of them. Then the surest much larger pane that it lies on, and
+    the smaller ones on it.
+    """
+    n = len(candidates.panes)
+    if n == 0:
+        return np.zeros((0, len(FIRST)))
+    quads, areas, shared = candidates.quads, candidates.areas, candidates.shared
+    sides = np.linalg.norm(np.roll(quads, -1, axis=1) - quads, axis=2)
+    wide, high = (
+        np.maximum(0.5 * (sides[:, 0] + sides[:, 2]), 1e-3),
+        np.maximum(0.5 * (sides[:, 1] + sides[:, 3]), 1e-3),
+    )
+    skew = np.abs(sides[:, 0] - sides[:, 2]) / wide + np.abs(sides[:, 1] - sides[:, 3]) / high
+    share, scatter, sigma = (
+        np.array([getattr(pane, name) for pane in candidates.panes]) for name in ("share", "scatter", "sigma_px")
+    )
+    trust = share * np.exp(-4.0 * scatter)
+    scale = np.array([look.scale for look in candidates.looks])
+    elsewhere = candidates.iou * (scale[:, None] != scale[None])
+    covered = shared / areas[None]  # share of j that lies on i
+    on_larger = (areas[None] > 2.0 * areas[:, None]) & (shared > 0.6 * areas[:, None])
+    smaller = (2.0 * areas[None] < areas[:, None]) & (covered > 0.6)
+    seen = [
+        seen_area(quad * look.scale, look.size_px) / (area * look.scale**2)
+        for quad, look, area in zip(quads, candidates.looks, areas, strict=True)
+    ]
+    inside, around = _places(candidates)
+    return np.column_stack(
+        [
+            share,
+            scatter,
+            np.log(np.sqrt(areas) * scale),
+            np.log(wide / high),
+            seen,
+            inside,
+            around,
+            (elsewhere * trust).max(axis=1),
+            ((elsewhere > 0.5) * trust).sum(axis=1),
+            (on_larger * trust).max(axis=1),
+            np.minimum((smaller * trust * areas[None] / areas[:, None]).sum(axis=1), 2.0),
+            np.minimum(skew, 2.0),
+            sigma / np.sqrt(areas),
+        ]
+    )
+
+
+def _places(candidates: Candidates) -> tuple[Array, Array]:
+    """Mean probability of places inside and just outside of each candidate, in its look; 0.5 where none is seen."""
+    along = np.linspace(0.0, 1.0, 8)[:-1]
+    inside, around = np.full(len(candidates.panes), 0.5), np.full(len(candidates.panes), 0.5)
+    for i, (quad, look) in enumerate(zip(candidates.quads, candidates.looks, strict=True)):
+        corners = quad * look.scale / STRIDE
+        towards = np.roll(corners, -1, axis=0) - corners
+        from_middle = (corners[:, None] + along[:, None] * towards[:, None]).reshape(-1, 2) - corners.mean(axis=0)
+        distance = np.maximum(np.linalg.norm(from_middle, axis=1, keepdims=True), 1e-6)
+        within = np.concatenate([share * from_middle for share in INTO])
+        beyond = from_middle * (1.0 + OUT_PX / STRIDE / distance)
+        for told, points in ((inside, within), (around, beyond)):
+            told[i] = _mean_at(look.probability, points + corners.mean(axis=0))
+    return inside, around
+
+
+@kernel
+def _mean_at(values: NDArray[np.float32], points: Array) -> float:
+    """Mean of the values, shape (h, w), at those points (x, y), shape (n, 2), that lie within; 0.5 for fewer than 3."""
+    total, n = 0.0, 0
+    for i in range(len(points)):
+        x, y = points[i]
+        if 0.0 <= x < values.shape[1] and 0.0 <= y < values.shape[0]:
+            total += values[int(y), int(x)]
+            n += 1
+    return total / n if n >= 3 else 0.5
+
+
+def second_features(joined: Joined) -> Array:
+    """Of each pane, shape (n, 17), as `SECOND` names them.
+
+    Neighbours count by their probability: all that are alike, those in the same row, and in the same column, as the
+    pane's own sides run. Then the log of its size over the usual one of the photo, that without its sign, and how
+    probable its neighbours are.
+    """
+    n = len(joined.panes)
+    if n == 0:
+        return np.zeros((0, len(SECOND)))
+    probability = joined.probability
+    quads = np.array([pane.corners_px for pane in joined.panes])
+    side = np.sqrt(np.maximum(signed_areas(quads), 1.0))
+    middles = quads.mean(axis=1)
+    shapes = quads - middles[:, None]
+    level, upright = (
+        quads[:, 1] - quads[:, 0] + quads[:, 2] - quads[:, 3],
+        quads[:, 0] - quads[:, 3] + quads[:, 1] - quads[:, 2],
+    )
+    wide, high = (0.5 * np.linalg.norm(each, axis=1) for each in (level, upright))
+    apart = middles[None] - middles[:, None]
+    distance = np.abs(apart).max(axis=2) / side[:, None]
+    near = distance < BESIDE
+    unlike = np.abs(shapes[None] - shapes[:, None]).mean(axis=(2, 3)) / (ALIKE * side[:, None])
+    alike = np.exp(-(unlike**2)) * probability * near
+    np.fill_diagonal(alike, 0.0)
+    allowed = 0.2 + 0.03 * distance
+    in_row = np.abs(_cross(level, apart)) / (2.0 * wide * high)[:, None] < allowed
+    in_column = np.abs(_cross(upright, apart)) / (2.0 * wide * high)[:, None] < allowed
+    size = np.log(side) - np.log(weighted_median(side, probability * side))
+    odds = np.log(np.maximum(probability, 1e-6) / np.maximum(1.0 - probability, 1e-6))
+    return np.column_stack(
+        [
+            odds,
+            *(np.log1p((alike * chosen).sum(axis=1)) for chosen in (near, in_row, in_column)),
+            size,
+            np.abs(size),
+            (near * probability).sum(axis=1) / near.sum(axis=1),
+            joined.features[:, SEEN_AGAIN],
+        ]
+    )
+
+
+def _cross(along: Array, apart: Array) -> Array:
+    """Cross products of directions, shape (n, 2), with where others lie from there, shape (n, n, 2)."""
+    return np.asarray(along[:, None, 0] * apart[..., 1] - along[:, None, 1] * apart[..., 0])

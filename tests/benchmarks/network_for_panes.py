@@ -1,0 +1,105 @@
+"""The network for panes on real photos not learned from: accuracy against time, and what its confidences are worth."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import islice, pairwise
+
+import numpy as np
+
+from planning.base.progress import QUIET
+from planning.tradeoff.runner import draw
+from reconstruction.metrics.metrics import SetScores, summarise
+from reconstruction.metrics.run import own_method, score_answer
+from reconstruction.metrics.sets import ScoredPhoto, annotated_set, folder_set
+from reconstruction.panels.network.belief import find_panes
+from reconstruction.panels.network.calibration import are_there
+from reconstruction.panels.network.grids import BELIEVED
+from reconstruction.panels.network.votes import LONG_SIDES_PX, look_at
+from reconstruction.panels.search.parameters import SegmentationParameters
+from reconstruction.tradeoff.search_tradeoff import MIOU_AXIS, SettingScores, variants_panel
+from tests.benchmarks.harness import Benchmark, Context, Row
+
+SIZES_PX = (144, 216, 324, 486, 729, 1094)
+FEW = 2
+REPORTED = (0.15, 0.3, BELIEVED, 0.6, 0.75, 0.9, 1.0)
+"""Confidences between which panes are counted together."""
+
+WANTED = {"glass": 0.6, "offices": 0.3, "cmp": 0.45}
+FALSE_SHARE = 0.25
+
+
+def measure(context: Context) -> Iterator[Row]:
+    """By lines, by what the photo calls for, by the network in sizes; and what its confidences are worth."""
+    panels = []
+    for name, photos in _not_learned_from(context):
+        scene = f"{name}, {len(photos)} photos"
+        runs = []
+        for setting in ("off", "auto"):
+            scores = _scores(photos, SegmentationParameters(network=setting))
+            wanted = WANTED[name] if setting == "auto" else None
+            yield from _rows(scene, f"--network {setting}", scores, wanted)
+        for size in SIZES_PX[:FEW] if context.is_quick else SIZES_PX:
+            parameters = SegmentationParameters(network="on", long_side_px=size)
+            runs.append(SettingScores("longer side", str(size), parameters, _scores(photos, parameters)))
+            yield from _rows(scene, f"--network on --long-side {size}", runs[-1].scores)
+        panels.append(variants_panel(scene, runs))
+        yield from _reliability(scene, photos)
+    draw("Network for panes: accuracy against time for one photo", panels, MIOU_AXIS, context.folder / "network.png")
+
+
+def _not_learned_from(context: Context) -> Iterator[tuple[str, list[ScoredPhoto]]]:
+    """Sets by name: every second photo where the others were learned from, all of CMP."""
+    glass, facades = context.data("glass"), context.data("facades")
+    step = 4 if context.is_quick else 2
+    yield "glass", list(islice(folder_set(glass / "photos", glass / "truth").photos(), 1, None, step))
+    yield "offices", list(islice(annotated_set("offices", facades).photos(), 1, None, 2 * step if step > 2 else step))
+    yield "cmp", list(islice(annotated_set("cmp", facades).photos(), 0, FEW if context.is_quick else None))
+
+
+def _scores(photos: list[ScoredPhoto], parameters: SegmentationParameters) -> SetScores:
+    method = own_method(parameters)
+    method(photos[0], QUIET)  # compiling is in no one's time
+    return summarise([score_answer(photo, method(photo, QUIET)) for photo in photos])
+
+
+def _rows(scene: str, what: str, scores: SetScores, wanted: float | None = None) -> Iterator[Row]:
+    single, n_false = scores.individual_miou, scores.n_false or 0
+    if single is None:
+        raise ValueError("expected a method that finds single panels")
+    n_found = sum(photo.n_found for photo in scores.photos)
+    beside = f"{n_false} of {n_found} false; {scores.n_missed} of {scores.n_panels} missed; {scores.seconds.mean:.2f} s"
+    target = ("", None) if wanted is None else (f"at least {wanted}", single.mean >= wanted)
+    yield Row(scene, f"individual mIoU, {what}", round(single.mean, 4), "", None, beside, *target)
+    if wanted is not None:
+        share = n_false / max(n_found, 1)
+        yield Row(scene, f"false panels of those found, {what}", round(share, 3), "", None, "",
+                  f"under {FALSE_SHARE}", share < FALSE_SHARE)  # fmt: skip
+
+
+def _reliability(scene: str, photos: list[ScoredPhoto]) -> Iterator[Row]:
+    """Of panes with a confidence, how many are there: overlap a true one by more than half of both."""
+    told: list[float] = []
+    there: list[bool] = []
+    for photo in photos:
+        panes = find_panes(look_at(photo.image, LONG_SIDES_PX[-1])).panes
+        told += [pane.confidence for pane in panes]
+        there += are_there([pane.corners_px for pane in panes], np.asarray(photo.index, np.uint16)).tolist()
+    confidence, is_there = np.array(told), np.array(there, bool)
+    for low, high in pairwise(REPORTED):
+        chosen = (confidence >= low) & (confidence < high)
+        if chosen.any():
+            beside = f"said {confidence[chosen].mean():.2f}; {chosen.sum()} panes"
+            share, what = float(is_there[chosen].mean()), f"share there, of panes said {low:.2f} to {high:.2f}"
+            yield Row(scene, what, round(share, 3), "", None, beside)
+
+
+BENCHMARK = Benchmark(
+    "network",
+    "The network for panes on real photos",
+    "Photos of real glass and of offices at night of which the others were learned from, and CMP, of which none was: "
+    "by lines, by what the photo calls for, and by the network in photos of several sizes (a size includes the smaller "
+    "ones). Then, of panes with a confidence, how many are there; those below "
+    f"{BELIEVED} are not reported.",
+    measure,
+)
