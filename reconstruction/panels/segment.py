@@ -17,7 +17,8 @@ from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.site.importing.facades import facade_name
 from reconstruction.panels.network.belief import find_panes
-from reconstruction.panels.network.grids import grid_in_view, network_facades
+from reconstruction.panels.network.grids import BELIEVED, grid_in_view, network_facades
+from reconstruction.panels.network.sides import measured
 from reconstruction.panels.network.votes import LEAST_SIDE_PX, LONG_SIDES_PX, FoundPanes, Looks, look_at
 from reconstruction.panels.rectify.surface import Rectification
 from reconstruction.panels.search.parameters import SegmentationParameters
@@ -217,7 +218,9 @@ class _Network:
 
     @cached_property
     def full(self) -> FoundPanes:
-        return find_panes(look_at(self._image, self._parameters.long_side_px, self.first, self._monitor))
+        found = find_panes(look_at(self._image, self._parameters.long_side_px, self.first, self._monitor))
+        believed = [pane for pane in found.panes if pane.confidence >= BELIEVED]
+        return replace(found, panes=tuple(measured(believed, self._image)))
 
     def decide(self, grids: Sequence[FacadeGrid], view: Rectification) -> Decision:
         """Whether its panes are taken in place of these grids, in the part of the photo that a view shows."""

@@ -33,6 +33,7 @@ from reconstruction.panels.network.calibration import Source, are_there, calibra
 from reconstruction.panels.network.grids import network_facades
 from reconstruction.panels.network.network import PaneNetwork, network
 from reconstruction.panels.network.random_pictures import MadePicture, made_picture
+from reconstruction.panels.network.sides import measured
 from reconstruction.panels.network.training import crop, make_pool, read_pool, train
 from reconstruction.panels.network.votes import STRIDE, FoundPanes, Look, Looks, Pane, gathered, look_at
 from reconstruction.panels.search.parameters import SegmentationParameters
@@ -215,6 +216,27 @@ def test_nothing_is_found_where_nothing_is() -> None:
     dark = look_at(np.zeros((40, 40, 3), np.uint8), 40)
     assert all(pane.confidence < 0.5 for pane in find_panes(dark).panes)
     assert gathered(np.zeros((8, 8), np.float32), np.zeros((8, 8, 4, 2), np.float32), (32, 32)) == []
+
+
+@given(seed=st.integers(0, 10_000))
+def test_sides_of_a_pane_are_measured_by_its_edges(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    size = rng.uniform(60.0, 160.0)
+    true = np.array([200.0, 200.0]) + size * (np.array([[-0.5, 0.5], [0.5, 0.5], [0.5, -0.5], [-0.5, -0.5]]))
+    true += rng.uniform(-0.05, 0.05, (4, 2)) * size
+    is_glass = index_image([true], 400, 400) > 0
+    image = np.where(is_glass, 90, 170)[..., None] + rng.normal(0.0, 6.0, (400, 400, 3))
+    told = true + rng.uniform(-0.07, 0.07, (4, 2)) * size
+    (found,) = measured([Pane(told, 0.9, 0.02, 0.05 * size)], np.clip(image, 0, 255).astype(np.uint8))
+    assert np.abs(found.corners_px - true).max() < 0.03 * size + 1.0
+    assert np.abs(found.corners_px - true).mean() < 0.5 * np.abs(told - true).mean() + 0.5
+
+
+def test_sides_without_an_edge_stay() -> None:
+    pane = Pane(QUAD + 30.0, 0.9, 0.02, 1.0)
+    (found,) = measured([pane], np.full((120, 120, 3), 90, np.uint8))
+    assert np.abs(found.corners_px - pane.corners_px).max() < 0.01
+    assert measured([], np.full((120, 120, 3), 90, np.uint8)) == []
 
 
 GLASS = Path(__file__).parents[5] / "shared" / "data" / "glass"
