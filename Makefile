@@ -78,7 +78,7 @@ coverage: ready-to-test
 	$(PY) -m tests.coverage_table .coverage.json
 
 # Compiling the kernels of planning takes one core as long as all the rest takes another: it has to start first.
-ready-to-test: $(WARM) check compiled-tests
+ready-to-test: $(WARM) compiled-tests
 
 compiled-tests: $(VENV)/.ready
 	$(PY) -m tests.rewritten
@@ -103,7 +103,7 @@ $(VENV)/.foreign: $(VENV)/.ready tests/foreign/package-lock.json
 	! command -v npm >/dev/null || npm ci --prefix tests/foreign --ignore-scripts --no-audit --no-fund
 	touch $@
 
-test-all: foreign
+test-all: foreign check
 	$(MAKE) --jobs $(WORKERS) ready-to-test
 	$(PY) -m pytest -n $(WORKERS) --dist worksteal --hypothesis-profile thorough $(SLOWEST) -m 'not benchmark and not alone'
 	$(MAKE) alone

@@ -14,6 +14,7 @@ from collections.abc import Generator
 from pathlib import Path
 
 import hypothesis
+import numpy as np
 import pytest
 
 # Threads of BLAS and OpenMP wait for one another in busy loops: beside other processes, which tests always have, small
@@ -66,17 +67,25 @@ def pytest_collection() -> Generator[None, object, object]:
         gc.enable()
 
 
-@pytest.hookimpl(trylast=True)
-def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+@pytest.hookimpl(wrapper=True)
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> Generator[None, None, None]:
     """Another order, the same in all processes: what a test leaves behind must be of no consequence for the next.
 
-    Properties that ask for more examples than usual get them from `make test-all`.
+    Properties that ask for more examples than usual get them from `make test-all`, which alone tries all cases of tests
+    that are marked with `few`.
     """
     for function in {getattr(item, "function", None) for item in items}:
         own = getattr(function, "_hypothesis_internal_use_settings", None)
         most = MOST_EXAMPLES if hypothesis.settings.default.max_examples == MOST_EXAMPLES else math.inf
         if own is not None and own.max_examples > most:
             function._hypothesis_internal_use_settings = hypothesis.settings(own, max_examples=MOST_EXAMPLES)
+    for _, cases in itertools.groupby(items, lambda item: item.nodeid.partition("[")[0]):
+        of_one = list(cases)
+        marker = of_one[0].get_closest_marker("few")
+        n = len(of_one) if marker is None else marker.args[0]
+        for number in {*range(len(of_one))} - {round(each) for each in np.linspace(0, len(of_one) - 1, n)}:
+            of_one[number].add_marker(pytest.mark.slow)
+    yield
     seed = config.getoption("--shuffle")
     if seed is None:
         return

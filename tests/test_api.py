@@ -26,6 +26,7 @@ def run(name, folder):
     return done.stdout
 
 
+@pytest.mark.slow
 def test_a_flight_is_planned_exported_and_simulated(tmp_path):
     assert run("plan.py", tmp_path).startswith("12 views cover ")
     assert "flight.kmz: 12 photos" in run("export.py", tmp_path)

@@ -20,6 +20,7 @@ def python(code):
     )
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(
     ("package", "forbidden"),
     [

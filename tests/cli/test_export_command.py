@@ -45,6 +45,7 @@ def plans_by_profile(tmp_path_factory):
     return folder
 
 
+@pytest.mark.few(13)
 @pytest.mark.parametrize("file_format", sorted(ENDINGS))
 @pytest.mark.parametrize("profile_id", sorted(profiles()))
 def test_every_profile_exports_to_every_format_or_is_refused_with_a_reason(

@@ -116,6 +116,7 @@ def typed(reflight, files, tmp_path, monkeypatch):
     return run
 
 
+@pytest.mark.few(105)
 @pytest.mark.parametrize(("command", "given"), WRONG)
 def test_a_file_of_another_kind_is_refused_with_what_was_expected_and_found(typed, tmp_path, command, given):
     name, found = GIVEN[given]

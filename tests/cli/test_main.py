@@ -194,6 +194,7 @@ def test_output_that_cannot_be_written_is_one_line_and_status_1(pane):
     assert "Exception ignored" not in done.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("unbuffered", ["", slow("1")])
 def test_a_reader_that_leaves_early_is_no_error_message(pane, unbuffered):
     read_end, write_end = os.pipe()
@@ -307,6 +308,7 @@ def seed_data(tmp_path_factory):
     return folder / "data"
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("seed", [slow(0), LARGEST_SEED])
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=pytest.mark.slow) if name in RENDERS else name for name in SEEDED]
@@ -321,6 +323,7 @@ def test_every_seed_of_63_bits_is_taken(reflight, pane, seed_data, tmp_path, nam
     assert done.status == 0, done.err
 
 
+@pytest.mark.slow
 def test_findings_errors_and_the_brief_are_german_where_that_is_asked_for(reflight, tmp_path):
     from planning.site.bundled import write_scene
 

@@ -109,6 +109,7 @@ assert not {"torch", "ifcopenshell", "pandas"} & set(sys.modules)
 """
 
 
+@pytest.mark.slow
 def test_looking_into_records_loads_nothing_heavy(folder):
     root = Path(__file__).resolve().parents[2]
     command = [sys.executable, "-c", LOOK, str(folder)]

@@ -154,6 +154,7 @@ def test_logs_or_photos_must_be_named_and_not_both(report, photos, pane):
         report_files(pane / "plan.json", pane / "site.json")
 
 
+@pytest.mark.slow
 def test_real_logs_of_elsewhere_are_refused_with_the_distance(report, shared_data):
     for name in ("uavlogviewer_vtol.tlog", "dronekit_la_log171.bin", "sample_px4_events.ulg"):
         assert "km from the site" in report("--log", shared_data / "logs" / name).error

@@ -76,6 +76,7 @@ def test_the_photos_of_a_plan_are_rendered_where_it_has_its_views(render, pane, 
         assert photo.intrinsics.width_px == 32
 
 
+@pytest.mark.slow
 def test_asking_again_keeps_what_is_there_and_asking_for_something_else_is_refused(render, pane, tmp_path):
     first = render("--plan", pane / "plan.json", "--json").json
     assert (first["photos"], first["kept"]) == (6, 0)
@@ -87,6 +88,7 @@ def test_asking_again_keeps_what_is_there_and_asking_for_something_else_is_refus
     assert "holds photos of another run: settings.wishes.noise is null there" in error
 
 
+@pytest.mark.slow
 def test_the_photos_of_a_flight_are_rendered_from_where_they_were_taken(render, pane, flown, tmp_path):
     done = render("--flight", flown, "--plan", pane / "plan.json", "--json")
     assert (done.json["photos"], done.json["findings"]) == (6, [])
@@ -95,12 +97,14 @@ def test_the_photos_of_a_flight_are_rendered_from_where_they_were_taken(render, 
     assert next(iter(taken.values()))["position_enu_m"] == pytest.approx([first[0] + 0.1, *first[1:]])
 
 
+@pytest.mark.slow
 def test_photos_of_a_flight_that_say_no_direction_are_left_out_with_a_word(render, flown):
     done = render("--flight", flown)
     assert "5 photos" in done.out
     assert "1 of 6 photos do not say where the camera looked" in done.err
 
 
+@pytest.mark.slow
 def test_views_are_planned_where_none_are_named_and_the_plan_is_kept(reflight, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     arguments = ("scene", "render", "planar-far", "-o", "planar-far", "--views", 2, *QUICK, "--effects", "none")
@@ -178,6 +182,7 @@ def test_views_inside_buildings_opposite_are_told(reflight, pane, changed, tmp_p
     assert "stand inside buildings opposite" in done.err
 
 
+@pytest.mark.slow
 def test_a_camera_file_says_how_photos_are_taken(render, flown, tmp_path):
     camera = tmp_path / "camera.toml"
     camera.write_text("speed_m_s = 30.0\nshutter_s = 0.02\ndistortion = [-0.1, 0.02, 0, 0, 0]\n")
@@ -193,6 +198,7 @@ def test_a_camera_file_says_how_photos_are_taken(render, flown, tmp_path):
     assert {photo.exposure_s for photo in read_photos(out / "images").photos} == {0.02}
 
 
+@pytest.mark.slow
 def test_a_camera_file_with_a_mistake_is_refused_before_anything_is_written(render, tmp_path):
     camera = tmp_path / "camera.toml"
     camera.write_text("shutter = 0.02\n")

@@ -13,6 +13,7 @@ from reconstruction.metrics.sets import SET_NAMES
 QUICK = ("--seeds", 2, "--width", 480)
 
 
+@pytest.mark.slow
 def test_made_photos_are_scored_and_the_worst_shown(reflight, tmp_path):
     out = tmp_path / "new" / "scores"
     done = reflight("score", "segmentation", *QUICK, "-o", out, "--json")

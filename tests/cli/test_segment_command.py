@@ -35,6 +35,7 @@ def test_panels_are_written_in_pixels_of_the_photo(reflight, photo, tmp_path):
     assert "rows" in reflight("segment", photo, "-o", tmp_path / "again.json").out
 
 
+@pytest.mark.slow
 def test_photo_said_to_be_fronto_parallel_is_searched_as_it_is(reflight, photo, tmp_path):
     out = tmp_path / "p.json"
     assert reflight("segment", photo, "-o", out, "--rectified").status == 0
@@ -78,6 +79,7 @@ def test_output_that_cannot_be_written_is_refused_before_the_work(reflight, phot
     assert "would replace" in reflight("segment", photo, "-o", photo).error
 
 
+@pytest.mark.slow
 def test_settings_come_from_a_file_and_from_options(reflight, photo, tmp_path):
     settings = tmp_path / "s.toml"
     settings.write_text("long_side_px = 400\n")

@@ -32,6 +32,7 @@ def fly(reflight, pane, tmp_path):
     return run
 
 
+@pytest.mark.slow
 def test_a_flight_is_reported_and_written(fly, tmp_path):
     done = fly()
     assert done.status == 0
@@ -42,6 +43,7 @@ def test_a_flight_is_reported_and_written(fly, tmp_path):
     assert flight.report.summary.n_taken == 6
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("autopilot", [slow("ardupilot"), "px4"])
 def test_json_is_one_object_with_what_others_need(fly, autopilot):
     content = fly("--autopilot", autopilot, "--json", "--seed", 7).json
@@ -52,6 +54,7 @@ def test_json_is_one_object_with_what_others_need(fly, autopilot):
     assert {"flight", "link", "views", "sorties", "findings", "seconds"} <= set(content)
 
 
+@pytest.mark.slow
 def test_effects_can_be_overruled(fly):
     content = fly("--effects", "none", "--effects", "wind=on", "--wind", 5, "--json").json
     assert {effect["effect"] for effect in content["effects"] if effect["on"]} == {"wind"}
@@ -148,6 +151,7 @@ def vehicle_at_a_port(pane, autopilot, forgets=(), home_up_m=0.0):
         link.close()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("autopilot", [slow(Autopilot.ARDUPILOT), Autopilot.PX4])
 def test_an_address_of_this_machine_is_no_simulation(fly, pane, tmp_path, autopilot):
     """Routers listen there: only what the vehicle says of itself counts, and nothing is set on any other."""
@@ -163,6 +167,7 @@ def test_an_address_of_this_machine_is_no_simulation(fly, pane, tmp_path, autopi
     assert not (tmp_path / "f.json").exists()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("agrees", [False, True])
 def test_parameters_of_a_vehicle_that_may_be_real_are_set_where_the_pilot_agrees(fly, pane, agrees):
     with vehicle_at_a_port(pane, Autopilot.PX4, REAL_PX4) as (vehicle, url):
@@ -182,6 +187,7 @@ def test_parameters_of_a_vehicle_that_may_be_real_are_set_where_the_pilot_agrees
         assert any("RTL_RETURN_ALT is 60; the plan was made for" in text for text in notes)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("autopilot", [slow(Autopilot.ARDUPILOT), Autopilot.PX4])
 def test_a_vehicle_that_stands_lower_than_planned_flies_once_its_flight_is_raised(fly, pane, tmp_path, autopilot):
     """Tried: 3 m lower and 10 m higher flew without a word."""

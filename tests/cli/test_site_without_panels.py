@@ -82,6 +82,7 @@ COMMANDS = {
 """Every command that counts what is seen of panels."""
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("site", ["bare", "emptied"])
 @pytest.mark.parametrize("command", COMMANDS.values(), ids=COMMANDS)
 def test_what_needs_panels_says_where_they_come_from(reflight, bare, mission, tmp_path, site, command):
@@ -135,6 +136,7 @@ def test_a_site_with_neither_panels_nor_mesh_is_refused(reflight, bare, changed,
     assert "add panels, or name the mesh" in error
 
 
+@pytest.mark.slow
 def test_a_coarse_model_becomes_a_site_where_the_user_says_so_and_photos_fill_it(reflight, flight, tmp_path):
     folder, made = flight
     coarse, site = folder / "coarse.ply", tmp_path / "coarse.site.json"

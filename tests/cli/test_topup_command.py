@@ -72,6 +72,7 @@ def test_a_complete_flight_needs_no_top_up_and_writes_none(reflight, pane, flown
     assert not out.exists()
 
 
+@pytest.mark.slow
 def test_hardly_anything_missing_writes_a_top_up_only_where_it_is_asked_for(reflight, tmp_path):
     plan, view = alone(1)
     site_path, plan_path, flight_path = (tmp_path / name for name in ("site.json", "plan.json", "flight.json"))
@@ -105,6 +106,7 @@ def test_hardly_anything_missing_writes_a_top_up_only_where_it_is_asked_for(refl
     assert read_plan(out).method == "top-up"
 
 
+@pytest.mark.slow
 def test_the_autopilots_log_serves_as_well_as_a_flight_file(reflight, pane, tmp_path):
     plan, site = read_plan(pane / "plan.json"), read_site(pane / "site.json").site
     (record,) = flown_as_planned(plan)

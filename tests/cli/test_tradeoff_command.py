@@ -50,6 +50,7 @@ def rows_of(path):
         return list(csv.DictReader(file))
 
 
+@pytest.mark.slow
 def test_plan_writes_table_and_picture_and_names_the_winner(site, tmp_path, capsys):
     out = tmp_path / "new" / "folder"
     methods = ["--methods", "greedy,orbit", "--precisions", "f64", "--steps", "15"]
@@ -98,6 +99,7 @@ def test_several_jobs_find_what_one_finds(site, tmp_path, capsys):
     assert shares[0] == shares[1]
 
 
+@pytest.mark.slow
 def test_route_compares_tsplib_files_and_plans_with_their_bounds_and_optima(site, plan, tmp_path, capsys):
     instance = tmp_path / "square.tsp"
     instance.write_text(SQUARE)

@@ -20,6 +20,7 @@ QUICK = (
 )
 
 
+@pytest.mark.slow
 def test_a_table_and_a_picture_are_written(reflight, tmp_path):
     out = tmp_path / "out"
     done = reflight("tradeoff", "scene", "planar-far", "-o", out, *QUICK, "--turn", "shadow")

@@ -98,6 +98,7 @@ def test_a_training_that_was_cancelled_goes_on(reflight, glass, tmp_path, monkey
     assert "holds no training" in reflight("train", glass / "data", "-o", out, "--resume").error
 
 
+@pytest.mark.slow
 def test_cancelled_while_it_learns_light_alone_it_goes_on_too(reflight, glass, tmp_path, monkeypatch):
     out, light = tmp_path / "model", ("--light", "environment-map")
     done = cancelled(monkeypatch, reflight, "learning reflections", 3, glass / "data", "-o", out, *quick(glass), *light)
@@ -167,6 +168,7 @@ def test_models_are_scored_on_what_they_have_not_seen(reflight, glass):
     assert "LPIPS unavailable: get its weights by 'score weights'" in text.out
 
 
+@pytest.mark.slow
 def test_weights_of_a_package_are_kept_and_found(reflight, tmp_path, monkeypatch):
     monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path / "config"))
     data, model = tmp_path / "data", tmp_path / "model"
@@ -197,6 +199,7 @@ def without_facade(folder, name):
         assert cv2.imwrite(path, np.zeros_like(cv2.imread(path, cv2.IMREAD_UNCHANGED)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("n_without", [0, 1, 3])
 def test_training_and_scoring_say_the_same_number(reflight, tmp_path, n_without):
     data, out = tmp_path / "data", tmp_path / "model"
@@ -258,6 +261,7 @@ def test_models_of_another_site_and_damaged_ones_are_refused(reflight, glass, tm
     assert "cannot be read" in reflight("score", broken, glass / "data").error
 
 
+@pytest.mark.slow
 def test_settings_are_turned_one_at_a_time_and_written(reflight, glass, tmp_path):
     out = tmp_path / "tradeoff"
     more = ("--preset", "smoke", "--settings", glass / "quick.toml", "--iterations", 4, "--method", "2dgs")

@@ -69,6 +69,7 @@ def photo(application, preview):
     return preview.picture().astype(int)
 
 
+@pytest.mark.slow
 def test_panel_corners_are_rendered_within_a_pixel_of_where_the_camera_model_projects_them(application, preview):
     model = office()
     plan = made_plan(POSES[:3])

@@ -140,6 +140,7 @@ ASKING = {
 }
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("name", ASKING)
 def test_nothing_happens_when_the_user_thinks_better_of_it(application, controller, name):
     before, told = controller.context.document, controller.window.messages.texts()
@@ -169,6 +170,7 @@ def test_a_plan_gets_the_name_that_is_typed(application, controller):
     assert controller.context.document.current.title == "South side"
 
 
+@pytest.mark.slow
 def test_a_plan_an_aircraft_and_a_mesh_are_opened_from_files(application, controller, planned, tmp_path):
     write_plan(tmp_path / "other.json", planned[1])
     with clicked(choose(tmp_path / "other.json")):
@@ -216,6 +218,7 @@ def test_missions_are_written_after_a_name_and_replaced_after_a_yes_only(applica
     assert controller.window.findChildren(ExportDialog) == []
 
 
+@pytest.mark.slow
 def test_files_of_further_sorties_are_replaced_after_a_yes_only(application, controller, tmp_path):
     from groundstation.gui.mission.export_dialog import ExportDialog
 
@@ -244,6 +247,7 @@ def test_files_of_further_sorties_are_replaced_after_a_yes_only(application, con
     assert (tmp_path / "kiosk.kmz").is_file()
 
 
+@pytest.mark.slow
 def test_the_brief_is_saved_where_it_is_told_and_printed_after_a_yes(application, controller, tmp_path):
     from groundstation.gui.mission.brief_printer import BriefDialog
 
@@ -276,6 +280,7 @@ def test_the_boxes_of_the_help_menu_go_by_every_way(application, controller):
             assert text in shown[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("begins_in", ["/", "there"])
 def test_a_path_that_is_typed_is_taken_wherever_the_dialog_begins(application, controller, tmp_path, begins_in):
     """Qt's own dialog takes the folder on the way to it."""

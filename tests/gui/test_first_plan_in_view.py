@@ -27,6 +27,7 @@ def entry(name):
     return PlanEntry(name, name, plan("single-panel"))
 
 
+@pytest.mark.slow
 def test_the_first_plan_of_a_site_is_brought_in_once(controller):
     context, view = controller.context, controller.window.shared_view.scene()
     context.session.open(Document(scene("single-panel")), None)

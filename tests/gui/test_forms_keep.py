@@ -218,6 +218,7 @@ def test_a_place_on_earth_is_kept(application, lat_deg, lon_deg, height_m):
     assert box.value() == origin
 
 
+@pytest.mark.slow
 @given(st.lists(st.tuples(numbers(-1e5, 1e5), numbers(-1e5, 1e5)), min_size=3, max_size=6), st.sampled_from(UnitSystem))
 @quick
 def test_corners_of_polygons_and_extents_are_kept(application, corners, units):
@@ -236,6 +237,7 @@ def test_corners_of_polygons_and_extents_are_kept(application, corners, units):
     assert extent.value() == (place, place)
 
 
+@pytest.mark.slow
 @given(st.integers(1, 5000), st.integers(1, 5000), numbers(0.0, 50.0), numbers(0.001, 500.0))
 @quick
 def test_a_grid_of_panels_is_kept(application, n_rows, n_columns, gap_m, tolerance_m):

@@ -103,6 +103,7 @@ def east_of(photo):
     return photo.request.view.position_enu_m[0]
 
 
+@pytest.mark.slow
 def test_a_coarse_picture_comes_first_then_a_fine_one_with_its_effects(hands):
     assert hands.controller.shown() is None
     hands.preview.box.photo.click()
@@ -133,6 +134,7 @@ def test_a_newer_viewpoint_takes_the_place_of_an_older_one(hands):
     assert east_of(hands.until_photo(is_fine=False)) == POSES[2][0][0]
 
 
+@pytest.mark.slow
 def test_edits_undo_and_the_light_are_followed(hands):
     hands.preview.box.photo.click()
     hands.select("v0001")
@@ -157,6 +159,7 @@ def test_edits_undo_and_the_light_are_followed(hands):
     assert len(hands.names) == n_jobs
 
 
+@pytest.mark.slow
 def test_nothing_is_rendered_while_nobody_looks_or_a_flight_plays(hands):
     hands.preview.box.photo.click()
     hands.shared_view.show_page(SharedViewPage.MAP)
@@ -179,6 +182,7 @@ def test_nothing_is_rendered_while_nobody_looks_or_a_flight_plays(hands):
     assert hands.controller.shown() is None
 
 
+@pytest.mark.slow
 def test_other_work_comes_first(hands):
     gate = Gate()
     hands.context.start("Something else", gate)
@@ -208,6 +212,7 @@ def test_what_fails_is_told_in_its_place_once_and_tried_again_when_asked(hands, 
     hands.until_photo(is_fine=False)
 
 
+@pytest.mark.slow
 def test_a_photo_that_was_cancelled_stays_away_until_it_is_asked_for(hands, monkeypatch):
     gate = Gate()
     with monkeypatch.context() as patched:
@@ -236,6 +241,7 @@ def test_a_site_that_has_lost_its_panels_says_so_and_renders_nothing(hands):
     assert hands.names == []
 
 
+@pytest.mark.slow
 def test_outlines_lie_over_the_photo_where_they_are_wanted(hands):
     hands.preview.box.photo.click()
     hands.until_photo()

@@ -228,6 +228,7 @@ def looks(application, worker, tmp_path, monkeypatch, request):
     close_controller(controller)
 
 
+@pytest.mark.slow
 def test_everything_can_be_reached_in_every_tab_phase_and_dialog(looks):
     controller, window = looks.controller, looks.controller.window
     controller.context.say(Severity.WARNING, "a warning of many words " * 15, about="plan.long")
@@ -326,6 +327,7 @@ def _in_the_fly_tab(looks, window):
     turn_until(looks.application, lambda: not page.controller.is_connected)
 
 
+@pytest.mark.slow
 def test_the_import_dialog_can_be_reached(looks, tmp_path):
     import trimesh
 

@@ -143,6 +143,7 @@ def test_values_colour_panels_and_missing_ones_are_grey(application, view):
         view.set_panel_values(scale, values[:5])
 
 
+@pytest.mark.slow
 def test_hemispheres_are_painted_and_taken_away(application, view):
     view.set_site(office())
     plain = picture(application, view)
@@ -160,6 +161,7 @@ def test_hemispheres_are_painted_and_taken_away(application, view):
         view.paint_hemispheres(SectionGrid(30.0), states[:, :3])
 
 
+@pytest.mark.slow
 def test_layers_are_hidden_and_shown(application, view, plan):
     from groundstation.gui.view3d.drawables import Layer
 
@@ -194,6 +196,7 @@ def test_hovering_and_clicking_name_the_panel_under_the_pointer(application, vie
     assert hovered[-1] is None
 
 
+@pytest.mark.slow
 def test_selection_and_hover_are_marked_in_the_picture(application, view, plan):
     view.set_site(office())
     view.set_plan(plan)
@@ -304,6 +307,7 @@ def test_keys_that_mean_something_to_vtk_mean_nothing_here(application, view):
     assert view.isVisible()
 
 
+@pytest.mark.slow
 def test_domes_follow_the_view_once_it_is_at_rest(application, view):
     view.set_site(tower())
     view.paint_hemispheres(SectionGrid(30.0), np.tile(np.arange(36) % 5, (3640, 1)))
@@ -391,6 +395,7 @@ def test_a_plan_without_a_site_can_be_looked_at(application, view, plan):
     assert inside(view, plan.sorties[0].path_enu_m[4:6])
 
 
+@pytest.mark.slow
 def test_dots_behind_a_wall_are_hidden_by_it_also_once_lines_are_shifted(application, view, plan):
     view.set_site(office())
     scale = ColourScale("Clearance", "m", 10.0, 30.0)
@@ -416,6 +421,7 @@ def lines(places, colour="#ff00ff", width_px=6.0):
     return Drawable(np.array(places, float), cells, flat(colour, len(cells)), width_px=width_px)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(
     "after",
     [
@@ -457,6 +463,7 @@ def test_an_edit_gives_vtk_nothing_new_to_draw(application, view, plan):
     assert set(view.canvas().renderer.actors) == actors
 
 
+@pytest.mark.slow
 def test_after_edits_the_picture_is_that_of_a_view_in_which_nothing_was_drawn_before(application, view, plan):
     view.set_site(office())
     view.set_plan(plan)
@@ -578,6 +585,7 @@ def test_a_viewpoint_is_dragged_and_the_drag_taken_back_with_escape(application,
     assert view.tool() is None
 
 
+@pytest.mark.slow
 def test_texts_are_readable_and_the_ground_changes_with_the_theme(application, view):
     try:
         seen = {}
@@ -621,6 +629,7 @@ def test_a_moved_site_keeps_the_camera_and_its_values_where_wanted(application, 
     settle(application)
 
 
+@pytest.mark.slow
 def test_what_comes_after_the_view_was_closed_draws_nothing_and_raises_nothing(application, plan):
     from groundstation.gui.view3d.scene_view import SceneView
 
@@ -642,6 +651,7 @@ def test_what_comes_after_the_view_was_closed_draws_nothing_and_raises_nothing(a
     settle(application)
 
 
+@pytest.mark.slow
 def test_a_real_building_is_drawn_and_every_panel_in_sight_can_be_picked(application, view, shared_data):
     path = shared_data / "buildings" / "ingolstadt_lod3" / "4018270.xml"
     model = import_site(path, ImportOptions()).model

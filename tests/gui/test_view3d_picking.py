@@ -34,6 +34,7 @@ def slow_first_hit(eye, ray, corners):
     return best
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("make", [office, slow(library), court, slow(canyon)])
 def test_the_ray_through_a_pixel_meets_what_the_slow_search_meets(make):
     model = make()
@@ -99,6 +100,7 @@ def test_a_no_fly_volume_is_picked_only_where_nothing_but_the_building_is_behind
     assert pick(index, None, view, x, y).item == Item(ItemKind.NO_FLY, "road")
 
 
+@pytest.mark.slow
 def test_viewpoints_and_legs_are_picked_by_their_pixels_unless_a_surface_hides_them():
     site = site_scene(large_site(), LIGHT)
     index, plan = PickIndex(site), plan_scene(large_plan(), LIGHT)

@@ -75,6 +75,7 @@ def finding(edited: Plan, code: str, text: str = "", site_model: SiteModel | Non
     return next(f for f in found if f.code == code and text in f.message)
 
 
+@pytest.mark.slow
 def test_a_good_plan_keeps_every_rule_and_every_measured_value_is_stated() -> None:
     findings = check_plan(plan(), site())
     assert {f.severity for f in findings} == {Severity.OK}

@@ -47,6 +47,7 @@ def clockwise(facade: Facade) -> Facade:
     return Facade(facade.id, tuple(Panel(p.id, p.corners_enu_m[::-1]) for p in facade.panels))  # type: ignore[arg-type]
 
 
+@pytest.mark.slow
 def test_clockwise_panels_are_named_and_the_others_are_planned_for() -> None:
     south, east = kiosk().site.facades
     planned = plan_kiosk(with_panels(kiosk(), south, clockwise(east)))
@@ -63,6 +64,7 @@ def test_site_of_clockwise_panels_only_is_refused_with_a_hint() -> None:
         plan_kiosk(with_panels(kiosk(), *facades))
 
 
+@pytest.mark.slow
 def test_panel_that_nobody_can_see_is_named_and_costs_nothing_else() -> None:
     # A pane in the underside of a canopy below the airspace: no allowed place lies in front of it.
     corners = ((7.0, 3.0, 2.5), (7.0, 5.0, 2.5), (9.0, 5.0, 2.5), (9.0, 3.0, 2.5))
@@ -109,6 +111,7 @@ def test_a_no_fly_volume_over_everything_but_home_leaves_what_can_be_seen_from_t
     assert is_flyable(check_plan(planned.plan, model))
 
 
+@pytest.mark.slow
 def test_more_views_than_are_useful_are_spent_on_depth_or_left_out() -> None:
     model = SCENES["single-panel"]()
     planned = plan_flight(model, PlanRequest(n_views=120, greedy=FEW, time_budget_s=600.0))
@@ -126,6 +129,7 @@ def test_one_view_of_one_panel_makes_a_flight() -> None:
     assert (len(plan.viewpoints), len(plan.sorties), plan.coverage.covered) == (1, 1, 1)
 
 
+@pytest.mark.slow
 def test_horizontal_and_slanted_panels_are_planned_as_the_contract_counts_them() -> None:
     skylight: tuple[Vec3, Vec3, Vec3, Vec3] = ((-1.0, 3.0, 9.05), (1.0, 3.0, 9.05), (1.0, 5.0, 9.05), (-1.0, 5.0, 9.05))
     slanted: tuple[Vec3, Vec3, Vec3, Vec3] = ((2.0, 2.0, 9.1), (4.0, 2.0, 9.1), (4.0, 4.0, 9.1001), (2.0, 4.0, 9.1001))
@@ -214,6 +218,7 @@ def test_coverage_of_the_same_views_is_the_same_wherever_the_site_lies(offset: V
         assert np.abs(counts[0] - counts[1]).sum() <= 2 + 2e-4 * counts[0].sum()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("offset", OFFSETS[1:])
 @pytest.mark.parametrize("precision", ["f32", "f64"])
 def test_a_site_at_the_edge_of_the_coordinates_allowed_is_planned_as_well_as_at_the_origin(

@@ -161,6 +161,7 @@ def test_goals_are_met() -> None:
     assert len(share.plan.viewpoints) > len(views.plan.viewpoints)
 
 
+@pytest.mark.slow
 def test_without_a_goal_nearly_everything_is_covered_with_few_views() -> None:
     model = SCENES["single-panel"]()
     planned = plan_flight(model, PlanRequest(greedy=FEW, time_budget_s=600.0))
@@ -199,6 +200,7 @@ def seen_from_near(limit_m: float) -> int:
     return planned_again(glass_to_the_south, request).plan.coverage.covered
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("share", [0.9, 0.99])
 def test_a_share_is_covered_sharply_too_as_far_as_that_can_be(share: float) -> None:
     limit_m = profile("m3e").camera.distance_for_gsd_m(0.004)
@@ -215,6 +217,7 @@ def test_a_share_is_covered_sharply_too_as_far_as_that_can_be(share: float) -> N
     assert plan.constraints.wanted_gsd_mm == 4.0
 
 
+@pytest.mark.slow
 def test_spare_views_are_spent_on_sharp_ones_first() -> None:
     limit_m = profile("m3e").camera.distance_for_gsd_m(0.005)
     request = PlanRequest(n_views=54, constraints=replace(NEAR, wanted_gsd_mm=5.0), greedy=MANY)
@@ -248,6 +251,7 @@ def test_same_seed_gives_the_same_plan_whatever_the_number_of_threads(
     assert without_wall_times(other).replace('"seed": 6', '"seed": 5') != first
 
 
+@pytest.mark.slow
 def test_improved_plans_repeat_too_when_the_search_ends_by_itself(monkeypatch: pytest.MonkeyPatch) -> None:
     greedy = GreedyParameters(n_candidates=300)
     request = PlanRequest(n_views=3, greedy=greedy, time_budget_s=600.0)
@@ -285,6 +289,7 @@ def cancel() -> None:
     raise OperationCancelled("cancelled")
 
 
+@pytest.mark.slow
 def test_cancelling_at_any_report_throws_the_plan_away() -> None:
     listening = Counting(10**9, cancel)
     plan_flight(kiosk(), REQUESTS["views"], monitor=listening)
@@ -308,6 +313,7 @@ def test_stopped_at_once_a_plan_comes_out_all_the_same(name: str) -> None:
     assert planned.plan.coverage.covered > 0
 
 
+@pytest.mark.slow
 def test_stopping_half_way_keeps_what_was_found() -> None:
     stop, trace = StopRequest(), Trace()
     trace.observer = lambda _point: stop.request() if len(trace.points) >= 8 else None
@@ -319,6 +325,7 @@ def test_stopping_half_way_keeps_what_was_found() -> None:
     assert [point.covered for point in planned.plan.history] == [int(point.value) for point in trace.points]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("scene", "budget_s"), [("office", 1.0), pytest.param("court", 5.0, marks=pytest.mark.slow)])
 def test_a_time_budget_too_small_for_everything_still_gives_a_plan_soon_after(scene: str, budget_s: float) -> None:
     model = SCENES[scene]()
@@ -342,6 +349,7 @@ def test_bounds_hold_for_what_they_are_stated_for() -> None:
     assert batteries.plan.coverage.covered <= batteries.bound_for_views <= batteries.plan.coverage.reachable_upper_bound
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(
     ("request_", "error", "message"),
     [
@@ -412,6 +420,7 @@ def test_sharing_out_anew_keeps_the_viewpoints_and_the_contract(max_views: int) 
     assert_keeps_the_contract(kiosk(), anew)
 
 
+@pytest.mark.slow
 def test_other_aircraft_keep_their_own_waypoint_limit() -> None:
     px4 = profile("px4").aircraft
     request = PlanRequest(n_views=30, constraints=NEAR, greedy=FEW, profile_id="px4", time_budget_s=4.0)
@@ -434,6 +443,7 @@ def test_plans_of_whole_sites_keep_the_contract(scene: str, goal: dict[str, int]
     assert is_flyable(check_plan(plan, model))
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("method", ["greedy", "pso", "noto", "orbit"])
 def test_every_method_takes_a_seed_of_63_bits(method: str, tmp_path: Path) -> None:
     """Generators of other libraries take 32 bits only."""

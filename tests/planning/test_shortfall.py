@@ -31,6 +31,7 @@ def strip() -> SiteModel:
     return turned_site(33.0, n_rows=4, n_columns=10, panel_m=(1.2, 1.2), foot_m=6.0)
 
 
+@pytest.mark.slow
 def test_a_share_that_spacing_keeps_from_being_reached_names_it_and_the_panels() -> None:
     model = strip()
     planned = plan_document_site(model, EVERYTHING)
@@ -68,6 +69,7 @@ def test_sections_that_more_views_would_cover_are_told_from_those_never_decided(
     assert {each.panel for each in open_sections(problem, covered, np.zeros((0, 3)), 0.5)} == {0}
 
 
+@pytest.mark.slow
 def test_places_behind_a_wall_are_cut_off() -> None:
     """A wall across the airspace, up to its ceiling, with home on one side: the other side's places are cut off."""
     model = turned_site(0.0, n_rows=2, n_columns=3)
@@ -82,6 +84,7 @@ def test_places_behind_a_wall_are_cut_off() -> None:
     assert {each.why for each in open_sections(problem, nothing, np.zeros((0, 3)), 0.5)} == {WhyOpen.CUT_OFF}
 
 
+@pytest.mark.slow
 def test_a_reached_share_has_nothing_open_and_a_number_of_views_is_not_asked() -> None:
     model = turned_site(10.0, n_rows=2, n_columns=2)
     assert plan_flight(model, replace(EVERYTHING, share=0.5)).open_sections == ()

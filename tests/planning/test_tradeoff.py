@@ -146,6 +146,7 @@ def runs():
     return tuple(run_plan(model, request, (30.0, 15.0), read_s=0.25) for request in requests)
 
 
+@pytest.mark.slow
 def test_run_tells_coverage_over_time_and_ends_with_the_finished_plan(runs):
     model = SCENES["roof"]()
     run = runs[0]
@@ -279,6 +280,7 @@ def test_unknown_routing_method_is_named_with_those_that_exist():
         tour_methods(["ants"])
 
 
+@pytest.mark.slow
 def test_picture_shows_every_curve_also_with_no_gap_left_or_nothing_found(tmp_path):
     from matplotlib.image import imread
 

@@ -75,6 +75,7 @@ def test_gains_stay_exact_through_any_sequence_of_additions_and_removals(seed, d
     assert kernel.objective(state) == pytest.approx(expected)
 
 
+@pytest.mark.slow
 @given(seed=st.integers(0, 300), n_views=st.integers(1, 6))
 @settings(max_examples=25)
 def test_greedy_is_below_the_exact_optimum_which_is_below_the_dual_bound(seed, n_views):
@@ -94,6 +95,7 @@ def test_greedy_is_below_the_exact_optimum_which_is_below_the_dual_bound(seed, n
     assert dual_bound(elements, weights, n_views, value) >= optimum - 1e-6
 
 
+@pytest.mark.slow
 def test_exchange_reaches_the_exact_optimum_of_small_problems_where_greedy_does_not():
     worse = 0
     for seed in range(20):
@@ -110,6 +112,7 @@ def test_exchange_reaches_the_exact_optimum_of_small_problems_where_greedy_does_
     assert worse >= 5
 
 
+@pytest.mark.slow
 def test_greedy_with_enough_views_covers_everything_any_candidate_covers_and_spends_the_rest_on_depth():
     problem = problem_of("office")
     chosen, trace = run(greedy, problem, Goal(n_views=400), parameters=FAST)
@@ -127,6 +130,7 @@ def test_greedy_with_enough_views_covers_everything_any_candidate_covers_and_spe
     assert finer.covered_count(chosen.views) > 1.15 * finer.covered_count(fewer.views)
 
 
+@pytest.mark.slow
 def test_improvement_beats_plain_greedy_and_never_passes_the_reachable_bound():
     problem = problem_of("office")
     plain, _ = run(greedy, problem, Goal(n_views=30), parameters=replace(FAST, improve=False))
@@ -138,6 +142,7 @@ def test_improvement_beats_plain_greedy_and_never_passes_the_reachable_bound():
     assert covered[0] <= plain.bound <= problem.reachability.upper_bound
 
 
+@pytest.mark.slow
 def test_fewest_views_for_a_share_reach_it_with_fewer_than_greedy_alone():
     problem = problem_of("office")
     plain, _ = run(greedy, problem, Goal(share=0.9), parameters=replace(FAST, improve=False))
@@ -215,6 +220,7 @@ def test_particle_swarm_attracts_along_the_shorter_way_around_the_compass():
     assert problem.model.covered_count(found.views) == 4
 
 
+@pytest.mark.slow
 def test_grid_follows_the_facade_at_constant_distance_looking_straight_at_it():
     problem = problem_of("library")
     found, _ = run(noto, problem, Goal(n_views=200))

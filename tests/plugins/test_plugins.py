@@ -53,6 +53,7 @@ def flight(tmp_path):
     plan_site(site, PlanRequest(n_views=4), tmp_path / "plan.json")
 
 
+@pytest.mark.slow
 def test_all_plug_ins_are_listed_and_those_that_fail_are_named(reflight):
     done = reflight("--plugins")
     assert "reflight-glider 1.0\n" in done.stdout
@@ -62,18 +63,21 @@ def test_all_plug_ins_are_listed_and_those_that_fail_are_named(reflight):
     assert done.stderr.count("warning: ") == 3
 
 
+@pytest.mark.slow
 def test_an_aircraft_of_a_plug_in_is_listed_and_flown(reflight, flight):
     assert "\nexample_glider " in reflight("plan", "site.json", "--profile", "list").stdout
     reflight("plan", "site.json", "-o", "own.json", "--views", 4, "--profile", "example_glider")
     assert reflight("check", "own.json", "site.json", "--json").stdout.startswith("{")
 
 
+@pytest.mark.slow
 def test_a_mission_format_of_a_plug_in_is_offered_and_written(reflight, flight, tmp_path):
     assert "flight-table  reflight-flight-table 1.0" in reflight("export", "-h").stdout
     reflight("export", "plan.json", "--format", "flight-table", "-o", "a.table")
     assert len((tmp_path / "a.table").read_text().splitlines()) == 1 + 4
 
 
+@pytest.mark.slow
 def test_the_help_lists_no_plug_in_that_is_left_out(reflight):
     done = reflight("export", "-h")
     listed = done.stdout.partition("from plug-ins:\n")[2]
@@ -81,6 +85,7 @@ def test_the_help_lists_no_plug_in_that_is_left_out(reflight):
     assert "the plug-in 'kml' of reflight-broken 1.0 is left out: there is another one of that name" in done.stderr
 
 
+@pytest.mark.slow
 def test_a_mission_format_that_fails_is_named_and_nothing_is_written(reflight, flight, tmp_path):
     done = reflight("export", "plan.json", "--format", "failing", "-o", "a.failing", status=1)
     assert "error: the plug-in 'failing' of reflight-broken 1.0 failed: AttributeError: " in done.stderr
@@ -89,6 +94,7 @@ def test_a_mission_format_that_fails_is_named_and_nothing_is_written(reflight, f
     assert not list(tmp_path.glob("a.*"))
 
 
+@pytest.mark.slow
 def test_a_name_of_this_program_stays_its_own(reflight, flight, tmp_path):
     reflight("export", "plan.json", "--format", "kml", "-o", "a.kml")
     assert b"<kml" in (tmp_path / "a.kml").read_bytes()
@@ -102,6 +108,7 @@ def test_the_help_does_not_wait_for_plug_ins(installed):
     assert done.stdout.endswith("False\n")
 
 
+@pytest.mark.slow
 def test_the_lists_of_the_window_have_what_plug_ins_add(installed):
     code = """
 from PySide6.QtWidgets import QApplication
@@ -136,6 +143,7 @@ def test_a_method_and_a_model_format_of_plug_ins_are_used_together(reflight, tmp
     assert len((tmp_path / "a.points").read_text().splitlines()) == trained["splats"]
 
 
+@pytest.mark.slow
 def test_the_window_lists_plug_ins_and_says_which_are_left_out(installed, tmp_path):
     code = """
 import os

@@ -11,6 +11,7 @@ from planning.request import PlanRequest
 from tests.planning.revision.cases import QUICK
 
 
+@pytest.mark.slow
 def test_all_files_are_made_and_the_plan_is_ready_to_fly(tmp_path):
     made = demonstrate(tmp_path / "new" / "demo", "single-panel", PlanRequest(n_views=4, greedy=QUICK))
     paths = {made.site_path, made.plan_path, made.flight_path, *made.mission_paths}

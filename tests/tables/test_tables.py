@@ -24,6 +24,7 @@ def page(tmp_path, results):
     return (tmp_path / "tables.md").read_text("utf-8")
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("scale", SCALES.values(), ids=SCALES)
 def test_all_cases_can_be_trained_and_no_two_of_a_table_alike(scale):
     for table in tables(scale):
@@ -83,6 +84,7 @@ def test_results_are_kept_and_replaced_one_by_one(tmp_path):
     assert read_results(tmp_path / "none.csv") == []
 
 
+@pytest.mark.slow
 def test_what_benchmarks_measured_stands_beside_the_paper_s_numbers(tmp_path):
     empty = page(tmp_path, [])
     assert "| Overall mIoU | not run |  | 0.9895 | 0.8597 |" in empty
@@ -108,6 +110,7 @@ def test_what_benchmarks_measured_stands_beside_the_paper_s_numbers(tmp_path):
     assert "| 100 | 77.2 % |  |  |  |" in text
 
 
+@pytest.mark.slow
 def test_results_of_other_settings_are_said_to_be_older_and_not_compared(tmp_path):
     *others, whole = TABLE_5.cases
     oldest, old = (replace(result(whole, db), made_with=f"{db}") for db in (24.0, 25.0))
@@ -119,6 +122,7 @@ def test_results_of_other_settings_are_said_to_be_older_and_not_compared(tmp_pat
     assert f"| {whole.title} | not run |" in page(tmp_path, [replace(old, scale="smoke"), replace(old, scene="planar")])
 
 
+@pytest.mark.slow
 def test_a_training_that_several_tables_have_is_shown_in_each(tmp_path):
     whole = TABLE_5.cases[3]
     lines = [line for line in page(tmp_path, [result(whole, 27.0)]).splitlines() if "0: 27.00" in line]
@@ -130,12 +134,14 @@ def test_a_training_that_several_tables_have_is_shown_in_each(tmp_path):
     ]
 
 
+@pytest.mark.slow
 def test_the_page_has_means_seeds_and_the_paper_s_numbers(tmp_path):
     case = TABLE_5.cases[0]
     text = page(tmp_path, [result(case, 25.0, 1), result(case, 26.0, 0)])
     assert f"| {case.title} | 25.50 | 20.00 |  | 0.9000 |  | 60 | 9 | 0: 26.00, 1: 25.00 | 28.25 |" in text
 
 
+@pytest.mark.slow
 def test_glass_alone_is_shown_and_compared_where_it_is_known_of_all(tmp_path):
     *others, whole = TABLE_5.cases
     results = [replace(result(case, 25.0), glass_db=24.0) for case in others]
@@ -154,6 +160,7 @@ def test_pixels_of_glass_alone_have_neighbours_of_the_same_panel():
     assert not whole_panels(np.full((4, 4), -1)).any()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("whole_db", "word"), [(25.5, "met"), (24.5, "**missed**")])
 def test_what_must_hold_is_said_to_be_met_or_missed(tmp_path, whole_db, word):
     *others, whole = TABLE_5.cases
@@ -163,6 +170,7 @@ def test_what_must_hold_is_said_to_be_met_or_missed(tmp_path, whole_db, word):
     assert f"{whole_db - 25.0:+.2f} dB (at least 0: {word})" in page(tmp_path, results)
 
 
+@pytest.mark.slow
 def test_what_is_known_so_far_is_said_with_what_was_not_run(tmp_path):
     methods = tables(SMALL)[1]
     by_title = {case.title: case for case in methods.cases}

@@ -44,6 +44,7 @@ def test_legs_take_what_a_real_arducopter_took():
     assert abs(differences.mean()) < 0.15
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("profile_id", ["ardupilot", slow("m3e")])
 def test_the_simulated_vehicle_takes_what_its_items_are_reckoned_to(profile_id):
     """The M3E states no jerk: both fly with the autopilot's own."""

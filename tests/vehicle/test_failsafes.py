@@ -53,6 +53,7 @@ def found(orders, autopilot, code, **changes):
     return next((check for check in checks if check.code == code), None)
 
 
+@pytest.mark.few(6)
 @pytest.mark.parametrize(
     ("autopilot", "changes", "verdict", "words"),
     [
@@ -74,6 +75,7 @@ def test_what_happens_when_the_link_is_lost_is_told(planned, autopilot, changes,
     assert words in check.text
 
 
+@pytest.mark.few(10)
 @pytest.mark.parametrize(
     ("autopilot", "code", "changes", "verdict", "words"),
     [

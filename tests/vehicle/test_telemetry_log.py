@@ -32,6 +32,7 @@ def read_by_pymavlink(path):
     return messages
 
 
+@pytest.mark.slow
 def test_pymavlink_reads_what_is_written(tmp_path):
     log = TelemetryLog(tmp_path / "a.tlog")
     for i, frame in enumerate(frames(5)):

@@ -79,6 +79,7 @@ def test_what_others_left_out_stays_left_out_and_what_the_window_made_is_freed(a
     assert gone() is None
 
 
+@pytest.mark.slow
 def test_a_window_that_left_things_out_gives_them_back(application):
     from groundstation.gui.application.interpreter import GarbageCollector
 

@@ -13,6 +13,7 @@ from groundstation.gui.widgets.theme import colours
 BOX = QRectF(60.0, 10.0, 200.0, 100.0)
 
 
+@pytest.mark.slow
 @given(st.floats(1e-6, 1e7), st.floats(1e-3, 2.0))
 def test_ticks_are_round_evenly_apart_and_far_enough(end, least):
     found = ticks(0.0, end, least)

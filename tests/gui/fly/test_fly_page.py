@@ -146,6 +146,7 @@ def test_a_flight_is_watched_to_its_report_without_a_gap_in_the_window(applicati
     assert "Nothing is missing" in controller.window.messages.texts()
 
 
+@pytest.mark.slow
 def test_coverage_is_painted_on_the_panels_as_it_grows(application, controller, page):
     connect(application, page)
     take_off(application, page)
@@ -157,6 +158,7 @@ def test_coverage_is_painted_on_the_panels_as_it_grows(application, controller, 
     assert scene._panel_values is None  # the shared view is given back
 
 
+@pytest.mark.slow
 def test_pause_resume_return_then_a_top_up_and_the_rest_of_the_sortie(application, controller, page):
     connect(application, page)
     take_off(application, page)
@@ -198,6 +200,7 @@ def test_pause_resume_return_then_a_top_up_and_the_rest_of_the_sortie(applicatio
     assert page.controller.active.battery > 0.99
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("answer", "titles"), [("Yes", ["First", "Top-up"]), ("Cancel", ["First"])])
 def test_hardly_anything_missing_is_asked_about_with_what_it_would_cost(application, controller, page, answer, titles):
     document = controller.context.document
@@ -228,6 +231,7 @@ def test_losing_the_link_shows_a_band_and_is_survived(application, radio, contro
     assert "link found again" in page.notes.texts()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "address", "words"),
     [
@@ -264,6 +268,7 @@ def test_start_asks_and_a_no_leaves_the_aircraft_on_the_ground(application, page
         assert not page.controller.is_in_flight
 
 
+@pytest.mark.slow
 def test_closing_the_window_in_flight_asks_and_keeps_what_was_flown(application, controller, page, tmp_path):
     connect(application, page)
     take_off(application, page)
@@ -284,6 +289,7 @@ def test_closing_the_window_in_flight_asks_and_keeps_what_was_flown(application,
     assert list(folder.glob("*.tlog"))
 
 
+@pytest.mark.slow
 def test_a_click_on_a_photo_goes_to_its_view(application, controller, page):
     connect(application, page)
     turn_until(application, lambda: len(page.strip.states()) == 6)
@@ -294,6 +300,7 @@ def test_a_click_on_a_photo_goes_to_its_view(application, controller, page):
     assert "still to come" in page.strip.words(3)
 
 
+@pytest.mark.slow
 def test_a_new_window_takes_the_flight_over(application, controller, page):
     """As when the language changes: the flight belongs to the context."""
     connect(application, page)
@@ -307,6 +314,7 @@ def test_a_new_window_takes_the_flight_over(application, controller, page):
     assert again.strip.states()[0][1] is ViewState.TAKEN
 
 
+@pytest.mark.slow
 def test_lengths_are_shown_in_feet_once_they_are_chosen(application, controller, page):
     connect(application, page)
     turn_until(application, lambda: "min 10.0 m" in page.readouts.text())
@@ -338,6 +346,7 @@ def test_the_simulation_starts_with_the_wind_that_the_plan_expects_until_another
     assert open_with(5.0) == page.controller.simulation.conditions.wind_m_s == 8.0
 
 
+@pytest.mark.slow
 def test_effects_of_the_simulation_are_shown_with_reason_and_overruled(application, controller, page):
     page.right.setCurrentIndex(1)
     turn_until(application, lambda: "wind" in page.simulation.effects._cards)
@@ -350,6 +359,7 @@ def test_effects_of_the_simulation_are_shown_with_reason_and_overruled(applicati
     assert page.controller.simulation.effect_settings == {"wind": "off"}
 
 
+@pytest.mark.slow
 def test_what_went_wrong_is_said_as_an_error(application, controller, page):
     heard = []
     controller.context.messageShown.connect(heard.append)
@@ -390,6 +400,7 @@ class Places:
                 self.covered.append((request, phase))
 
 
+@pytest.mark.slow
 def test_buttons_of_a_flight_keep_their_places_in_every_phase(application, radio, controller, page, monkeypatch):
     """Not connected, uploading, ready, starting, flying, hovering, link lost, coming home, landed."""
     monkeypatch.setattr(page.controller, "_connection", lambda *_: radio)
@@ -418,6 +429,7 @@ def test_buttons_of_a_flight_keep_their_places_in_every_phase(application, radio
     assert places.covered == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("language", "scale"),
     [(Language.ENGLISH, 1.0), slow(Language.ENGLISH, 1.6), slow(Language.GERMAN, 1.0), (Language.GERMAN, 1.6)],
@@ -446,6 +458,7 @@ def test_return_and_land_lie_apart_from_each_other_and_from_the_rest(application
         turn_until(application, lambda: controller.window.shared_view.scene() is not None)
 
 
+@pytest.mark.slow
 def test_pressing_the_keyboard_twice_gives_no_second_order(application, controller, page):
     """The button that was pressed is disabled, and Qt would give the keyboard to the next one."""
     connect(application, page)
@@ -478,6 +491,7 @@ def test_a_double_click_on_start_asks_once_and_orders_nothing_else(application, 
     assert heard == [Request.START]
 
 
+@pytest.mark.slow
 def test_keys_of_a_flight_do_nothing_in_other_tabs_nor_what_is_not_allowed(application, controller, page):
     heard = []
     page.buttons.requested.connect(heard.append)
@@ -521,6 +535,7 @@ def few_items(monkeypatch, limit):
     monkeypatch.setattr("groundstation.services.mission.readiness.photos_that_fit", lambda _autopilot: limit)
 
 
+@pytest.mark.slow
 def test_too_many_photos_for_the_autopilot_are_shared_out_on_a_yes(application, controller, page, monkeypatch):
     few_items(monkeypatch, 4)
     for no in ("Cancel", escape):
@@ -540,6 +555,7 @@ def test_too_many_photos_for_the_autopilot_are_shared_out_on_a_yes(application, 
     assert page._phase.text() == "Connected. Upload the mission."
 
 
+@pytest.mark.slow
 def test_start_waits_for_rtk_only_where_it_is_needed(application, controller, page):
     from missions.simulator.conditions import Conditions
 
@@ -579,6 +595,7 @@ def mend(application, page, code, way):
     click_on(button.window(), button)
 
 
+@pytest.mark.slow
 def test_parameters_of_a_real_vehicle_are_set_only_after_a_question(application, radio, controller, page, monkeypatch):
     radio.changes = {"parameters": {"SIM_SPEEDUP": None, "RTL_ALT": 2100.0, "MNT1_PITCH_MIN": -45.0}}
     connect_radio(application, radio, page, monkeypatch)
@@ -598,6 +615,7 @@ def test_parameters_of_a_real_vehicle_are_set_only_after_a_question(application,
     turn_until(application, lambda: page.buttons.button(Request.START).isEnabled())
 
 
+@pytest.mark.slow
 def test_an_aircraft_at_another_height_flies_once_the_pilot_has_agreed(
     application, radio, controller, page, monkeypatch
 ):
@@ -616,6 +634,7 @@ def test_an_aircraft_at_another_height_flies_once_the_pilot_has_agreed(
     turn_until(application, lambda: page.buttons.button(Request.START).isEnabled())
 
 
+@pytest.mark.slow
 def test_home_can_be_where_the_aircraft_stands(application, radio, controller, page, monkeypatch):
     x, y, z = planned()[0].site.home_enu_m
     radio.changes = {"stands_enu_m": (x + 8.0, y, z + 2.0)}
@@ -682,6 +701,7 @@ def test_another_project_in_flight_leaves_the_flight_and_gets_none_of_its_pictur
     assert f"This flight was over the site {flown_over}" in controller.window.messages.texts()
 
 
+@pytest.mark.slow
 def test_a_long_sortie_and_a_lost_link_fit_a_small_screen(application, controller):
     page, window = controller.window.tab("fly"), controller.window
     for at in (400, 30):
@@ -703,6 +723,7 @@ def _is_seen(strip, number):
     return strip.visibleRegion().boundingRect().contains(strip.cell(number).center().toPoint())
 
 
+@pytest.mark.slow
 def test_connected_the_form_of_the_vehicle_makes_room_for_the_list_before_take_off(application, page):
     from PySide6.QtWidgets import QScrollArea
 
@@ -722,6 +743,7 @@ def test_connected_the_form_of_the_vehicle_makes_room_for_the_list_before_take_o
     assert page.connection.kind.isVisible()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("autopilot", [slow(Autopilot.ARDUPILOT), Autopilot.PX4])
 def test_the_battery_and_the_time_of_a_sortie_agree_from_the_mission_tab_to_the_start(
     application, controller, page, autopilot
@@ -753,6 +775,7 @@ def test_the_battery_and_the_time_of_a_sortie_agree_from_the_mission_tab_to_the_
         assert takes != planned
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("autopilot", "name"), [(Autopilot.ARDUPILOT, "ArduPilot"), (Autopilot.PX4, "PX4")])
 def test_autopilots_are_called_as_their_makers_call_them(application, controller, page, autopilot, name):
     connect(application, page, autopilot=autopilot)
@@ -763,6 +786,7 @@ def test_autopilots_are_called_as_their_makers_call_them(application, controller
         assert autopilot.value not in text, f"the word of files and commands is shown: {text}"
 
 
+@pytest.mark.slow
 def test_after_disconnecting_no_battery_and_no_height_is_shown_for_that_of_now(application, page):
     connect(application, page)
     turn_until(application, lambda: "100%" in page.readouts.text() and "RTK" in page.readouts.text())

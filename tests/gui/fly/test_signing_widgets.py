@@ -98,6 +98,7 @@ def typed(first, second=None, button="OK"):
     return step
 
 
+@pytest.mark.slow
 def test_signed_is_remembered_for_each_address_and_offered_for_none_in_the_simulation(application, controller, page):
     box = page.connection
     assert box.signing.isHidden()
@@ -118,6 +119,7 @@ def test_signed_is_remembered_for_each_address_and_offered_for_none_in_the_simul
     turn_until_idle(application, controller)
 
 
+@pytest.mark.slow
 def test_a_key_is_set_given_withdrawn_and_forgotten_and_never_shown(application, controller, page):
     from groundstation.gui.fly.connection_box import KeyAction
 
@@ -146,6 +148,7 @@ def test_a_key_is_set_given_withdrawn_and_forgotten_and_never_shown(application,
     assert PASSPHRASE not in told
 
 
+@pytest.mark.slow
 def test_nothing_is_done_when_the_pilot_thinks_better_of_it(application, controller, page):
     from groundstation.gui.fly.connection_box import KeyAction
 
@@ -159,6 +162,7 @@ def test_nothing_is_done_when_the_pilot_thinks_better_of_it(application, control
     assert "cannot be opened" not in controller.window.messages.texts()
 
 
+@pytest.mark.slow
 def test_a_vehicle_that_cannot_be_given_the_key_is_told_of(application, controller, page):
     from groundstation.gui.fly.connection_box import KeyAction
 
@@ -169,6 +173,7 @@ def test_a_vehicle_that_cannot_be_given_the_key_is_told_of(application, controll
     assert not page.controller.choice.is_signed
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("vehicle_key", "is_signed", "words"),
     [
@@ -191,6 +196,7 @@ def test_ends_that_sign_otherwise_are_told_apart_in_words(application, controlle
         turn_until(application, lambda: not page.controller.is_connected)
 
 
+@pytest.mark.slow
 def test_a_signed_link_without_a_key_says_so_and_closes(application, controller, page):
     choose(application, controller, page, "tcp:127.0.0.1:1")
     page.connection.signing.signed.click()

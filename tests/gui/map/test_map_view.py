@@ -129,6 +129,7 @@ def test_without_a_map_it_says_how_to_load_one_and_still_shows_the_site(view, se
     assert np.abs(pixel(view, x, y) - [0x8D, 0x96, 0xA0]).max() <= 3
 
 
+@pytest.mark.slow
 def test_tiles_lie_where_they_belong_and_the_attribution_is_shown(view, settle, tmp_path):
     from groundstation.gui.map.map_paint import tile_level
 

@@ -86,6 +86,7 @@ def opened(planned, **changes):
     return Document(site=model, plans=(entry,), current_plan_id="plan-1")
 
 
+@pytest.mark.slow
 def test_empty_page_says_what_to_do_first(page, context, planned):
     assert "Open or import a site first" in page._summary.text()
     assert [action.text() for action in page.actions() if action.isEnabled()] == ["Import mission files ..."]
@@ -104,6 +105,7 @@ def test_a_plan_is_checked_by_itself_and_its_panels_are_counted(page, context, p
     assert all(action.isEnabled() for action in page.actions())
 
 
+@pytest.mark.slow
 def test_the_plan_tab_counts_the_warnings_that_the_mission_tab_counts(page, context, planned, idle):
     """One verdict: a place that is often just the city, and coverage far under what flights can cover."""
     from groundstation.gui.plan.plan_page import PlanPage
@@ -225,6 +227,7 @@ def test_selection_goes_through_table_and_chart_and_back(page, context, planned,
     assert [mark.isVisible() for mark in page.lists.profile._marks] == [True, True]
 
 
+@pytest.mark.slow
 def test_export_shows_findings_first_then_writes_and_remembers_the_folder(page, context, planned, idle, said, tmp_path):
     context.session.open(opened(planned), None)
     dialog = page.export()
@@ -317,6 +320,7 @@ def test_every_choice_of_the_export_form_comes_back(application):
     assert heard[-1][0] == FileFormat.MAVLINK_PLAN
 
 
+@pytest.mark.slow
 def test_import_makes_a_plan_that_undo_takes_away(page, context, planned, idle, said, tmp_path):
     from groundstation.services.mission.files import prepare_export, write_export
 
@@ -406,6 +410,7 @@ def test_all_photos_in_another_order_are_neither_the_plan_nor_strangers(page, co
     assert "NOT the plan" not in page.lists.comparison.answer()
 
 
+@pytest.mark.slow
 def test_brief_is_shown_and_saved(page, context, planned, idle, tmp_path):
     from groundstation.gui.mission.brief_printer import BriefDialog
 

@@ -76,6 +76,7 @@ def test_files_get_the_ending_of_their_format_unless_they_have_one(tmp_path):
     assert with_ending(tmp_path / "tower", "web").name == "tower"
 
 
+@pytest.mark.slow
 def test_a_model_is_written_and_the_user_is_told(application, page, trained, tmp_path):
     assert not page.side.export.isEnabled()
     opened_with(application, page, trained)
@@ -98,6 +99,7 @@ def test_a_model_is_written_and_the_user_is_told(application, page, trained, tmp
     assert 0 < len(read_spz(tmp_path / "tower.spz")) <= page.controller.card.n_gaussians
 
 
+@pytest.mark.slow
 def test_a_web_page_is_written_into_a_folder_that_is_named(application, page, trained, tmp_path):
     opened_with(application, page, trained)
     with clicked("Choose a place ...", escape):

@@ -30,6 +30,7 @@ def scene(page):
     return page.tab.pane.scene.scene()
 
 
+@pytest.mark.slow
 def test_the_view_is_there_only_while_it_is_seen_and_looked_at_from_where_it_was(in_3d):
     assert scene(in_3d) is not None
     scene(in_3d).turn_by_hand(20.0, 5.0)
@@ -54,6 +55,7 @@ def test_panels_have_the_colour_of_what_is_seen_of_them(in_3d):
     assert (scale.title, scale.unit, scale.high) == ("Sections that photos show", "", values.max())
 
 
+@pytest.mark.slow
 def test_with_a_plan_the_colour_tells_how_much_of_its_promise_was_kept(in_3d):
     context = in_3d.controller.context
     plan = project_cases.plan(2, x_m=-0.5)
@@ -85,6 +87,7 @@ def test_a_panel_that_is_clicked_tells_its_photos_and_a_photo_is_shown_by_a_clic
     assert in_3d.tab.pane.card().path == coverage.sightings(0, section)[0].photo.path
 
 
+@pytest.mark.slow
 def test_coverage_is_counted_again_for_panels_that_are_used_and_otherwise_once_the_tab_is_seen(found):
     found.tab.use.click()
     found.idle()
@@ -148,6 +151,7 @@ def test_before_a_search_the_panels_of_the_site_are_drawn(page):
     assert middle == pytest.approx(page.tab.pane.card().posed.pixels(corners.mean(axis=0))[0], abs=2.0)
 
 
+@pytest.mark.slow
 def test_used_panels_tell_on_the_site_tab_how_good_they_are_and_undo_takes_that_back(found):
     found.tab.use.click()
     found.idle()
@@ -164,6 +168,7 @@ def test_used_panels_tell_on_the_site_tab_how_good_they_are_and_undo_takes_that_
     assert "corners" not in found.controller.window.tab("site").right.findChild(_panel_page()).text()
 
 
+@pytest.mark.slow
 def test_a_view_that_is_open_when_the_window_is_made_anew_is_freed(application, in_3d):
     from groundstation.services.settings import Language
 

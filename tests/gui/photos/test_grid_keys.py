@@ -28,6 +28,7 @@ def positions(page, axis="columns"):
     return [line.position_px for line in getattr(page.grid, axis)]
 
 
+@pytest.mark.slow
 def test_tab_goes_through_all_lines_and_then_leaves_the_picture(keyed):
     n_lines = len(keyed.grid.columns) + len(keyed.grid.rows)
     passed = []
@@ -48,6 +49,7 @@ def test_shift_and_tab_goes_backwards(keyed):
     assert keyed.view.chosen_line() == ("row", len(keyed.grid.rows) - 1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("is_rectified", [False, True])
 def test_arrows_move_a_line_by_a_pixel_and_with_shift_by_ten_as_one_correction(keyed, is_rectified):
     if is_rectified:
@@ -71,6 +73,7 @@ def test_arrows_move_a_line_by_a_pixel_and_with_shift_by_ten_as_one_correction(k
     assert positions(keyed) == before
 
 
+@pytest.mark.slow
 def test_a_line_that_rests_is_put_down_by_itself(keyed, qtbot):
     before = positions(keyed, "rows")
     keyed.keys(*["Tab"] * (len(keyed.grid.columns) + 2), "Down")
@@ -80,6 +83,7 @@ def test_a_line_that_rests_is_put_down_by_itself(keyed, qtbot):
     assert positions(keyed, "rows")[1] == pytest.approx(before[1] + 1.0)
 
 
+@pytest.mark.slow
 def test_a_line_stops_at_its_neighbour(keyed):
     keyed.keys("Tab", "Tab")
     for _ in range(60):
@@ -91,6 +95,7 @@ def test_a_line_stops_at_its_neighbour(keyed):
     assert not any("line" in message.text for message in keyed.messages)
 
 
+@pytest.mark.slow
 def test_delete_and_insert_take_a_line_out_and_put_one_in(keyed):
     n_columns = len(keyed.grid.columns)
     keyed.keys("Tab", "Tab", "Tab", "Delete")
@@ -114,6 +119,7 @@ def test_without_a_chosen_line_arrows_move_the_picture(keyed):
     keyed.view.show_whole()
 
 
+@pytest.mark.slow
 def test_arrows_choose_a_panel_which_is_taken_out_and_put_back(keyed):
     keyed.use_tool("PANEL")
     keyed.view.setFocus()
@@ -128,6 +134,7 @@ def test_arrows_choose_a_panel_which_is_taken_out_and_put_back(keyed):
     assert keyed.view.chosen_cell() is None
 
 
+@pytest.mark.slow
 def test_a_pressed_line_is_moved_with_buttons_that_fingers_hit(found):
     found.use_tool("MOVE")
     before = positions(found)
@@ -143,6 +150,7 @@ def test_a_pressed_line_is_moved_with_buttons_that_fingers_hit(found):
     assert positions(found)[3] == pytest.approx(before[3] + 2.0)
 
 
+@pytest.mark.slow
 def test_the_outcome_of_an_earlier_correction_does_not_drop_the_line_that_is_being_moved(keyed):
     keyed.keys("Tab", "Right", "Return", "Right", "Right")
     before = positions(keyed)[0]

@@ -90,6 +90,7 @@ def test_a_line_is_dragged_in_both_views_and_the_facade_solved_again(found, is_r
     assert found.tab.tools.redo.isEnabled()
 
 
+@pytest.mark.slow
 def test_panels_and_lines_come_and_go_by_a_press(found):
     found.use_tool("PANEL")
     found.press(middle(found.grid, 2, 3))
@@ -106,6 +107,7 @@ def test_panels_and_lines_come_and_go_by_a_press(found):
     found.use_tool("MOVE")
 
 
+@pytest.mark.slow
 def test_a_press_beside_everything_moves_the_picture_and_changes_nothing(found):
     draft, corner = found.draft, found.view.to_picture(found.view.rect().center().toPointF())
     found.view.zoom_by(2.0)
@@ -116,6 +118,7 @@ def test_a_press_beside_everything_moves_the_picture_and_changes_nothing(found):
     found.view.show_whole()
 
 
+@pytest.mark.slow
 def test_used_panels_replace_those_of_the_site_and_undo_brings_them_back(found):
     found.tab.use.click()
     found.idle()
@@ -129,6 +132,7 @@ def test_used_panels_replace_those_of_the_site_and_undo_brings_them_back(found):
     assert found.draft is not None
 
 
+@pytest.mark.slow
 def test_another_site_clears_the_photos(found):
     found.controller.context.session.open(Document(), None)
     assert found.tab.controller.cards == ()
@@ -136,6 +140,7 @@ def test_another_site_clears_the_photos(found):
     assert not found.tab.read.isEnabled()
 
 
+@pytest.mark.slow
 def test_photos_stay_when_the_site_is_saved_and_go_when_it_moves(found):
     context = found.controller.context
     model = context.document.site
@@ -157,6 +162,7 @@ def test_photos_that_were_read_for_another_site_are_not_shown(page):
     assert page.tab.controller.cards == ()
 
 
+@pytest.mark.slow
 def test_a_new_window_shows_the_same_photos(application, found):
     from groundstation.services.settings import Language
 
@@ -183,6 +189,7 @@ def test_a_data_set_is_made_of_the_photos_and_what_was_left_out_is_said(applicat
     assert any("cannot be decoded; it was left out" in text for text in said), said
 
 
+@pytest.mark.slow
 def test_a_coarse_model_is_asked_for_by_its_button_and_what_is_wrong_is_said(page, controller, folder, tmp_path):
     few = tmp_path / "few"
     few.mkdir()

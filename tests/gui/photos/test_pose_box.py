@@ -64,6 +64,7 @@ def test_refined_poses_are_taken_over_told_and_taken_back(page, kept):
     assert kept.refine.isEnabled()
 
 
+@pytest.mark.slow
 def test_panels_that_were_found_stay_and_move_with_the_poses(found, kept):
     before = found.draft
     kept.refine.click()
@@ -75,6 +76,7 @@ def test_panels_that_were_found_stay_and_move_with_the_poses(found, kept):
     assert found.tab.use.isEnabled()
 
 
+@pytest.mark.slow
 def test_lengths_follow_the_units(page, kept):
     kept.refine.click()
     page.idle()

@@ -51,6 +51,7 @@ def moved(viewpoint, east_m):
     return replace(viewpoint, position_enu_m=(x + east_m, y, z))
 
 
+@pytest.mark.slow
 def test_edits_and_undo_leave_the_page_that_is_read_in_front(application, controller, page):
     (viewpoint,) = first_views(controller)
     controller.context.select(Item(ItemKind.VIEWPOINT, viewpoint.id))
@@ -61,6 +62,7 @@ def test_edits_and_undo_leave_the_page_that_is_read_in_front(application, contro
     assert page.right.currentWidget() is page.effects
 
 
+@pytest.mark.slow
 def test_undo_of_the_first_plan_leaves_nothing_of_it(application, controller, page_of_new_plan):
     page = page_of_new_plan
     panel = controller.context.document.site.site.panels[3].id
@@ -87,6 +89,7 @@ def test_a_panel_of_the_site_before_is_not_taken_for_one_of_the_next(application
     assert shown is None or shown == controller.context.document.site.site.panels[3].id
 
 
+@pytest.mark.slow
 def test_effects_are_looked_at_only_while_somebody_does(application, controller, page):
     names = []
     controller.context.jobsChanged.connect(lambda: names.extend(job.name for job in controller.context.jobs()))
@@ -105,6 +108,7 @@ def test_effects_are_looked_at_only_while_somebody_does(application, controller,
     assert names.count(LOOK) == 1, "the number of views has no effect on effects"
 
 
+@pytest.mark.slow
 def test_asking_for_something_else_leaves_the_list_of_viewpoints_alone(application, controller, page):
     model, changes, resets = page.lists.waypoints.model(), [], []
     model.modelReset.connect(lambda: resets.append(1))
@@ -123,6 +127,7 @@ def test_asking_for_something_else_leaves_the_list_of_viewpoints_alone(applicati
     assert not resets, "the waypoints are the same, elsewhere"
 
 
+@pytest.mark.slow
 def test_a_plan_that_was_not_looked_at_says_so_and_is_taken_up_again(application, controller, page):
     entry = controller.context.document.current
     home = controller.context.document.site.site.home_enu_m
@@ -143,6 +148,7 @@ def test_a_plan_that_was_not_looked_at_says_so_and_is_taken_up_again(application
     assert "ready to fly" in page.verdict().lower()
 
 
+@pytest.mark.slow
 def test_an_edit_that_is_refused_leaves_the_boxes_as_they_were(application, controller, page):
     (viewpoint,) = first_views(controller)
     controller.context.select(Item(ItemKind.VIEWPOINT, viewpoint.id))
@@ -156,6 +162,7 @@ def test_an_edit_that_is_refused_leaves_the_boxes_as_they_were(application, cont
     assert controller.context.document.current.viewpoint(viewpoint.id) == kept
 
 
+@pytest.mark.slow
 def test_a_method_that_keeps_no_viewpoints_is_refused_where_some_are_kept(application, controller, page):
     (viewpoint,) = first_views(controller)
     page.controller.set_viewpoint(replace(viewpoint, locked=True))
@@ -167,6 +174,7 @@ def test_a_method_that_keeps_no_viewpoints_is_refused_where_some_are_kept(applic
     assert viewpoint.id in text
 
 
+@pytest.mark.slow
 def test_a_plan_for_a_site_that_is_gone_is_not_put_on_the_one_that_is_open(application, controller):
     opened(application, controller, "roof")
     controller.window.show_tab("plan")
@@ -181,6 +189,7 @@ def test_a_plan_for_a_site_that_is_gone_is_not_put_on_the_one_that_is_open(appli
     assert not page.controller.is_planning
 
 
+@pytest.mark.slow
 def test_what_panels_and_routes_show_both_have_their_scale(application, controller, page):
     page.paint.setValue(PanelPaint.GSD, RoutePaint.CLEARANCE)
     overlay = controller.window.shared_view.scene()._overlay
@@ -189,6 +198,7 @@ def test_what_panels_and_routes_show_both_have_their_scale(application, controll
     assert [scale.title for scale in overlay._scales] == ["Clearance"]
 
 
+@pytest.mark.slow
 def test_an_edit_draws_the_plan_once(application, controller, page, monkeypatch):
     from groundstation.gui.view3d import scene_picture
 
@@ -211,6 +221,7 @@ def test_a_plan_found_in_one_go_has_a_curve(application):
     assert set(curve.y) == {500.0}
 
 
+@pytest.mark.slow
 def test_nothing_is_planned_while_the_form_makes_no_sense(application, controller, page):
     page.form._is_gsd_limited.setChecked(True)
     page.form._gsd.setValue(0.001)
@@ -225,6 +236,7 @@ def test_nothing_is_planned_while_the_form_makes_no_sense(application, controlle
     turn_until(application, lambda: not page.controller.is_planning)
 
 
+@pytest.mark.slow
 def test_moving_in_the_view_goes_on_from_where_the_viewpoint_is_until_it_is_put_away(application, controller, page):
     from groundstation.gui.view3d.tools import MovedViewpoint, ViewpointTool
 

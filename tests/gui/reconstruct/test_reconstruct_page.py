@@ -52,6 +52,7 @@ def enabled(page):
     return {name for name in names if getattr(side, name).isEnabled()} | ({"form"} if side.form.isEnabled() else set())
 
 
+@pytest.mark.slow
 def test_without_a_data_set_it_says_what_to_do(page):
     assert enabled(page) == {"choose", "choose_out", "form"}
     assert "Choose a data set" in page.pane.view.note()
@@ -376,6 +377,7 @@ def test_finished_models_of_the_data_set_are_compared(application, chosen, tmp_p
     assert "holds no finished model" in chosen.pane.view.note()
 
 
+@pytest.mark.slow
 def test_folders_are_chosen_and_nothing_happens_without_one(application, page, data, tmp_path):
     for no in ("Cancel", escape, shut):
         for button in (page.side.choose, page.side.choose_out):
@@ -392,6 +394,7 @@ def test_folders_are_chosen_and_nothing_happens_without_one(application, page, d
     assert page.controller.out == tmp_path / "my model"
 
 
+@pytest.mark.slow
 def test_closing_asks_while_a_model_is_trained_and_lets_the_process_go(chosen):
     from PySide6.QtGui import QCloseEvent
 

@@ -79,6 +79,7 @@ def tower_mm(tmp_path):
     return path
 
 
+@pytest.mark.slow
 def test_building_with_windows_is_shown_and_taken_over_in_one_step(opened, shared_data):
     hands = opened(shared_data / "buildings" / "ingolstadt_lod3" / "4018270.xml")
     dialog = hands.dialog
@@ -157,6 +158,7 @@ def test_grid_beside_the_building_is_told_and_cannot_be_used(opened, tower_mm):
     assert hands.messages == [], "an answer for the form is no message of the window"
 
 
+@pytest.mark.slow
 def test_buildings_of_a_city_model_are_listed_and_one_is_chosen(opened, shared_data):
     hands = opened(shared_data / "buildings" / "cityjson" / "zurich_subset_lod2.json")
     box = hands.dialog.form._building
@@ -171,6 +173,7 @@ def test_buildings_of_a_city_model_are_listed_and_one_is_chosen(opened, shared_d
     assert box.currentIndex() == 1, "the choice stays"
 
 
+@pytest.mark.slow
 def test_wrong_coordinate_system_is_told_by_the_fields_name(opened, shared_data):
     hands = opened(shared_data / "buildings" / "cityjson" / "delft_1b.json")
     form = hands.dialog.form
@@ -187,6 +190,7 @@ def test_wrong_coordinate_system_is_told_by_the_fields_name(opened, shared_data)
     assert "there are no windows" in hands.dialog._notes.toPlainText()
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize(
     ("name", "content", "message"),
     [
@@ -230,6 +234,7 @@ def test_dialog_that_is_closed_while_it_reads_takes_nothing_over(application, sh
     hands.runner.shutdown()
 
 
+@pytest.mark.slow
 def test_a_ground_that_is_not_clear_is_asked_for_in_the_form(opened, tmp_path):
     halves = [box_mesh(np.array([x, -6.0, z]), np.array([x + 10.0, 6.0, 15.0])) for x, z in ((-10.0, -3.0), (0.0, 0.0))]
     mesh = join(halves)

@@ -121,6 +121,7 @@ def test_selection_follows_between_tree_view_and_properties(opened):
     assert isinstance(hands.tab.detail.properties.page(), PanelPage)
 
 
+@pytest.mark.slow
 def test_zone_and_box_are_drawn_with_the_mouse_each_in_one_step(opened):
     from groundstation.gui.site.site_tools import SiteTool
 
@@ -148,6 +149,7 @@ def test_zone_and_box_are_drawn_with_the_mouse_each_in_one_step(opened):
     assert len(hands.site.airspace.no_fly) == 1
 
 
+@pytest.mark.slow
 def test_a_rally_point_is_clicked_put_down_and_removed(opened):
     from groundstation.gui.site.site_tools import SiteTool
 
@@ -170,6 +172,7 @@ def test_a_rally_point_is_clicked_put_down_and_removed(opened):
     hands.idle()
 
 
+@pytest.mark.slow
 def test_home_in_a_bad_place_is_taken_and_told_until_it_is_put_right(opened):
     from groundstation.gui.site.site_tools import SiteTool
 
@@ -237,6 +240,7 @@ def test_names_are_changed_in_one_step_and_taken_ones_refused(opened):
     assert hands.context.session.undo_label == "Rename A"
 
 
+@pytest.mark.slow
 def test_last_facade_can_be_removed_from_a_building_only(opened):
     hands = opened("single-panel")
     hands.tab.left.tree.removeAsked.emit(Item(ItemKind.FACADE, "A"))
@@ -249,6 +253,7 @@ def test_last_facade_can_be_removed_from_a_building_only(opened):
     assert hands.site.n_panels == 32
 
 
+@pytest.mark.slow
 def test_panel_grid_is_picked_checked_shown_and_added(opened):
     from groundstation.gui.site.site_tools import SiteTool
     from groundstation.gui.view3d.orbit import facing
@@ -300,6 +305,7 @@ def test_panel_grid_that_is_given_up_leaves_the_view_as_it_was(opened):
     assert hands.context.session.undo_label == ""
 
 
+@pytest.mark.slow
 def test_delete_removes_what_was_picked_in_the_view(opened):
     hands = opened("canyon")
     hands.click((-20.0, -24.0, 20.0))
@@ -329,6 +335,7 @@ def test_bad_site_files_are_told_and_leave_the_site(opened, tmp_path):
     assert hands.site.name == "library"
 
 
+@pytest.mark.slow
 def test_plans_of_the_site_before_are_put_away_and_undo_brings_them_back(opened):
     from planning.planner import plan_flight
     from planning.request import PlanRequest
@@ -359,6 +366,7 @@ def test_mesh_obstacle_comes_from_a_file_and_bad_files_are_told(opened, tmp_path
     assert len(hands.site.obstacles) == 1
 
 
+@pytest.mark.slow
 def test_site_is_checked_anew_for_the_distance_of_the_next_plan(opened):
     hands = opened("office")
     document = hands.context.document
@@ -386,6 +394,7 @@ def test_check_that_was_cancelled_does_not_stop_later_ones(opened):
     assert [finding.code for finding in hands.tab.detail.findings.findings()] == ["home-unusable"]
 
 
+@pytest.mark.slow
 def test_edits_of_a_large_site_do_not_hold_the_window_up(opened):
     hands = opened("tower")
     hands.context.select(Item(ItemKind.HOME))

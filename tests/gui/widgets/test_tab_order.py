@@ -96,6 +96,7 @@ def window(application, worker, tmp_path_factory):
         close_controller(controller)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tab", ["site", "plan", "mission"])
 def test_tab_reaches_every_region_once_around_and_stops_at_no_frame(application, window, tab):
     from PySide6.QtCore import Qt

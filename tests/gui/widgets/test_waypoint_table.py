@@ -43,6 +43,7 @@ def shown(table):
     return [proxy.index(row, 2).data() for row in range(proxy.rowCount())]
 
 
+@pytest.mark.slow
 def test_model_keeps_qts_rules_through_resets_units_and_empty_plans(model):
     from groundstation.gui.widgets.waypoint_table import PositionShown
 

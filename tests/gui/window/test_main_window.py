@@ -86,6 +86,7 @@ def test_every_tab_can_be_shown_and_fits_a_small_screen(application, controller)
     assert controller.window.tab_names() == ("site", "plan", "mission", "fly", "photos", "reconstruct", "model")
 
 
+@pytest.mark.slow
 def test_cancel_throws_a_plan_away_and_enough_keeps_the_best_so_far(application, controller):
     opened(application, controller, "roof")
     controller.window.show_tab("plan")
@@ -108,6 +109,7 @@ def test_cancel_throws_a_plan_away_and_enough_keeps_the_best_so_far(application,
     assert len(controller.context.document.current.plan.viewpoints) >= 1
 
 
+@pytest.mark.slow
 def test_editing_by_hand_shows_at_once_and_can_be_undone(application, controller):
     opened(application, controller, "roof")
     page = planned(application, controller, QUICK)
@@ -134,6 +136,7 @@ def test_editing_by_hand_shows_at_once_and_can_be_undone(application, controller
     assert locked in again.controller.active.plan.viewpoints
 
 
+@pytest.mark.slow
 def test_plans_are_compared_side_by_side(application, controller):
     opened(application, controller, "roof")
     planned(application, controller, QUICK)
@@ -150,6 +153,7 @@ def test_plans_are_compared_side_by_side(application, controller):
     window.close()
 
 
+@pytest.mark.slow
 def test_a_row_that_is_clicked_to_compare_does_not_become_the_plan_that_is_flown(application, controller):
     from PySide6.QtCore import Qt
     from PySide6.QtTest import QTest
@@ -182,6 +186,7 @@ def test_a_row_that_is_clicked_to_compare_does_not_become_the_plan_that_is_flown
     assert controller.context.document.current_plan_id == second
 
 
+@pytest.mark.slow
 def test_theme_units_and_language_change_at_once_and_are_kept(application, controller):
     from groundstation.services.settings import read_settings, settings_path
 
@@ -237,6 +242,7 @@ def keys_in(module):
     return set(re.findall(r"Qt\.Key\.Key_(\w+)", (GUI / module).read_text()))
 
 
+@pytest.mark.slow
 def test_every_key_of_a_menu_tab_or_shortcut_is_in_the_list_and_none_twice(application, controller):
     from PySide6.QtGui import QAction, QKeySequence, QShortcut
 
@@ -284,6 +290,7 @@ def test_every_key_that_a_view_takes_by_itself_is_in_the_list(application):
         assert not missing, module
 
 
+@pytest.mark.slow
 def test_the_list_of_keys_is_shown_and_scrolls(application, controller):
     with clicked("OK") as shown:
         trigger(controller.window, "Shortcuts")

@@ -91,6 +91,7 @@ def test_a_project_is_saved_and_opened_again(application, make_controller, entry
     assert controller.settings().recent_projects == (str(tmp_path / "my roof"),)
 
 
+@pytest.mark.slow
 def test_leaving_unsaved_work_asks_first(application, make_controller, tmp_path):
     controller = make_controller()
     with_site(application, controller)
@@ -167,6 +168,7 @@ def not_writable(folder):
         yield
 
 
+@pytest.mark.slow
 def test_a_read_only_project_opens_and_is_saved_elsewhere(application, make_controller, entry, tmp_path):
     controller = make_controller()
     with_site(application, controller)
@@ -188,6 +190,7 @@ def test_a_read_only_project_opens_and_is_saved_elsewhere(application, make_cont
     assert len(open_project(tmp_path / "copy").document.plans) == 1
 
 
+@pytest.mark.slow
 def test_unsaved_work_is_offered_after_a_crash(application, make_controller, entry, tmp_path):
     controller = make_controller()
     with_site(application, controller)
@@ -225,6 +228,7 @@ def crashed(application, make_controller, tmp_path):
     return tmp_path / "crashed", make_controller()
 
 
+@pytest.mark.slow
 def test_unsaved_work_that_is_not_decided_about_is_offered_again(application, make_controller, tmp_path):
     folder, controller = crashed(application, make_controller, tmp_path)
     for later in ("Decide later", escape, shut):
@@ -302,6 +306,7 @@ def test_names_of_sites_become_names_that_every_system_takes(text, name):
     assert file_name(text) == name
 
 
+@pytest.mark.slow
 def test_work_without_a_project_survives_a_crash_too(application, make_controller, tmp_path):
     first = make_controller()
     with_site(application, first)
@@ -335,6 +340,7 @@ def test_a_second_window_on_one_project_is_told(application, make_controller, tm
     assert second.context.document.site is not None
 
 
+@pytest.mark.slow
 def test_closing_while_a_plan_runs_cancels_it_and_loses_nothing(application, make_controller, tmp_path):
     controller = make_controller()
     with_site(application, controller)
@@ -372,6 +378,7 @@ def test_damaged_settings_are_told_kept_aside_and_the_window_opens_as_at_first(a
     controller.choose(text_scale=1.0)
 
 
+@pytest.mark.slow
 def test_the_layout_is_remembered(application, make_controller):
     first = make_controller()
     first.window._around.setSizes([500, 700])

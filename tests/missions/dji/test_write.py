@@ -115,6 +115,7 @@ def test_aircraft_that_dji_does_not_make_is_refused_with_the_list(profile: str) 
         kmz_bytes(replace(mission, profile=profile), OPTIONS)
 
 
+@pytest.mark.slow
 @given(plan=plans())
 @settings(max_examples=30)
 def test_every_photo_is_aimed_settled_and_taken_in_order(plan: Plan) -> None:

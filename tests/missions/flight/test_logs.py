@@ -46,6 +46,7 @@ def written(tmp_path: Path, name: str, content: bytes) -> Path:
     return path
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("name", LOGS)
 def test_every_log_tells_the_same_flights(tmp_path: Path, name: str) -> None:
     flights = read_log(written(tmp_path, name, LOGS[name](FLOWN, SITE)), SITE)

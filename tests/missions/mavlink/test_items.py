@@ -41,6 +41,7 @@ def check_photos(shots: list[Shot], mission: Mission, plan: Plan) -> None:
     assert all(b.t_s - a.t_s >= 0.1 for a, b in itertools.pairwise(shots))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("two_axis", [False, True])
 @given(plan=plans())
 @settings(max_examples=40)
@@ -184,6 +185,7 @@ def test_heights_are_above_takeoff_or_above_sea_level_as_asked(autopilot: Autopi
         mission_items(mission, autopilot, HeightReference.ELLIPSOID)
 
 
+@pytest.mark.slow
 @given(plan=plans())
 @settings(max_examples=20)
 def test_items_hold_what_each_autopilot_takes(plan: Plan) -> None:

@@ -160,6 +160,7 @@ def test_plan_that_is_no_json_is_refused(tmp_path: Path) -> None:
         read_missions(path)
 
 
+@pytest.mark.slow
 def test_rally_points_of_the_site_go_into_the_plan_and_come_back(tmp_path: Path) -> None:
     """They count from home, as QGroundControl has them; a plan has none, so that reading them is told of."""
     model = kiosk()

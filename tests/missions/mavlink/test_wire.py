@@ -66,6 +66,7 @@ def decoded(data: bytes, is_whole: bool = False) -> list[Message | None]:
     return [each.received and each.received.message for each in Decoder().feed(data, 0.0, is_whole)]
 
 
+@pytest.mark.few(11)
 @given(data=st.data())
 @pytest.mark.parametrize("record", RECORDS, ids=lambda record: record.__name__)
 def test_every_message_comes_back_as_it_was(record: type[Message], data: st.DataObject) -> None:

@@ -19,6 +19,7 @@ def with_path(plan: Plan, path: list[tuple[float, float, float]]) -> Plan:
     return replace(plan, sorties=(replace(plan.sorties[0], path_enu_m=tuple(path)), *plan.sorties[1:]))
 
 
+@pytest.mark.slow
 @given(plan=plans())
 @settings(max_examples=40)
 def test_waypoints_are_the_vertices_between_the_ground_points_and_hold_every_photo_once(plan: Plan) -> None:

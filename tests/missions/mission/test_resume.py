@@ -68,6 +68,7 @@ def photo_ids(mission: Mission) -> list[str]:
     return [photo.viewpoint_id for waypoint in mission.waypoints for photo in waypoint.photos]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", [slow(1), 2])
 def test_flown_and_resumed_views_are_all_views_once_and_the_rest_passes_every_check(number: int) -> None:
     sortie = planned().sorties[number - 1]

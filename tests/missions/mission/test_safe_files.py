@@ -19,6 +19,7 @@ def kmz(path: Path, members: dict[str, bytes]) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_zip_bomb_is_refused_without_being_inflated_whole(tmp_path: Path) -> None:
     path = kmz(tmp_path / "bomb.kmz", {"wpmz/waylines.wpml": b"<" * (MAX_FILE_BYTES + 1)})
     assert path.stat().st_size < MAX_FILE_BYTES / 500
@@ -26,6 +27,7 @@ def test_zip_bomb_is_refused_without_being_inflated_whole(tmp_path: Path) -> Non
         read_missions(path)
 
 
+@pytest.mark.slow
 def test_bomb_that_lies_about_its_size_is_refused(tmp_path: Path) -> None:
     path = kmz(tmp_path / "liar.kmz", {"wpmz/waylines.wpml": b"<" * (MAX_FILE_BYTES + 1)})
     with zipfile.ZipFile(path) as archive:

@@ -98,6 +98,7 @@ def check_photos(ground: Ground, plan: Plan, mission: Mission, position_m: float
     assert ground.vehicle.scheduler.n_dropped == ground.vehicle.camera.n_lost == 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("autopilot", [ARDUPILOT, PX4])
 @pytest.mark.parametrize("scene", ["office", "court"])
 def test_views_of_a_site_are_photographed_one_by_one(autopilot: Autopilot, scene: str) -> None:
@@ -109,6 +110,7 @@ def test_views_of_a_site_are_photographed_one_by_one(autopilot: Autopilot, scene
     check_photos(ground, plan, mission, 0.5, 2.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("autopilot", [ARDUPILOT, slow(PX4)])
 def test_planned_office_is_flown_with_as_many_photos_as_views(autopilot: Autopilot) -> None:
     model = SCENES["office"]()
@@ -118,6 +120,7 @@ def test_planned_office_is_flown_with_as_many_photos_as_views(autopilot: Autopil
         check_photos(fly(plan, mission, autopilot, airframe), plan, mission, 0.5, 2.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("autopilot", [ARDUPILOT, PX4])
 @pytest.mark.parametrize("reference", [HeightReference.ABOVE_TAKEOFF, HeightReference.AMSL])
 def test_heights_above_sea_and_above_home_lead_to_the_same_places(autopilot, reference) -> None:
@@ -126,6 +129,7 @@ def test_heights_above_sea_and_above_home_lead_to_the_same_places(autopilot, ref
         check_photos(fly(plan, mission, autopilot, reference=reference), plan, mission, 0.05, 0.1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("autopilot", [slow(ARDUPILOT), PX4])
 @given(plan=plans())
 @settings(max_examples=3)
@@ -134,6 +138,7 @@ def test_plans_anywhere_on_the_globe_are_flown_with_every_photo(autopilot: Autop
         check_photos(fly(plan, mission, autopilot), plan, mission, 0.35, 1.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("autopilot", [ARDUPILOT, PX4])
 def test_same_flight_says_the_same_bit_for_bit(autopilot: Autopilot) -> None:
     model, plan = bundled("office", 4)
@@ -229,6 +234,7 @@ class Swaying(PointMass):
     believed = truth
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("autopilot", [ARDUPILOT, PX4])
 def test_aircraft_that_sways_in_gusts_still_finishes_its_mission(autopilot: Autopilot) -> None:
     plan = example_plan()
@@ -312,6 +318,7 @@ def odd_items(draw: st.DrawFn) -> MissionItemInt:
     return MissionItemInt(1, 1, 0, frame, command, 0, 1, *p, draw(whole), draw(whole), draw(numbers))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("autopilot", [ARDUPILOT, slow(PX4)])
 @given(odd=st.lists(odd_items(), min_size=1, max_size=12))
 @settings(max_examples=12, phases=(Phase.explicit, Phase.generate))

@@ -135,12 +135,14 @@ def taken(make):
     return after - before
 
 
+@pytest.mark.slow
 @given(values)
 def test_no_json_takes_much_more_memory_than_is_foreseen(value):
     text = json.dumps([value] * 30)
     assert taken(lambda: json.loads(text)) < 1.3 * _json_bytes(text.encode()) + 4000
 
 
+@pytest.mark.few(6)
 @pytest.mark.parametrize(
     "piece", ["[]", "{}", "[1.5]", '{"a":1}', '{"a":{}}', '"abcd"', "1234", "[[[[1]]]]", '"é"', "0"]
 )
@@ -185,6 +187,7 @@ def test_xml_is_refused_by_depth_entities_and_what_it_is_not():
         assert not isinstance(caught.value, HostileXml)
 
 
+@pytest.mark.slow
 def test_archives_with_endless_lists_of_files_are_refused():
     written = io.BytesIO()
     with zipfile.ZipFile(written, "w") as archive:

@@ -119,6 +119,7 @@ def test_it_is_known_which_kernels_are_kept_on_disk(tmp_path: Path, monkeypatch:
     assert not is_compiled(tripled)
 
 
+@pytest.mark.slow
 def test_what_was_compiled_for_another_layout_is_compiled_again_and_not_read(tmp_path):
     # Compiled code names the modules of its types: where one has moved, it cannot even be opened.
     def run(home, layout):

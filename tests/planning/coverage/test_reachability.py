@@ -107,6 +107,7 @@ def prepare_bound(scene, min_distance_m=10.0):
     return find_reachable(model, space).upper_bound
 
 
+@pytest.mark.slow
 def test_view_distance_limit_and_larger_safety_distance_only_lower_the_bound():
     base = whole_scene("office", False)[2].upper_bound
     near = find_reachable(*prepare(SCENES["office"](), max_distance_m=18.0)).upper_bound
@@ -149,6 +150,7 @@ def test_stopping_at_once_leaves_everything_undecided_and_the_bound_at_the_total
     assert found.upper_bound == model.n_elements
 
 
+@pytest.mark.slow
 def test_more_effort_only_settles_more():
     model, space, whole = whole_scene("office", False)
     bounds = [*(find_reachable(model, space, max_cells=n).upper_bound for n in (1, 100)), whole.upper_bound]
@@ -156,6 +158,7 @@ def test_more_effort_only_settles_more():
     assert bounds[0] > bounds[-1]
 
 
+@pytest.mark.slow
 def test_empty_airspace_gives_a_bound_of_zero():
     scene = SCENES["office"]()
     thin = Airspace((-5.0, -16.0, 3.0), (5.0, -12.0, 8.0), 0.0)

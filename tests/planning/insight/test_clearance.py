@@ -24,6 +24,7 @@ def along(*points, spacing_m=0.5):
 point = st.tuples(st.floats(-38, 38), st.floats(-38, -0.5), st.floats(0.5, 30))
 
 
+@pytest.mark.slow
 @settings(max_examples=40)
 @given(st.lists(point, min_size=2, max_size=6))
 def test_samples_and_minima_are_those_of_a_slow_twin(points):
@@ -95,6 +96,7 @@ def test_sites_without_no_fly_volumes_have_no_clearance_from_them():
     assert found.solids.smallest_m >= 5.0 - 1e-4
 
 
+@pytest.mark.slow
 def test_the_smallest_clearance_of_a_plan_is_the_one_its_check_measures():
     for sortie in plan("kiosk").sorties:
         found = route_clearance(sortie, SPACE, THINGS)

@@ -88,6 +88,7 @@ FAR = Constraints(10.0)
 CLOSE = Constraints(5.0, occlusion="on", max_distance_m=14.0)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(("name", "constraints"), [("kiosk", NEAR), ("kiosk", CLOSE), ("single-panel", FAR)])
 def test_every_reason_is_true_at_its_place(name, constraints):
     site = prepared(name, constraints)
@@ -159,6 +160,7 @@ def relaxed(model, constraints, reason):
     return replace(model, site=replace(model.site, airspace=airspace)), constraints
 
 
+@pytest.mark.slow
 @settings(max_examples=8)
 @given(data=st.data())
 def test_relaxing_a_rule_by_what_its_reason_says_makes_the_section_reachable(data):
@@ -201,6 +203,7 @@ def test_a_lower_floor_than_the_reason_asks_for_is_needed_and_enough():
             assert (verdicts[panel, section] == REACHABLE) == expected, (share, amount)
 
 
+@pytest.mark.slow
 def test_no_fly_volumes_are_named():
     zone = NoFlyZone("east", ((0.5, -50.0), (50.0, -50.0), (50.0, 20.0), (0.5, 20.0)), 0.0, 60.0)
     bare = SCENES["single-panel"]()
@@ -247,6 +250,7 @@ def test_a_gimbal_that_cannot_look_up_is_named_with_the_angle_that_is_missing():
         assert (after.verdicts[0, section] == REACHABLE) == expected
 
 
+@pytest.mark.slow
 def test_a_panel_in_a_sealed_court_is_out_of_reach_of_the_aircraft():
     # Four walls as high as the airspace around a pane 30 m away from each; home stands outside.
     walls = [((-32, -62), (32, -60)), ((-32, 2), (32, 4)), ((-34, -62), (-32, 4)), ((32, -62), (34, 4))]
@@ -315,6 +319,7 @@ def test_reasons_of_some_panels_are_those_of_all():
         assert some.of(11, section) == every.of(11, section)
 
 
+@pytest.mark.slow
 def test_reasons_on_a_real_building_are_true_at_their_places(shared_data):
     path = shared_data / "buildings" / "ingolstadt_lod3" / "4018133.xml"
     model = import_site(path, ImportOptions()).model

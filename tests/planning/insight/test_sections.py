@@ -82,6 +82,7 @@ def test_views_of_other_programs_count_even_where_they_must_not_fly():
     assert found.counts.sum() == (found.sections >= 0).sum()
 
 
+@pytest.mark.slow
 def test_fine_sections_and_the_precision_of_the_fast_kernel_change_nothing():
     fine = Constraints(min_distance_m=5.0, section_step_deg=5.0)
     model, views = scene("single-panel"), plan("single-panel")

@@ -74,6 +74,7 @@ def test_the_program_finds_it_from_a_poor_start_as_well() -> None:
     np.testing.assert_allclose(poor, good, rtol=0.02, atol=0.02)
 
 
+@pytest.mark.slow
 def test_five_hundred_legs_take_well_under_a_few_seconds_of_iterations() -> None:
     sweep, profile = (fastest_profile(zigzag(500, turns=True), LIMITS, solver=solver) for solver in SOLVERS)
     assert profile.iterations < 150

@@ -59,6 +59,7 @@ def mutants(content, n, seed):
         yield bytes(made)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [0, slow(1)])
 def test_mutated_photos_are_read_or_refused_in_time(tmp_path, seed):
     path, n_read = tmp_path / "DJI_0001.JPG", 0
@@ -74,6 +75,7 @@ def test_mutated_photos_are_read_or_refused_in_time(tmp_path, seed):
     assert 0.2 * N_MUTANTS / 2 < n_read < N_MUTANTS / 2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(2))
 def test_mutated_packets_and_directories_give_values_of_the_right_kind(seed):
     for content in mutants(packet(PROPERTIES).encode(), N_MUTANTS // 2, seed):

@@ -36,6 +36,7 @@ def total_s(revision: Revision) -> float:
     return revision.plan.duration_s
 
 
+@pytest.mark.slow
 def test_a_moved_viewpoint_is_where_it_should_be_and_everything_else_where_it_was() -> None:
     before = planned("kiosk")
     after = move(before, "v0003", (5.00004, -14.0, 9.0), 400.0, -20.00049)
@@ -190,6 +191,7 @@ def test_photos_at_one_place_and_photos_taken_twice() -> None:
     np.testing.assert_array_equal(one_left.counts, same_counts.counts)
 
 
+@pytest.mark.slow
 def test_deleting_the_last_of_a_sortie_takes_the_sortie_and_deleting_all_leaves_a_plan_without_any() -> None:
     start = planned("short sorties")
     assert len(start.plan.sorties) == 2
@@ -242,6 +244,7 @@ def inserted_everywhere_s(start: Revision, new: Viewpoint) -> list[float]:
     return found
 
 
+@pytest.mark.slow
 @settings(max_examples=12)
 @given(
     st.tuples(st.floats(-15.0, 15.0), st.floats(-25.0, -12.0), st.floats(5.0, 25.0)),
@@ -260,6 +263,7 @@ def test_a_new_viewpoint_goes_where_it_adds_least_time(
     assert best_s - 0.02 <= added_s <= best_s + 0.02
 
 
+@pytest.mark.slow
 def test_a_new_viewpoint_goes_into_a_sortie_with_room_or_gets_one_of_its_own() -> None:
     start = planned("short sorties")
     usable_s = start.plan.aircraft.endurance_s * (1.0 - start.plan.rules.battery_reserve)

@@ -34,6 +34,7 @@ def assert_states_the_truth(revision: Revision) -> None:
     assert set(kept) == nothing_covered | nothing_flown
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name", [slow(name) if name in ("canyon", "short sorties") else name for name in sorted(SETTINGS)]
 )
@@ -53,6 +54,7 @@ def test_any_edits_leave_what_a_revision_from_scratch_gives(name: str) -> None:
     edited()
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("name", sorted(SETTINGS))
 def test_going_to_any_other_plan_gives_what_taking_it_in_hand_anew_gives(name: str) -> None:
     start = planned(name)

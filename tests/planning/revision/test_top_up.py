@@ -74,6 +74,7 @@ def in_order_s(prepared: Prepared, plan: Plan, missed: Sequence[int]) -> float:
     return draw_flights(times, (tuple(range(len(missed))),), views, plan.aircraft, plan.rules)[0].duration_s
 
 
+@pytest.mark.slow
 @settings(max_examples=5)
 @given(missed=st.sets(st.integers(0, 24), min_size=1, max_size=12))
 def test_all_promised_sections_are_closed_in_no_more_time_than_flying_the_missed_views_again(missed: set[int]) -> None:
@@ -123,6 +124,7 @@ def test_views_of_the_plan_keep_their_names_and_new_ones_get_further_names() -> 
         assert (pose in poses.values()) == (viewpoint.id in poses)
 
 
+@pytest.mark.slow
 def test_nothing_flown_is_planned_anew_and_all_flown_needs_no_flight() -> None:
     plan = flown_plan()
     nothing = topped_up(plan, photos(plan, range(25)), replace(SOON, time_budget_s=1.0))
@@ -135,6 +137,7 @@ def test_nothing_flown_is_planned_anew_and_all_flown_needs_no_flight() -> None:
     assert everything.together == everything.promised == plan.coverage.covered
 
 
+@pytest.mark.slow
 def test_photos_taken_twice_change_nothing() -> None:
     plan = flown_plan()
     once = photos(plan, range(6))
@@ -143,6 +146,7 @@ def test_photos_taken_twice_change_nothing() -> None:
     assert (first.seen, first.wanted, first.closed) == (second.seen, second.wanted, second.closed)
 
 
+@pytest.mark.slow
 @settings(max_examples=4)
 @given(seed=st.integers(0, 1000), error_m=st.floats(0.0, 1.0))
 def test_sections_are_decided_by_the_poses_of_the_photos(seed: int, error_m: float) -> None:
@@ -168,6 +172,7 @@ def viewpoints_of(views: ViewpointArrays) -> tuple[Viewpoint, ...]:
     )
 
 
+@pytest.mark.slow
 def test_everything_reachable_is_more_than_what_was_promised() -> None:
     plan = flown_plan(6)
     found = topped_up(plan, photos(plan, [0]), replace(SOON, target=Target.REACHABLE, time_budget_s=1.5))
@@ -178,6 +183,7 @@ def test_everything_reachable_is_more_than_what_was_promised() -> None:
     assert 0.98 * reachable.n_reachable < found.together <= reachable.upper_bound
 
 
+@pytest.mark.slow
 def test_a_battery_limits_the_flight_and_what_it_leaves_open_is_said() -> None:
     plan = flown_plan()
     taken = photos(plan, range(25))
@@ -203,6 +209,7 @@ def test_a_battery_that_suffices_changes_nothing_but_says_that_it_is_used() -> N
     assert (found.on_board, found.closed) == (True, found.wanted)
 
 
+@pytest.mark.slow
 def test_a_full_battery_is_taken_where_the_one_on_board_does_not_suffice() -> None:
     plan = flown_plan()
     found = topped_up(plan, photos(plan, range(20)), replace(SOON, battery=0.28, n_batteries=1, time_budget_s=1.0))
@@ -237,6 +244,7 @@ def test_a_battery_on_board_that_reaches_nothing_is_left_out() -> None:
     assert 0 < found.closed < found.wanted
 
 
+@pytest.mark.slow
 def test_as_many_full_batteries_as_it_takes_close_everything() -> None:
     plan = flown_plan()
     short = replace(plan, rules=replace(plan.rules, battery_reserve=0.97))
@@ -261,6 +269,7 @@ def test_what_is_only_out_of_reach_stays_in_sight_round_after_round(monkeypatch:
     assert len(found.shown) < len(found.in_sight) == len(elements)
 
 
+@pytest.mark.slow
 def test_a_battery_for_one_view_flies_one_view() -> None:
     plan = flown_plan()
     model = prepared_kiosk().problem
@@ -290,6 +299,7 @@ def with_zone(zone: NoFlyZone) -> SiteModel:
     return replace(model, site=replace(model.site, airspace=replace(airspace, no_fly=(*airspace.no_fly, zone))))
 
 
+@pytest.mark.slow
 def test_a_view_in_a_volume_that_is_forbidden_now_is_replaced_by_others() -> None:
     plan = flown_plan()
     x, y, z = plan.viewpoints[3].position_enu_m
@@ -382,6 +392,7 @@ def rarest_view(problem: ViewProblem) -> Viewpoint:
     return replace(viewpoints_of(view)[0], id="rare")
 
 
+@pytest.mark.slow
 def test_the_trace_and_the_durations_show_what_time_bought() -> None:
     plan = flown_plan()
     trace = Trace()
@@ -394,6 +405,7 @@ def test_the_trace_and_the_durations_show_what_time_bought() -> None:
     assert trace.bound >= found.closed
 
 
+@pytest.mark.slow
 def test_a_stop_ends_the_search_with_a_whole_answer() -> None:
     plan = flown_plan()
     started = time.process_time()
@@ -446,6 +458,7 @@ def test_wanted_sections_are_counted_as_the_model_counts_them() -> None:
         assert sorted(elements[pool.elements.of(view)].tolist()) == sorted(expected)
 
 
+@pytest.mark.slow
 def test_the_top_up_of_a_tiny_plan_is_the_shortest_of_all_subsets_and_orders() -> None:
     """Against every order of every subset of the plan's own views; other views may make it shorter still."""
     plan = flown_plan(6)

@@ -72,6 +72,7 @@ def test_the_result_is_never_longer_than_the_route_it_began_with() -> None:
     assert further.duration_s <= found.duration_s
 
 
+@pytest.mark.slow
 def test_the_trace_falls_and_the_seed_decides_the_result() -> None:
     travel_s, service_s, covers = instance(5, 60, 80, 0.06)
     trace = Trace()

@@ -69,6 +69,7 @@ def drawn(table: LegTable) -> Floats:
     return np.array([[leg_length(np.diff(table.polyline(i, j), axis=0)).sum() for j in range(n)] for i in range(n)])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scene", ["kiosk", "block"])
 def test_every_point_of_every_leg_keeps_every_distance_and_ways_around_are_tight(scene: str) -> None:
     table, model = table_of(scene), kiosk() if scene == "kiosk" else block()
@@ -131,6 +132,7 @@ def test_a_straight_leg_costs_its_length_and_a_way_around_at_least_what_is_flown
     assert np.median(length[0, 1:] / least) < 1.03
 
 
+@pytest.mark.slow
 def test_ways_around_a_block_are_close_to_the_shortest_there_is() -> None:
     stops = allowed_stops(block(), 40, height_m=20.0)
     table = build_leg_table(build_roadmap(free_space(block(), DISTANCE_M)), stops, leg_length)
@@ -169,6 +171,7 @@ def test_flights_begin_and_end_in_the_column_above_home() -> None:
         np.testing.assert_array_equal(path[-1], table.points_enu_m[stop])
 
 
+@pytest.mark.slow
 def test_pulling_a_way_tight_does_not_crowd_its_waypoints(monkeypatch: pytest.MonkeyPatch) -> None:
     # Around a corner, a centimetre off the distance kept, ways would end in vertices a few centimetres from the stops.
     angle = np.radians(np.linspace(185.0, 265.0, 9))

@@ -50,6 +50,7 @@ def check(selection: Selection, travel_s: np.ndarray, service_s: np.ndarray, bud
     assert selection.value <= selection.bound
 
 
+@pytest.mark.slow
 @given(
     n=st.integers(1, 6),
     seed=st.integers(0, 1000),
@@ -138,6 +139,7 @@ def coverage_case(n: int, seed: int = 0) -> tuple[np.ndarray, np.ndarray]:
     return travel_s, sees & (rng.random(sees.shape) < 0.5)
 
 
+@pytest.mark.slow
 def test_overlapping_worth_is_searched_beyond_the_greedy_choice() -> None:
     travel_s, sees = coverage_case(120)
     service_s = np.full(120, 3.0)

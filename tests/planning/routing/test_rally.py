@@ -113,6 +113,7 @@ def test_a_no_fly_volume_above_a_rally_point_is_an_error_and_below_ground_a_warn
     assert "below the ground" in below.message
 
 
+@pytest.mark.slow
 def test_a_check_of_a_plan_tells_of_rally_points_only_where_there_are_some():
     model = kiosk()
     plan = plan_flight(model, PlanRequest(n_views=4, method="orbit")).plan

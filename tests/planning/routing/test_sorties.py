@@ -49,6 +49,7 @@ def check(problem: SortieProblem, sorties: tuple[tuple[int, ...], ...]) -> float
     return math.fsum(durations)
 
 
+@pytest.mark.slow
 @given(
     n=st.integers(1, 6),
     seed=st.integers(0, 10_000),
@@ -115,6 +116,7 @@ def test_sorties_keep_the_battery_and_hardly_need_more_than_the_proven_fewest(n:
     assert fewest_sorties(problem) <= len(sorties) <= fewest_sorties(problem) + 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "best_known"), [("X-n101-k25", 27591), slow("X-n157-k13", 16876)])
 def test_published_best_routes_are_met_within_one_percent(shared_data: Path, name: str, best_known: int) -> None:
     instance = read_instance(shared_data / "routing" / "cvrp_x" / f"{name}.vrp")
@@ -193,12 +195,14 @@ def test_stops_at_one_place_are_shared_out_by_their_service() -> None:
     assert len(sorties) == 5
 
 
+@pytest.mark.slow
 def test_the_same_seed_and_rounds_give_the_same_sorties() -> None:
     problem = facade_problem(60, 300.0)
     first = solve_sorties(problem, seed=5, max_rounds=20_000)
     assert first == solve_sorties(problem, seed=5, max_rounds=20_000)
 
 
+@pytest.mark.slow
 def test_stopped_at_once_the_sorties_keep_their_limits_all_the_same() -> None:
     problem = facade_problem(100, 400.0)
     early = check(problem, solve_sorties(problem, stop=lambda: True))

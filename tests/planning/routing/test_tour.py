@@ -94,6 +94,7 @@ def test_a_descended_tour_is_optimal_among_all_exchanges_of_three_legs(seed: int
     assert min(others) >= length - 1e-9
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "optimum"), [("kroA100", 21282), ("lin318", 42029), ("pcb442", 50778), slow("u724", 41910)]
 )

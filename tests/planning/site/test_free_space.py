@@ -73,6 +73,7 @@ def test_impossible_homes_are_refused_with_what_was_measured(home, message):
 LOW_CORNER, HIGH_CORNER = (-60.0, -70.0, 3.0), (60.0, 50.0, 75.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "home", [slow((-60.0, -45.0, 0.0)), slow((0.0, -70.0, 0.0)), (60.0, 50.0, 0.0), (-60.0, -70.0, 72.9)]
 )

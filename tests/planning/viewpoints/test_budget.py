@@ -101,6 +101,7 @@ def best_by_force(pool: Pool, usable_s: float, n_batteries: int) -> int:
     return max(len({e for view in union for e in pool.elements.of(view)}) for union in unions)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("usable_s", "n_batteries", "seed"), [slow(45.0, 1, 0), (60.0, 1, 1), (40.0, 2, 2), slow(55.0, 2, 3)]
 )
@@ -125,6 +126,7 @@ def test_more_batteries_and_longer_ones_cover_more() -> None:
     assert covered[0] * 1.2 < longer
 
 
+@pytest.mark.slow
 def test_bound_is_above_the_result_and_never_above_what_candidates_cover_at_all() -> None:
     everything = problem().reachability.upper_bound
     for usable_s, n_batteries in [(40.0, 1), (100.0, 2), (1500.0, 3)]:
@@ -132,6 +134,7 @@ def test_bound_is_above_the_result_and_never_above_what_candidates_cover_at_all(
         assert problem().model.covered_count(views) <= bound <= everything
 
 
+@pytest.mark.slow
 def test_trace_counts_sections_whatever_they_weigh() -> None:
     for by_area in (False, True):
         trace = Trace()
@@ -210,6 +213,7 @@ def test_plans_have_no_more_sorties_than_batteries_and_cover_more_with_more(
     assert covered[2] > covered[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("n_batteries", [1, 2, 3])
 def test_a_whole_plan_keeps_the_number_of_batteries(n_batteries: int) -> None:
     request = PlanRequest(

@@ -61,6 +61,7 @@ def plan_with_locked(request: PlanRequest, locked: tuple[Viewpoint, ...] = LOCKE
     return plan_flight(ready.site_model, replace(request, locked=locked), prepared=ready).plan
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("goal", sorted(GOALS))
 def test_locked_viewpoints_are_in_the_plan_as_they_are_and_nothing_else_has_their_names(goal: str) -> None:
     request = GOALS[goal]
@@ -87,6 +88,7 @@ def test_locked_viewpoints_are_in_the_plan_as_they_are_and_nothing_else_has_thei
     assert [point.covered for point in plan.history] == sorted(point.covered for point in plan.history)
 
 
+@pytest.mark.slow
 def test_the_others_are_chosen_for_what_the_locked_ones_leave() -> None:
     free = plan_with_locked(replace(GOALS["views"], n_views=4), ())
     locked = tuple(replace(viewpoint, locked=True) for viewpoint in free.viewpoints[:2])
@@ -98,6 +100,7 @@ def test_the_others_are_chosen_for_what_the_locked_ones_leave() -> None:
     assert len(plan_with_locked(GOALS["little"]).viewpoints) == len(LOCKED), "they are enough"
 
 
+@pytest.mark.slow
 def test_the_bound_holds_with_locked_views() -> None:
     ready = prepared("kiosk")
     request = replace(GOALS["improved"], locked=LOCKED)
@@ -108,6 +111,7 @@ def test_the_bound_holds_with_locked_views() -> None:
     assert only.bound_for_views == only.plan.coverage.covered
 
 
+@pytest.mark.slow
 def test_improving_and_refining_return_the_others_only_and_never_lose() -> None:
     problem = prepared("kiosk").problem
     weights = element_weights(problem.model, False)
@@ -189,6 +193,7 @@ def test_a_locked_viewpoint_that_cannot_be_flown_is_refused_with_its_name_and_th
         plan_with_locked(GOALS["views"], (LOCKED[0], wrong))
 
 
+@pytest.mark.slow
 def test_a_locked_viewpoint_that_cannot_be_reached_is_refused() -> None:
     hall = Viewpoint("hall", (35.0, 35.0, 16.0), 0.0, 0.0)
     request = PlanRequest(n_views=3, constraints=NEAR, greedy=QUICK, locked=(hall,), time_budget_s=2.0)
@@ -210,6 +215,7 @@ def test_requests_that_contradict_themselves_are_refused() -> None:
         PlanRequest(locked=(LOCKED[0], LOCKED[0]))
 
 
+@pytest.mark.slow
 def test_more_locked_viewpoints_than_the_batteries_allow_are_refused() -> None:
     places = [(15.0 + 20.0 * math.cos(i), -20.0 + 15.0 * math.sin(i), 30.0) for i in range(12)]
     far = tuple(Viewpoint(f"far{i}", place, 30.0 * i - 179.0, -10.0) for i, place in enumerate(places))
@@ -219,6 +225,7 @@ def test_more_locked_viewpoints_than_the_batteries_allow_are_refused() -> None:
         plan_with_locked(request, far)
 
 
+@pytest.mark.slow
 def test_a_prepared_site_is_used_where_it_fits_and_refused_where_not() -> None:
     ready = prepared("kiosk")
     request = GOALS["views"]
@@ -243,6 +250,7 @@ def test_a_prepared_site_is_used_where_it_fits_and_refused_where_not() -> None:
     assert plan_flight(site, other, prepared=ready).prepared.seed == 1
 
 
+@pytest.mark.slow
 def test_preparing_that_is_stopped_says_so() -> None:
     whole = plan_flight(kiosk(), replace(GOALS["views"], time_budget_s=60.0)).prepared
     cut = plan_flight(kiosk(), replace(GOALS["views"], time_budget_s=60.0), stop=lambda: True).prepared

@@ -164,6 +164,7 @@ def test_every_step_of_the_choice_keeps_views_apart_and_none_loses(seed: int, n_
     assert values == sorted(values)
 
 
+@pytest.mark.slow
 def test_room_is_made_where_greedy_leaves_none() -> None:
     """Against every choice of 12 candidates that are apart: greedy misses the best one in a third of the cases."""
     n_greedy, n_room = 0, 0
@@ -242,6 +243,7 @@ def turned_sites(draw: st.DrawFn) -> SiteModel:
     )
 
 
+@pytest.mark.slow
 @given(site_model=turned_sites())
 @settings(max_examples=4)
 def test_more_views_never_show_less_on_turned_shifted_and_bent_facades(site_model: SiteModel) -> None:
@@ -287,6 +289,7 @@ def test_more_views_never_show_less_on_a_wall_turned_by_33_degrees(bend_deg: flo
     assert covered[-1] >= 0.995 * coverage.reachable_upper_bound
 
 
+@pytest.mark.slow
 def test_an_aircraft_without_the_rule_is_not_held_to_it() -> None:
     site_model = turned_site(33.0, n_rows=4, n_columns=5, panel_m=(1.0, 1.0))
     problem = prepare(site_model, profile("m3e").camera, Constraints(min_distance_m=8.0)).problem

@@ -55,6 +55,7 @@ def test_each_wing_has_its_own_height(plain):
     assert not np.isfinite(height_at(plain, 13.0, 5.0))
 
 
+@pytest.mark.slow
 def test_glass_is_closed_by_its_frame_and_mirror_images_are_no_walls(glazed):
     hits = RayCaster(glazed.mesh).cast(np.array([[-2.0, -50.0, 7.0]]), np.array([[0.0, 1.0, 0.0]]))
     assert float(hits.distance_m[0]) == pytest.approx(44.0, abs=0.1)

@@ -48,6 +48,7 @@ def test_blocks_are_those_of_the_whole_inverse(n_blocks, size, n_border, reach, 
         np.testing.assert_allclose(found[i], expected[at, at], rtol=1e-6, atol=1e-9 * np.abs(expected).max())
 
 
+@pytest.mark.slow
 def test_a_chain_that_is_held_at_one_end_only_is_solved_to_its_other_end():
     """Each block knows its distance to the next to 1e-3: after 2000 the standard deviation is the root of 2000 times
     that, and the condition number some 1e7."""

@@ -77,6 +77,7 @@ def test_photos_in_one_row_are_turned_by_their_cameras_angles():
     assert_posed(posed_photos(in_enu(model(row), AWAY), found.enu_from_model, FOLDER), row, 0.3, 1.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("sigma_m", "sigma_deg"), [slow(2.0, 0.5), (0.02, 20.0)], ids=["angles", "positions"])
 def test_what_is_known_better_decides(sigma_m, sigma_deg):
     """Errors of the model's angles stay below those of either alone: 2 m on a flight of 12 m, or 20 degrees."""

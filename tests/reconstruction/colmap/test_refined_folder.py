@@ -111,6 +111,7 @@ def damaged(content, kind):
     return content
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize(
     ("kind", "words"),
     [

@@ -85,6 +85,7 @@ def photos_in(folder: Path, lens: Intrinsics = LENS, n: int = 3) -> list[PosedPh
     return photos
 
 
+@pytest.mark.slow
 def test_what_is_written_is_read_by_others_and_agrees(tmp_path: Path) -> None:
     photos = photos_in(tmp_path / "in")
     prepared = prepare(photos, site_model(), tmp_path / "out", QUICK)
@@ -135,6 +136,7 @@ def test_without_panels_it_is_a_data_set_for_plain_splats(tmp_path: Path) -> Non
         _config_of_data_set(tmp_path / "out", TrainRequest("smoke", "reflight"))
 
 
+@pytest.mark.slow
 def test_layers_show_panels_facade_and_flat_glass(tmp_path: Path) -> None:
     photo = photos_in(tmp_path / "in", n=1)[0]
     prepare([photo], site_model(), tmp_path / "out", PrepareParameters(normal_step=1, n_points=0))
@@ -155,6 +157,7 @@ def test_layers_show_panels_facade_and_flat_glass(tmp_path: Path) -> None:
     assert 0.0 < frames.mean() < 0.2
 
 
+@pytest.mark.slow
 def test_distortion_is_taken_away_where_it_is_worth_it(tmp_path: Path) -> None:
     assert decide(LensDistortion(), photos_in(tmp_path / "bent", BENT)).on
     assert not decide(LensDistortion(), photos_in(tmp_path / "straight")).on
@@ -180,6 +183,7 @@ def test_a_straightened_picture_shows_every_direction_where_the_straight_camera_
     assert np.abs(found[5:-5, 5:-5, 0] - wanted[5:-5, 5:-5]).max() < 2.5
 
 
+@pytest.mark.slow
 def test_hidden_panels_are_taken_out_where_something_hides_them(tmp_path: Path) -> None:
     photos = photos_in(tmp_path / "in")
     for model, on in ((site_model(), False), (site_model(kiosk()), True)):
@@ -205,6 +209,7 @@ def test_hidden_panels_are_taken_out_where_something_hides_them(tmp_path: Path) 
         assert (one != other).mean() <= HiddenPanels().tolerance
 
 
+@pytest.mark.slow
 def test_broken_photos_are_reported_and_left_out(tmp_path: Path) -> None:
     photos = photos_in(tmp_path / "in")
     photos[0].path.write_bytes(b"not a picture")
@@ -218,6 +223,7 @@ def test_broken_photos_are_reported_and_left_out(tmp_path: Path) -> None:
     assert not (tmp_path / "again").exists()
 
 
+@pytest.mark.slow
 def test_a_cancelled_run_leaves_nothing(tmp_path: Path) -> None:
     class Cancelling(Monitor):
         def report(self, stage: str, done: int, total: int) -> None:

@@ -36,6 +36,7 @@ def trained(data_set):
     return train_model(data_set, CONFIG)
 
 
+@pytest.mark.slow
 def test_under_even_light_colours_are_those_of_eq_19(trained):
     model = put_together(organised(trained), Path()).model
     model.light.light.load_state_dict(

@@ -30,6 +30,7 @@ def found(request, tmp_path_factory):
     return request.param, rays, source.panels, choose_light(rays, source.panels, CONFIG)
 
 
+@pytest.mark.slow
 def test_near_things_call_for_a_radiance_grid_and_far_ones_for_an_environment_map(found):
     light, _, _, (name, (mirrors, is_near)) = found
     assert name == ("radiance-grid" if light is near else "environment-map")

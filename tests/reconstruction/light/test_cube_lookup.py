@@ -41,6 +41,7 @@ def test_the_kernel_gives_what_plain_torch_gives_in_double_precision(channels):
         assert float(is_close.double().mean()) > 0.998
 
 
+@pytest.mark.slow
 def test_gradients_are_those_of_finite_differences():
     where = Levels((2, 1))
     levels = torch.tensor([0.3, 0.2, 0.7, 0.6], dtype=torch.float64).requires_grad_()

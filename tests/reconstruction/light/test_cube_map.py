@@ -35,6 +35,7 @@ def test_a_new_map_gives_the_expected_light_everywhere():
     assert torch.allclose(made.on_matt(asked), torch.tensor(0.4), atol=1e-5)
 
 
+@pytest.mark.slow
 def test_a_mirror_shows_each_texel_where_it_is():
     made, middle = filled(), torch.from_numpy(texel_directions(SIDE)).float()
     truth = torch.from_numpy(environment(texel_directions(SIDE))).float()

@@ -42,6 +42,7 @@ def test_there_is_no_seam_at_the_back():
         assert (found.max(dim=0).values - found.min(dim=0).values).max() < 1e-4
 
 
+@pytest.mark.slow
 def test_poles_have_light_and_gradients_that_are_numbers():
     directions = torch.cat([UP_DOWN, UP_DOWN + torch.tensor([1e-8, 0.0, 0.0])]).requires_grad_()
     environment = filled()

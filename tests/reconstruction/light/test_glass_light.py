@@ -141,6 +141,7 @@ def test_mirrored_rays_and_what_tilts_and_bows_learn_are_those_of_plain_torch(so
         assert (value - truth).norm() < 1e-5 * truth.norm()
 
 
+@pytest.mark.slow
 def test_tilts_of_panes_are_found_from_what_they_mirror(tmp_path):
     leans = np.array([0.012, -0.008, 0.0, 0.01, -0.012, -0.002])
 

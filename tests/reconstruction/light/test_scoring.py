@@ -41,6 +41,7 @@ def trained(folder):
     return train_reflections(glass_rays(source, source.photos), source.panels, "environment-map", SMALL)
 
 
+@pytest.mark.slow
 def test_a_views_score_is_the_psnr_of_its_glass_pixels(folder, trained):
     source = read_photo_set(folder)
     photo = source.photos[0]
@@ -103,6 +104,7 @@ def test_photos_that_were_exposed_one_by_one_are_as_good_where_the_folder_says_h
     assert known > downstream_psnr(folder, folder, "environment-map", SMALL).score.mean_db - 1.0
 
 
+@pytest.mark.slow
 def test_what_is_learned_from_the_right_photos_scores_higher_than_from_wrong_ones(folder, tmp_path):
     write_folder(tmp_path / "wrong", near, 10)
     right = downstream_psnr(folder, folder, "environment-map", SMALL)
@@ -113,6 +115,7 @@ def test_what_is_learned_from_the_right_photos_scores_higher_than_from_wrong_one
     assert right.trained.history[-1].value == pytest.approx(right.score.mean_db, abs=3.0)
 
 
+@pytest.mark.slow
 def test_held_out_views_are_not_learned_from(folder, tmp_path):
     spoilt = shutil.copytree(folder, tmp_path / "spoilt")
     for name in held_out_names([f"p{k:02d}.png" for k in range(10)], 0.15, 0):

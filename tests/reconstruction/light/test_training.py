@@ -57,11 +57,13 @@ def scores(folder, light, *models):
     return [score(train_reflections(rays, planes, model, SMALL), unseen) for model in models]
 
 
+@pytest.mark.slow
 def test_where_what_is_mirrored_is_near_places_are_needed(tmp_path):
     mlp, environment_map = scores(tmp_path, near, "mlp", "environment-map")
     assert mlp > environment_map + 3.0
 
 
+@pytest.mark.slow
 def test_where_it_is_far_directions_are_enough(tmp_path):
     mlp, environment_map, few_harmonics = scores(tmp_path, far, "mlp", "environment-map", "harmonics")
     assert environment_map > 33.0
@@ -69,6 +71,7 @@ def test_where_it_is_far_directions_are_enough(tmp_path):
     assert 20.0 < few_harmonics < mlp
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("model", ["mlp", "environment-map", "harmonics", "radiance-grid"])
 @pytest.mark.parametrize("precision", ["float32", "bfloat16"])
 def test_the_same_seed_gives_the_same_bits_and_another_one_does_not(plain, model, precision):
@@ -165,6 +168,7 @@ def test_decay_shrinks_weights_of_an_mlp_s_hidden_layers_and_nothing_else(plain)
             assert torch.allclose(value, before[name] * (1.0 - 2.0 * SMALL.mlp_rate if is_hidden else 1.0), rtol=1e-6)
 
 
+@pytest.mark.slow
 def test_with_decay_an_mlp_is_less_good_at_what_it_learned_from_and_not_at_the_rest(tmp_path):
     rays, unseen, planes = split_of(tmp_path / "photos", near, N_LEARNED)
     config = replace(SMALL, steps=400, passes=1000.0)
@@ -199,6 +203,7 @@ def test_no_rays_are_a_wrong_call_and_have_no_error(plain):
     assert mean_square_error(panels, rays[:0]) != mean_square_error(panels, rays[:0])
 
 
+@pytest.mark.slow
 def test_the_vignette_is_learned_where_there_is_one(plain):
     rays, _, planes = plain
     found = []

@@ -64,6 +64,7 @@ def write_ecp(folder: Path, size: tuple[int, int] = (30, 40)) -> Path:
     return folder
 
 
+@pytest.mark.slow
 def test_cmp_rectangles_become_numbered_windows(tmp_path: Path) -> None:
     (photo,) = cmp_photos(write_cmp(tmp_path))
     assert photo.name == "a"
@@ -218,6 +219,7 @@ def test_real_ecp_photos_show_windows_where_their_masks_are_red(shared_data: Pat
     assert photos.n_photos == 40
 
 
+@pytest.mark.slow
 def test_real_offices_have_a_window_for_each_polygon(shared_data: Path) -> None:
     folder = shared_data / "facades" / "offices_at_night"
     content = json.loads((folder / "_annotations.coco.json").read_text())

@@ -132,6 +132,7 @@ def test_it_is_symmetric_and_takes_8_bit_as_it_takes_fractions():
     assert lpips(ALEX, found / 255.0, truth / 255.0) == pytest.approx(one, rel=1e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("backbone", ["alex", pytest.param("vgg", marks=pytest.mark.slow)])
 def test_tiles_change_nothing(monkeypatch, backbone):
     # Over two tiles' borders each way with what is around them cut off by the picture's edge and not.

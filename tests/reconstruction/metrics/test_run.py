@@ -32,6 +32,7 @@ def planar() -> PhotoSet:
     return PhotoSet("made-planar", tuple(photo.name for photo in photos), lambda: iter(photos))
 
 
+@pytest.mark.slow
 def test_perfect_answers_score_one(planar: PhotoSet) -> None:
     scores, worst = score_set(planar, perfect)
     assert scores.overall_iou.worst == scores.individual_miou.worst == scores.coverage[5] == 1.0

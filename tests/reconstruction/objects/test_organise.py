@@ -22,6 +22,7 @@ from tests.reconstruction.objects.conftest import CONFIG
 HERE = Path("here")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", ["reflight", "3dgs", pytest.param("ref-gs", marks=pytest.mark.slow)])
 def test_a_model_that_went_through_objects_and_files_is_the_same_bits(data_set, trained, tmp_path, method):
     model = trained

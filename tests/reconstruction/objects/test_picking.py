@@ -46,6 +46,7 @@ def one_by_one(corners, origin, ray):
     return best[1]
 
 
+@pytest.mark.slow
 @settings(max_examples=25, deadline=None)
 @given(seed=st.integers(0, 2**31))
 def test_the_nearest_panel_is_found_as_by_triangles_one_by_one(seed):

@@ -87,6 +87,7 @@ def facades(draw: st.DrawFn) -> FileFacade:
     return FileFacade(draw(st.text(max_size=3)), n_rows, n_columns, horizontal, vertical, missing, panels, braces)
 
 
+@pytest.mark.slow
 @given(
     st.builds(
         PanelsFile,

@@ -28,6 +28,7 @@ def book(tmp_path):
         yield opened
 
 
+@pytest.mark.slow
 @given(st.lists(entries, max_size=8))
 def test_entries_come_out_as_they_went_in_and_undo_takes_each_back(tmp_path_factory, found):
     with new_book(tmp_path_factory.mktemp("book")) as book:
@@ -233,6 +234,7 @@ with RecordBook(Path(sys.argv[1]), True, "Chan") as book:
 """
 
 
+@pytest.mark.slow
 def test_books_opened_beside_a_process_that_writes_all_the_time_are_never_called_damaged(tmp_path):
     with new_book(tmp_path) as book:
         path = book.path

@@ -49,6 +49,7 @@ def refusal(book, path, name=None):
     return caught.value
 
 
+@pytest.mark.slow
 @given(st.lists(entries, max_size=8), st.booleans())
 def test_records_come_back_as_they_were(tmp_path_factory, found, semicolon):
     folder, other = tmp_path_factory.mktemp("a"), tmp_path_factory.mktemp("b")

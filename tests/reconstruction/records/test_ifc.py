@@ -174,6 +174,7 @@ def test_copies_get_our_sets_and_stay_as_they_are(book, tmp_path, schema):
     assert (tmp_path / "d.ifc").read_bytes() == before
 
 
+@pytest.mark.slow
 def test_the_process_of_its_own_does_the_same(book, tmp_path):
     original = Made().write(tmp_path / "a.ifc")
     filled(book)
@@ -361,11 +362,13 @@ def test_new_files_of_all_kinds_of_facades_import_as_the_same_site(tmp_path, nam
     check_import(path, site, origin)
 
 
+@pytest.mark.slow
 def test_new_files_import_as_the_same_site(new_file):
     path, site, _ = new_file
     check_import(path, site, None)
 
 
+@pytest.mark.slow
 def test_panes_of_new_files_face_where_they_did_with_no_building_behind_them(tmp_path):
     parts = [facades(shape, (60.0 * k, 0.0), f"{k}") for k, shape in enumerate(SHAPES)]
     site = replace(SCENES["office"]().site, facades=tuple(facade for part in parts for facade in part))
@@ -423,6 +426,7 @@ def test_panes_that_are_warped_or_lack_corners_and_places_unknown(tmp_path):
     }
 
 
+@pytest.mark.slow
 def test_hostile_and_broken_files_are_refused(book, tmp_path):
     path = tmp_path / "a.ifc"
     for content, words in (

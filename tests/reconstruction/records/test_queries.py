@@ -30,6 +30,7 @@ def book(tmp_path):
         yield opened
 
 
+@pytest.mark.slow
 @given(st.lists(st.one_of(inspections, defects), max_size=12))
 def test_latest_and_worst_are_those_of_a_loop(tmp_path_factory, found):
     with new_book(tmp_path_factory.mktemp("book")) as book:

@@ -112,6 +112,7 @@ COARSE = replace(checkerboard(), px_per_m=8.0)
 GLAZED = Glass(index=1.52, coating=0.1, tint=(0.7, 0.8, 0.9), sheets=2, gap_m=0.016)
 
 
+@pytest.mark.slow
 def test_a_textured_wall_is_mirrored_alike() -> None:
     def shifted(made: Scene) -> Scene:
         """By a texel, an eighth of a metre; a pixel shows a metre."""
@@ -167,6 +168,7 @@ def test_the_sky_is_seen_and_mirrored_alike() -> None:
     assert_agree_unless(turned_over, made, camera((3.0, -4.0, 12.0), 20.0, 10.0))
 
 
+@pytest.mark.slow
 def test_lenses_that_bend_and_pixels_that_are_not_square_show_the_same() -> None:
     straight = camera((0.0, -5.0, 10.0), 180.0)
     inner = replace(straight.intrinsics, fy_px=26.0, cx_px=10.0, distortion=(-0.15, 0.02, 0.003, -0.002, 0.0))
@@ -175,6 +177,7 @@ def test_lenses_that_bend_and_pixels_that_are_not_square_show_the_same() -> None
     assert_agree_unless(same, made, bent, {"lens distortion": "off"})
 
 
+@pytest.mark.slow
 def test_a_camera_that_moves_blurs_alike() -> None:
     made = scene(wall(COARSE), sky=replace(LOW_SUN, sun_heading_deg=-30.0), corners=np.zeros((0, 4, 3)))
     assert_agree_unless(
@@ -223,6 +226,7 @@ def test_sheets_share_light_out_as_panes_do(glass: Glass) -> None:
     assert np.abs(whole[1] - through).max() < 1e-5
 
 
+@pytest.mark.slow
 def test_the_same_seed_gives_the_same_picture_and_another_another() -> None:
     renderer = judge(scene(sky=Sky()))
     taken = camera((0.0, -3.0, 10.0))
@@ -246,6 +250,7 @@ def test_a_variant_that_ends_its_process_is_told_from_one_that_works() -> None:
     assert not survives("no_such_variant")
 
 
+@pytest.mark.slow
 def test_settings_choose_the_renderer() -> None:
     made = scene()
     assert isinstance(renderer_of(made, RenderSettings()), Renderer)

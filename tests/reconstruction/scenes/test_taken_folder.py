@@ -67,6 +67,7 @@ def record_of(folder: Path) -> dict[str, Any]:
     return dict(json.loads((folder / "scene.json").read_text()))
 
 
+@pytest.mark.slow
 def test_photos_tell_the_wrong_pose_and_the_right_lens(scene: Scene, written: ScenePhotos) -> None:
     images = written.folder / "images"
     back = pose_photos(read_photos(images).photos, scene.site.site, images)
@@ -133,6 +134,7 @@ def test_each_photo_has_its_own_exposure_in_thirds_of_a_stop(written: ScenePhoto
     assert np.ptp(means) < 30.0
 
 
+@pytest.mark.slow
 def test_what_is_off_leaves_no_trace(scene: Scene, tmp_path: Path) -> None:
     effects = dict.fromkeys((DISTORTION, EXPOSURE, MOTION_BLUR), "off")
     folder = tmp_path / "off"

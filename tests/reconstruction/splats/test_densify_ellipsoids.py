@@ -39,6 +39,7 @@ def scene():
     return views, truths, error(plain, views, truths)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("strategy", "times"), [(AdaptiveControl(QUICK, Limits(n_most=300)), 1.3), slow(MarkovChain(QUICK_CHAIN), 1.2)]
 )

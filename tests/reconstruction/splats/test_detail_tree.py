@@ -91,6 +91,7 @@ def test_a_cube_has_two_parts_at_least():
     assert len(counts) == len(tree.parents)
 
 
+@pytest.mark.slow
 @given(
     st.sampled_from(CASES),
     st.integers(0, 99),

@@ -16,6 +16,7 @@ from reconstruction.tradeoff.search_tradeoff import SegmentVariants, run_variant
 from tests.reconstruction.made_photos import simple_case
 
 
+@pytest.mark.slow
 def test_every_setting_is_scored_on_the_same_photos_and_drawn_a_line_a_knob() -> None:
     photo = scored(make_facade(simple_case(Layout(4, 6), intrinsics=wide_camera(480, 360))))
     photos = PhotoSet("one", (photo.name,), lambda: iter([photo]))

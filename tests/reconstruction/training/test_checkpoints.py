@@ -22,6 +22,7 @@ states = st.dictionaries(
 )
 
 
+@pytest.mark.slow
 @settings(max_examples=12, deadline=None)
 @given(states)
 def test_plain_state_comes_back_as_it_was(tmp_path_factory, state):

@@ -50,6 +50,7 @@ def config_of(light, **more):
     return replace(CONFIG, light=light, **more)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("light", ["harmonics", "environment-map", "mlp", "radiance-grid"])
 def test_it_goes_on_bit_by_bit(data_set, tmp_path, light):
     config, checkpoint = config_of(light), tmp_path / "c"
@@ -64,6 +65,7 @@ def test_it_goes_on_bit_by_bit(data_set, tmp_path, light):
     assert "record" in read_checkpoint(checkpoint)
 
 
+@pytest.mark.slow
 def test_what_chose_the_light_is_not_asked_again(data_set, tmp_path, monkeypatch):
     config, checkpoint = config_of("auto"), tmp_path / "c"
     # Three models are tried for 8 steps, on three choices of photos, after a step of each that compiles its kernels.

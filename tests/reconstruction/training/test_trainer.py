@@ -106,6 +106,7 @@ def assert_same(one, other):
     assert all(torch.equal(mine[name], theirs[name]) for name in mine)
 
 
+@pytest.mark.slow
 def test_pictures_of_unseen_views_get_better(make):
     trainer = make(replace(CONFIG, iterations=30, densification="none"))
     trace, previews = Trace(), []
@@ -118,6 +119,7 @@ def test_pictures_of_unseen_views_get_better(make):
     assert previews[-1].step == 30
 
 
+@pytest.mark.slow
 def test_splats_are_added_and_stay_below_their_number(make):
     trainer = make(replace(CONFIG, iterations=105, densify_from=0.0, densify_until=1.0, densification="mcmc"))
     n_before = len(trainer.model.splats)
@@ -153,6 +155,7 @@ def test_splats_are_added_only_between_the_shares_that_are_told(make):
     assert all(0.7 * 220 < step <= 0.95 * 220 + 1 for step in changes)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("light", [None, "harmonics", "environment-map", "mlp", "radiance-grid"])
 def test_interrupted_training_goes_on_bit_by_bit(make, tmp_path, light):
     config = CONFIG if light is None else replace(CONFIG, method="refglass-gs", light=light, reflections=TINY)
@@ -179,6 +182,7 @@ def test_an_mlp_s_weights_decay_in_the_joint_training_and_nothing_else_does(make
     assert {id(value) for value in decays[0]["params"]} == {id(layer.weight) for layer in hidden}
 
 
+@pytest.mark.slow
 def test_with_other_seeds_trainings_differ(make):
     one, other = make(), make(replace(CONFIG, seed=1))
     one.run(Callbacks())
@@ -316,6 +320,7 @@ def test_what_went_before_counts_for_the_time_limit(make, monkeypatch):
     assert trainer.at.step == 3
 
 
+@pytest.mark.slow
 def test_looks_and_files_count_for_the_time_limit_and_have_time_in_the_end(make, monkeypatch):
     trainer, clock = timed(make, monkeypatch, 60.0, look_s=4.0, save_s=3.0)
     trainer.save()
@@ -326,6 +331,7 @@ def test_looks_and_files_count_for_the_time_limit_and_have_time_in_the_end(make,
     assert trainer.at.step == 54 - 3 - 2 * 4
 
 
+@pytest.mark.slow
 def test_held_out_views_in_full_have_time_in_the_end(make, monkeypatch):
     trainer, _ = timed(make, monkeypatch, 100.0, look_s=2.0)
     shown_px = trainer.shown[0].sample.facade.numel()
@@ -383,6 +389,7 @@ def stopped(make, monkeypatch, after_s, stop_at, **more):
     return trainer, rates
 
 
+@pytest.mark.slow
 def test_stopped_it_lets_its_rates_fall_to_their_last_within_a_twentieth_of_the_time(make, monkeypatch):
     trainer, rates = stopped(make, monkeypatch, 796.0, 4)
     # 5 % of 800 s are 40 steps of a second.
@@ -396,6 +403,7 @@ def test_stopped_it_lets_its_rates_fall_to_their_last_within_a_twentieth_of_the_
     assert shares[4 + 20] == pytest.approx(last + 0.5 * (1.0 - last), abs=0.02)
 
 
+@pytest.mark.slow
 def test_settling_takes_a_minute_at_most(make, monkeypatch):
     trainer, _ = stopped(make, monkeypatch, 7200.0, 2)
     assert trainer.at.step == 2 + 60
@@ -422,6 +430,7 @@ def test_while_it_settles_no_splats_are_added_and_the_losses_stay_what_they_were
     assert {name for visit, _ in settling for name in visit.terms} == {"colour"}
 
 
+@pytest.mark.slow
 def test_what_is_held_out_chooses_nothing_when_it_is_stopped(make, monkeypatch):
     ends = []
     for spoiled in (False, True):

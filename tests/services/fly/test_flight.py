@@ -106,6 +106,7 @@ def test_a_faster_vehicle_waits_longer_for_the_order_after_arming(speed_up, dela
     opened.link.close()
 
 
+@pytest.mark.slow
 def test_views_come_at_most_ten_times_a_second(flight):
     live, follower = flight()
     fly(live, follower)
@@ -183,6 +184,7 @@ def test_a_port_in_use_is_told_at_once(flight):
         assert "cannot be opened" in follower.until_closed().text
 
 
+@pytest.mark.slow
 def test_a_link_that_breaks_in_flight_is_opened_again_and_the_sortie_goes_on(flight):
     radio = Reopening()
     live, follower = flight(radio)
@@ -213,6 +215,7 @@ def test_silence_is_shown_and_survived(flight):
     assert len(ended.record.photos) == len(sortie().viewpoint_ids)
 
 
+@pytest.mark.slow
 def test_disconnecting_in_flight_keeps_what_was_flown(flight):
     live, follower = flight()
     fly(live, follower)

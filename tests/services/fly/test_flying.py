@@ -70,6 +70,7 @@ def assert_kept(flown, plan):
         assert sortie.duration_flown_s == pytest.approx(sortie.duration_predicted_s, rel=DURATION)
 
 
+@pytest.mark.slow
 @BOTH
 def test_the_office_is_flown_as_planned(model, plan, autopilot):
     flown = fly_plan(plan, model, FlightRequest(autopilot=autopilot))
@@ -78,6 +79,7 @@ def test_the_office_is_flown_as_planned(model, plan, autopilot):
     assert not [f for f in flown.flight.report.findings if f.severity == "error"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("autopilot", "profile"),
     [
@@ -116,6 +118,7 @@ def errors_m(flown):
     return [view.position_error_m for view in flown.flight.report.views if view.position_error_m is not None]
 
 
+@pytest.mark.slow
 def test_effects_are_off_in_good_conditions_and_turning_one_on_changes_less_than_its_tolerance(small):
     site, plan = small
     calm = fly_plan(plan, site, FlightRequest())
@@ -129,6 +132,7 @@ def test_effects_are_off_in_good_conditions_and_turning_one_on_changes_less_than
     assert abs(rms[1] - rms[0]) < decision.tolerance
 
 
+@pytest.mark.slow
 def test_effects_are_on_where_conditions_call_for_them_and_turning_one_off_changes_more(small):
     site, plan = small
     wish = FlightRequest(conditions=Conditions(fix="single"))
@@ -140,6 +144,7 @@ def test_effects_are_on_where_conditions_call_for_them_and_turning_one_off_chang
     assert max(errors_m(bad)) - max(errors_m(good)) > decision.tolerance
 
 
+@pytest.mark.slow
 def test_a_radio_that_loses_messages_delays_and_loses_nothing_else(small):
     site, plan = small
     lossy = fly_plan(plan, site, FlightRequest(conditions=Conditions(message_loss=0.2), seed=1))
@@ -161,6 +166,7 @@ def test_an_outage_in_flight_is_shown_and_survived(small):
     assert {"link-lost", "link-found"} <= {note.code for note in flown.sorties[0].notes}
 
 
+@pytest.mark.slow
 def test_a_flight_is_written_whole(tmp_path):
     site_path = write_scene("single-panel", tmp_path)
     plan_path, out = tmp_path / "p.plan.json", tmp_path / "f.flight.json"
@@ -194,6 +200,7 @@ def test_what_cannot_be_flown_says_why_and_writes_nothing(small, tmp_path):
         fly_plan(tired, site, FlightRequest())
 
 
+@pytest.mark.slow
 def test_sorties_flown_at_a_link_are_kept_when_a_later_one_fails(tmp_path, monkeypatch):
     from groundstation.services.fly import flying
 

@@ -110,6 +110,7 @@ def test_the_work_is_done_in_one_other_process(worker):
     assert worker.run(where) == worker.run(where) != os.getpid()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "scene", [SCENES["single-panel"], slow(kiosk)], ids=["a single panel", "kiosk, whose walls hide one another"]
 )
@@ -145,6 +146,7 @@ def test_cancelling_ends_the_work_and_the_next_call_finds_the_same_process(worke
     assert worker.run(where) == process
 
 
+@pytest.mark.slow
 def test_a_process_that_does_not_notice_the_cancel_is_ended(worker, monkeypatch):
     monkeypatch.setattr("groundstation.services.jobs.worker.GRACE_S", 0.1)
     process = worker.run(where)
@@ -253,5 +255,6 @@ def test_the_program_s_main_file_is_not_run_again(tmp_path):
     assert run.stdout.split() == ["42"]
 
 
+@pytest.mark.slow
 def test_nothing_is_reported_and_nothing_stops_without_the_arguments(worker):
     assert worker.run(double, 3, stop=never, monitor=QUIET) == 6

@@ -32,6 +32,7 @@ def planned():
     return plan_flight(model, PlanRequest(n_views=12, greedy=QUICK)).plan, model
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("file_format", list(FileFormat))
 def test_every_format_is_prepared_and_then_written(planned, tmp_path, file_format):
     plan, model = planned

@@ -72,6 +72,7 @@ def test_the_verdict_is_as_bad_as_the_worst_finding(severities, verdict):
     assert readiness_of([Finding(severity, "x", "x") for severity in severities]) is verdict
 
 
+@pytest.mark.slow
 def test_a_plan_far_below_what_can_be_covered_is_told():
     model, plan = planned()
     bound = plan.coverage.reachable_upper_bound

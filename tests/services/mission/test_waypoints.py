@@ -24,6 +24,7 @@ def test_rows_follow_the_path_and_name_every_photo_once():
         assert [row.vertex for row in own] == list(range(len(sortie.path_enu_m)))
 
 
+@pytest.mark.slow
 @given(plans(), st.integers(0, 5))
 def test_legs_add_up_to_the_length_and_arrivals_rise_to_the_duration(plan, seed):
     for number, sortie in enumerate(plan.sorties, 1):

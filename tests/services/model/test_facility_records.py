@@ -124,6 +124,7 @@ def test_lines_and_contents_tell_the_state_of_objects(folder):
         assert [(row["record"], row.get("kind")) for row in rows] == [("inspection", None), ("defect", "crack")]
 
 
+@pytest.mark.slow
 def test_tables_and_ifc_go_out_and_come_back(folder, tmp_path):
     with open_records(folder, True, "Chan") as book:
         put_fields(book, "A-0001", "defect", {"kind": "=crack", "severity": "4", "found_on": "2026-01-01"})

@@ -38,6 +38,7 @@ def px_per_m(draft, place=FIRST):
     return (grid.columns[-1].position_px - grid.columns[0].position_px) / (COLUMNS[-1] - COLUMNS[0])
 
 
+@pytest.mark.slow
 def test_a_moved_line_moves_on_the_facade_by_as_much_and_the_others_stay(draft):
     position = draft.grid(FIRST).columns[4].position_px + 0.3 * px_per_m(draft)
     moved = solved_draft(move_line(draft, FIRST, "column", 4, position))
@@ -57,6 +58,7 @@ def test_a_correction_reaches_every_photo_of_the_facade(draft):
         assert after[4].width_px == pytest.approx(before[4].width_px)
 
 
+@pytest.mark.slow
 def test_a_removed_line_leaves_one_panel_where_two_were_and_comes_back_where_it_is_added(draft):
     position = draft.grid(FIRST).columns[5].position_px
     removed = solved_draft(remove_line(draft, FIRST, "column", 5))
@@ -75,6 +77,7 @@ def test_a_row_is_added_in_the_middle_of_others(draft):
     assert added.rows[2].position_m == pytest.approx(0.5 * (ROWS[1] + ROWS[2]), abs=0.1)
 
 
+@pytest.mark.slow
 def test_a_panel_taken_out_is_gone_from_the_facade_and_can_be_put_back(draft):
     out = set_panel(draft, FIRST, 1, 6, is_panel=False)
     assert all((1, 6) in out.grid(place).missing for place in draft.places())
@@ -118,6 +121,7 @@ def test_the_last_two_lines_stay(draft):
         remove_line(left, FIRST, "row", 0)
 
 
+@pytest.mark.slow
 def test_a_facade_without_panels_is_not_solved(draft):
     left = draft
     for row in range(3):

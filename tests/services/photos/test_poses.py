@@ -187,6 +187,7 @@ def test_lenses_that_were_refined_are_no_longer_called_unknown(flight, tmp_path)
         assert still_true(said, better_poses(posed, folder, refine=RefineRequest(where))) == left
 
 
+@pytest.mark.slow
 def test_panels_that_were_found_are_solved_with_the_new_poses_and_keep_their_corrections(flight):
     folder, _ = flight
     model = site_model()

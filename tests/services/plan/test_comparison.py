@@ -28,6 +28,7 @@ def fewer():
     return replace(planned(), viewpoints=planned().viewpoints[:3], sorties=())
 
 
+@pytest.mark.slow
 def test_open_plans_are_compared_on_the_site_as_it_was_prepared():
     found = compare(scene("single-panel"), [planned(), fewer()], ["all", "some"], prepared("single-panel"))
     again = compare(scene("single-panel"), [planned(), fewer()], ["all", "some"])

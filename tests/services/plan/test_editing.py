@@ -23,6 +23,7 @@ from planning.site.bundled import canyon, roof
 from tests.planning.revision.cases import planned
 
 
+@pytest.mark.slow
 def test_an_edit_s_effect_is_the_difference_of_both_plans_and_its_reverse_takes_it_back() -> None:
     before = planned("kiosk")
     after = move(before, "v0003", (5.0, -14.0, 9.0), 20.0, 0.0)

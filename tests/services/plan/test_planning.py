@@ -59,6 +59,7 @@ def test_impossible_wishes_and_cancelled_work_write_nothing(site, tmp_path):
     assert set(tmp_path.iterdir()) == before
 
 
+@pytest.mark.slow
 def test_where_the_time_is_up_the_most_telling_views_are_flown_and_the_rest_is_told():
     model = SCENES["library"]()
     request = PlanRequest(n_views=160, time_budget_s=5.0, greedy=QUICK)
@@ -80,6 +81,7 @@ def test_no_more_views_are_left_out_than_the_time_asks_for(site):
     assert len(planned.plan.viewpoints) == FEWEST_ROUTED, "though a third of them show all there is"
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(
     ("request_", "codes"),
     [
@@ -98,6 +100,7 @@ def test_a_plan_that_falls_short_of_the_request_says_so(site, request_, codes):
         assert finding.value < finding.limit
 
 
+@pytest.mark.slow
 def test_a_lower_flight_than_usual_is_allowed_and_said_and_the_plan_holds_it(site, tmp_path):
     low = replace(PlanRequest(n_views=12, greedy=QUICK), constraints=Constraints(min_height_above_ground_m=2.5))
     out = tmp_path / "low.plan.json"
@@ -113,6 +116,7 @@ def test_a_lower_flight_than_usual_is_allowed_and_said_and_the_plan_holds_it(sit
     assert 5.0 <= summary["lowest_height_m"] < 10.0 < summary["below_10_m_s"] < summary["duration_s"]
 
 
+@pytest.mark.slow
 def test_the_lowest_height_of_the_site_holds_where_none_is_asked_for(site, tmp_path):
     model = read_site(site)
     airspace = replace(model.site.airspace, min_height_above_ground_m=9.0)
@@ -148,6 +152,7 @@ def test_summaries_are_json(site):
     }
 
 
+@pytest.mark.slow
 def test_planning_an_open_site_again_uses_what_the_first_plan_prepared_where_it_fits(site):
     model, request = read_site(site), PlanRequest(n_views=3, greedy=QUICK)
     first = plan_document_site(model, request)

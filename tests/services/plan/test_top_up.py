@@ -90,6 +90,7 @@ def codes(findings: Sequence[Finding]) -> set[str]:
     return {finding.code for finding in findings if finding.severity is not Severity.OK}
 
 
+@pytest.mark.slow
 def test_the_views_without_a_photo_are_closed() -> None:
     first, second = sizes()
     flown = opened([range(first - 3), range(2, second)])
@@ -110,6 +111,7 @@ def test_a_complete_flight_leaves_nothing_to_do() -> None:
     assert top_up_summary(found, findings)["views"] == 0
 
 
+@pytest.mark.slow
 def test_without_any_record_everything_is_missing() -> None:
     found, _ = top_up_flight(opened([]), replace(SOON, n_batteries=3, time_budget_s=0.5), prepared())
     assert found.wanted == found.promised

@@ -358,6 +358,7 @@ def test_a_folder_that_cannot_be_written_is_told_once(tmp_path):
             lock_project(folder)
 
 
+@pytest.mark.slow
 @settings(max_examples=25)
 @given(works=st.lists(st.tuples(documents(), st.none() | st.integers(0, 40)), min_size=1, max_size=4))
 def test_after_a_crash_at_any_write_a_whole_copy_is_found(tmp_path_factory, works):
@@ -416,6 +417,7 @@ while True:
 """
 
 
+@pytest.mark.slow
 def test_the_copy_of_another_reflight_is_never_taken_for_a_damaged_one(project):
     folder, _ = project
     other = subprocess.Popen([sys.executable, "-c", OTHER, str(folder)], stdout=subprocess.PIPE, cwd=ROOT)

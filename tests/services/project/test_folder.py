@@ -79,6 +79,7 @@ def test_any_document_survives_saving_and_opening(tmp_path_factory, made, name):
     assert files_of(folder) == before
 
 
+@pytest.mark.slow
 @settings(max_examples=25)
 @given(states=st.lists(documents(), min_size=2, max_size=4))
 def test_a_project_holds_the_last_of_many_states_and_nothing_else(tmp_path_factory, states):
@@ -463,6 +464,7 @@ for number in range(10**6):
 """
 
 
+@pytest.mark.slow
 def test_a_project_that_another_process_saves_all_the_time_is_read_whole(tmp_path):
     folder = tmp_path / "p"
     create_project(folder, document("roof", 2))

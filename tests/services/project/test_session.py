@@ -20,6 +20,7 @@ def entry():
     return PlanEntry("plan-1", "Plan 1", plan_flight(kiosk(), PlanRequest(n_views=4, greedy=QUICK)).plan)
 
 
+@pytest.mark.slow
 def test_a_change_is_published_once_with_before_and_after_and_can_be_undone(entry):
     session, heard = Session(), []
     session.subscribe(lambda before, after: heard.append((before, after)))

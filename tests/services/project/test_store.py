@@ -66,6 +66,7 @@ def test_every_single_write_may_fail(tmp_path):
     assert outcomes == {False, True}
 
 
+@pytest.mark.slow
 def test_the_process_may_end_at_every_single_write(tmp_path):
     count, outcomes = n_writes(tmp_path), []
     for at in range(count):

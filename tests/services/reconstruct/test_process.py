@@ -152,6 +152,7 @@ def test_broken_off_it_can_be_gone_on_with(heard, card, asked, tmp_path):
     assert standing(out).has_model
 
 
+@pytest.mark.slow
 def test_what_cannot_be_is_said_and_it_goes_on_working(heard, card, asked, tmp_path):
     photo = card.source.photos[0]
     heard.send(Train(tmp_path / "nothing", tmp_path / "model", asked))

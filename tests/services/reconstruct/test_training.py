@@ -60,6 +60,7 @@ def test_a_pause_is_broken_off_by_a_cancel(monkeypatch):
         model_training._Waiting(Cancel(), lambda: True, Timer()).report("reading rays", 0, 1)
 
 
+@pytest.mark.slow
 def test_a_scene_says_which_light_it_calls_for_and_why(data):
     heard = Heard()
     light, decisions = light_of_scene(data, TrainRequest("smoke"), heard)

@@ -75,6 +75,7 @@ def test_the_fine_picture_is_the_photo_that_would_be_rendered_whole(monkeypatch,
     assert len(seen.panels) > 20
 
 
+@pytest.mark.slow
 def test_a_scene_is_built_once_and_only_the_last_one_is_kept(monkeypatch):
     built = []
     from reconstruction.scenes.world import build
@@ -94,6 +95,7 @@ def test_a_scene_is_built_once_and_only_the_last_one_is_kept(monkeypatch):
     assert kept_photo(request) is None
 
 
+@pytest.mark.slow
 def test_a_quick_picture_has_all_effects_and_decides_nothing():
     model = office()
     seen = site_photo(model, request_for(model, is_quick=True, width_px=32))
@@ -102,6 +104,7 @@ def test_a_quick_picture_has_all_effects_and_decides_nothing():
     assert seen.picture.std() > 10.0
 
 
+@pytest.mark.slow
 def test_rendering_ends_soon_after_a_cancel_and_keeps_the_scene(monkeypatch):
     monkeypatch.setattr(photo_preview, "STRIP_PX", 96 * 10)
     model = office()
@@ -116,6 +119,7 @@ def test_rendering_ends_soon_after_a_cancel_and_keeps_the_scene(monkeypatch):
     assert kept_photo(quick) is not None
 
 
+@pytest.mark.slow
 def test_a_camera_inside_a_building_opposite_is_told():
     model = office()
     opposite = next(o for o in build_scene(model, Look()).site.site.obstacles if o.id.startswith("scene-opposite"))

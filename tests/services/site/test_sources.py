@@ -74,6 +74,7 @@ def test_mesh_without_panels_can_be_looked_at_and_a_grid_picked_on_it_makes_it_a
     assert done.model.sha256 == write_site(tmp_path / "site.json", done.model.site)
 
 
+@pytest.mark.slow
 def test_building_that_is_no_site_yet_can_be_shown_unless_its_unit_is_wrong(tower_obj):
     looked_at = preview_import(tower_obj, ImportOptions(origin=HERE, floor_m=50.0, ceiling_m=40.0))
     assert "leave no airspace" in looked_at.problem
@@ -105,6 +106,7 @@ def test_grid_picked_on_a_map_lands_where_it_was_picked(tower_obj, tmp_path):
     assert unit_normals(corners)[0] @ np.array([0.0, -1.0, 0.0]) > 0.99
 
 
+@pytest.mark.slow
 def test_city_model_without_windows_lists_its_buildings_and_a_grid_chooses_its_own(shared_data):
     path = shared_data / "buildings" / "cityjson" / "zurich_subset_lod2.json"
     assert holds_many_buildings(path)

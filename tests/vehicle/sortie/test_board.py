@@ -141,6 +141,7 @@ def test_what_changes_while_the_motors_are_started_stops_them(orders):
     assert not toy.is_armed
 
 
+@pytest.mark.slow
 @BOTH
 @pytest.mark.parametrize(
     ("event", "reason"),

@@ -168,17 +168,20 @@ def test_arming_is_tried_again_while_the_autopilot_settles(orders):
     assert sum(command[0] == 400 for command in toy.commands) == 4
 
 
+@pytest.mark.slow
 def test_arming_that_stays_refused_is_told_with_the_autopilots_own_words(orders):
     _, outcome = fly(orders, toy_at_home(orders, refuses={400: 4}))
     assert isinstance(outcome.error, LinkRejected)
     assert "refused arming (failed) (PreArm: test says no)" in str(outcome.error)
 
 
+@pytest.mark.slow
 def test_an_aircraft_that_does_not_take_off_is_no_success(orders):
     _, outcome = fly(orders, toy_at_home(orders, takes_off=False))
     assert "did not take off" in str(outcome.error)
 
 
+@pytest.mark.slow
 def test_a_vehicle_that_keeps_its_motors_running_is_disarmed(orders):
     toy = toy_at_home(orders, disarms_itself=False)
     _, outcome = fly(orders, toy)
@@ -186,6 +189,7 @@ def test_a_vehicle_that_keeps_its_motors_running_is_disarmed(orders):
     assert (400, 0.0, 0.0) in toy.commands
 
 
+@pytest.mark.slow
 def test_parameters_are_set_where_that_is_allowed_and_only_told_where_not(orders):
     toy = toy_at_home(orders, parameters={"WPNAV_SPEED": 500.0, "CAM1_TYPE": 1.0, "MNT1_TYPE": 1.0})
     fly(orders, toy)
@@ -348,6 +352,7 @@ def test_without_a_vehicle_nothing_can_be_ordered(orders):
         FlightRun(orders, OPTIONS, "toy").order(PilotOrder.LAND)
 
 
+@pytest.mark.slow
 def test_a_run_waits_for_the_pilot_where_it_must_not_start_by_itself(orders):
     toy = toy_at_home(orders)
     run = FlightRun(orders, replace(OPTIONS, starts_itself=False), "toy")

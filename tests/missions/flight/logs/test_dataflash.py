@@ -40,6 +40,7 @@ def compare(path: Path) -> int:
     return n_values
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("name", ["pymavlink_test.BIN", "dronekit_la_log171.bin", "ardupilot_text_underpowered.log"])
 def test_real_logs_are_read_as_pymavlink_reads_them(shared_data: Path, name: str) -> None:
     assert compare(shared_data / "logs" / name) > 1000

@@ -125,6 +125,7 @@ def test_clearing_leaves_nothing(autopilot: Autopilot) -> None:
     assert isinstance(put(air, (), autopilot), NotVerified)
 
 
+@pytest.mark.few(10)
 @both
 @pytest.mark.parametrize("seed", range(10))
 def test_two_hundred_items_at_30_percent_loss_each_way_end_equal(autopilot: Autopilot, seed: int) -> None:

@@ -73,6 +73,7 @@ def test_wind_counts_for_the_battery_as_airspeed() -> None:
     assert into.state == still.state
 
 
+@pytest.mark.slow
 def test_what_is_believed_differs_from_the_truth_by_the_error_and_heights_count_from_the_start() -> None:
     model, plan = bundled("office")
     conditions = Conditions(fix="single", height_source="gnss")

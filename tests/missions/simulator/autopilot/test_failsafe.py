@@ -222,6 +222,7 @@ def landed_at(autopilot, parameters, *points, east: float = 50.0):
     return ground.frame.position
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize(
     ("autopilot", "parameters", "points", "place"),
     [

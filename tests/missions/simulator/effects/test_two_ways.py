@@ -86,6 +86,7 @@ def battery_share(name: str, plan: Plan, model: SiteModel, conditions: Condition
 Measure = Callable[[str, Plan, SiteModel, Conditions], float]
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize(
     ("name", "site", "conditions", "settle_s", "measure", "used"),
     [
@@ -169,6 +170,7 @@ def test_what_is_off_is_not_there() -> None:
     assert made.believed is made.truth
 
 
+@pytest.mark.slow
 def test_all_effects_asked_for_in_a_calm_scene_change_next_to_nothing() -> None:
     model, plan = bundled("office")
     flown = [outcome(model, plan, CALM, only(*NAMES), seed) for seed in SEEDS]
@@ -181,6 +183,7 @@ def track(made: Multirotor, plan: Plan) -> np.ndarray:
     return np.array([shot.pose.position_enu_m for shot in shots])
 
 
+@pytest.mark.slow
 def test_the_same_seed_flies_the_same_flight_and_another_does_not() -> None:
     model, plan = bundled("office")
     hard = replace(WINDY, fix="single", exposure_s=0.02)

@@ -369,6 +369,7 @@ def test_a_broken_hole_leaves_its_face(tmp_path: Path) -> None:
     assert len(site.model.building.triangles) == len(plain.model.building.triangles) + 2
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("shape", SHAPES)
 def test_windows_face_where_the_file_says(tmp_path: Path, shape: str) -> None:
     windows = [
@@ -426,6 +427,7 @@ REAL = {
 }
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(("name", "n_windows"), REAL.items())
 def test_real_buildings_keep_all_windows_and_every_one_sees_the_open(
     shared_data: Path, name: str, n_windows: int
@@ -445,6 +447,7 @@ def test_real_buildings_keep_all_windows_and_every_one_sees_the_open(
     assert is_open.all()
 
 
+@pytest.mark.slow
 def test_real_windows_are_where_the_file_has_them(shared_data: Path) -> None:
     path = shared_data / "buildings" / "ingolstadt_lod3" / "4018270.xml"
     site = import_site(path, ImportOptions())

@@ -181,6 +181,7 @@ def damaged_gml(text: str, rng: random.Random) -> str:
 BUILDINGS = ["4018106", "4018133", "4018204b", "4018270", *map(slow, ("4018115", "4018149a", "4018260", "4018302"))]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", BUILDINGS)
 def test_a_damaged_outline_of_a_real_building_costs_that_outline(shared_data: Path, tmp_path: Path, name: str) -> None:
     real = shared_data / "buildings" / "ingolstadt_lod3" / f"{name}.xml"
@@ -197,6 +198,7 @@ def test_a_damaged_outline_of_a_real_building_costs_that_outline(shared_data: Pa
             assert told(site)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("name", ["delft_1b", "multi_lod", "rotterdam_subset", "zurich_subset_lod2"])
 def test_a_damaged_part_of_a_real_city_model_costs_that_part(shared_data: Path, tmp_path: Path, name: str) -> None:
     content = json.loads((shared_data / "buildings" / "cityjson" / f"{name}.json").read_text("utf-8"))

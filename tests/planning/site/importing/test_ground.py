@@ -176,6 +176,7 @@ def strays(places: list[tuple[float, float, float, int, bool]], tied: Array) -> 
     return from_corners(np.array(made))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", ["house alone", "scan", "lift pit"])
 @given(places=STRAY_TRIANGLES)
 def test_strays_anywhere_do_not_move_the_ground(case: str, places: list[tuple[float, float, float, int, bool]]) -> None:
@@ -218,6 +219,7 @@ def main(arguments: list[str]) -> int:
     return run(arguments, open_window=lambda _: 0)
 
 
+@pytest.mark.slow
 def test_home_stands_on_the_ground_where_it_is(tmp_path: Path) -> None:
     slope = terrain(lambda x, y: 0.1 * y, half_m=60.0, noise_m=0.0)
     site = imported(written(tmp_path, box(-10, -6, -3, 10, 6, 15), slope))
@@ -256,6 +258,7 @@ def test_answers_are_in_the_heights_of_the_file(tmp_path: Path) -> None:
     assert answers == (-3.0, 0.0)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(
     ("scale", "unit", "said"),
     [

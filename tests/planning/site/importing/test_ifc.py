@@ -685,6 +685,7 @@ def test_files_that_are_not_ifc_or_cut_off_are_refused(tmp_path: Path, content: 
         read_ifc(path, HERE, QUIET)
 
 
+@pytest.mark.slow
 def test_a_file_that_kills_the_geometry_kernel_is_refused_and_we_live_on(tmp_path: Path) -> None:
     path = south_window(Building()).save(tmp_path)
     text = path.read_text()
@@ -695,6 +696,7 @@ def test_a_file_that_kills_the_geometry_kernel_is_refused_and_we_live_on(tmp_pat
         read_ifc(path, HERE, QUIET)
 
 
+@pytest.mark.slow
 def test_an_element_that_kills_the_geometry_kernel_is_left_out_and_told(tmp_path: Path) -> None:
     building = south_window(Building())
     path = building.save(tmp_path)
@@ -718,6 +720,7 @@ DAMAGES = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("damage", DAMAGES)
 def test_a_broken_line_is_left_out_and_told_and_takes_no_other_with_it(tmp_path: Path, damage: str) -> None:
     path = south_window(Building()).save(tmp_path)
@@ -763,6 +766,7 @@ def test_references_to_something_else_are_refused(tmp_path: Path) -> None:
         extract(path, 0.005, 1, lambda _done: None)
 
 
+@pytest.mark.slow
 def test_a_model_without_glass_says_what_to_do_and_takes_a_grid(tmp_path: Path) -> None:
     path = Building().room().save(tmp_path)
     with pytest.raises(InputError, match=r"neither a window nor a glazed plate with geometry; .*--panel-grid"):

@@ -56,6 +56,7 @@ def true_votes(seed: int, noise: float) -> tuple[NDArray[np.float32], NDArray[np
     return (index > 0).astype(np.float32), corners.astype(np.float32), made.index
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("noise", [0.0, 0.03])
 def test_panes_that_votes_name_are_found(noise: float) -> None:
     n_true = n_found = n_false = 0
@@ -113,6 +114,7 @@ def test_panes_of_a_facade_seen_from_the_side_stand_in_its_rows_and_columns(
         assert np.abs(found[place] - quad).max() < 0.5
 
 
+@pytest.mark.slow
 def test_an_edge_is_measured_by_all_panes_along_it() -> None:
     own, shared = [], []
     for seed in range(8):
@@ -262,6 +264,7 @@ def test_panes_of_real_glass_are_found_where_lines_find_none(glass: list[ScoredP
     assert individual[1] > 0.4
 
 
+@pytest.mark.slow
 def test_the_network_is_on_where_lines_take_a_close_up_for_something_else(glass: list[ScoredPhoto]) -> None:
     image = np.asarray(cv2.resize(glass[0].image, None, fx=0.25, fy=0.25, interpolation=cv2.INTER_AREA), np.uint8)
     found = segment_image(image, None, SegmentationParameters())
@@ -294,6 +297,7 @@ def test_the_networks_weights_are_small_and_finite() -> None:
     assert all(bool(value.isfinite().all()) for value in weights.values())
 
 
+@pytest.mark.slow
 def test_training_learns_from_a_pool_and_writes_weights(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(training, "PER_FILE", 4)
     monkeypatch.setattr(training, "BATCH", 2)
@@ -307,6 +311,7 @@ def test_training_learns_from_a_pool_and_writes_weights(tmp_path: Path, monkeypa
     assert not torch.equal(trained.state_dict()["head.bias"], PaneNetwork().state_dict()["head.bias"])
 
 
+@pytest.mark.slow
 @given(seed=st.integers(0, 10_000))
 def test_a_crops_truth_lies_where_its_picture_shows_it(seed: int) -> None:
     """A picture that is its own truth, painted white where there are panes."""

@@ -37,6 +37,7 @@ def most_bent_px(scene: FittedFacade, curvature: float) -> float:
     return max(float(np.nanmax(line) - np.nanmin(line)) / 2.0 for line in lines)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("curvature", [0.0, 1e-5, 0.005, 0.02, 0.05, -0.03])
 def test_the_scene_decides_so_that_lines_are_straight(curvature: float) -> None:
     scene = fitted(curvature)
@@ -45,6 +46,7 @@ def test_the_scene_decides_so_that_lines_are_straight(curvature: float) -> None:
     assert most_bent_px(scene, curvature) < 1.0
 
 
+@pytest.mark.slow
 def test_a_skipped_curvature_would_have_changed_little_and_a_used_one_changes_much() -> None:
     skipped, used = fitted(1e-5), fitted(0.02)
     assert bent_by_px(skipped) < Curvature().tolerance

@@ -39,6 +39,7 @@ def grid_error_m(found: FacadeSurface, truth: FacadeSurface, half_width_m: float
     return float(np.abs(found.height_m(truth.to_enu(np.column_stack([s.ravel(), t.ravel()])))).max())
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("curvature", [0.0, 1e-5, 0.002, 0.02, 0.06, -0.02, -0.06])
 @pytest.mark.parametrize("outliers", [0.0, 0.3])
 def test_a_surface_is_found_to_a_centimetre_among_outliers(curvature: float, outliers: float) -> None:
@@ -49,6 +50,7 @@ def test_a_surface_is_found_to_a_centimetre_among_outliers(curvature: float, out
     assert found.noise_m == pytest.approx(0.05, rel=0.6)
 
 
+@pytest.mark.slow
 def test_a_half_round_tower_is_found() -> None:
     truth = surface(0.1, lean_rad=0.0)
     found = fit_cylinder(cloud(truth, 2, half_width_m=15.0), outside(truth))
@@ -66,6 +68,7 @@ def test_curvature_and_its_standard_deviation_agree_with_the_truth_over_many_see
     assert 0.6 < spread < 1.8
 
 
+@pytest.mark.slow
 def test_a_flat_wall_has_no_significant_curvature_and_no_radius_runs_away() -> None:
     truth = surface(0.0)
     significances = [fit_cylinder(cloud(truth, seed), outside(truth)).curvature_significance for seed in range(10)]
@@ -75,6 +78,7 @@ def test_a_flat_wall_has_no_significant_curvature_and_no_radius_runs_away() -> N
     assert grid_error_m(exact.surface, truth) < 1e-6
 
 
+@pytest.mark.slow
 def test_a_narrow_strip_says_how_little_it_knows_of_its_curvature() -> None:
     truth = surface(0.02)
     wide = fit_cylinder(cloud(truth, 3), outside(truth))

@@ -26,6 +26,7 @@ def ground() -> TriangleMesh:
     return box_mesh(np.array([-200.0, -200.0, -1.0]), np.array([200.0, 200.0, 0.0]))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("curvature", [0.0, slow(0.02), 0.06, slow(-0.03)])
 def test_one_dented_facade_above_the_ground_is_found(curvature: float) -> None:
     truth = wall(180.0, (0.0, 0.0, 12.0), curvature)
@@ -37,6 +38,7 @@ def test_one_dented_facade_above_the_ground_is_found(curvature: float) -> None:
     assert found[0].cylinder.surface.normal_enu @ truth.normal_enu > 0.9
 
 
+@pytest.mark.slow
 def test_two_facades_of_a_corner_are_two() -> None:
     model = join([box_mesh(np.array([0.0, 0.0, 0.0]), np.array([20.0, 24.0, 18.0])), ground()])
     corner = FacadeSurface(np.array([0.0, 0.0, 9.0]), np.array([np.sqrt(0.5), -np.sqrt(0.5), 0.0]), UP)
@@ -67,6 +69,7 @@ def test_nothing_is_found_where_nothing_stands() -> None:
     assert facades_in_photo(photo, ground()) == ()
 
 
+@pytest.mark.slow
 def test_the_same_seed_finds_the_same_facades() -> None:
     truth = wall(180.0, (0.0, 0.0, 12.0))
     model = surface_mesh(truth, (-14.0, -12.0), (14.0, 10.0), noise_m=0.08)

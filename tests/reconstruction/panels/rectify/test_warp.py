@@ -38,6 +38,7 @@ def test_a_wave_on_the_facade_is_found_where_it_is(curvature, intrinsics) -> Non
     assert np.percentile(off, 99.0) < 3.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tolerance_px", [slow(0.01), 0.2])
 def test_interpolated_maps_keep_their_tolerance(tolerance_px: float) -> None:
     face = surface(0.05)

@@ -43,6 +43,7 @@ def tilts_deg(grid: FacadeGrid) -> list[float]:
     return sorted(round(float(np.degrees(np.arctan2(-run[1], run[0]) % np.pi)), 1) for run in runs)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("braces", "n_lines"),
     [
@@ -93,6 +94,7 @@ def test_triangles_of_a_diagrid_without_mullions_are_faces_of_its_lines() -> Non
     assert scores.individual_miou > 0.98
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tilt_deg", [2.0, slow(5.0)])
 def test_nearly_upright_profiles_are_not_straightened_away(tilt_deg: float) -> None:
     run = 8 * 2.4 * np.tan(np.radians(tilt_deg)) / 1.5
@@ -101,6 +103,7 @@ def test_nearly_upright_profiles_are_not_straightened_away(tilt_deg: float) -> N
     assert scores.n_missed == 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tilt_deg", [slow(0.0), 0.35])
 def test_mirrored_roofs_and_shadows_cut_nothing(tilt_deg: float) -> None:
     roofs = replace(STRONG, opposite="roofs", tilt_deg=tilt_deg, pillow_deg=0.0)
@@ -133,6 +136,7 @@ def test_an_empty_facade_calls_for_no_search_and_says_why() -> None:
     assert "no inclined line has edges enough" in decision.reason
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("width_px", [600, slow(1600)])
 def test_braces_are_found_at_any_scale(width_px: int) -> None:
     layout = Layout(braces=((0, 0, 8, 12), (8, 0, 0, 12)))

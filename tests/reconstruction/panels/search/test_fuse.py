@@ -79,6 +79,7 @@ def test_views_of_other_sizes_and_none_are_refused_in_words() -> None:
         fused([np.zeros((3, 4), np.uint8), np.zeros((4, 4), np.uint8)], [np.ones((3, 4), bool)] * 2, PLAIN)
 
 
+@pytest.mark.slow
 def test_a_grid_behind_mirrored_lines_is_found_in_five_views_together_and_in_none_alone() -> None:
     columns, rows = spans(np.full(7, 70.0), 5.0, 50.0), spans(np.full(5, 80.0), 5.0, 50.0)
     size = int(columns[-1, 1] + 55), int(rows[-1, 1] + 55)

@@ -93,6 +93,7 @@ def test_corners_on_the_brace_are_less_sure_along_it_than_those_of_the_grid() ->
     assert all(np.linalg.eigvalsh(panel.covariance_m2).min() > -1e-12 for panel in facade.panels)
 
 
+@pytest.mark.slow
 def test_the_brace_lies_within_its_own_error_against_the_grid() -> None:
     errors = []
     along = (BRACE[1] - BRACE[0]) / np.linalg.norm(BRACE[1] - BRACE[0])
@@ -109,6 +110,7 @@ def test_the_brace_lies_within_its_own_error_against_the_grid() -> None:
     assert 0.5 < np.sqrt(np.mean(np.square(errors))) < 1.5
 
 
+@pytest.mark.slow
 def test_a_line_that_one_of_three_photos_shows_is_outvoted_and_one_of_two_stays() -> None:
     assert solved(shown_by=(1,)).inclined == ()
     (line,) = solved(shown_by=(0, 2)).inclined

@@ -48,12 +48,14 @@ def check(grid: FacadeGrid, truth: Drawn, tolerance_px: float = 0.3) -> None:
     assert rows == pytest.approx(truth.rows, abs=tolerance_px)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(3))
 def test_reflecting_facades_are_found_to_a_third_of_a_pixel(seed: int) -> None:
     truth = made(seed=seed)
     check(segment_rectified(truth.picture), truth)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "widths", [np.tile([90.0, 50.0], 4), np.array([61.0, 95.0, 48.0, 120.0, 77.0, 55.0])], ids=["alternating", "random"]
 )
@@ -78,6 +80,7 @@ def test_a_single_panel_is_found() -> None:
     check(segment_rectified(truth.picture), truth, 1.0)
 
 
+@pytest.mark.slow
 def test_one_row_of_panels_is_found() -> None:
     truth = made(8, 1, seed=1)
     check(segment_rectified(truth.picture), truth, 0.5)
@@ -90,6 +93,7 @@ def test_two_hundred_columns_are_found() -> None:
     check(segment_rectified(truth.picture, SegmentationParameters(long_side_px=3650)), truth, 0.5)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("turn_deg", [-3.0, 3.0])
 def test_a_picture_turned_by_three_degrees_gives_the_same_panels(turn_deg: float) -> None:
     truth = made(seed=3)
@@ -104,6 +108,7 @@ def test_a_picture_turned_by_three_degrees_gives_the_same_panels(turn_deg: float
     assert corner == pytest.approx(middle + turn[:, :2] @ (straight - middle), abs=0.7)
 
 
+@pytest.mark.slow
 def test_a_slightly_wrong_view_is_straightened() -> None:
     """As a yaw error of a degree does: a perspective that nobody told."""
     truth = made(seed=5)
@@ -123,6 +128,7 @@ def test_straight_pictures_are_not_bent() -> None:
     assert straightening(made(seed=1).picture, 6.0) is None
 
 
+@pytest.mark.slow
 def test_a_mirrored_facade_that_fakes_a_grid_is_not_taken_for_frames() -> None:
     truth = made(8, 6, seed=6)
     picture = truth.picture.copy()
@@ -171,12 +177,14 @@ def test_saturated_panes_leave_the_grid() -> None:
     assert rows.shape == truth.rows.shape
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("detector", DETECTORS)
 def test_every_detector_finds_the_grid(detector: Detector) -> None:
     truth = made(seed=9)
     check(segment_rectified(truth.picture, SegmentationParameters(detector=detector)), truth, 1.5)
 
 
+@pytest.mark.slow
 def test_colour_pictures_and_grey_ones_give_the_same() -> None:
     truth = made(seed=2)
     grey, colour = (segment_rectified(p) for p in (truth.picture, cv2.cvtColor(truth.picture, cv2.COLOR_GRAY2BGR)))
@@ -191,6 +199,7 @@ def test_the_same_picture_gives_the_same_panels() -> None:
     assert [p.corners_px.tolist() for p in first.panels] == [p.corners_px.tolist() for p in second.panels]
 
 
+@pytest.mark.slow
 def test_large_pictures_are_searched_small_and_measured_large() -> None:
     truth = made(6, 4, seed=1)
     factor = 3
@@ -218,6 +227,7 @@ def test_pictures_of_other_kinds_are_refused_in_words(bad: NDArray[np.generic]) 
         segment_image(bad)
 
 
+@pytest.mark.slow
 def test_the_papers_posterior_finds_the_same_grid() -> None:
     truth = made(seed=3)
     check(segment_rectified(truth.picture, SegmentationParameters(use_posterior=True)), truth)

@@ -103,6 +103,7 @@ def scores(shape: str, seed: int) -> PhotoScores:
     return score_answer(photo, own_method()(photo, QUIET))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("shape", "seed"), [slow("curved", 32), ("planar", 56)])
 def test_dark_frames_before_a_mirrored_grid_are_found(shape: str, seed: int) -> None:
     """Columns drowned in the mirrored grid; rows, since its bars were taken for lines that have to be straightened."""

@@ -35,6 +35,7 @@ def load_from(photos: list[MadeFacade]):  # type: ignore[no-untyped-def]
     return load
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("curvature", [slow(0.0), 0.05])
 def test_every_panel_is_found_in_3d_within_centimetres(curvature: float) -> None:
     photos = made_photos(curvature)

@@ -87,6 +87,7 @@ def test_photos_that_agree_are_not_searched_together() -> None:
     assert [size(grid) for grid in found.grids.values()] == [(4, 7)] * 3
 
 
+@pytest.mark.slow
 def test_doubt_grows_with_every_photo_that_shows_no_grid_or_another() -> None:
     grids = searched("auto").grids
     agreed = doubt(singly(grids))
@@ -124,6 +125,7 @@ def test_searched_together_every_photo_has_the_lines_and_all_count_as_one_look()
     assert line.confidence == pytest.approx(odds / (1.0 + odds), abs=1e-6)
 
 
+@pytest.mark.slow
 def test_photos_without_anything_are_left_as_they_are() -> None:
     found = search_facade(
         posed(), facade(), "A", lambda photo: np.full((480, 640, 3), 99, np.uint8), FindParameters(), {}, QUIET

@@ -73,6 +73,7 @@ def errors_m(found: Any, truth: MadeFacade) -> np.ndarray[Any, Any]:
     return np.concatenate([panel.corners_enu_m - corners[panel.row, panel.column] for panel in found.panels])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("curvature", [slow(0.0), 0.05])
 def test_given_grids_are_used_and_their_photos_not_searched(curvature: float) -> None:
     given = {name: drawn_by_hand(number, curvature) for number, name in enumerate(NAMES)}
@@ -85,6 +86,7 @@ def test_given_grids_are_used_and_their_photos_not_searched(curvature: float) ->
     assert [decision.effect for decision in found.search_decisions["A"]] == ["unrolling by arc length"]
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("curvature", [0.0, 0.05])
 @pytest.mark.parametrize("open_side", [-1, 0, 1])
 def test_cut_cells_come_back_cut(curvature: float, open_side: int) -> None:
@@ -117,6 +119,7 @@ def test_an_inclined_line_needs_both_edges() -> None:
         FileInclined(((0.0, 0.0), (1.0, 1.0)), ((0.0, 1.0),))
 
 
+@pytest.mark.slow
 def test_a_corrected_line_and_a_panel_taken_out_arrive_in_3d() -> None:
     given = drawn_by_hand(0)
     (facade,) = given.facades
@@ -137,6 +140,7 @@ def test_a_corrected_line_and_a_panel_taken_out_arrive_in_3d() -> None:
     assert np.abs(np.delete(steps, 3)).max() < 0.02
 
 
+@pytest.mark.slow
 def test_a_file_that_says_nothing_of_a_facade_leaves_the_photo_out() -> None:
     given = drawn_by_hand(0)
     (facade,) = given.facades
@@ -167,6 +171,7 @@ def test_files_of_other_photos_and_sizes_are_refused_in_words() -> None:
     assert len(found.facades[0].panels) == len(made()[1].panels)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", [slow("exact"), "tangent", slow("polynomial")])
 def test_panels_are_found_through_every_view_of_a_round_wall(kind: ViewKind) -> None:
     photos = made(0.05)

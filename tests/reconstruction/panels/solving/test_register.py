@@ -57,6 +57,7 @@ def off_px(made: Sequence[MadeFacade], views: Sequence[Rectification]) -> float:
     return float(np.percentile(np.linalg.norm(first - second, axis=1), 90.0))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("curvature", "seed"), [(0.0, 0), (0.0, 1), (0.05, 2)])
 def test_photos_with_wrong_poses_lie_on_one_another_to_a_pixel(curvature: float, seed: int) -> None:
     made = photos(curvature)

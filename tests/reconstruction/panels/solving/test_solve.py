@@ -112,6 +112,7 @@ def test_all_panels_are_found_within_the_error_of_the_poses(curvature: float) ->
     assert normal @ truth.normal_enu > 0.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("curvature", [0.0, 0.02])
 def test_covariances_tell_the_errors_over_many_seeds(curvature: float) -> None:
     squares = []

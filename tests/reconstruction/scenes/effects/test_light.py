@@ -97,6 +97,7 @@ def test_a_scene_without_rooms_has_none_to_see_through() -> None:
     assert (decided.on, decided.size, decided.reason) == (False, 0.0, "there are no rooms behind the panes")
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(("heading_deg", "width_px", "used"), [(-4.0, 96, True), (-4.0, 256, True), (40.0, 96, False)])
 def test_suns_that_panes_mirror_are_simulated(heading_deg: float, width_px: int, used: bool) -> None:
     made = with_panes(scene(ground(), sky=BEHIND, glass=Glass()), tilts_rad=np.array([[0.004, -0.003]]))
@@ -166,6 +167,7 @@ def test_a_sun_that_glass_mirrors_in_glass_is_found() -> None:
     assert decided.size == pytest.approx(float(np.sqrt((change**2).mean())), rel=0.5)
 
 
+@pytest.mark.slow
 def test_on_a_bowed_pane_the_sun_is_found_where_it_is() -> None:
     made = with_panes(scene(ground(), sky=BEHIND), bows_per_m=np.array([[0.12, 0.05]]))
     camera = photo(heading_deg=-4.0, pitch_deg=2.0, width_px=128, height_px=96, focal_px=120.0)

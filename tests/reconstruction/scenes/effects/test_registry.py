@@ -203,6 +203,7 @@ def test_noise_is_simulated_where_it_is_more_than_rounding(full_well_e: float, u
     assert not np.array_equal(again, developed(taken, sensor=sensor)) or not used
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "near"), [("planar", True), slow("curved", True), slow("planar-far", False), ("curved-far", False)]
 )

@@ -51,6 +51,7 @@ def test_rays_that_miss_or_look_away_hit_nothing() -> None:
         assert np.isnan([t, s, h]).all()
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(
     ("layout", "curvature"),
     [
@@ -102,6 +103,7 @@ def test_picture_is_the_mean_of_what_a_finer_one_shows() -> None:
     assert difference[on_facade].mean() < 0.7
 
 
+@pytest.mark.slow
 def test_same_case_gives_the_same_photo_and_another_seed_another() -> None:
     first, again = (make_facade(random_case("curved", 4, SMALL)) for _ in range(2))
     np.testing.assert_array_equal(first.image, again.image)
@@ -109,6 +111,7 @@ def test_same_case_gives_the_same_photo_and_another_seed_another() -> None:
     assert (make_facade(random_case("curved", 5, SMALL)).image != first.image).mean() > 0.5
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize(
     ("name", "value", "changes_glass", "changes_frames"),
     [
@@ -139,6 +142,7 @@ def test_a_disturbance_changes_what_it_should_and_never_the_truth(
     assert difference[~before.facade].any() == (name in ("shadow", "noise_grey", "blur_px", "clutter"))
 
 
+@pytest.mark.slow
 def test_tilt_pillow_and_glare_show_in_what_is_mirrored() -> None:
     case = simple_case(Layout(4, 6), Disturbances(reflection=0.5), intrinsics=SMALL)
     before = make_facade(case)
@@ -161,6 +165,7 @@ def colours_at(case: Case, places_m: list[tuple[float, float]]) -> np.ndarray:
     return make_facade(case).image[rows, columns].astype(float)
 
 
+@pytest.mark.slow
 def test_glass_looks_different_from_another_side_only_because_it_mirrors() -> None:
     layout = Layout(4, 6)
     places = [(s, h) for s in (-3.8, -2.3, -0.8, 0.8, 2.3) for h in (1.2, 3.6, 6.0)]
@@ -238,6 +243,7 @@ def test_missing_panels_belong_neither_to_the_panels_nor_to_the_facade() -> None
     assert not made.facade[int(v), int(u)]
 
 
+@pytest.mark.slow
 def test_profiles_that_stand_out_hide_more_glass_the_more_oblique_the_view() -> None:
     shares = []
     for oblique in (0.0, 40.0):
@@ -268,6 +274,7 @@ def test_clipping_cuts_as_shapely_does(a: float, b: float, c: float) -> None:
     assert area == pytest.approx(shapely.Polygon(square).intersection(expected).area, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_photo_shows_the_whole_facade_at_the_asked_size() -> None:
     for wall in (Wall(), Wall(curvature_per_m=0.05)):
         layout = Layout(8, 14)

@@ -87,6 +87,7 @@ def test_places_next_to_what_stands_on_them_are_not_lit_from_its_inside() -> Non
     assert light_on(made, around, (0, 0, 1)).min() > 0.25
 
 
+@pytest.mark.slow
 def test_no_place_gets_more_light_than_there_is_and_none_is_not_a_number() -> None:
     bright = Sky(sun=(0, 0, 0), zenith=(1, 1, 1), horizon=(1, 1, 1))
     made = bundled_scene("court")
@@ -136,6 +137,7 @@ def changed(made: Scene, view: PosedPhoto) -> float:
     return float(np.sqrt(np.mean(change**2)))
 
 
+@pytest.mark.slow
 def test_it_is_on_in_a_court_and_changes_the_picture_by_more_than_its_tolerance() -> None:
     made = bundled_scene("court")
     view = photo((6.0, -10.0, 8.0), 30.0, width_px=40, height_px=30, focal_px=28.0)

@@ -134,6 +134,7 @@ def far_and_wide(made: Scene, rng: np.random.Generator) -> tuple[Array, Array]:
     return light.reshape(m, n, 3).mean(axis=1), made.panes.rooms
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["curved", "concrete"])
 def test_panes_have_the_mean_light_of_what_is_behind_them(name: str) -> None:
     found, expected = far_and_wide(bundled_scene(name), np.random.default_rng(0))
@@ -170,6 +171,7 @@ def test_rooms_of_odd_and_level_panes_are_finite() -> None:
     assert all(np.isfinite(getattr(made.interiors, name)).all() for name in ("rooms_m", "furniture_m", "lights"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("site", "per_m"), [(curved_site(), 1.0 / 26.0), (planar_site(), 0.0)])
 def test_curved_glass_is_bent_as_its_facade_is(site: object, per_m: float) -> None:
     panels = panel_frames(panel_corners(site.site))  # type: ignore[attr-defined]
@@ -182,11 +184,13 @@ def test_curved_glass_is_bent_as_its_facade_is(site: object, per_m: float) -> No
     assert not build_scene(site, replace(look, curved_glass=False)).panes.bows_per_m.any()  # type: ignore[arg-type]
 
 
+@pytest.mark.slow
 def test_a_corner_is_not_a_curve() -> None:
     made = build_scene(bundled_scene("court").site, Look(near=False, bow_deg=0.0, curved_glass=True))
     assert np.allclose(made.panes.bows_per_m, 0.0, atol=1e-6)
 
 
+@pytest.mark.slow
 def test_every_third_row_is_painted_behind_and_all_other_rooms_stay() -> None:
     site = planar_site()
     plain, made = (build_scene(site, Look(near=False, spandrel_every=every), 4) for every in (0, 3))

@@ -108,6 +108,7 @@ def test_bowed_panes_mirror_as_the_cylinder_on_which_their_corners_lie(radius_m:
     assert np.nanmedian(missed_px(flat, camera, pixels, points)) > 5.0
 
 
+@pytest.mark.slow
 def test_corners_of_a_checkerboard_are_found_where_a_cylinder_mirrors_them() -> None:
     made, camera = cylinder(8.0, 2.0), at_the_cylinder(steep=False)
     points = corners_of_squares(2.0, (-40.0, 40.0))

@@ -45,6 +45,7 @@ def test_errors_have_a_part_of_the_sortie_and_a_part_of_the_photo() -> None:
     assert np.abs(np.corrcoef(deviations.reshape(-1, 6).T) - np.eye(6)).max() < 0.25
 
 
+@pytest.mark.slow
 def test_leaving_one_kind_out_does_not_change_the_other() -> None:
     both = errors(CAMERA_MODEL)
     assert errors(CAMERA_MODEL, angles=False) == pytest.approx(both * [1, 1, 1, 0, 0, 0], abs=1e-9)

@@ -46,6 +46,7 @@ def is_finite(taken: Photograph) -> bool:
     return all(np.isfinite(a).all() for a in numbers) and not np.isnan(taken.depth_m).any()
 
 
+@pytest.mark.slow
 def test_corners_of_a_mirrored_checkerboard_are_where_optics_puts_them() -> None:
     made = scene(board(), corners=facing_south(30.0, 18.0))
     camera = photo((3.0, -6.0, 9.0), -14.0, 4.0, width_px=240, height_px=180, focal_px=1200.0)
@@ -170,6 +171,7 @@ def test_panes_ten_kilometres_away_are_where_they_are() -> None:
     assert np.abs(box - np.concatenate([corners.min(axis=0), corners.max(axis=0)])).max() <= 0.6
 
 
+@pytest.mark.slow
 def test_the_number_of_threads_changes_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     # More than one chunk of rays.
     renderer = Renderer(scene(board(), ground()), RenderSettings())

@@ -28,6 +28,7 @@ def test_every_photo_shows_the_whole_facade_from_nearly_square_on(name):
         assert above <= MOST_ABOVE_DEG + 3.0
 
 
+@pytest.mark.slow
 def test_all_facades_of_a_court_are_photographed_from_where_nothing_stands():
     scene = bundled_scene("court")
     photos = square_photos(scene, LENS, 6, Path("somewhere"), seed=1)

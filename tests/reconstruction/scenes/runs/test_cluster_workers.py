@@ -65,12 +65,14 @@ class OnStage:
             self._action()
 
 
+@pytest.mark.slow
 def test_a_clusters_photos_are_those_of_one_process(scene, client, alone, tmp_path):
     photograph(job_for(scene, tmp_path), tmp_path, cluster=client)
     assert files_of(tmp_path) == files_of(alone)
     assert runs_known(client) == []
 
 
+@pytest.mark.slow
 def test_workers_that_do_not_see_the_folder_send_what_belongs_there(scene, client, alone, tmp_path):
     hide = OnStage("giving the scene to the cluster", lambda: (tmp_path / TOKEN_FILE).unlink())
     photograph(job_for(scene, tmp_path), tmp_path, None, hide, cluster=client)

@@ -74,6 +74,7 @@ class StopsAfter:
             raise OperationCancelled("enough")
 
 
+@pytest.mark.slow
 def test_photos_are_read_back_as_the_cameras_that_took_them(scene, written):
     images = written.folder / "images"
     back = pose_photos(read_photos(images).photos, scene.site.site, images).photos
@@ -151,6 +152,7 @@ def test_all_files_of_a_photo_take_no_more_than_is_reckoned_with(written):
         assert n_bytes < BYTES_PER_PIXEL * LENS.width_px * LENS.height_px + headers
 
 
+@pytest.mark.slow
 def test_an_interrupted_run_goes_on_and_ends_as_if_it_had_not_been(scene, written, tmp_path):
     job = job_for(scene, tmp_path / "again")
     with pytest.raises(OperationCancelled):
@@ -204,6 +206,7 @@ def test_fewer_views_are_another_run(scene, written):
         photograph(replace(job, photos=job.photos[:2]), written.folder, 1)
 
 
+@pytest.mark.slow
 def test_a_folder_of_something_else_is_left_alone(scene, tmp_path):
     (tmp_path / "letter.txt").write_text("Dear")
     with pytest.raises(InputError, match=r"is not empty, and has no scene\.json"):

@@ -184,6 +184,7 @@ def test_odd_panels_get_finite_profiles_within_their_neighbourhood() -> None:
     assert share_hidden(scene, mesh_of(scene, "walls"), 0.0) == 0.0
 
 
+@pytest.mark.slow
 def test_panes_are_tilted_bent_and_replaced_as_the_look_says() -> None:
     model = site_of(panel_grid("A", ((-30.0, 0.0, 0.0), (30.0, 0.0, 0.0), (-30.0, 0.0, 60.0)), 30, 30))
     look = replace(FAR, tilt_deg=0.3, bow_deg=0.2, replaced=0.2, blinds=0.0)
@@ -224,6 +225,7 @@ def test_buildings_stand_across_the_street_whatever_way_the_facade_looks(heading
     assert all(obstacle.mesh or obstacle.box_enu_m for obstacle in scene.site.site.obstacles)
 
 
+@pytest.mark.slow
 def test_no_building_stands_in_a_street_of_the_court_or_upon_home() -> None:
     scene = build_scene(SITES["court"](), Look(street_m=24.0), 2)
     points = np.concatenate([body.mesh.vertices_enu_m for body in scene.bodies if body.name.startswith("opposite")])
@@ -234,6 +236,7 @@ def test_no_building_stands_in_a_street_of_the_court_or_upon_home() -> None:
     assert np.hypot(points[:, 0] - 15.0, points[:, 1] + 50.0).min() > 12.0
 
 
+@pytest.mark.slow
 def test_what_is_near_is_ground_and_street_and_can_be_left_out() -> None:
     model = SITES["office"]()
     near, far = build_scene(model, Look(), 4), build_scene(model, Look(near=False), 4)

@@ -52,12 +52,14 @@ def bodies_of(scene: Scene, *layers: Layer) -> TriangleMesh:
     return join([body.mesh for body in scene.bodies if body.layer in layers])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [name if name in ("planar", "court") else slow(name) for name in NAMES])
 def test_the_same_seed_gives_the_same_scene(name: str) -> None:
     assert are_equal(scene_of(name), bundled_scene(name))
     assert scene_of(name).name == name == scene_of(name).site.site.name
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["planar", "curved-far"])
 def test_another_seed_gives_other_panes_surroundings_and_clouds(name: str) -> None:
     one, other = scene_of(name), bundled_scene(name, 1)
@@ -67,6 +69,7 @@ def test_another_seed_gives_other_panes_surroundings_and_clouds(name: str) -> No
     assert (one.site.site != other.site.site) == name.isalpha(), "where other buildings stand opposite"
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("name", NAMES)
 def test_everything_is_finite_and_sends_back_no_more_light_than_it_gets(name: str) -> None:
     scene = scene_of(name)

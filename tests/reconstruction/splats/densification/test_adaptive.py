@@ -51,6 +51,7 @@ def learned():
     return views, truths, plain, grown, changes
 
 
+@pytest.mark.slow
 def test_detail_is_learned_better_with_more_splats(learned):
     views, truths, plain, grown, _ = learned
     assert error(grown, views, truths) < error(plain, views, truths) / 1.7

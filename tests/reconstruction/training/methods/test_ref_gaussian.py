@@ -125,6 +125,7 @@ def test_indirect_light_has_gradients_for_normals():
     assert torch.autograd.gradcheck(indirect_light, (sh.requires_grad_(), normals.requires_grad_(), omega_o))
 
 
+@pytest.mark.slow
 def test_a_mirror_ball_is_learned_far_beyond_harmonics():
     torch.manual_seed(0)
     settings = RefGaussianSettings(side=32)
@@ -147,6 +148,7 @@ def test_a_mirror_ball_is_learned_far_beyond_harmonics():
     assert found > psnr_of_harmonics(known, unseen) + 7.0
 
 
+@pytest.mark.slow
 def test_nothing_stays_behind_on_the_processor():
     """All methods on torch's device without numbers, with gradients."""
     device = torch.device("meta")

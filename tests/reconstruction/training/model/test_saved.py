@@ -60,6 +60,7 @@ def test_models_are_read_back_bit_by_bit(data_set, tmp_path, light):
     assert torch.equal(trained.exposures.log_gains, back.exposures.log_gains)
 
 
+@pytest.mark.slow
 def test_auto_light_is_chosen_by_trial_and_says_why(data_set):
     trained = train_model(data_set, replace(CONFIG, light="auto", iterations=1))
     by_effect = {decision.effect: decision.on for decision in trained.record.decisions}
