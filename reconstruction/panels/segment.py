@@ -16,10 +16,11 @@ from planning.base.effects import Assessment, Decision, decide
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.site.importing.facades import facade_name
-from reconstruction.panels.network.belief import find_panes
-from reconstruction.panels.network.grids import BELIEVED, grid_in_view, network_facades
+from reconstruction.panels.network.belief import BELIEVED, find_panes
+from reconstruction.panels.network.grids import grid_in_view, network_facades
+from reconstruction.panels.network.looks import LONG_SIDES_PX, FoundPanes, Looks, look_at
 from reconstruction.panels.network.sides import measured
-from reconstruction.panels.network.votes import LEAST_SIDE_PX, LONG_SIDES_PX, FoundPanes, Looks, look_at
+from reconstruction.panels.network.votes import LEAST_SIDE_PX
 from reconstruction.panels.rectify.surface import Rectification
 from reconstruction.panels.search.parameters import SegmentationParameters
 from reconstruction.panels.search.record import FacadeGrid, Segmentation

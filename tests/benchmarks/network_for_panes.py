@@ -12,10 +12,9 @@ from planning.tradeoff.runner import draw
 from reconstruction.metrics.metrics import SetScores, summarise
 from reconstruction.metrics.run import own_method, score_answer
 from reconstruction.metrics.sets import ScoredPhoto, annotated_set, folder_set
-from reconstruction.panels.network.belief import find_panes
+from reconstruction.panels.network.belief import BELIEVED, find_panes
 from reconstruction.panels.network.calibration import are_there
-from reconstruction.panels.network.grids import BELIEVED
-from reconstruction.panels.network.votes import LONG_SIDES_PX, look_at
+from reconstruction.panels.network.looks import LONG_SIDES_PX, look_at
 from reconstruction.panels.search.parameters import SegmentationParameters
 from reconstruction.tradeoff.search_tradeoff import MIOU_AXIS, SettingScores, variants_panel
 from tests.benchmarks.harness import Benchmark, Context, Row

@@ -23,20 +23,15 @@ from numpy.typing import NDArray
 from planning.base.jit import kernel
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
-from reconstruction.panels.network.votes import (
-    STRIDE,
-    FoundPanes,
-    Look,
-    Looks,
-    Pane,
-    seen_area,
-    signed_areas,
-    weighted_median,
-)
+from reconstruction.panels.network.looks import FoundPanes, Look, Looks
+from reconstruction.panels.network.votes import STRIDE, Pane, seen_area, signed_areas, weighted_median
 
 Array = NDArray[np.float64]
 
 COEFFICIENTS = "confidence.json"
+
+BELIEVED = 0.5
+"""Confidence from which a pane is reported: on real photos about a quarter of these are not there."""
 
 WORTH_A_LOOK = 0.12
 """Probability by the first regression from which a pane is looked at together with its neighbours."""

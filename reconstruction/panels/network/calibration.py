@@ -22,7 +22,8 @@ from reconstruction.panels.network.belief import (
     first_features,
     second_features,
 )
-from reconstruction.panels.network.votes import LONG_SIDES_PX, Picture, look_at
+from reconstruction.panels.network.looks import LONG_SIDES_PX, look_at
+from reconstruction.panels.network.votes import Picture
 
 Array = NDArray[np.float64]
 Index = NDArray[np.uint16]

@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 
 from planning.base.errors import InfeasibleError
 from planning.site.importing.facades import facade_name
-from reconstruction.panels.network.votes import FoundPanes, Pane, inside, weighted_median
+from reconstruction.panels.network.looks import FoundPanes
+from reconstruction.panels.network.votes import Pane, inside, weighted_median
 from reconstruction.panels.rectify.surface import Rectification
 from reconstruction.panels.rectify.view import vanishing_view
 from reconstruction.panels.search.record import FacadeGrid, FoundPanel, GridLine
@@ -44,11 +45,8 @@ SAME = 0.2
 SNAP = 0.08
 """An edge within so much of a pane's size of the others' along its line is theirs; one farther off is its own."""
 
-FILLED = 0.8
+FILLED = 0.9
 """A cell without a pane is one where its places say so on average, and no pane lies on it."""
-
-BELIEVED = 0.45
-"""Confidence from which a pane is believed."""
 
 MANY = 4
 """Panes of a grid from which on they speak for one another."""
@@ -66,7 +64,7 @@ class _Group:
 def network_facades(found: FoundPanes, width_px: int, height_px: int, seed: int = 0) -> tuple[FacadeGrid, ...]:
     """Grids of the facades in a photo of that size, without a pose, the one with most panes first."""
     size = width_px, height_px
-    left = [pane for pane in found.panes if pane.confidence >= BELIEVED]
+    left = list(found.panes)
     rng = np.random.default_rng(seed)
     grids: list[FacadeGrid] = []
     for _ in range(MOST_FACADES):
@@ -88,8 +86,7 @@ def grid_in_view(found: FoundPanes, view: Rectification, facade_id: str, size_px
 
     It has no lines and no panels where the network found none.
     """
-    panes = [pane for pane in found.panes if pane.confidence >= BELIEVED]
-    grid = _grid(panes, view, found, size_px) if panes else None
+    grid = _grid(found.panes, view, found, size_px) if found.panes else None
     return _named(grid, facade_id) if grid is not None else FacadeGrid(facade_id, view, (), (), ())
 
 

@@ -31,11 +31,12 @@ from reconstruction.panels.network.belief import (
 )
 from reconstruction.panels.network.calibration import Source, are_there, calibrated, write_regressions
 from reconstruction.panels.network.grids import network_facades
+from reconstruction.panels.network.looks import FoundPanes, Look, Looks, look_at
 from reconstruction.panels.network.network import PaneNetwork, network
 from reconstruction.panels.network.random_pictures import MadePicture, made_picture
 from reconstruction.panels.network.sides import measured
 from reconstruction.panels.network.training import crop, make_pool, read_pool, train
-from reconstruction.panels.network.votes import STRIDE, FoundPanes, Look, Looks, Pane, gathered, look_at
+from reconstruction.panels.network.votes import STRIDE, Pane, gathered
 from reconstruction.panels.search.parameters import SegmentationParameters
 from reconstruction.panels.segment import segment_image
 from reconstruction.scenes.facades.cases import random_case, wide_camera
