@@ -159,6 +159,12 @@ class TrainConfig:
         How light is learned alone, from random rays of glass.
     overexposed
         Whether values next to white say "at least so bright", as white does: `choose_light.Overexposure`.
+    own_exposures
+        Whether each photo has a gain and a white balance of its own: `exposures.OwnExposures`. Off, gains stay what the
+        folder says.
+    light_apart
+        Whether light that is learned apart from the splats is worth it: `start.LightApart`. On, rays of glass alone
+        decide which; off, nothing is tried.
     start_from
         With `points`, no mesh and no ground are known, and panels to methods alone that know panels. Points on glass
         are left out: photogrammetry finds none there that is where it seems.
@@ -195,6 +201,8 @@ class TrainConfig:
     light_share: float = parameter(0.35, least=0.0, most=1.0)
     reflections: ReflectionConfig = field(default_factory=ReflectionConfig)
     overexposed: EffectSetting = "auto"
+    own_exposures: EffectSetting = "auto"
+    light_apart: EffectSetting = "auto"
     start_from: StartFrom = "surfaces"
     n_splats: int = parameter(12_000, least=1)
     max_splats: int = parameter(30_000, least=1)

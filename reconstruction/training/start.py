@@ -42,7 +42,7 @@ from reconstruction.training.methods.shader import Shader
 from reconstruction.training.methods.shaders import Surroundings, as_method_has_them, shader_of, with_primitive
 from reconstruction.training.model.joint_model import SceneModel
 from reconstruction.training.model.record import SiteRecord, site_record
-from reconstruction.training.photos.exposures import Exposures, Move, learned_moves, moved
+from reconstruction.training.photos.exposures import Exposures, Move, learned_moves, moved, own_exposures
 from reconstruction.training.photos.photo_stream import PhotoStream, StreamSettings
 from reconstruction.training.timer import Timer
 from reconstruction.training.trainer import SHOWN_VIEWS, Trainer, strategy_of
@@ -356,6 +356,15 @@ def start_model(
     learned = tuple(photo for photo in source.photos if photo.name not in held_out)
     scene = known_scene(source)
     origin = model_origin(scene)
+    told, decision = own_exposures(source, learned, scene.points_enu_m, scene.mesh, config.own_exposures, monitor)
+    config = replace(config, own_exposures="on" if decision.on else "off")
+    decisions: tuple[Decision, ...] = (decision,)
+    known = [source.own_exposures.get(photo.name, 1.0) for photo in learned]
+    exposures = Exposures(np.array(known)[:, None] * told) if decision.on else Exposures(known)
+    if decision.on:
+        gains = np.exp(np.log(told).mean(axis=1)) * known
+        own = dict(zip([photo.name for photo in learned], gains.tolist(), strict=True))
+        source = replace(source, own_exposures={**source.own_exposures, **own})
     if begun is not None:
         splats = splats_from_tensors(begun.splats, str(checkpoint))
     elif given is not None:
@@ -364,17 +373,14 @@ def start_model(
     else:
         parameters = InitialParameters(n_splats=config.n_splats, seed=config.seed)
         if config.start_from == "points":
-            known = points_alone(scene, source.folder, knows_panels=config.trained_by.knows_panels)
-        else:
-            known = scene
-        splats = initial_splats(known, learned, origin, parameters, source.picture, monitor)
+            scene = points_alone(scene, source.folder, knows_panels=config.trained_by.knows_panels)
+        splats = initial_splats(scene, learned, origin, parameters, source.picture, monitor)
     light: TrainedReflections | None = None
     shader: Shader | None = None
-    decisions: tuple[Decision, ...] = ()
     if begun is None and config.trained_by.knows_panels:
         white, decision = white_of(source, learned, config.overexposed)
         config = with_white(config, white)
-        decisions = (decision,)
+        decisions = (*decisions, decision)
     if not config.trained_by.knows_panels:
         triangles = (scene.mesh.corners_enu_m - origin).astype(np.float32).reshape(-1, 3, 3)
         shader = shader_of(config, Surroundings(triangles))
@@ -385,11 +391,10 @@ def start_model(
     cameras = np.array([photo.pose.position_enu_m for photo in moved(learned, moves)])
     if light is not None:
         hand_over(light.panels, splats, source.panels, origin, cameras)
-    exposures = [source.own_exposures.get(photo.name, 1.0) for photo in learned]
     return Start(
         config,
         _joined(source, learned, splats, light, shader, origin, config),
-        Exposures(exposures),
+        exposures,
         learned,
         held_out,
         _extent_m(cameras),
@@ -441,8 +446,10 @@ class LightApart:
     unit: str = "dB"
     tolerance: float = 0.1
 
-    def assess(self, scene: tuple[float, float, float]) -> Assessment:
-        """By PSNR, dB, of views held back with it and without; and what it costs, seconds."""
+    def assess(self, scene: tuple[float, float, float] | None) -> Assessment:
+        """By PSNR, dB, of views held back with it and without; and what it costs, seconds. None: nobody has tried."""
+        if scene is None:
+            return Assessment(0.0, say("nothing was tried"), 0.0)
         apart, alone, cost_s = scene
         reason = say("views held back have {:.1f} dB with it, {:.1f} dB with splats alone", apart, alone)
         return Assessment(apart - alone, reason, cost_s)
@@ -543,11 +550,15 @@ def _learned_light(
     no_decisions: tuple[Decision, ...] = ()
     if begun is None:
         name, decisions = config.light, no_decisions
-        if name == "auto":
+        if name == "auto" and config.light_apart == "off":
+            name, decisions = "harmonics", (decide(LightApart(), None, "off"),)
+        elif name == "auto":
             quick = replace(settings, time_limit_s=_light_limit_s(config, watch))
             tried = try_lights(rays, source.panels, quick, monitor, device=config.device)
             name, decisions = ("environment-map", no_decisions) if tried is None else chosen(tried.trials)
-            if tried is not None and name != "harmonics" and decisions[0].size < CLEAR_DB:
+            if config.light_apart == "on":
+                decisions = (*decisions, decide(LightApart(), None, "on"))
+            elif tried is not None and name != "harmonics" and decisions[0].size < CLEAR_DB:
                 worth = _is_worth(source, learned, splats, tried, name, config, watch, monitor)
                 name, decisions = (name if worth.on else "harmonics"), (*decisions, worth)
         limit_s = _light_limit_s(config, watch)

@@ -62,7 +62,8 @@ def adam_of(model: SceneModel, gains: nn.Module, config: TrainConfig, extent_m: 
     groups[0]["full"] *= extent_m
     groups.append({"name": "sky", "params": list(model.sky.parameters()), "full": rates.sky})
     groups.append({"name": "corner loss", "params": [model.corner_loss], "full": rates.corner_loss})
-    groups.append({"name": "exposures", "params": list(gains.parameters()), "full": rates.exposures})
+    of_gains = 0.0 if config.own_exposures == "off" else rates.exposures
+    groups.append({"name": "exposures", "params": list(gains.parameters()), "full": of_gains})
     of_attributes = model.shader.attribute_rates()
     groups += [
         {"name": name, "params": [getattr(model.splats, name)], "full": of_attributes[name]}

@@ -6248,6 +6248,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>gröbstes Pixel</translation>
     </message>
     <message>
+        <source>comparing exposures</source>
+        <translation>Belichtungen werden verglichen</translation>
+    </message>
+    <message>
         <source>comparing photos</source>
         <translation>Fotos werden verglichen</translation>
     </message>
@@ -6684,6 +6688,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>expected {0}, got &apos;{1}&apos;</source>
         <translation>erwartet wird {0}, gefunden &apos;{1}&apos;</translation>
+    </message>
+    <message>
+        <source>exposure of each photo</source>
+        <translation>Belichtung jedes Fotos</translation>
     </message>
     <message>
         <source>facade {0}, of what can be covered</source>
@@ -7174,6 +7182,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>nichts wurde übernommen: {0}</translation>
     </message>
     <message>
+        <source>nothing was tried</source>
+        <translation>nichts wurde versucht</translation>
+    </message>
+    <message>
         <source>nothing yet</source>
         <translation>noch nichts</translation>
     </message>
@@ -7466,6 +7478,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Splats</translation>
     </message>
     <message>
+        <source>spread of the gains&apos; logarithms</source>
+        <translation>Streuung der Logarithmen der Verstärkungen</translation>
+    </message>
+    <message>
         <source>state</source>
         <translation>Zustand</translation>
     </message>
@@ -7690,6 +7706,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>dasselbe an einer konvexen Fassade</translation>
     </message>
     <message>
+        <source>the same points are brighter or darker by {0} % in other photos</source>
+        <translation>dieselben Punkte sind in anderen Fotos um {0} % heller oder dunkler</translation>
+    </message>
+    <message>
         <source>the shortest there is</source>
         <translation>die kürzeste überhaupt</translation>
     </message>
@@ -7764,6 +7784,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>time in the air</source>
         <translation>Zeit in der Luft</translation>
+    </message>
+    <message>
+        <source>too few points are seen in several photos</source>
+        <translation>zu wenige Punkte sind in mehreren Fotos zu sehen</translation>
     </message>
     <message>
         <source>two facades at a right angle, whose glass sees glass</source>

@@ -215,7 +215,7 @@ def empty_model(record: ModelRecord, tensors: Mapping[str, Tensor]) -> tuple[Sce
     model = SceneModel(
         splats, Sky(), light, planes, origin, record.corner_square, record.config.geometry, precision, shader
     )
-    return model, Exposures([1.0] * len(record.learned))
+    return model, Exposures(np.ones((len(record.learned), 3 if record.config.own_exposures == "on" else 1)))
 
 
 def _light_model(record: ModelRecord, tensors: Mapping[str, Tensor]) -> LightModel:

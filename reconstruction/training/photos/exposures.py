@@ -1,4 +1,4 @@
-"""How brightly each photo was exposed: gains that are learned beside the model, or fitted to views that are scored.
+"""How brightly each photo was exposed: gains that points tell, learned beside the model, or fitted to scored views.
 
 A model and the gains of all its photos can grow against each other without any picture changing, and splats then take
 on a cast that the gains take away again. So the mean of the logarithms stays what it was at the start, by a projection
@@ -9,16 +9,27 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Literal
 
+import cv2
 import numpy as np
 import torch
+from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 from torch import Tensor, nn
 
+from planning.base.effects import Assessment, Decision, EffectSetting, decide
+from planning.base.messages import say
+from planning.base.progress import QUIET, Monitor
+from planning.geo.mesh import TriangleMesh
 from reconstruction.base.cameras import Pose, PosedPhoto
+from reconstruction.base.ray_casting import RayCaster
 from reconstruction.light.glass_light import GlassLight
+from reconstruction.light.photo_set import PhotoSet
+from reconstruction.splats.surfels import SAME_SURFACE_M, beside_panels
+
+Array = NDArray[np.float64]
 
 # Corrections of photos' poses that were found out while light was learned alone, put into the photos.
 
@@ -68,18 +79,19 @@ class Exposures(nn.Module):
     Parameters
     ----------
     known
-        Gains to start from, one for each photo, more than 0: what the folder tells, else 1.
-    channels
-        1: a gain for all of red, green and blue. 3: one for each, which takes up white balance, too.
+        Gains to start from, more than 0: what the folder tells, else 1. One for each photo, or, shape (n, 3), one for
+        each of its red, green and blue, which takes up white balance, too.
     """
 
-    def __init__(self, known: Sequence[float], channels: Literal[1, 3] = 1) -> None:
+    def __init__(self, known: Sequence[float] | Array) -> None:
         super().__init__()
-        if not known or not all(math.isfinite(gain) and gain > 0.0 for gain in known):
+        gains = torch.as_tensor(np.array(known, float))
+        gains = gains[:, None] if gains.ndim == 1 else gains
+        if gains.ndim != 2 or gains.shape[1] not in (1, 3):
+            raise ValueError(f"known: expected shape (n,) or (n, 3), got {[*gains.shape]}")
+        if not len(gains) or not bool((torch.isfinite(gains) & (gains > 0.0)).all()):
             raise ValueError("known: expected a gain above 0 for each of at least one photo")
-        if channels not in (1, 3):
-            raise ValueError(f"channels: expected 1 or 3, got {channels}")
-        logarithms = torch.tensor(known, dtype=torch.float64).log()[:, None].repeat(1, channels)
+        logarithms = gains.log()
         self.log_gains = nn.Parameter(logarithms.float())
         self.log_mean: Tensor
         self.register_buffer("log_mean", logarithms.mean(dim=0))
@@ -120,3 +132,197 @@ def fitted_gain(light: Tensor, truth: Tensor, display: Tensor, channels: Literal
     gain = sums[0] / sums[1].clamp(min=1e-12)
     is_told = (sums[2] >= LEAST_VALUES) & (sums[1] > 1e-12) & (gain > 0.0)
     return torch.where(is_told, gain, 1.0).to(light)
+
+
+# What points that several photos show tell about exposures, before anything is learned.
+#
+# The logarithm of what a photo shows of a point is that of its light plus that of the photo's gain. Medians over
+# points and photos in turn find both, whatever a part of the points is: hidden, glossy, or moved.
+
+TOLD_BY = 20_000
+"""Points, evenly chosen, or up to twice as many."""
+
+SMALL_PX = 320
+"""Longer side of the photos that are looked at: points need not be more exact than this."""
+
+LOOKED_AT = 16
+"""Photos, evenly chosen, that tell whether all are to be looked at."""
+
+LEAST_POINTS = 20
+"""That tell a photo's gain: fewer say nothing, and it is 1."""
+
+NEARER_M = 0.5
+"""That a surface may be before a point which it does not hide: coarse models are off by as much."""
+
+ROUNDS = 12
+"""Of medians in turn: gains have come to rest by then."""
+
+BLOCK = 32
+"""Neighbouring points of one half, so that what disturbs some of them is not in both halves."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ToldGains:
+    """What points tell.
+
+    Parameters
+    ----------
+    gains
+        Factors on the linear light of each photo, red, green and blue, shape (n, 3), beyond those that were known; the
+        mean of their logarithms is 0. As far as two halves of the points disagree, they are nearer to 1.
+    spread
+        Standard deviation over photos of the logarithms, of what both halves agree on.
+    n_told
+        Photos that enough points are seen in.
+    """
+
+    gains: Array
+    spread: float
+    n_told: int
+
+
+@dataclass(frozen=True, slots=True)
+class OwnExposures:
+    """Give each photo a gain and a white balance of its own."""
+
+    name: str = say("exposure of each photo")
+    unit: str = say("spread of the gains' logarithms")
+    tolerance: float = 0.1
+
+    def assess(self, scene: ToldGains) -> Assessment:
+        """How much gains differ from photo to photo."""
+        if scene.n_told < 2:
+            return Assessment(0.0, say("too few points are seen in several photos"), 0.0)
+        return Assessment(
+            scene.spread,
+            say("the same points are brighter or darker by {:.0f} % in other photos", 100.0 * scene.spread),
+            0.0,
+        )
+
+
+def own_exposures(
+    source: PhotoSet,
+    photos: Sequence[PosedPhoto],
+    points_enu_m: Array,
+    mesh: TriangleMesh,
+    setting: EffectSetting = "auto",
+    monitor: Monitor = QUIET,
+) -> tuple[Array, Decision]:
+    """Gains of photos, shape (n, 3), beyond those that the folder tells, and the decision; all 1 where it is off.
+
+    Parameters
+    ----------
+    points_enu_m
+        On surfaces, shape (k, 3).
+    mesh
+        That hides points.
+
+    Raises
+    ------
+    InputError
+        A photo is missing or damaged.
+    OperationCancelled
+        From `monitor`.
+    """
+    told = ToldGains(np.ones((len(photos), 3)), 0.0, 0)
+    some = photos[:: -(-len(photos) // LOOKED_AT)]
+    if setting != "off":
+        told = told_gains(source, some, points_enu_m, mesh, monitor)
+    decision = decide(OwnExposures(), told, setting)
+    if not decision.on:
+        return np.ones((len(photos), 3)), decision
+    if len(some) < len(photos):
+        told = told_gains(source, photos, points_enu_m, mesh, monitor)
+    return told.gains, decision
+
+
+def told_gains(
+    source: PhotoSet,
+    photos: Sequence[PosedPhoto],
+    points_enu_m: Array,
+    mesh: TriangleMesh,
+    monitor: Monitor = QUIET,
+) -> ToldGains:
+    """Gains that points tell which are on no panel, for glass shows something else to each photo.
+
+    Raises
+    ------
+    InputError
+        A photo is missing or damaged.
+    OperationCancelled
+        From `monitor`.
+    """
+    on_glass = beside_panels(points_enu_m, source.panels.corners_enu_m, SAME_SURFACE_M, 0.0).panels >= 0
+    points = points_enu_m[~on_glass]
+    points = _in_blocks(points[:: max(1, len(points) // TOLD_BY)])
+    caster = RayCaster(mesh) if len(mesh.triangles) else None
+    seen = np.full((len(photos), len(points), 3), np.nan)
+    for number, photo in enumerate(photos):
+        monitor.report(say("comparing exposures"), number, len(photos))
+        seen[number] = _logarithms(source, photo, points, caster)
+    seen = seen[:, (~np.isnan(seen[..., 0])).sum(axis=0) >= 2]
+    is_told = (~np.isnan(seen[..., 0])).sum(axis=1) >= 2 * LEAST_POINTS
+    gains, n_told = np.zeros((len(photos), 3)), int(is_told.sum())
+    if n_told < 2:
+        return ToldGains(np.ones((len(photos), 3)), 0.0, 0)
+    is_first = np.arange(seen.shape[1]) // BLOCK % 2 == 0
+    one, other = (_gains(seen[is_told][:, half]) for half in (is_first, ~is_first))
+    agreed = float((one * other).mean())
+    off = float(np.square(one - other).mean()) / 4.0
+    if agreed > 0.0:
+        gains[is_told] = 0.5 * (one + other) * agreed / (agreed + off)
+    return ToldGains(np.exp(gains), math.sqrt(max(agreed, 0.0)), n_told)
+
+
+def _in_blocks(points_enu_m: Array) -> Array:
+    """Points in the order of their longest direction."""
+    if len(points_enu_m) < 2:
+        return points_enu_m
+    off = points_enu_m - points_enu_m.mean(axis=0)
+    return np.asarray(points_enu_m[np.argsort(off @ np.linalg.eigh(off.T @ off)[1][:, -1], kind="stable")])
+
+
+def _logarithms(source: PhotoSet, photo: PosedPhoto, points_enu_m: Array, caster: RayCaster | None) -> Array:
+    """Of linear light that a photo shows of points, less its known gain's, shape (k, 3); NaN where it shows none."""
+    found = np.full((len(points_enu_m), 3), np.nan)
+    rows = np.flatnonzero(photo.sees(points_enu_m))
+    if caster is not None and len(rows):
+        towards = points_enu_m[rows] - photo.pose.position_enu_m
+        distances = np.maximum(np.linalg.norm(towards, axis=1), 1e-9)
+        origins = np.broadcast_to(photo.pose.position_enu_m, towards.shape)
+        rows = rows[caster.cast(origins, towards / distances[:, None]).distance_m >= distances - NEARER_M]
+    if not len(rows):
+        return found
+    lens = photo.intrinsics
+    share = min(1.0, SMALL_PX / max(lens.width_px, lens.height_px))
+    size = (max(1, round(share * lens.width_px)), max(1, round(share * lens.height_px)))
+    display = cv2.resize(source.picture(photo), size, interpolation=cv2.INTER_AREA) / 255.0
+    pixels = photo.pixels(points_enu_m[rows])
+    x = np.clip((pixels[:, 0] * size[0] / lens.width_px).astype(np.int64), 0, size[0] - 1)
+    y = np.clip((pixels[:, 1] * size[1] / lens.height_px).astype(np.int64), 0, size[1] - 1)
+    values = display[y, x]
+    is_told = ((values > DARKEST) & (values < BRIGHTEST)).all(axis=1)
+    if len(source.panels.corners_enu_m):
+        panels = source.panel_numbers(photo)
+        across, down = pixels[:, 0].astype(np.int64), pixels[:, 1].astype(np.int64)
+        is_told &= panels[np.clip(down, 0, lens.height_px - 1), np.clip(across, 0, lens.width_px - 1)] < 0
+    linear = np.where(values > 0.04045, ((values + 0.055) / 1.055) ** 2.4, values / 12.92)
+    known = source.own_exposures.get(photo.name, 1.0)
+    found[rows[is_told]] = np.log(linear[is_told] / known)
+    return found
+
+
+def _gains(seen: Array) -> Array:
+    """Logarithms of gains, shape (n, 3), of those of what was seen, shape (n, k, 3); their mean is 0."""
+    gains = np.zeros((len(seen), 3))
+    is_seen = ~np.isnan(seen[..., 0])
+    columns = is_seen.sum(axis=0) >= 2
+    seen, is_seen = seen[:, columns], is_seen[:, columns]
+    rows = is_seen.sum(axis=1) >= LEAST_POINTS // 2
+    if rows.sum() < 2:
+        return gains
+    for _ in range(ROUNDS):
+        points = np.nanmedian(seen - gains[:, None], axis=0)
+        gains[rows] = np.nanmedian(seen[rows] - points, axis=1)
+        gains[rows] -= gains[rows].mean(axis=0)
+    return gains

@@ -10,14 +10,14 @@ import numpy as np
 
 from reconstruction.base.cameras import Intrinsics, PosedPhoto
 from reconstruction.dataset.layers import normals_to_16_bit
-from tests.reconstruction.light.made_folder import LENS, far, write_folder
+from tests.reconstruction.light.made_folder import LENS, Light, far, write_folder
 
 
 def write_data_set(
-    folder: Path, n: int = 6, lens: Intrinsics = LENS, normal_step: int = 2, seed: int = 0
+    folder: Path, n: int = 6, lens: Intrinsics = LENS, normal_step: int = 2, seed: int = 0, light: Light = far
 ) -> tuple[PosedPhoto, ...]:
     """Panels in the plane y = 0, looking south; the facade is all of the photo's lower half and the panels."""
-    photos = write_folder(folder, far, n, seed, lens)
+    photos = write_folder(folder, light, n, seed, lens)
     for layer in ("masks", "normals"):
         (folder / layer).mkdir()
     for photo in photos:

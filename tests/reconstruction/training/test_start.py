@@ -1,4 +1,7 @@
-"""What splats begin on."""
+"""What splats begin on, and whether light apart from them is worth it."""
+
+import shutil
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -6,11 +9,14 @@ import pytest
 from planning.base.errors import InputError
 from planning.geo.mesh import from_corners, write_mesh
 from reconstruction.dataset.records import coloured_ply
+from reconstruction.light.choose_light import chosen
 from reconstruction.light.config import ReflectionConfig
 from reconstruction.light.photo_set import read_photo_set
 from reconstruction.splats.splats import NO_PANEL
+from reconstruction.training import start as start_module
 from reconstruction.training.config import TrainConfig
 from reconstruction.training.start import start_model
+from tests.reconstruction.light.made_folder import far
 from tests.reconstruction.training.made_data_set import write_data_set
 
 WALL_Y_M = 0.5
@@ -69,3 +75,54 @@ def test_a_start_at_points_that_are_not_there_is_refused(source):
     (source.folder / "points.ply").unlink()
     with pytest.raises(InputError, match="of 0 points of photogrammetry none is away from glass"):
         begun(source, "2dgs", "points")
+
+
+ASKED = TrainConfig(
+    iterations=1000,
+    n_splats=300,
+    max_splats=300,
+    reflections=ReflectionConfig(environment_rows=16, steps=60, batch=512),
+)
+
+
+def of_other_light(folder, n):
+    """Photos whose mirror images are of other surroundings each."""
+    write_data_set(folder, n=n)
+    for number in range(n):
+        one = folder.with_name(f"{folder.name}-{number}")
+        write_data_set(one, n=n, light=lambda places, omega_r, by=number: far(places, omega_r + 1.7 * by))
+        name = f"p{number:02d}.png"
+        shutil.copy(one / "images" / name, folder / "images" / name)
+        shutil.rmtree(one)
+
+
+def light_apart(folder, config, monkeypatch):
+    """The decision, and the model of light; it is asked whatever rays alone say."""
+    monkeypatch.setattr(start_module, "CLEAR_DB", np.inf)
+    monkeypatch.setattr(start_module, "chosen", lambda trials: ("environment-map", chosen(trials)[1]))
+    start = start_model(read_photo_set(folder), config)
+    found = [decision for decision in start.decisions if decision.effect == "light apart from the splats"]
+    return found, start.light_name
+
+
+@pytest.mark.slow
+def test_light_apart_is_on_where_mirror_images_agree_and_off_where_they_do_not(tmp_path, monkeypatch):
+    write_data_set(tmp_path / "same", n=16)
+    (decision,), name = light_apart(tmp_path / "same", ASKED, monkeypatch)
+    assert (decision.on, decision.decided_by, name) == (True, "scene", "environment-map")
+    assert decision.size > 1.0
+    of_other_light(tmp_path / "other", 16)
+    (decision,), name = light_apart(tmp_path / "other", ASKED, monkeypatch)
+    assert (decision.on, decision.decided_by, name) == (False, "scene", "harmonics")
+    assert "splats alone" in decision.reason
+
+
+@pytest.mark.parametrize(("setting", "is_apart"), [("on", True), ("off", False)])
+def test_light_apart_is_as_asked_and_nothing_is_tried_for_it(tmp_path, monkeypatch, setting, is_apart):
+    write_data_set(tmp_path / "same", n=10)
+    monkeypatch.setattr(start_module, "_is_worth", None)
+    if not is_apart:
+        monkeypatch.setattr(start_module, "try_lights", None)
+    (decision,), name = light_apart(tmp_path / "same", replace(ASKED, light_apart=setting), monkeypatch)
+    assert (decision.on, decision.decided_by) == (is_apart, "user")
+    assert (name != "harmonics") == is_apart

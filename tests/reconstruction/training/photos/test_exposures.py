@@ -1,16 +1,29 @@
-"""Exposures of photos: what is learned, what cannot drift, and what a fit to one view gives."""
+"""Exposures of photos: what points tell, what is learned, what cannot drift, and what a fit to one view gives."""
 
+from dataclasses import replace
+
+import cv2
+import numpy as np
 import pytest
 import torch
 
+from planning.geo.mesh import empty_mesh, from_corners
+from reconstruction.dataset.records import coloured_ply
+from reconstruction.light.config import ReflectionConfig
+from reconstruction.light.photo_set import PanelPlanes, PhotoSet, read_photo_set
 from reconstruction.light.shading import display_from_linear
-from reconstruction.training.photos.exposures import Exposures, fitted_gain
+from reconstruction.training.config import TrainConfig
+from reconstruction.training.model.saved import read_model, save_model
+from reconstruction.training.photos.exposures import Exposures, fitted_gain, own_exposures, told_gains
+from reconstruction.training.train import train_model
+from tests.reconstruction.light.made_folder import cameras
+from tests.reconstruction.training.made_data_set import write_data_set
 
 
 def test_they_start_from_what_is_known():
     known = [1.0, 0.5, 4.0]
     for channels in (1, 3):
-        exposures = Exposures(known, channels)
+        exposures = Exposures(np.tile(np.array(known)[:, None], channels))
         exposures.project()
         for number, gain in enumerate(known):
             assert exposures(number).tolist() == pytest.approx([gain] * channels, rel=1e-6)
@@ -37,7 +50,7 @@ def test_learning_finds_the_gains_and_the_scene_keeps_its_light():
 
 
 def test_a_cast_that_all_gains_share_is_taken_back():
-    exposures = Exposures([1.0, 2.0, 0.5, 1.0], 3)
+    exposures = Exposures(np.tile([[1.0], [2.0], [0.5], [1.0]], 3))
     before = exposures.log_gains.detach().clone()
     with torch.no_grad():
         exposures.log_gains += torch.tensor([0.3, -0.2, 0.0])
@@ -87,8 +100,108 @@ def test_where_nothing_tells_the_gain_is_1():
 
 
 def test_wrong_calls_are_refused():
-    for known, channels in (([], 1), ([1.0, 0.0], 1), ([1.0, float("nan")], 1), ([1.0], 2)):
+    for known in ([], [1.0, 0.0], [1.0, float("nan")], np.ones((1, 2)), np.ones((1, 3, 1))):
         with pytest.raises(ValueError, match="expected"):
-            Exposures(known, channels)
+            Exposures(known)
     with pytest.raises(ValueError, match="expected three"):
         fitted_gain(torch.zeros(4, 3), torch.zeros(5, 3), torch.zeros(4, 3))
+
+
+# What points tell, of photos of a painted wall at y = 0.
+
+N = 8
+POINTS = np.random.default_rng(2).uniform((-4.0, 0.0, 0.0), (4.0, 0.0, 6.0), (4000, 3)) * (1.0, 0.0, 1.0)
+BEHIND, BELOW = POINTS + np.array((0.0, 4.0, 0.0)), POINTS - np.array((0.0, 0.0, 4.0))
+GAINS = np.exp(np.random.default_rng(3).normal(0.0, (0.3, 0.3, 0.25), (N, 3)))
+
+
+def paint(places):
+    """Linear light of places on the wall, shape (n, 3)."""
+    x, z = places[:, 0], places[:, 2]
+    return 0.2 + 0.1 * np.column_stack([np.sin(x), np.cos(z), np.sin(x + z)])
+
+
+def painted(folder, gains):
+    """A set of photos of the wall, each with gains of its own."""
+    (folder / "images").mkdir(parents=True)
+    photos = cameras(folder, N)
+    for photo, gain in zip(photos, gains, strict=True):
+        lens = photo.intrinsics
+        y, x = np.mgrid[: lens.height_px, : lens.width_px] + 0.5
+        origins, directions = photo.rays(np.column_stack([x.ravel(), y.ravel()]))
+        places = origins - origins[:, 1:2] / directions[:, 1:2] * directions
+        display = display_from_linear(torch.from_numpy(np.minimum(gain * paint(places), 1.0))).numpy()
+        picture = np.rint(255.0 * display).astype(np.uint8).reshape(lens.height_px, lens.width_px, 3)
+        cv2.imwrite(str(photo.path), picture[..., ::-1])
+    return PhotoSet(folder, photos, PanelPlanes(np.zeros((0, 4, 3))), 1.0, {})
+
+
+def test_points_tell_gains_where_photos_were_exposed_one_by_one(tmp_path):
+    source = painted(tmp_path, GAINS)
+    gains, decision = own_exposures(source, source.photos, POINTS, empty_mesh())
+    assert decision.on
+    assert decision.size == pytest.approx(np.log(GAINS).std(axis=0).mean(), rel=0.15)
+    true = np.log(GAINS) - np.log(GAINS).mean(axis=0)
+    np.testing.assert_allclose(np.log(gains), true, atol=0.03)
+    known = {photo.name: float(gain.mean()) for photo, gain in zip(source.photos, GAINS, strict=True)}
+    told = replace(source, own_exposures=known)
+    _, of_rest = own_exposures(told, source.photos, POINTS, empty_mesh())
+    assert of_rest.size < decision.size
+
+
+def test_nothing_is_told_where_photos_were_exposed_alike(tmp_path):
+    source = painted(tmp_path, np.ones((N, 3)))
+    gains, decision = own_exposures(source, source.photos, POINTS, empty_mesh())
+    assert not decision.on
+    assert decision.size < 0.02
+    assert (gains == 1.0).all()
+    gains, decision = own_exposures(source, source.photos, POINTS, empty_mesh(), "on")
+    assert decision.on
+    np.testing.assert_allclose(gains, 1.0, atol=0.02)
+
+
+def test_off_looks_at_no_photo(tmp_path):
+    source = painted(tmp_path, GAINS)
+    for photo in source.photos:
+        photo.path.unlink()
+    gains, decision = own_exposures(source, source.photos, POINTS, empty_mesh(), "off")
+    assert not decision.on
+    assert (gains == 1.0).all()
+
+
+def test_hidden_points_and_clipped_pixels_tell_nothing(tmp_path):
+    bright = GAINS.copy()
+    bright[0] = 2.6  # half of the photo is white
+    source = painted(tmp_path, bright)
+    before, true = told_gains(source, source.photos, POINTS, empty_mesh()), np.log(bright) - np.log(bright).mean(axis=0)
+    np.testing.assert_allclose(np.log(before.gains), true, atol=0.05)
+    # As many points behind the wall, where photos show the wall's other places.
+    wall = from_corners(np.array([[(-9, 0, -9), (9, 0, -9), (9, 0, 9)], [(-9, 0, -9), (9, 0, 9), (-9, 0, 9)]], float))
+    behind = np.concatenate([POINTS, BEHIND])
+    hidden = told_gains(source, source.photos, behind, wall)
+    np.testing.assert_allclose(np.log(hidden.gains), true, atol=0.05)
+    assert told_gains(source, source.photos, BEHIND, wall).n_told == 0
+
+
+def test_training_begins_with_what_points_tell_and_keeps_it(tmp_path):
+    tiny = ReflectionConfig(environment_rows=8, steps=2, batch=64)
+    config = TrainConfig(iterations=2, n_splats=100, max_splats=100, light="harmonics", reflections=tiny)
+    folder = tmp_path / "glass"
+    photos = write_data_set(folder, n=6)
+    (folder / "points.ply").write_bytes(coloured_ply(BELOW, np.full(POINTS.shape, 99, np.uint8)))
+    alike = train_model(folder, config)
+    assert (alike.record.config.own_exposures, alike.exposures.log_gains.shape[1]) == ("off", 1)
+    assert (alike.exposures.log_gains == 0.0).all()
+    for number, photo in enumerate(photos):
+        cv2.imwrite(str(photo.path), np.rint((0.6 + 0.08 * number) * cv2.imread(str(photo.path))))
+    own = train_model(folder, config)
+    names = [photo.name for photo in read_photo_set(folder).photos]
+    order = [names.index(name) for name in own.record.learned]
+    gains = own.exposures.log_gains.detach().mean(dim=1)
+    assert own.record.config.own_exposures == "on"
+    assert [int(k) for k in torch.argsort(gains)] == np.argsort(order).tolist()
+    save_model(own, tmp_path / "model")
+    back = read_model(tmp_path / "model")
+    assert torch.equal(back.exposures.log_gains, own.exposures.log_gains)
+    off = train_model(folder, replace(config, own_exposures="off"))
+    assert (off.exposures.log_gains == 0.0).all()
