@@ -46,9 +46,10 @@ from reconstruction.coarse.cloud import (
     up_of_cameras,
     up_of_planes,
 )
+from reconstruction.coarse.ground_level import PICTURE_PX, level_of_ground
 from reconstruction.coarse.pairs import PairHint, PairParameters, choose_pairs, likeness_of
 from reconstruction.coarse.placing import NO_CONTROL, Control, Measured, Placed, place_model
-from reconstruction.coarse.walls import BuildingParameters, find_ground
+from reconstruction.coarse.walls import BuildingParameters, Ground, find_ground
 from reconstruction.colmap.folder import Frame, write_frame, write_model
 from reconstruction.colmap.georeference import Similarity, in_enu, posed_photos
 from reconstruction.colmap.pycolmap_run import (
@@ -62,6 +63,7 @@ from reconstruction.colmap.pycolmap_run import (
     transform,
 )
 from reconstruction.colmap.record import NO_POINT, ColmapImage, ColmapModel, quaternion_of
+from reconstruction.photos.decode import Scale, grey_picture
 from reconstruction.photos.lens import CameraKind, lens_of, of_camera
 from reconstruction.photos.poses import DEFAULT_ACCURACY, measured_pose
 
@@ -234,7 +236,8 @@ def build_coarse(
     looked_at = cloud.of(in_ring(cloud.points, cloud.centres, forwards))
     cell = float(np.clip(extent_of(looked_at.points) / 150.0, 0.05, 0.4))
     sizes = BuildingParameters(cell_m=cell, tolerance_m=max(0.04, 0.25 * cell), seed=parameters.seed)
-    buildings = make_buildings(looked_at, sizes, monitor=monitor, around=cloud)
+    ground = _ground(model, taken, looked_at.points, cloud.points, cell, cell, monitor)
+    buildings = make_buildings(looked_at, sizes, ground, monitor, cloud)
     clock.lap("buildings")
     origin, shift = _origin(taken, stated, buildings, cloud)
     model = in_enu(model, Similarity(1.0, np.eye(3), shift))
@@ -564,7 +567,9 @@ def _place(
     cloud = believed(cloud_of(model))
     up = _up(rotations, [taken.metadata[row] for row in rows], measured, cloud, parameters)
     control, findings = _control(model, taken, stated, [image.name for image in images])
-    eyes = _height_of_eyes(cloud, centres, up)
+    n_known = max(len(control.points), sum(one.position_enu_m is not None for one in measured))
+    looked = None if control.distances or n_known > 1 else taken
+    eyes = _height_of_eyes(model, looked, cloud, centres, up)
     placed = place_model(centres, rotations, measured, up, control, eyes, parameters.seed)
     if not math.isfinite(placed.sigma_north_deg) or placed.sigma_north_deg > 90.0:
         placed = replace(placed, enu_from_model=_first_ahead(placed.enu_from_model, rotations, images))
@@ -622,15 +627,46 @@ def _upright_axes(photo: PhotoMetadata) -> tuple[Array, Array]:
     return np.array([a, b, 0.0]), np.array([c, d, 0.0])
 
 
-def _height_of_eyes(cloud: Cloud, centres: Array, up: Up) -> float | None:
-    """Of the usual camera above the ground, in the model's unit; None where no ground was seen."""
+def _height_of_eyes(model: ColmapModel, looked: _Taken | None, cloud: Cloud, centres: Array, up: Up) -> float | None:
+    """Of the usual camera above the ground, in the model's unit; None where no ground was seen.
+
+    Photos are looked at where they are given: where the size hangs on it.
+    """
     if len(cloud) < 30:
         return None
     turn = turn_upright(up.direction)
     points = cloud.points @ turn.T
-    ground = find_ground(points, extent_of(points) / 100.0)
+    cell = extent_of(points) / 100.0
+    upright = in_enu(model, Similarity(1.0, turn, np.zeros(3)))
+    ground = find_ground(points, cell) if looked is None else _ground(upright, looked, points, points, cell, 0.0)
     height = float(np.median((centres @ turn.T)[:, 2])) - ground.z_m
     return height if ground.is_seen and height > 0.0 else None
+
+
+def _ground(
+    model: ColmapModel,
+    taken: _Taken,
+    points: Array,
+    all_points: Array,
+    cell: float,
+    tolerance: float,
+    monitor: Monitor = QUIET,
+) -> Ground:
+    """The lowest wide level of points; or what photos show to be a level ground, where both differ by more."""
+    found = find_ground(points, cell)
+    metadata = dict(zip(taken.names, taken.metadata, strict=True))
+    photos = posed_photos(model, Similarity.identity(), Path())
+    level = level_of_ground(photos, lambda photo: _small(metadata[photo.name]), all_points, found.z_m, monitor=monitor)
+    if level is None or abs(level - found.z_m) <= tolerance:
+        return found
+    return replace(found, z_m=level, slope_deg=0.0, gradient=(0.0, 0.0), is_seen=True)
+
+
+def _small(photo: PhotoMetadata) -> NDArray[np.uint8]:
+    """Grey, of at least `PICTURE_PX`, or whole."""
+    longer = max(photo.width_px, photo.height_px)
+    scales: tuple[Scale, ...] = (8, 4, 2, 1)
+    return grey_picture(photo, next(scale for scale in scales if longer >= scale * PICTURE_PX or scale == 1))
 
 
 def _control(

@@ -6698,6 +6698,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Fassade {0}, vom Erreichbaren</translation>
     </message>
     <message>
+        <source>finding the ground</source>
+        <translation>Boden wird gesucht</translation>
+    </message>
+    <message>
         <source>finding walls</source>
         <translation>Wände werden gesucht</translation>
     </message>
