@@ -18,7 +18,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from planning.base.errors import InputError
 from planning.base.files import open_given
@@ -62,7 +61,8 @@ from reconstruction.colmap.pycolmap_run import (
     load_colmap,
     transform,
 )
-from reconstruction.colmap.record import NO_POINT, ColmapImage, ColmapModel, quaternion_of
+from reconstruction.colmap.receivers import Receiver, placed_by_receivers
+from reconstruction.colmap.record import ColmapModel
 from reconstruction.photos.decode import Scale, grey_picture
 from reconstruction.photos.lens import CameraKind, lens_of, of_camera
 from reconstruction.photos.poses import DEFAULT_ACCURACY, measured_pose
@@ -467,7 +467,8 @@ def _in_place(
     placed, findings = _place(model, taken, stated, parameters)
     model = in_enu(model, placed.enu_from_model)
     if placed.scale_from == "positions" and int(placed.is_used.sum()) >= LEAST_PHOTOS:
-        added = _by_receivers(run, model, placed, fixed, taken, scratch)
+        used = {image.name for image, is_used in zip(model.images.values(), placed.is_used, strict=True) if is_used}
+        added = placed_by_receivers(run, model, _receivers(taken), used, fixed, scratch)
         if added is not None:
             free = added
             model = as_model(free, scratch / "added")
@@ -476,83 +477,12 @@ def _in_place(
     return placed, model, float(free.compute_mean_reprojection_error()), findings
 
 
-LEAST_SEEN = 15
-"""Points of the model that a photo shows which was placed by its receiver: fewer say nothing of it."""
-
-ERRORS_PX = (16.0, 4.0, 4.0)
-"""Of the points of photos placed by their receivers, round by round: before and after these are adjusted."""
-
-
-STAYED = 1.5
-"""Times the largest distance of a photo from its receiver before, within which all remain."""
-
-
-def _by_receivers(
-    run: ColmapRun, model: ColmapModel, placed: Placed, fixed: set[int], taken: _Taken, scratch: Path
-) -> Any | None:
-    """The model with the photos that found no place, or a wrong one, where receiver and gimbal say that they were.
-
-    Plain walls and glass give few matches. They do not suffice to find a photo's place, but to mend it; the gimbal's
-    common error is known from the other photos. None where there is no such photo, or none shows what others show.
-    """
-    row_of = {name: row for row, name in enumerate(taken.names)}
-    images = list(model.images.values())
-    good = [image for image, is_used in zip(images, placed.is_used, strict=True) if is_used]
-    told = [(image, taken.measured[row_of[image.name]].cam_from_enu) for image in good]
-    turns = [image.cam_from_world @ turn.T for image, turn in told if turn is not None]
-    there = {image.name for image in good}
-    lost = [
-        (name, one.cam_from_enu, one)
+def _receivers(taken: _Taken) -> dict[str, Receiver]:
+    return {
+        name: Receiver(one.position_enu_m, one.cam_from_enu)
         for name, one in zip(taken.names, taken.measured, strict=True)
-        if name not in there and one.cam_from_enu is not None and one.position_enu_m is not None
-    ]
-    if not lost or not turns:
-        return None
-    off = Rotation.from_matrix(np.array(turns)).mean().as_matrix()
-    most_m = STAYED * float(np.linalg.norm(placed.residuals_m[placed.is_used], axis=1).max())
-    identities = run.identities()
-    all_images = dict(model.images)
-    receivers = {image.id: taken.measured[row_of[image.name]] for image in good}
-    for name, turn, one in lost:
-        number, camera = identities[name]
-        if camera not in model.cameras:
-            continue
-        receivers[number] = one
-        rotation = off @ turn
-        x, y, z = (-rotation @ np.asarray(one.position_enu_m)).tolist()
-        nothing = np.zeros((0, 2)), np.zeros(0, np.int64)
-        all_images[number] = ColmapImage(number, quaternion_of(rotation), (x, y, z), camera, name, *nothing)
-    found, shown = replace(model, images=all_images), all_images
-    for number, error_px in enumerate(ERRORS_PX):
-        folder = scratch / f"receivers-{number}"
-        added = run.triangulate(replace(found, images=shown), folder, error_px)
-        run.adjust(added, fixed)
-        found = as_model(added, folder / "adjusted")
-        shown = {key: image for key, image in found.images.items() if _is_there(image, receivers.get(key), most_m)}
-        if number == 0:
-            # Where a receiver was wrong alone, the model was right.
-            wrong = {key for key in receivers if key in found.images and _n_seen(found.images[key]) < LEAST_SEEN}
-            shown |= {key: model.images[key] for key in wrong & set(model.images)}
-            receivers = {key: one for key, one in receivers.items() if key not in wrong}
-        elif len(shown) == len(found.images):
-            break
-    else:
-        added = run.triangulate(replace(found, images=shown), scratch / "receivers", ERRORS_PX[-1])
-    return added if len(shown) > len(good) else None
-
-
-def _n_seen(image: ColmapImage) -> int:
-    return int((image.point_ids != NO_POINT).sum())
-
-
-def _is_there(image: ColmapImage, receiver: Measured | None, most_m: float) -> bool:
-    """Whether a photo shows points of the model, and has stayed where its receiver says that it was taken.
-
-    Mirror images pull photos away that show little else.
-    """
-    if _n_seen(image) < LEAST_SEEN:
-        return False
-    return receiver is None or float(np.linalg.norm(image.centre_world - np.asarray(receiver.position_enu_m))) <= most_m
+        if one.position_enu_m is not None
+    }
 
 
 def _place(

@@ -354,6 +354,8 @@ class ColmapRun:
         options.ceres.solver_options.num_threads = n_threads()
         prior_options = self.colmap.PosePriorBundleAdjustmentOptions()
         prior_options.alignment_ransac.random_seed = self.parameters.seed
+        # Points that glass mirrors fit each other in few photos, and pull these away.
+        options.ceres.loss_function_type = self.colmap.LossFunctionType.CAUCHY
         prior_options.ceres.prior_position_loss_function_type = self.colmap.LossFunctionType.CAUCHY
         adjuster = self.colmap.create_pose_prior_ceres_bundle_adjuster(options, prior_options, config, priors, model)
         self._run(say("adjusting all rays"), lambda cancellation_token: adjuster.solve())

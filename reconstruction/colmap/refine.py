@@ -14,6 +14,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,6 +46,7 @@ from reconstruction.colmap.pycolmap_run import (
     load_colmap,
     transform,
 )
+from reconstruction.colmap.receivers import Receiver, placed_by_receivers
 from reconstruction.colmap.record import ColmapImage, ColmapModel, intrinsics_of
 
 Array = NDArray[np.float64]
@@ -396,6 +398,9 @@ def refine_poses(
         if not laid.on_a_line:
             work.adjust(free, fixed_cameras)
         model = as_model(free, Path(name) / "adjusted")
+        added = _added(work, model, photos, fixed_cameras, Path(name))
+        if added is not None:
+            free, model = added, as_model(added, Path(name) / "added")
         error_px = float(free.compute_mean_reprojection_error())
     # The adjustment knows positions alone; the last word on where the model lies is that of positions and angles.
     laid = georeference(model, photos, parameters.seed)
@@ -415,6 +420,18 @@ def refine_poses(
     left_out = tuple(photo.name for photo in photos if photo.name not in found)
     findings = (*laid.findings, *unsure, *_left_out(left_out, len(photos)))
     return Refinement(refined, model, laid, error_px, left_out, findings)
+
+
+def _added(
+    work: ColmapRun, model: ColmapModel, photos: Sequence[PosedPhoto], fixed_cameras: set[int], scratch: Path
+) -> Any | None:
+    """The model with photos that matches put nowhere, or elsewhere than they say; None where there is none to add."""
+    laid = georeference(model, photos, work.parameters.seed)
+    if laid.on_a_line:
+        return None
+    used = {name for name, is_inlier in zip(laid.names, laid.is_inlier.tolist(), strict=True) if is_inlier}
+    receivers = {photo.name: Receiver(photo.pose.position_enu_m, photo.pose.cam_from_enu) for photo in photos}
+    return placed_by_receivers(work, in_enu(model, laid.enu_from_model), receivers, used, fixed_cameras, scratch)
 
 
 def _covariances(

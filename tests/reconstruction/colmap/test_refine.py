@@ -16,6 +16,7 @@ from reconstruction.base.cameras import Intrinsics, PosedPhoto
 from reconstruction.colmap import refine
 from reconstruction.colmap.folder import read_model
 from reconstruction.colmap.georeference import Similarity, angle_between_deg, georeference, posed_photos
+from reconstruction.colmap.pycolmap_run import ColmapRun
 from reconstruction.colmap.refine import RefineParameters, _covariances, refine_poses
 from tests.reconstruction.colmap.models import covariance, model, photos, turned
 
@@ -86,6 +87,31 @@ def test_neighbours_suffice_and_a_calibrated_lens_stays(folder):
     assert {photo.intrinsics for photo in found.photos} == {lens}
     for photo, true in zip(found.photos, truth, strict=True):
         assert np.linalg.norm(photo.pose.position_enu_m - true.pose.position_enu_m) < 4.0 * SIGMA_M
+
+
+@pytest.mark.slow
+def test_photos_that_matches_put_nowhere_or_far_away_are_tried_where_they_say_that_they_were(folder, monkeypatch):
+    given, truth = start(folder, 12)
+    free_model = ColmapRun.map
+
+    def spoiled(run, fixed_cameras):
+        found = free_model(run, fixed_cameras)
+        names = {found.image(number).name: number for number in found.reg_image_ids()}
+        for photo in given[4:6]:
+            found.deregister_frame(found.image(names[photo.name]).frame_id)
+        away = found.frame(found.image(names[given[8].name]).frame_id)
+        pose = away.rig_from_world
+        away.rig_from_world = type(pose)(pose.rotation, pose.translation + [3.0, 0.0, 0.0])
+        return found
+
+    monkeypatch.setattr(ColmapRun, "map", spoiled)
+    found = refine_poses(given, folder, RefineParameters(max_image_size_px=400, max_features=1500))
+    assert found.left_out == ()
+    off = np.array(
+        [photo.pose.position_enu_m - true.pose.position_enu_m for photo, true in zip(found.photos, truth, strict=True)]
+    )
+    assert np.linalg.norm(off - off.mean(axis=0), axis=1).max() < 1.5 * SIGMA_M
+    assert not [finding for finding in found.findings if finding.code in ("photos-not-refined", "positions-contradict")]
 
 
 @pytest.mark.slow
