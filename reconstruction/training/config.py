@@ -165,6 +165,8 @@ class TrainConfig:
     light_apart
         Whether light that is learned apart from the splats is worth it: `start.LightApart`. On, rays of glass alone
         decide which; off, nothing is tried.
+    points_for_mesh
+        Whether splats begin on points in the place of a mesh that these do not lie on: `surfels.PointsForMesh`.
     start_from
         With `points`, no mesh and no ground are known, and panels to methods alone that know panels. Points on glass
         are left out: photogrammetry finds none there that is where it seems.
@@ -203,6 +205,7 @@ class TrainConfig:
     overexposed: EffectSetting = "auto"
     own_exposures: EffectSetting = "auto"
     light_apart: EffectSetting = "auto"
+    points_for_mesh: EffectSetting = "auto"
     start_from: StartFrom = "surfaces"
     n_splats: int = parameter(12_000, least=1)
     max_splats: int = parameter(30_000, least=1)

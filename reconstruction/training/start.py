@@ -35,7 +35,7 @@ from reconstruction.splats.ply import read_splats
 from reconstruction.splats.rasterising.views import View
 from reconstruction.splats.sky import Sky
 from reconstruction.splats.splats import NO_PANEL, Splats, splats_from_tensors, splats_to_tensors
-from reconstruction.splats.surfels import known_scene, model_origin, points_alone
+from reconstruction.splats.surfels import begun_on_points, known_scene, model_origin, points_alone
 from reconstruction.training.callbacks import Callbacks, HeldOut
 from reconstruction.training.config import TrainConfig
 from reconstruction.training.methods.shader import Shader
@@ -373,8 +373,12 @@ def start_model(
     else:
         parameters = InitialParameters(n_splats=config.n_splats, seed=config.seed)
         if config.start_from == "points":
-            scene = points_alone(scene, source.folder, knows_panels=config.trained_by.knows_panels)
-        splats = initial_splats(scene, learned, origin, parameters, source.picture, monitor)
+            start = points_alone(scene, source.folder, knows_panels=config.trained_by.knows_panels)
+        else:
+            places = np.array([photo.pose.position_enu_m for photo in learned])
+            start, on_points = begun_on_points(scene, places, config.points_for_mesh)
+            decisions += () if on_points is None else (on_points,)
+        splats = initial_splats(start, learned, origin, parameters, source.picture, monitor)
     light: TrainedReflections | None = None
     shader: Shader | None = None
     if begun is None and config.trained_by.knows_panels:

@@ -16,6 +16,9 @@ from planning.base.jit import n_threads
 
 SHARED_DATA = Path(__file__).resolve().parents[3] / "shared" / "data"
 
+DATA_VARIABLE = "REFLIGHT_DATA"
+"""Of the environment: further folders with real input data, as in a search path."""
+
 
 class Skipped(Exception):  # noqa: N818  (the name says what happened)
     """The benchmark cannot run here; the message says what is missing."""
@@ -65,10 +68,11 @@ class Context:
         Skipped
             It is not on this machine.
         """
-        found = SHARED_DATA / path
-        if not found.exists():
-            raise Skipped(f"the real input data ({path}) is not on this machine")
-        return found
+        more = [Path(each) for each in os.environ.get(DATA_VARIABLE, "").split(os.pathsep) if each]
+        for folder in (SHARED_DATA, *more):
+            if (folder / path).exists():
+                return folder / path
+        raise Skipped(f"the real input data ({path}) is not on this machine")
 
 
 @dataclass(frozen=True, slots=True)

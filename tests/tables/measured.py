@@ -1,4 +1,4 @@
-"""Table 1, Fig. 14, and what Table 2 depends on, of what `tests.benchmarks` has measured last."""
+"""Table 1, Fig. 14, what Table 2 depends on, and real photos, of what `tests.benchmarks` has measured last."""
 
 from __future__ import annotations
 
@@ -57,6 +57,39 @@ def gap_section(folder: Path) -> Iterator[str]:
     if not rows:
         yield "| not run | | |"
     yield ""
+
+
+SCORES = ("PSNR", "SSIM", "LPIPS")
+
+
+def real_section(folder: Path) -> Iterator[str]:
+    """Lines of the page on methods with real photos; `folder` as above."""
+    rows = {key: row for key, row in _rows(folder / BENCHMARKS / "real-photos.csv").items() if "against" not in key[1]}
+    sets = [scene for scene in dict.fromkeys(scene for scene, _ in rows) if (scene, "skipped") not in rows]
+    yield "## Methods on real photos\n"
+    yield (
+        "Not in the paper, whose own photos are not published. Photos that were held out of a real glass wall, on its "
+        "facade, and of two buildings from photos alone, without panels: whole pictures. RefGlass-GS needs panels. As "
+        "much processor time for each. "
+        "[benchmarks.md](benchmarks.md#models-of-real-photos), `python -m tests.benchmarks --only real-photos`\n"
+    )
+    if not sets:
+        yield "Not run.\n"
+        return
+    yield f"| | {' | '.join(f'{scene}: {SCORES[0]} | {SCORES[1]} | {SCORES[2]}' for scene in sets)} |"
+    yield "| --- |" + " ---: |" * len(SCORES) * len(sets)
+    for method in dict.fromkeys(what for _, what in rows if what != "skipped"):
+        cells = [cell for scene in sets for cell in _scores(rows.get((scene, method), {}))]
+        yield f"| {method} | {' | '.join(cells)} |"
+    yield ""
+
+
+def _scores(row: Mapping[str, str]) -> list[str]:
+    """PSNR, SSIM and LPIPS of a method on a set, as far as they were measured."""
+    if row.get("unit") != "dB":
+        return [row.get("value", "not run"), "", ""]
+    found = [re.search(rf"{name} ([\d.]+)", row["against"]) for name in SCORES[1:]]
+    return [f"{float(row['value']):.2f}", *("" if each is None else each[1] for each in found)]
 
 
 def _rows(path: Path) -> Rows:

@@ -10,7 +10,7 @@ from typing import Literal
 
 from reconstruction.training.method_registry import METHODS
 from tests.tables.definitions import Above, Table
-from tests.tables.measured import gap_section, measured_sections
+from tests.tables.measured import gap_section, measured_sections, real_section
 from tests.tables.results import Result, of_case, older_of_case
 from tests.tables.scales import Scale
 from tests.tables.trainings import LEAST_GLASS, Case
@@ -24,6 +24,9 @@ OF_WHAT: dict[Score, str] = {"psnr_db": "", "glass_db": ", on glass alone"}
 
 OLDER = "older settings"
 """Of a row that was not made again after something of its settings was changed."""
+
+METHODS_TABLE = "3"
+"""What real photos stand beside."""
 
 PICTURES = "tables"
 """Folder beside the page."""
@@ -55,6 +58,8 @@ def write_page(path: Path, tables: Sequence[Table], scale: Scale, results: Seque
         parts.append("\n".join(_section(table, scale, results, path.parent / PICTURES)))
         if table.compares_plans:
             parts.append("\n".join(gap_section(path.parent)))
+        if table.number == METHODS_TABLE:
+            parts.append("\n".join(real_section(path.parent)))
     path.write_text("\n".join(parts), "utf-8")
 
 

@@ -6,6 +6,7 @@ import pytest
 from tests.tables import trainings
 from tests.tables.__main__ import main
 from tests.tables.definitions import Above, tables
+from tests.tables.measured import real_section
 from tests.tables.page import gap_db, write_page
 from tests.tables.results import Result, keep, of_case, read_results
 from tests.tables.scales import PAPER, SCALES, SMALL, SMOKE
@@ -108,6 +109,27 @@ def test_what_benchmarks_measured_stands_beside_the_paper_s_numbers(tmp_path):
     assert "| Coverage, 5 % | 0.7500 | 50 | 1.0000 | 1.0000 |" in text
     assert "| Overall mIoU | not run |  | 0.9871 | 0.7316 |" in text
     assert "| 100 | 77.2 % |  |  |  |" in text
+
+
+def test_real_photos_have_a_row_for_each_method_and_columns_for_each_set_that_is_there(tmp_path):
+    assert "Not run." in "\n".join(real_section(tmp_path))
+    (tmp_path / "benchmarks").mkdir()
+    rows = (
+        "scene,what,value,unit,ratio,against,target,met,seeds\n"
+        'wall,2DGS,19.53,dB,,"whole pictures 19.82 dB; facades SSIM 0.678, LPIPS 0.389, FLIP 0.310; 9 steps",,,1\n'
+        'wall,ours,19.4,dB,,"whole pictures 19.74 dB; facades SSIM 0.668, FLIP 0.316; 9 steps",,,1\n'
+        "wall,ours against 2DGS,-0.13,dB,,,no more than 0.2 dB below,True,1\n"
+        'castle,2DGS,17.0,dB,,"whole pictures 17.00 dB; facades SSIM 0.8; 9 steps",,,1\n'
+        "castle,ours,not run,,,no panels,,,1\n"
+        "door,skipped,not run,,,it is not on this machine,,,1\n"
+    )
+    (tmp_path / "benchmarks" / "real-photos.csv").write_text(rows, "utf-8")
+    text = "\n".join(real_section(tmp_path))
+    assert "| | wall: PSNR | SSIM | LPIPS | castle: PSNR | SSIM | LPIPS |" in text
+    assert "| 2DGS | 19.53 | 0.678 | 0.389 | 17.00 | 0.8 |  |" in text
+    assert "| ours | 19.40 | 0.668 |  | not run |  |  |" in text
+    assert "door" not in text
+    assert "against" not in text
 
 
 @pytest.mark.slow

@@ -84,7 +84,7 @@ class Case:
         settings = asdict(config)
         if config.start_from == "surfaces":
             del settings["start_from"]  # as all did before there was a choice
-        for effect in ("own_exposures", "light_apart"):
+        for effect in ("own_exposures", "light_apart", "points_for_mesh"):
             if settings[effect] == "auto":
                 del settings[effect]  # these scenes' photos are exposed alike, and their mirror images are clear
         if not config.trained_by.knows_panels:

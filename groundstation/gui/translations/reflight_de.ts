@@ -7214,6 +7214,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>der Scheiben oder des Glases</translation>
     </message>
     <message>
+        <source>of the points</source>
+        <translation>der Punkte</translation>
+    </message>
+    <message>
         <source>of what can be covered</source>
         <translation>vom Erreichbaren</translation>
     </message>
@@ -7480,6 +7484,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>splats</source>
         <translation>Splats</translation>
+    </message>
+    <message>
+        <source>splats begin on points, not on the mesh</source>
+        <translation>Splats beginnen auf Punkten, nicht auf dem Netz</translation>
     </message>
     <message>
         <source>spread of the gains&apos; logarithms</source>
@@ -7770,6 +7778,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>es gibt keine Einträge zu schreiben</translation>
     </message>
     <message>
+        <source>there are too few points ({0})</source>
+        <translation>es gibt zu wenige Punkte ({0})</translation>
+    </message>
+    <message>
         <source>there is no point {0}</source>
         <translation>es gibt keinen Punkt {0}</translation>
     </message>
@@ -7824,6 +7836,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>{0} % of the pixels are next to white</source>
         <translation>{0} % der Pixel sind fast weiß</translation>
+    </message>
+    <message>
+        <source>{0} % of the points lie more than {1} m off the mesh</source>
+        <translation>{0} % der Punkte liegen mehr als {1} m neben dem Netz</translation>
     </message>
     <message>
         <source>{0} bytes of the log are no messages and were skipped</source>

@@ -12,7 +12,8 @@ filter that these have compiled in is laid far outside the picture.
 Differences from the other rasterisers that its compiled kernels fix: alpha up to 0.999, the splat that would close a
 pixel is left out, the low-pass filter lies in the middle of the disc's box, discs end at three standard deviations, and
 gradients are added up in any order. Settings other than `low_pass_px`, `blur_px`, `min_alpha` and `near_m` have no
-effect; the first and the third cannot be changed.
+effect; the first and the third cannot be changed. Where its 2DGS part has no kernel for so many channels, it fills them
+up with memory as it finds it, and what is no number there makes gradients none: here they are filled up with zeros.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from dataclasses import dataclass, replace
 
 import torch
 from torch import Tensor
+from torch.nn import functional
 
 from planning.base.errors import InputError
 from planning.base.messages import say
@@ -257,6 +259,8 @@ def _moved(seen: _Seen, offsets: Tensor) -> _Seen:
 
 def _blend(channels: Tensor, opacities: Tensor, seen: _Seen, view: View) -> tuple[Tensor, Tensor]:
     """Channels, shape (n, c), and alphas of all splats as pictures, shapes (h, w, c) and (h, w)."""
+    n_channels = channels.shape[1]
+    channels = filled_up(channels)
     from gsplat import isect_offset_encode, isect_tiles, rasterize_to_pixels, rasterize_to_pixels_2dgs
 
     n_columns, n_rows = -(-view.width_px // TILE_PX), -(-view.height_px // TILE_PX)
@@ -272,7 +276,13 @@ def _blend(channels: Tensor, opacities: Tensor, seen: _Seen, view: View) -> tupl
         densify = torch.zeros_like(seen.centres_px)
         circles = seen.centres_px if seen.has_low_pass else torch.full_like(seen.centres_px, FAR_PX)
         picture, alphas, *_ = rasterize_to_pixels_2dgs(circles, seen.shapes, *colours, seen.normals, densify, *of_tiles)
-    return picture[0], alphas[0, ..., 0]
+    return picture[0, ..., :n_channels], alphas[0, ..., 0]
+
+
+def filled_up(channels: Tensor) -> Tensor:
+    """Channels, shape (n, c), and zeros up to the next power of two, of which gsplat has kernels."""
+    missing = (1 << (channels.shape[1] - 1).bit_length()) - channels.shape[1]
+    return functional.pad(channels, (0, missing))
 
 
 def plane_channels(means: Tensor, quats_wxyz: Tensor, view: View) -> Tensor:

@@ -101,7 +101,7 @@ def test_photos_that_matches_put_nowhere_or_far_away_are_tried_where_they_say_th
             found.deregister_frame(found.image(names[photo.name]).frame_id)
         away = found.frame(found.image(names[given[8].name]).frame_id)
         pose = away.rig_from_world
-        away.rig_from_world = type(pose)(pose.rotation, pose.translation + [3.0, 0.0, 0.0])
+        away.rig_from_world = type(pose)(pose.rotation, pose.translation + np.array([3.0, 0.0, 0.0]))
         return found
 
     monkeypatch.setattr(ColmapRun, "map", spoiled)

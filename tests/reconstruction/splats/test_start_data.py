@@ -10,7 +10,7 @@ from reconstruction.colmap.record import ColmapModel, ColmapPoints
 from reconstruction.dataset.records import coloured_ply
 from reconstruction.light.photo_set import PanelPlanes, PhotoSet
 from reconstruction.splats.ply import write_blocks
-from reconstruction.splats.surfels import KnownScene, known_scene, points_alone, read_points
+from reconstruction.splats.surfels import KnownScene, begun_on_points, known_scene, points_alone, read_points
 
 XYZ = np.array([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]])
 RGB = np.array([[10, 20, 30], [40, 50, 60]], np.uint8)
@@ -91,3 +91,54 @@ def test_a_start_at_points_needs_some_away_from_glass(points):
     scene = KnownScene(PANEL, from_corners(np.ones((1, 3, 3))), points, np.zeros((len(points), 3), np.uint8), 0.0)
     with pytest.raises(InputError, match=f"here: of {len(points)} points of photogrammetry none is away from glass"):
         points_alone(scene, Path("here"), knows_panels=True)
+
+
+CAMERAS = np.array([[2.0, -10.0, 1.6], [8.0, -10.0, 1.6]])
+
+
+def wall_with_niche(share, n=2000, panels=PANEL[:0]):
+    """A wall of 10 x 4 m as a mesh, points spread over it, and points of photos, a share of them 0.8 m behind it."""
+    rng = np.random.default_rng(0)
+    a, b, c, d = [0.0, 0, 0], [10.0, 0, 0], [10.0, 0, 4], [0.0, 0, 4]
+    mesh = from_corners(np.array([[a, b, c], [a, c, d]]))
+    x, z = rng.uniform(0.0, 10.0, 2 * n), rng.uniform(0.0, 4.0, 2 * n)
+    depths = np.where(rng.random(2 * n) < share, 0.8, np.clip(np.abs(rng.normal(0.0, 0.01, 2 * n)), 0.002, 0.04))
+    depths[n:] = 0.0
+    points = np.column_stack([x, depths, z])
+    return KnownScene(panels, mesh, points, np.full(points.shape, 90, np.uint8), 0.0)
+
+
+def test_splats_begin_on_points_where_these_do_not_lie_on_the_mesh():
+    scene, decision = begun_on_points(wall_with_niche(0.6), CAMERAS)
+    assert decision.on
+    assert decision.size == pytest.approx(0.6, abs=0.03)
+    assert len(scene.mesh.triangles) == 0
+    assert len(scene.points_enu_m) == len(scene.rgb) == 2000
+    assert scene.points_enu_m[:, 1].min() > 0.0  # none that was spread over the mesh
+    assert scene.ground_z_m == 0.0
+
+
+@pytest.mark.parametrize(("share", "n"), [(0.1, 2000), (0.6, 300)])
+def test_a_mesh_that_points_lie_on_is_kept_and_one_that_few_contradict(share, n):
+    given = wall_with_niche(share, n)
+    scene, decision = begun_on_points(given, CAMERAS)
+    assert not decision.on
+    assert scene is given
+    asked, decision = begun_on_points(given, CAMERAS, "on")
+    assert decision.on
+    assert decision.decided_by == "user"
+    assert len(asked.mesh.triangles) == 0
+
+
+def test_where_glass_is_known_its_mesh_hides_mirror_images():
+    given = wall_with_niche(0.6, panels=PANEL)
+    assert begun_on_points(given, CAMERAS, "on") == (given, None)
+    alone = KnownScene(PANEL[:0], from_corners(np.zeros((0, 3, 3))), given.points_enu_m, given.rgb)
+    assert begun_on_points(alone, CAMERAS) == (alone, None)
+
+
+def test_an_asked_for_mesh_is_begun_on_whatever_points_say():
+    given = wall_with_niche(0.9)
+    scene, decision = begun_on_points(given, CAMERAS, "off")
+    assert scene is given
+    assert not decision.on

@@ -14,6 +14,7 @@ from planning.base.errors import InputError
 from reconstruction.splats.rasterising.gsplat_backend import (
     accumulated_weights,
     boxes_of,
+    filled_up,
     heaviest_labels,
     plane_channels,
     plane_depths,
@@ -120,6 +121,18 @@ def test_boxes_of_discs_that_reach_behind_the_camera_are_the_whole_picture() -> 
     assert (middles + halves >= torch.tensor([48.0, 24.0])).all()
 
 
+@pytest.mark.parametrize(("n_channels", "n_filled"), [(1, 1), (2, 2), (3, 4), (15, 16), (16, 16), (33, 64)])
+def test_channels_are_filled_up_with_zeros_to_a_power_of_two(n_channels: int, n_filled: int) -> None:
+    channels = torch.rand(5, n_channels, requires_grad=True)
+    filled = filled_up(channels)
+    assert filled.shape == (5, n_filled)
+    assert torch.equal(filled[:, :n_channels], channels)
+    assert not filled[:, n_channels:].any()
+    filled.sum().backward()
+    assert channels.grad is not None
+    assert torch.equal(channels.grad, torch.ones_like(channels))
+
+
 @pytest.mark.skipif(why_not_gsplat() == "", reason="gsplat works here")
 def test_without_cuda_or_gsplat_the_message_says_so() -> None:
     view = turned_view()
@@ -158,6 +171,19 @@ def test_gsplat_s_raster_is_the_defined_one(made: Callable[..., MadeSplats], is_
     assert float((raster.labels.cpu() != truth.labels).float().mean()) < 0.02
     for a, b in zip((*inputs, offsets), (*truth_inputs, truth_offsets), strict=True):
         assert relative_error(a.grad.cpu(), b.grad) < 0.1
+
+
+@on_cuda
+@pytest.mark.parametrize("n_channels", [3, 11])
+def test_what_memory_held_before_does_not_reach_gradients(n_channels: int) -> None:
+    view = turned_view(64, 48, 50.0)
+    inputs = [t.float().cuda().requires_grad_() for t in random_splats(200, view, 3, channels=n_channels).tensors]
+    for size in (200, 1600, 3200, 1 << 22):
+        held = [torch.full((size,), math.nan, device="cuda") for _ in range(20)]
+        del held
+    raster = rasterise(*inputs, view)
+    (raster.features.sum() + raster.alphas.sum() + raster.depths.sum()).backward()
+    assert all(bool(t.grad.isfinite().all()) for t in inputs if t.grad is not None)
 
 
 @on_cuda
