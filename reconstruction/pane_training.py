@@ -1,10 +1,11 @@
 r"""Training the network for panes.
 
-    python -m reconstruction.pane_training --pool POOL --glass FOLDER --offices FOLDER --minutes 120 \
+    python -m reconstruction.pane_training --pool POOL --glass FOLDER --offices FOLDER --gathered FILE --minutes 120 \
         --out reconstruction/panels/network/data/panes.safetensors
 
 It learns from pictures made by chance, which POOL keeps, from traced facades, and from every second photo of two sets
-whose licence allows it; the other photos are left to measure with. docs/concepts/segmentation.md has its data card.
+whose licence allows it; the other photos are left to measure with. FILE keeps facades and photos: where it is there
+already, the folders are not needed. docs/concepts/segmentation.md has its data card.
 
     python -m reconstruction.pane_training --glass FOLDER --offices FOLDER \
         --confidence reconstruction/panels/network/data/confidence.json
@@ -20,10 +21,18 @@ from collections.abc import Iterator
 from itertools import chain, islice
 from pathlib import Path
 
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
 from reconstruction.metrics.sets import PhotoSet, annotated_set, folder_set, made_set
 from reconstruction.panels.network.calibration import Source, calibrated, write_regressions
+from reconstruction.panels.network.crops import Bank
+from reconstruction.panels.network.network import LARGE, SMALL
+from reconstruction.panels.network.pool import MADE_PX, PER_FILE, Pool, read_gathered, write_gathered
 from reconstruction.panels.network.random_pictures import MadePicture, made_picture
-from reconstruction.panels.network.training import LONGEST_PX, PER_FILE, learned_photo, make_pool, read_pool, train
+from reconstruction.panels.network.training import FIRST_PICTURES, SOURCES, Wanted, train
+from reconstruction.panels.search.cells import from_lower_left
 from reconstruction.scenes.facades.cases import wide_camera
 
 FIRST_SEED = 100_000
@@ -43,8 +52,49 @@ KINDS = ("made-planar", "made-curved")
 
 def _learned(photos: PhotoSet, every: int = 1) -> Iterator[MadePicture]:
     for photo in islice(photos.photos(), 0, None, every):
-        for longest_px in LONGEST_PX:
-            yield learned_photo(photo.image, photo.index, longest_px)
+        yield learned_photo(photo.image, photo.index)
+
+
+LONGEST_PX = 1280
+"""Size of a photo that is learned from."""
+
+
+def learned_photo(
+    photo: NDArray[np.uint8],
+    truth: NDArray[np.uint16],
+    longest_px: int = LONGEST_PX,
+) -> MadePicture:
+    """A photo, shape (h, w, 3), and its panes' numbers, shape (h, w), as a picture of that size to learn from.
+
+    Corners of panes that its border cuts are not known.
+    """
+    scale = min(1.0, longest_px / max(truth.shape))
+    size = round(truth.shape[1] * scale), round(truth.shape[0] * scale)
+    image = np.asarray(cv2.resize(photo, size, interpolation=cv2.INTER_AREA), np.uint8)
+    index = np.asarray(cv2.resize(truth, size, interpolation=cv2.INTER_NEAREST_EXACT), np.uint16)
+    corners = np.full((int(index.max(initial=0)), 4, 2), np.nan, np.float32)
+    for number in range(1, len(corners) + 1):
+        corners[number - 1] = _corners(index == number)
+    return MadePicture(image, index, corners)
+
+
+def _corners(mask: NDArray[np.bool_]) -> NDArray[np.float32]:
+    """Corners of an area, shape (4, 2), NaN where it touches the picture's border or is no quadrilateral."""
+    unknown = np.full((4, 2), np.nan, np.float32)
+    rows, columns = np.nonzero(mask.any(axis=1))[0], np.nonzero(mask.any(axis=0))[0]
+    if len(rows) < 3 or len(columns) < 3:
+        return unknown
+    if rows[0] == 0 or columns[0] == 0 or rows[-1] == mask.shape[0] - 1 or columns[-1] == mask.shape[1] - 1:
+        return unknown
+    outlines, _ = cv2.findContours(mask.astype(np.uint8), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
+    outline = max(outlines, key=cv2.contourArea)
+    quad = cv2.approxPolyN(cv2.convexHull(outline), 4).reshape(-1, 2).astype(np.float32)
+    if len(quad) != 4 or cv2.contourArea(quad) > 1.25 * max(cv2.contourArea(outline), 1.0):
+        return unknown
+    off = quad - quad.mean(axis=0)
+    # Counter-clockwise as seen, y downwards.
+    ordered = quad[np.argsort(-np.arctan2(off[:, 1], off[:, 0]))].astype(float)
+    return np.asarray(from_lower_left(ordered + 0.5, np.array([0.0, -1.0])), np.float32)
 
 
 CALIBRATED_PX = 512
@@ -85,10 +135,13 @@ def main() -> None:
     parser.add_argument("--pool", type=Path, help="folder that made pictures are kept in")
     parser.add_argument("--pictures", type=int, default=3000, help="how many of them")
     parser.add_argument("--processes", type=int, default=2, help="that make them side by side")
+    parser.add_argument("--gathered", type=Path, help="file that keeps traced facades and photos")
     parser.add_argument("--traced", type=int, default=40, help="traced facades of each kind")
     parser.add_argument("--glass", type=Path, help="folder with photos/ and truth/ of a curtain wall")
     parser.add_argument("--offices", type=Path, help="folder of the set of offices at night")
-    parser.add_argument("--minutes", type=float, default=120.0, help="how long to learn, on one core")
+    parser.add_argument("--minutes", type=float, default=120.0, help="how long to learn")
+    parser.add_argument("--device", choices=["cpu", "cuda"], default="cpu", help="one core, or a graphics card")
+    parser.add_argument("--large", action="store_true", help="train the larger network, which takes twice as long")
     parser.add_argument("--start", type=Path, help="weights to go on from")
     parser.add_argument("--seed", type=int, default=0)
     options = parser.parse_args()
@@ -98,18 +151,29 @@ def main() -> None:
         glass = folder_set(options.glass / "photos", options.glass / "truth")
         calibrate(glass, annotated_set("offices", options.offices), options.confidence)
         return
-    if options.pool is None:
-        parser.error("--out needs --pool")
-    made = read_pool(make_pool(options.pool, options.pictures, options.processes))
+    if options.pool is None or options.gathered is None:
+        parser.error("--out needs --pool and --gathered")
+    with Pool(options.pool, options.pictures, options.processes) as pool:
+        if not options.gathered.exists():
+            write_gathered(_sources(options), options.gathered)
+        bank = Bank(options.device, SOURCES, options.pictures * MADE_PX**2)
+        for source, pictures in enumerate(read_gathered(options.gathered), 1):
+            bank.add(pictures, source)
+            _tell(f"{len(pictures)} {('traced facades', 'photos')[source - 1]}")
+        bank.add(pool.arrived(least=FIRST_PICTURES), 0)
+        network = Wanted(options.out, LARGE if options.large else SMALL, options.start)
+        train(bank, options.minutes, [network], options.seed, pool.arrived, _tell)
+
+
+def _sources(options: argparse.Namespace) -> tuple[list[MadePicture], list[MadePicture]]:
+    """Traced facades and photos."""
     photos: list[MadePicture] = []
     if options.glass is not None:
         glass = folder_set(options.glass / "photos", options.glass / "truth")
         photos += list(_learned(glass, EVERY_SECOND))
     if options.offices is not None:
         photos += _learned(annotated_set("offices", options.offices), EVERY_SECOND)
-    sources = made, traced_facades(options.traced), photos
-    _tell(f"{len(made)} made pictures, {len(sources[1])} traced facades, {len(photos)} photos")
-    train(sources, options.minutes, options.out, options.start, options.seed, _tell)
+    return traced_facades(options.traced), photos
 
 
 def _tell(text: str) -> None:

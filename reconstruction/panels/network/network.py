@@ -8,6 +8,8 @@ that a tree stands before: `votes.py` lets them vote.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import cache
 from importlib import resources
 
@@ -26,11 +28,41 @@ OFFSET_PX = 32.0
 MULTIPLE_PX = 32
 """Pictures are padded to a multiple of it."""
 
-WIDTHS = (16, 32, 64, 96, 128)
-"""Channels at a half, a quarter, ... a 32nd of the picture."""
 
-FINE = 40
-"""Channels at a quarter of the picture on the way back."""
+@dataclass(frozen=True, slots=True)
+class Shape:
+    """How large the network is.
+
+    Parameters
+    ----------
+    widths
+        Channels at a half, a quarter, ... a 32nd of the picture.
+    fine
+        Channels at a quarter of the picture on the way back.
+    residuals
+        Pairs of convolutions that are added, at an 8th, a 16th and a 32nd.
+    """
+
+    widths: tuple[int, ...] = (16, 32, 64, 96, 128)
+    fine: int = 40
+    residuals: tuple[int, int, int] = (0, 1, 2)
+
+    @classmethod
+    def of(cls, weights: Mapping[str, Tensor]) -> Shape:
+        """The shape of stored weights."""
+        levels = range(5)
+        widths = [next(v for k, v in weights.items() if k.startswith(f"down.{i}.") and v.dim() == 4) for i in levels]
+        inner = [key.split(".") for key in weights if ".body." in key]
+        body = [{key[2] for key in inner if key[1] == str(i)} for i in levels]
+        return cls(
+            tuple(len(each) for each in widths),
+            weights["head.weight"].shape[1],
+            (len(body[2]), len(body[3]), len(body[4])),
+        )
+
+
+SMALL, LARGE = Shape(), Shape((16, 40, 96, 160, 208), 48, (1, 2, 2))
+"""Shapes that are trained: the second has three times the weights and takes twice as long."""
 
 WEIGHTS = "panes.safetensors"
 
@@ -58,23 +90,24 @@ class PaneNetwork(nn.Module):
     and upper left corner from the place, in units of `OFFSET_PX`.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, shape: Shape = SMALL) -> None:
         super().__init__()
-        a, b, c, d, e = WIDTHS
+        (a, b, c, d, e), fine = shape.widths, shape.fine
+        at_8th, at_16th, at_32nd = shape.residuals
         self.down = nn.ModuleList(
             [
                 _convolution(3, a, 2),
                 nn.Sequential(_convolution(a, b, 2), _convolution(b, b)),
-                nn.Sequential(_convolution(b, c, 2), _convolution(c, c)),
-                nn.Sequential(_convolution(c, d, 2), _Residual(d)),
-                nn.Sequential(_convolution(d, e, 2), _Residual(e), _Residual(e)),
+                nn.Sequential(_convolution(b, c, 2), _convolution(c, c), *(_Residual(c) for _ in range(at_8th))),
+                nn.Sequential(_convolution(c, d, 2), *(_Residual(d) for _ in range(at_16th))),
+                nn.Sequential(_convolution(d, e, 2), *(_Residual(e) for _ in range(at_32nd))),
             ]
         )
         # Narrowed where there are few places, and added: at a quarter of the picture each channel is dear.
-        self.narrow = nn.ModuleList([nn.Conv2d(e, d, 1), nn.Conv2d(d, c, 1), nn.Conv2d(c, FINE, 1)])
-        self.aside = nn.ModuleList([nn.Conv2d(d, d, 1), nn.Conv2d(c, c, 1), nn.Conv2d(b, FINE, 1)])
-        self.up = nn.ModuleList([_convolution(d, d), _convolution(c, c), _convolution(FINE, FINE)])
-        self.head = nn.Conv2d(FINE, 9, 1)
+        self.narrow = nn.ModuleList([nn.Conv2d(e, d, 1), nn.Conv2d(d, c, 1), nn.Conv2d(c, fine, 1)])
+        self.aside = nn.ModuleList([nn.Conv2d(d, d, 1), nn.Conv2d(c, c, 1), nn.Conv2d(b, fine, 1)])
+        self.up = nn.ModuleList([_convolution(d, d), _convolution(c, c), _convolution(fine, fine)])
+        self.head = nn.Conv2d(fine, 9, 1)
 
     def forward(self, pictures: Tensor) -> Tensor:
         """What each place says."""
@@ -86,7 +119,8 @@ class PaneNetwork(nn.Module):
         for narrow, aside, step, finer in zip(self.narrow, self.aside, self.up, reversed(layers[1:-1]), strict=True):
             wider = functional.interpolate(narrow(x), scale_factor=2.0, mode="nearest")
             x = step(wider + aside(finer))
-        return torch.as_tensor(self.head(x))
+        with torch.autocast(x.device.type, enabled=False):  # where a corner is needs more than half precision
+            return torch.as_tensor(self.head(x.float()))
 
 
 def as_input(image: Picture) -> Tensor:
@@ -100,8 +134,8 @@ def as_input(image: Picture) -> Tensor:
 @cache
 def network() -> PaneNetwork:
     """The network with the weights that come with the program."""
-    loaded = PaneNetwork()
     stored = load((resources.files(__package__) / "data" / WEIGHTS).read_bytes())
+    loaded = PaneNetwork(Shape.of(stored))
     loaded.load_state_dict({name: value.float() for name, value in stored.items()})
     return loaded.eval()
 

@@ -25,6 +25,9 @@ TEXTURE_PX = 640
 MOST_SHEAR_DEG = 68.0
 """A facade is seen from so far to the side at most."""
 
+AT_NIGHT = 0.14
+"""Share of pictures at night: rooms are lit, and little else is."""
+
 LEAST_PANE_PX = 4.0
 """Panes whose shorter side is below it are no truth: nobody could point at them."""
 
@@ -53,12 +56,15 @@ def made_picture(seed: int, size_px: int = 384) -> MadePicture:
     """A square picture with one to three facades; the same seed gives the same picture."""
     rng = np.random.default_rng([seed, 20_261])
     picture = _backdrop(rng, size_px)
+    is_night = rng.random() < AT_NIGHT
+    if is_night:
+        picture *= np.float32(rng.uniform(0.02, 0.25))
     index = np.zeros((size_px, size_px), np.uint16)
     corners: list[Array] = []
     close_up = rng.random() < 0.35
     n_facades = 1 if close_up else int(rng.choice([1, 2, 3], p=[0.55, 0.35, 0.1]))
     for _ in range(n_facades):
-        facade = _facade(rng, close_up)
+        facade = _facade(rng, close_up, is_night)
         homography = _view(rng, facade, size_px, close_up)
         _place(rng, picture, index, corners, facade, homography)
     _before(rng, picture)
@@ -177,7 +183,7 @@ class _Cells:
     is_glazed: NDArray[np.bool_]
 
 
-def _facade(rng: np.random.Generator, close_up: bool) -> _Facade:
+def _facade(rng: np.random.Generator, close_up: bool, is_night: bool) -> _Facade:
     kind = rng.choice(["curtain", "windows", "bands"], p=[0.8, 0.15, 0.05] if close_up else [0.45, 0.45, 0.1])
     most = 4 if close_up else int(rng.choice([8, 14, 26]))
     n_columns, n_rows = int(rng.integers(1, most + 1)), int(rng.integers(1, most + 1))
@@ -191,8 +197,43 @@ def _facade(rng: np.random.Generator, close_up: bool) -> _Facade:
     ys = margin[1] + np.concatenate([[0.0], np.cumsum(heights)])
     size = int(ys[-1] + margin[3]) + 1, int(xs[-1] + margin[2]) + 1
     if kind == "curtain":
-        return _curtain_wall(rng, xs, ys, size, close_up)
-    return _wall(rng, xs, ys, size, is_band=kind == "bands")
+        facade = _curtain_wall(rng, xs, ys, size, close_up)
+    else:
+        facade = _wall(rng, xs, ys, size, is_band=kind == "bands")
+    if is_night:
+        _at_night(rng, facade)
+    return facade
+
+
+def _at_night(rng: np.random.Generator, facade: _Facade) -> None:
+    """Dark walls and glass, some of it lit by a lamp of its own, and lamps on the wall."""
+    picture = facade.picture
+    height, width = picture.shape[:2]
+    picture *= np.float32(rng.uniform(0.02, 0.3))
+    if rng.random() < 0.5:  # lit from below
+        shine = np.linspace(0.0, 1.0, height, dtype=np.float32)[:, None, None] ** 2
+        picture *= 1.0 + rng.uniform(0.0, 4.0) * shine
+    usual, share = _colour(rng, 0.4, 1.4, 0.12), rng.uniform(0.15, 1.0)
+    usual = usual * np.array([rng.uniform(0.5, 1.0), 0.9, 1.0], np.float32)
+    mixed, uneven = rng.uniform(0.0, 0.25), rng.uniform(0.0, 0.8)
+    by_storey = rng.random() < 0.3
+    lit = rng.random(256) < share
+    for number, (left, top, right, bottom) in enumerate(np.rint(facade.panes).astype(int)):
+        if right <= left or bottom <= top or not lit[(top if by_storey else number) % 256]:
+            continue
+        part = picture[top:bottom, left:right]
+        lamp = usual * (1.0 + mixed * rng.standard_normal(3)).astype(np.float32) * rng.uniform(0.4, 1.3)
+        down = np.linspace(1.0, 1.0 - uneven * rng.random(), len(part), dtype=np.float32)[:, None, None]
+        room = lamp * down * (1.0 + 0.25 * _noise(rng, *part.shape[:2])[..., None])
+        before = part.mean(axis=2, keepdims=True)
+        part[:] = room * np.clip(0.35 + before / max(float(before.max()), 1e-3), 0.0, 1.0)  # bars and blinds stay dark
+    for _ in range(int(rng.choice([0, 0, 1, 3]))):
+        x, y, reach = rng.uniform(0, width), rng.uniform(0, height), rng.uniform(0.02, 0.1) * width
+        far = 3.0 * reach
+        box = slice(max(0, int(y - far)), int(y + far) + 1), slice(max(0, int(x - far)), int(x + far) + 1)
+        yy, xx = np.mgrid[:height, :width][:, *box].astype(np.float32)
+        shine = np.exp(-((xx - x) ** 2 + (yy - y) ** 2) / (2.0 * reach**2))[..., None]
+        picture[box] += shine * _colour(rng, 0.5, 2.0, 0.15)
 
 
 def _steps(rng: np.random.Generator, n: int) -> Array:
@@ -391,14 +432,61 @@ def _wall(rng: np.random.Generator, xs: Array, ys: Array, size: tuple[int, int],
     boxes = np.clip(boxes, 0.0, np.array([*size[::-1], *size[::-1]], float))
     is_glazed = rng.random((n_rows, n_columns)) > rng.choice([0.0, 0.1, 0.35], p=[0.5, 0.35, 0.15])
     glass = _glass(rng, size, boxes, is_glazed)
+    _no_panes(rng, picture, boxes)
     style = _WindowStyle.random(rng)
+    differ = rng.random() < 0.3
     for row in range(n_rows):
+        if differ and rng.random() < 0.4:
+            style = _WindowStyle.random(rng)
         for column in range(n_columns):
             if is_glazed[row, column]:
                 style.paint(rng, picture, glass, boxes[row, column])
+            elif rng.random() < 0.3:
+                _blind(rng, picture, boxes[row, column])
     if rng.random() < 0.25:
         _balconies(rng, picture, boxes)
     return _Facade(picture, np.full(size, 255, np.uint8), boxes[is_glazed])
+
+
+def _no_panes(rng: np.random.Generator, picture: Image, boxes: Array) -> None:
+    """Doors, signs, vents, panels and pipes on a wall: straight and dark or bright as windows are, and no pane."""
+    height, width = picture.shape[:2]
+    usual = boxes[0, 0, 2:] - boxes[0, 0, :2]
+    for _ in range(int(rng.choice([0, 0, 1, 3, 8]))):
+        colour = _colour(rng, 0.03, 1.0, 0.2)
+        wide, high = usual * np.exp(rng.normal(-0.3, 0.5, 2))
+        x, y = rng.uniform(0, width), rng.uniform(0, height)
+        kind = rng.random()
+        if kind < 0.25:  # a door, on the ground
+            y, high = height - high, 2.0 * high
+        elif kind < 0.5:  # a sign or a panel over the windows
+            wide = wide * rng.uniform(1.0, 5.0)
+        elif kind < 0.7:  # a pipe, or the joint of two houses
+            wide, y, high = max(1.0, 0.08 * wide), 0.0, float(height)
+        box = slice(max(0, int(y)), max(0, int(y + high))), slice(max(0, int(x)), max(0, int(x + wide)))
+        part = picture[box]
+        if part.size == 0:
+            continue
+        texture = 1.0 + rng.uniform(0.0, 0.2) * _noise(rng, *part.shape[:2])[..., None]
+        part[:] = colour * texture if kind < 0.85 else part * rng.uniform(0.5, 1.5)
+        if rng.random() < 0.3:
+            step = int(rng.integers(2, 9))
+            part[::step] *= rng.uniform(0.3, 1.5)
+        if rng.random() < 0.4:
+            edge = [float(c) for c in _colour(rng, 0.05, 1.0, 0.1)]
+            low = box[1].start, box[0].start
+            cv2.rectangle(picture, low, (low[0] + part.shape[1], low[1] + part.shape[0]), edge, int(rng.integers(1, 4)))
+
+
+def _blind(rng: np.random.Generator, picture: Image, box: Array) -> None:
+    """A niche or a walled-up window."""
+    left, top, right, bottom = (int(v) for v in np.rint(box))
+    part = picture[top:bottom, left:right]
+    if part.shape[0] < 4 or part.shape[1] < 4:
+        return
+    part *= np.float32(rng.uniform(0.75, 1.2))
+    dark, thick = part[0, 0] * np.float32(rng.uniform(0.4, 0.9)), int(rng.integers(1, 4))
+    part[:thick], part[:, :thick] = dark, dark
 
 
 @dataclass(frozen=True, slots=True, eq=False)
