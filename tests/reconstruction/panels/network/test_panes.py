@@ -188,9 +188,10 @@ def test_features_of_panes_tell_sizes_that_agree_and_neighbours_that_are_alike()
     assert (apart[:, 1] < 0.1).all()
 
 
+@pytest.mark.slow
 def test_confidences_fitted_to_pictures_are_probabilities_of_others(tmp_path: Path) -> None:
     def pictures(first: int) -> list[tuple[NDArray[np.uint8], NDArray[np.uint16]]]:
-        made = [made_picture(7_000_000 + first + seed, 256) for seed in range(12)]
+        made = [made_picture(7_000_000 + first + seed, 256) for seed in range(60)]
         return [(one.image, one.index) for one in made]
 
     told: list[str] = []
