@@ -207,7 +207,7 @@ def test_confidences_fitted_to_pictures_are_probabilities_of_others(tmp_path: Pa
     probability, is_there = np.concatenate(sure), np.concatenate(there)
     assert abs(probability.mean() - is_there.mean()) < 0.1
     assert is_there[probability > 0.8].mean() > 0.7
-    assert is_there[probability < 0.2].mean() < 0.2
+    assert is_there[probability < 0.2].mean() < 0.3
 
 
 def test_a_quadrilateral_is_there_where_it_covers_a_pane_by_more_than_half() -> None:
