@@ -58,6 +58,7 @@ from reconstruction.colmap.pycolmap_run import (
     RefineParameters,
     StartPhoto,
     as_model,
+    do_not_fit,
     load_colmap,
     transform,
 )
@@ -234,6 +235,8 @@ def build_coarse(
     cloud = believed(cloud_of(model))
     forwards = np.array([image.cam_from_world[2] for image in model.images.values()])
     looked_at = cloud.of(in_ring(cloud.points, cloud.centres, forwards))
+    if not len(looked_at):
+        raise do_not_fit(len(taken.names))
     cell = float(np.clip(extent_of(looked_at.points) / 150.0, 0.05, 0.4))
     sizes = BuildingParameters(cell_m=cell, tolerance_m=max(0.04, 0.25 * cell), seed=parameters.seed)
     ground = _ground(model, taken, looked_at.points, cloud.points, cell, cell, monitor)
@@ -430,13 +433,15 @@ def _pairs(run: ColmapRun, taken: _Taken, parameters: CoarseParameters, monitor:
     return choose_pairs(hints, likeness, parameters.pairs)
 
 
-def _mapped(run: ColmapRun, fixed: set[int], pairs: Sequence[Pair], colmap: Any) -> Any:
-    """The free model: made, or as it was kept of the same pairs."""
+def _mapped(run: ColmapRun, fixed: set[int], pairs: Sequence[Pair], colmap: Any) -> Any | None:
+    """The free model: made, or as it was kept of the same pairs; None where matches give none."""
     digest = hashlib.sha256(json.dumps(sorted(pairs)).encode()).hexdigest()
     path, folder = run.own / MAPPED, run.own / "mapped"
     if path.is_file() and read_json(path) == {"sha256": digest}:
         return colmap.Reconstruction(folder)
     free = run.map(fixed)
+    if free is None:
+        return None
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir()
     free.write_binary(folder)
@@ -449,7 +454,7 @@ def _mapped(run: ColmapRun, fixed: set[int], pairs: Sequence[Pair], colmap: Any)
 
 def _in_place(
     run: ColmapRun,
-    free: Any,
+    free: Any | None,
     fixed: set[int],
     taken: _Taken,
     stated: Stated,
@@ -457,6 +462,10 @@ def _in_place(
     parameters: CoarseParameters,
 ) -> tuple[Placed, ColmapModel, float, tuple[Finding, ...]]:
     """The model in the provisional frame, adjusted with the positions where they say enough."""
+    if free is None:
+        free = placed_by_receivers(run, ColmapModel(run.cameras(), {}), _receivers(taken), (), fixed, scratch)
+        if free is None:
+            raise do_not_fit(len(taken.names))
     model = as_model(free, scratch / "free")
     placed, findings = _place(model, taken, stated, parameters)
     transform(run.colmap, free, placed.enu_from_model)
@@ -466,9 +475,9 @@ def _in_place(
     model = as_model(free, scratch / "placed")
     placed, findings = _place(model, taken, stated, parameters)
     model = in_enu(model, placed.enu_from_model)
-    if placed.scale_from == "positions" and int(placed.is_used.sum()) >= LEAST_PHOTOS:
+    if placed.scale_from == "positions":
         used = {image.name for image, is_used in zip(model.images.values(), placed.is_used, strict=True) if is_used}
-        added = placed_by_receivers(run, model, _receivers(taken), used, fixed, scratch)
+        added = placed_by_receivers(run, model, _receivers(taken), used, fixed, scratch / "receivers")
         if added is not None:
             free = added
             model = as_model(free, scratch / "added")

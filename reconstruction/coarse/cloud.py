@@ -143,8 +143,12 @@ def extent_of(points: Array) -> float:
     return 4.0 * float(np.median(np.linalg.norm(points - np.median(points, axis=0), axis=1)))
 
 
-WIDEST_GAP_RAD = np.radians(100.0)
-"""Between two cameras of a ring, seen from its middle; cameras that leave more open stand before something."""
+WIDEST_GAP_RAD, WIDEST_OPEN_RAD = np.radians(100.0), np.radians(240.0)
+"""Between two cameras of a ring, seen from its middle; the second where all look at the middle of a part of a ring.
+Cameras that leave more open stand before something."""
+
+LOOKS_AT_MIDDLE = 0.15
+"""Of the usual distance to the middle: how far from it cameras of a part of a ring look, at most, most of them."""
 
 INWARDS = np.cos(np.radians(40.0))
 """Cameras look at the middle of their ring at least so nearly, most of them."""
@@ -154,7 +158,7 @@ BESIDE_RING = 0.85
 
 
 def in_ring(points: Array, centres: Array, forwards: Array) -> Mask:
-    """Which points stand inside a ring of cameras that look inwards; all where the cameras are no such ring.
+    """Which points stand inside a ring of cameras, or a third of one, that look inwards; all where there is none.
 
     Parameters
     ----------
@@ -177,13 +181,15 @@ def in_ring(points: Array, centres: Array, forwards: Array) -> Mask:
     bearings = np.sort(np.arctan2(out[:, 1], out[:, 0]))
     gaps = np.diff(np.append(bearings, bearings[0] + 2.0 * np.pi))
     is_inwards = -(level * out).sum(axis=1) / away > INWARDS
-    if gaps.max() > WIDEST_GAP_RAD or is_inwards.mean() < 0.7:
+    beside = np.abs(level[:, 0] * out[:, 1] - level[:, 1] * out[:, 0])
+    looks_there = np.median(beside) < LOOKS_AT_MIDDLE * np.median(away)
+    if gaps.max() > (WIDEST_OPEN_RAD if looks_there else WIDEST_GAP_RAD) or is_inwards.mean() < 0.7:
         return everything
     # How far the ring reaches in each direction, between its cameras.
     order = np.argsort(np.arctan2(out[:, 1], out[:, 0]))
-    beside = points[:, :2] - middle
-    reach = np.interp(np.arctan2(beside[:, 1], beside[:, 0]), bearings, away[order], period=2.0 * np.pi)
-    return np.asarray(np.linalg.norm(beside, axis=1) < BESIDE_RING * reach)
+    offsets = points[:, :2] - middle
+    reach = np.interp(np.arctan2(offsets[:, 1], offsets[:, 0]), bearings, away[order], period=2.0 * np.pi)
+    return np.asarray(np.linalg.norm(offsets, axis=1) < BESIDE_RING * reach)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -23,7 +23,7 @@ from planning.base.progress import Monitor
 from reconstruction.base.cameras import Intrinsics, PosedPhoto
 from reconstruction.colmap.folder import read_model, write_model
 from reconstruction.colmap.georeference import Similarity, position_covariance
-from reconstruction.colmap.record import ColmapModel, camera_of
+from reconstruction.colmap.record import ColmapCamera, ColmapModel, camera_of
 
 Array = NDArray[np.float64]
 
@@ -266,8 +266,8 @@ class ColmapRun:
                 if one in ids and other in ids and not database.exists_matches(ids[one], ids[other])
             ]
 
-    def map(self, fixed_cameras: set[int]) -> Any:
-        """The largest model that the matches give, in a frame of its own."""
+    def map(self, fixed_cameras: set[int]) -> Any | None:
+        """The largest model that the matches give, in a frame of its own; None where they give none."""
         options = self.colmap.IncrementalPipelineOptions()
         options.num_threads, options.random_seed = n_threads(), self.parameters.seed
         options.multiple_models, options.extract_colors = False, True
@@ -286,15 +286,18 @@ class ColmapRun:
             next_image_callback=lambda: added.append(None),
         )
         if not models or max(model.num_reg_images() for model in models.values()) < LEAST_PHOTOS:
-            raise ReconstructionError(
-                say(
-                    "the {} photos do not fit together: expected features that at least {} of them share; photos "
-                    "must overlap by two thirds, and show more than mirroring glass",
-                    len(self.photos),
-                    LEAST_PHOTOS,
-                )
-            )
+            return None
         return max(models.values(), key=lambda model: int(model.num_reg_images()))
+
+    def cameras(self) -> dict[int, ColmapCamera]:
+        """As the database has them, by their numbers."""
+        with self.colmap.Database.open(self.database) as database:
+            return {
+                camera.camera_id: ColmapCamera(
+                    camera.camera_id, camera.model_name, camera.width, camera.height, tuple(map(float, camera.params))
+                )
+                for camera in database.read_all_cameras()
+            }
 
     def identities(self) -> dict[str, tuple[int, int]]:
         """Numbers of each photo and of its camera in the database, by its name."""
@@ -393,6 +396,18 @@ class ColmapRun:
         if problem:
             raise ReconstructionError(say("COLMAP stopped while {}: {}", stage, problem[0])) from problem[0]
         return result[0]
+
+
+def do_not_fit(n_photos: int) -> ReconstructionError:
+    """Of photos that give no model."""
+    return ReconstructionError(
+        say(
+            "the {} photos do not fit together: expected features that at least {} of them share; photos "
+            "must overlap by two thirds, and show more than mirroring glass",
+            n_photos,
+            LEAST_PHOTOS,
+        )
+    )
 
 
 def as_model(reconstruction: Any, folder: Path) -> ColmapModel:

@@ -6,6 +6,7 @@ place, but to mend it. The common error of gimbal and compass is known from the 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -16,7 +17,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from reconstruction.colmap.georeference import angle_between_deg
-from reconstruction.colmap.pycolmap_run import ColmapRun, as_model
+from reconstruction.colmap.pycolmap_run import LEAST_PHOTOS, ColmapRun, as_model
 from reconstruction.colmap.record import NO_POINT, ColmapImage, ColmapModel, intrinsics_of, quaternion_of
 
 Array = NDArray[np.float64]
@@ -32,6 +33,12 @@ TIGHT_PX, N_TIGHT = 4.0, 2
 
 STAYED = 1.5
 """Times the largest distance of a photo from its receiver before, within which all remain."""
+
+LEAST_SHARE = 0.5
+"""Of the photos: a model of fewer is not what to begin with, where all say where they were and how they were turned."""
+
+ROBUST_MEDIANS, LEAST_OFF_M = 3.0, 0.01
+"""The largest distance from a receiver in medians of all, where no model says it; no receiver is better than 1 cm."""
 
 MOST_TURNED_DEG = 6.0
 """Off the gimbal, its common error taken away: three standard deviations of a heading."""
@@ -76,18 +83,41 @@ def placed_by_receivers(
     used
         Names of photos of the model whose receivers do not contradict it.
     scratch
-        New folders for files in between are made here.
+        New folders for files in between are made below it.
     """
     there = [image for image in model.images.values() if image.name in used]
     off = _common_turn([(image, receivers[image.name].cam_from_enu) for image in there])
-    if off is None:
-        return None
-    most_m = STAYED * max(receivers[image.name].off_m(image) for image in there)
-    told = {
-        name: one if one.cam_from_enu is None else replace(one, cam_from_enu=off @ one.cam_from_enu)
-        for name, one in receivers.items()
-    }
-    good = {image.name for image in there if told[image.name].fits(image, most_m)}
+    good, found = set[str](), None
+    if off is not None:
+        most_m = STAYED * max(receivers[image.name].off_m(image) for image in there)
+        told = {
+            name: one if one.cam_from_enu is None else replace(one, cam_from_enu=off @ one.cam_from_enu)
+            for name, one in receivers.items()
+        }
+        good = {image.name for image in there if told[image.name].fits(image, most_m)}
+        found = _placed(run, model, told, good, most_m, fixed_cameras, scratch)
+    if max(len(good), _n_placed(found)) < LEAST_SHARE * sum(one.cam_from_enu is not None for one in receivers.values()):
+        # The matches alone gave no model to speak of: begin with what the photos say, without a common error.
+        alone = _placed(run, ColmapModel(model.cameras, {}), receivers, (), math.inf, fixed_cameras, scratch / "again")
+        if _n_placed(alone) > max(len(good), _n_placed(found)):
+            return alone
+    return found if _n_placed(found) > len(good) else None
+
+
+def _n_placed(found: Any | None) -> int:
+    return 0 if found is None else int(found.num_reg_images())
+
+
+def _placed(
+    run: ColmapRun,
+    model: ColmapModel,
+    told: Mapping[str, Receiver],
+    good: Collection[str],
+    most_m: float,
+    fixed_cameras: set[int],
+    scratch: Path,
+) -> Any | None:
+    """The model with all photos but the good ones where they say that they were, as far as they stay there."""
     tried, shown = {}, dict(model.images)
     for name, (number, camera) in run.identities().items():
         one = told.get(name)
@@ -98,11 +128,16 @@ def placed_by_receivers(
     found, alone = model, set[int]()
     longest_px = max(intrinsics_of(camera).fx_px for camera in model.cameras.values())
     for number, error_px in enumerate([longest_px * np.radians(LOOSE_DEG), *[TIGHT_PX] * N_TIGHT]):
+        if len(shown) < LEAST_PHOTOS:
+            return None
         folder = scratch / f"receivers-{number}"
         added = run.triangulate(replace(found, images=shown), folder, error_px)
         run.adjust(added, fixed_cameras)
         found = as_model(added, folder / "adjusted")
         seen = {key: image for key, image in found.images.items() if _n_seen(image) >= LEAST_SEEN}
+        if not math.isfinite(most_m) and seen:
+            offs = [told[image.name].off_m(image) for image in seen.values()]
+            most_m = STAYED * ROBUST_MEDIANS * max(float(np.median(offs)), LEAST_OFF_M)
         shown = {
             key: image
             for key, image in seen.items()
@@ -113,10 +148,8 @@ def placed_by_receivers(
             alone = (set(tried) & set(model.images)) - set(seen)
             shown |= {key: model.images[key] for key in alone}
         elif len(shown) == len(found.images):
-            break
-    else:
-        added = run.triangulate(replace(found, images=shown), scratch / "receivers", TIGHT_PX)
-    return added if len(shown) > len(good) else None
+            return added
+    return run.triangulate(replace(found, images=shown), scratch / "receivers", TIGHT_PX) if len(shown) > 1 else None
 
 
 def _common_turn(pairs: list[tuple[ColmapImage, Array | None]]) -> Array | None:

@@ -43,6 +43,7 @@ from reconstruction.colmap.pycolmap_run import (
     RefineParameters,
     StartPhoto,
     as_model,
+    do_not_fit,
     load_colmap,
     transform,
 )
@@ -393,14 +394,15 @@ def refine_poses(
         fixed_cameras = work.find_features()
         work.match()
         free = work.map(fixed_cameras)
-        laid = georeference(as_model(free, Path(name) / "free"), photos, parameters.seed)
-        transform(colmap, free, laid.enu_from_model)
-        if not laid.on_a_line:
-            work.adjust(free, fixed_cameras)
+        if free is not None:
+            laid = georeference(as_model(free, Path(name) / "free"), photos, parameters.seed)
+            transform(colmap, free, laid.enu_from_model)
+            if not laid.on_a_line:
+                work.adjust(free, fixed_cameras)
+        free = _with_others(work, free, photos, fixed_cameras, Path(name))
+        if free is None:
+            raise do_not_fit(len(photos))
         model = as_model(free, Path(name) / "adjusted")
-        added = _added(work, model, photos, fixed_cameras, Path(name))
-        if added is not None:
-            free, model = added, as_model(added, Path(name) / "added")
         error_px = float(free.compute_mean_reprojection_error())
     # The adjustment knows positions alone; the last word on where the model lies is that of positions and angles.
     laid = georeference(model, photos, parameters.seed)
@@ -422,16 +424,21 @@ def refine_poses(
     return Refinement(refined, model, laid, error_px, left_out, findings)
 
 
-def _added(
-    work: ColmapRun, model: ColmapModel, photos: Sequence[PosedPhoto], fixed_cameras: set[int], scratch: Path
+def _with_others(
+    work: ColmapRun, free: Any | None, photos: Sequence[PosedPhoto], fixed_cameras: set[int], scratch: Path
 ) -> Any | None:
-    """The model with photos that matches put nowhere, or elsewhere than they say; None where there is none to add."""
+    """The model, if any, with the photos that matches put nowhere, or elsewhere than they say."""
+    receivers = {photo.name: Receiver(photo.pose.position_enu_m, photo.pose.cam_from_enu) for photo in photos}
+    if free is None:
+        return placed_by_receivers(work, ColmapModel(work.cameras(), {}), receivers, (), fixed_cameras, scratch)
+    model = as_model(free, scratch / "placed")
     laid = georeference(model, photos, work.parameters.seed)
     if laid.on_a_line:
-        return None
+        return free
     used = {name for name, is_inlier in zip(laid.names, laid.is_inlier.tolist(), strict=True) if is_inlier}
-    receivers = {photo.name: Receiver(photo.pose.position_enu_m, photo.pose.cam_from_enu) for photo in photos}
-    return placed_by_receivers(work, in_enu(model, laid.enu_from_model), receivers, used, fixed_cameras, scratch)
+    model = in_enu(model, laid.enu_from_model)
+    added = placed_by_receivers(work, model, receivers, used, fixed_cameras, scratch)
+    return free if added is None else added
 
 
 def _covariances(

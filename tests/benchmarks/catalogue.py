@@ -5,6 +5,7 @@ from __future__ import annotations
 from tests.benchmarks import (
     baselines,
     certificates,
+    coarse_models,
     fresh_process,
     kernel_speed,
     mission_files,
@@ -75,6 +76,7 @@ BENCHMARKS: tuple[Benchmark, ...] = (
     real_autopilot.BENCHMARK,
     photo_intake.BENCHMARK,
     refined_poses.BENCHMARK,
+    coarse_models.BENCHMARK,
     segmentation.BENCHMARK,
     network_for_panes.BENCHMARK,
     scenes.BENCHMARK,

@@ -21,19 +21,22 @@ BUDGETS_S, QUICK_BUDGETS_S = (5.0, 10.0, 20.0, 60.0), (5.0,)
 
 
 class Measured(NamedTuple):
-    """What a process printed, its wall time, and the largest resident memory of it and of any that it began."""
+    """What a process printed, its wall time, the largest resident memory of it and of any that it began, and the time
+    that all of them had of processors."""
 
     printed: str
     seconds: float
     peak_mib: float
+    processor_s: float
 
 
 class Finished(NamedTuple):
-    """What a command printed as JSON, with time and memory of `Measured`."""
+    """What a command printed as JSON, with times and memory of `Measured`."""
 
     content: dict[str, Any]
     seconds: float
     peak_mib: float
+    processor_s: float
 
 
 def run_measured(arguments: Sequence[str | Path]) -> Measured:
@@ -52,7 +55,7 @@ def run_measured(arguments: Sequence[str | Path]) -> Measured:
         measured = json.loads(path.read_text("utf-8"))
     if measured["status"]:
         raise RuntimeError(done.stderr.strip())
-    return Measured(done.stdout, measured["seconds"], measured["peak_mib"])
+    return Measured(done.stdout, measured["seconds"], measured["peak_mib"], measured["processor_s"])
 
 
 def run_command(arguments: Sequence[str | Path]) -> Finished:
@@ -64,7 +67,7 @@ def run_command(arguments: Sequence[str | Path]) -> Finished:
         It failed; the message is what it wrote to stderr.
     """
     done = run_measured(["app.py", *arguments, "--json"])
-    return Finished(json.loads(done.printed), done.seconds, done.peak_mib)
+    return Finished(json.loads(done.printed), done.seconds, done.peak_mib, done.processor_s)
 
 
 def measure(context: Context) -> Iterator[Row]:

@@ -77,7 +77,7 @@ def _origin(text: str) -> tuple[float, float, float]:
 
 def run(options: argparse.Namespace) -> int:
     """Make, write, print; returns the exit status."""
-    from groundstation.services.photos.coarse import CoarseRequest, coarse_files
+    from groundstation.services.photos.coarse import SPARSE, CoarseRequest, coarse_files
     from planning.geo.frames import Origin
     from reconstruction.photos.lens import CameraKind
 
@@ -121,5 +121,6 @@ def run(options: argparse.Namespace) -> int:
     )
     print_findings(made.findings)
     tell("written", place=made.site)
-    print_next("panels", options.photos, made.site, "-o", options.out / "panels.site.json")
+    out = options.out
+    print_next("panels", options.photos, made.site, "-o", out / "panels.site.json", "--colmap", out / SPARSE)
     return 0

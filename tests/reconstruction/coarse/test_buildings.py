@@ -106,9 +106,18 @@ def test_the_building_is_what_a_ring_of_cameras_looks_at():
     centres = cameras()
     points = np.array([[0.0, 0.0, 5.0], [20.0, -20.0, 0.0], [39.0, 0.0, 3.0], [0.0, 70.0, 9.0]])
     assert in_ring(points, centres, inwards(centres)).tolist() == [True, True, False, False]
-    # Around one side only, or looking out, or past the middle: all may be the building.
+    # Half a ring whose cameras all look at its middle is enough.
     half = centres[centres[:, 1] < 0.0]
-    assert in_ring(points, half, inwards(half)).all()
+    assert in_ring(points, half, inwards(half)).tolist() == [True, True, False, False]
+    # Before one side only, or beside the middle, or looking out, or past the middle: all may be the building.
+    quarter = half[half[:, 0] > 0.0]
+    assert in_ring(points, quarter, inwards(quarter)).all()
+    east, north, _ = inwards(half).T
+    aside = np.radians(25.0) * (-1.0) ** np.arange(len(half))
+    by_turns = np.column_stack(
+        [np.cos(aside) * east - np.sin(aside) * north, np.sin(aside) * east + np.cos(aside) * north, 0.0 * east]
+    )
+    assert in_ring(points, half, by_turns).all()
     assert in_ring(points, centres, -inwards(centres)).all()
     assert in_ring(points, centres, inwards(centres)[:, [1, 0, 2]] * [1.0, -1.0, 1.0]).all()
 

@@ -10,7 +10,7 @@ import cv2
 import numpy as np
 import pytest
 
-from planning.base.errors import InputError, OperationCancelled
+from planning.base.errors import InputError, OperationCancelled, ReconstructionError
 from planning.base.progress import QUIET
 from reconstruction.base.cameras import Intrinsics, PosedPhoto
 from reconstruction.colmap import refine
@@ -112,6 +112,26 @@ def test_photos_that_matches_put_nowhere_or_far_away_are_tried_where_they_say_th
     )
     assert np.linalg.norm(off - off.mean(axis=0), axis=1).max() < 1.5 * SIGMA_M
     assert not [finding for finding in found.findings if finding.code in ("photos-not-refined", "positions-contradict")]
+
+
+@pytest.mark.slow
+def test_where_matches_alone_give_no_model_all_photos_begin_where_they_say_that_they_were(folder, monkeypatch):
+    given, truth = start(folder, 12)
+    monkeypatch.setattr(ColmapRun, "map", lambda run, fixed_cameras: None)
+    found = refine_poses(given, folder, RefineParameters(max_image_size_px=400, max_features=1500))
+    assert found.left_out == ()
+    off = np.array([a.pose.position_enu_m - b.pose.position_enu_m for a, b in zip(found.photos, truth, strict=True)])
+    assert np.linalg.norm(off - off.mean(axis=0), axis=1).max() < 1.5 * SIGMA_M
+
+
+@pytest.mark.slow
+def test_photos_that_show_nothing_in_common_are_refused(folder, tmp_path):
+    given, _ = start(folder, 4)
+    for photo in given:
+        cv2.imwrite(str(tmp_path / photo.name), np.full((1936, 1296, 3), 128, np.uint8))
+    blank = [replace(photo, path=tmp_path / photo.name) for photo in given]
+    with pytest.raises(ReconstructionError, match="the 4 photos do not fit together"):
+        refine_poses(blank, tmp_path, RefineParameters(max_image_size_px=400))
 
 
 @pytest.mark.slow
