@@ -47,7 +47,7 @@ pytestmark = [pytest.mark.slow, pytest.mark.timeout(1800)]
 pytest.importorskip("pycolmap", reason="pycolmap is not installed (pip install .[colmap])")
 
 
-class Desk:
+class CommandLine:
     """A folder, and the command line in it."""
 
     def __init__(self, folder: Path) -> None:
@@ -66,49 +66,49 @@ class Desk:
 
 
 def test_photos_of_a_first_flight_alone_become_a_model(tmp_path):
-    desk = Desk(tmp_path)
-    flight = fly_around(desk.run, tmp_path / "world", N_AROUND, FIRST_PX, N_FIRST)
+    commands = CommandLine(tmp_path)
+    flight = fly_around(commands.run, tmp_path / "world", N_AROUND, FIRST_PX, N_FIRST)
     shutil.copytree(flight.photos, tmp_path / "card")
-    _coarse_model(desk, flight)
-    _panels(desk, flight)
-    _plan_of_the_second_flight(desk, flight)
-    photos = _second_flight(desk, flight)
-    _model(desk, photos)
+    _coarse_model(commands, flight)
+    _panels(commands, flight)
+    _plan_of_the_second_flight(commands, flight)
+    photos = _second_flight(commands, flight)
+    _model(commands, photos)
 
 
-def _coarse_model(desk: Desk, flight: Flight) -> None:
-    printed = desk.run("coarse", "card", "-o", "coarse")
+def _coarse_model(commands: CommandLine, flight: Flight) -> None:
+    printed = commands.run("coarse", "card", "-o", "coarse")
     assert "next: app.py panels card coarse/site.json -o coarse/panels.site.json --colmap coarse/sparse/0" in printed
-    report = json.loads((desk.folder / "coarse/coarse.json").read_text())
+    report = json.loads((commands.folder / "coarse/coarse.json").read_text())
     assert report["registered"] >= 0.8 * N_FIRST
     assert report["scale_from"] == "positions"
-    errors = position_errors_m(flight, desk.folder / "coarse")
+    errors = position_errors_m(flight, commands.folder / "coarse")
     assert np.median(errors) < 0.03
     assert errors.max() < 0.15
-    walls = wall_errors_m(flight, desk.folder / "coarse")
+    walls = wall_errors_m(flight, commands.folder / "coarse")
     assert len(walls) >= 2
     assert walls.max() < 0.15
     tops = [side["top_m"] for side in report["sides"] if not side["is_guessed"]]
     assert np.abs(np.array(tops) - HEIGHT_M).max() < 0.3
 
 
-def _panels(desk: Desk, flight: Flight) -> None:
+def _panels(commands: CommandLine, flight: Flight) -> None:
     found = "coarse/panels.site.json"
-    desk.run("panels", "card", "coarse/site.json", "-o", found, "--colmap", "coarse/sparse/0")
-    panes = compare_panes(flight, desk.folder / found)
+    commands.run("panels", "card", "coarse/site.json", "-o", found, "--colmap", "coarse/sparse/0")
+    panes = compare_panes(flight, commands.folder / found)
     assert panes.n_true >= 0.6 * (N_SOUTH + N_EAST)
     assert panes.n_found - panes.n_true <= 0.2 * panes.n_found
     assert np.median(panes.corner_errors_m) < 0.08
 
 
-def _plan_of_the_second_flight(desk: Desk, flight: Flight) -> None:
+def _plan_of_the_second_flight(commands: CommandLine, flight: Flight) -> None:
     site, plan = "coarse/panels.site.json", "second.plan.json"
-    told = desk.told("plan", site, "-o", plan, "--views", N_SECOND, "--time-budget", "15")
+    told = commands.told("plan", site, "-o", plan, "--views", N_SECOND, "--time-budget", "15")
     assert told["views"] == N_SECOND
     assert told["covered"] > 0
-    desk.run("check", plan, site)
-    made = read_plan(desk.folder / plan)
-    distances = _from_the_building(made, read_site(desk.folder / site).site.origin, flight)
+    commands.run("check", plan, site)
+    made = read_plan(commands.folder / plan)
+    distances = _from_the_building(made, read_site(commands.folder / site).site.origin, flight)
     assert distances.min() > KEPT_M - 0.3
 
 
@@ -121,21 +121,23 @@ def _from_the_building(plan: Plan, origin: Origin, flight: Flight) -> np.ndarray
     return np.asarray(np.linalg.norm(np.maximum(outside, 0.0), axis=1))
 
 
-def _second_flight(desk: Desk, flight: Flight) -> Path:
+def _second_flight(commands: CommandLine, flight: Flight) -> Path:
     """The mission file flown over the true building, which nobody has seen but the camera."""
-    desk.run("export", "second.plan.json", "--format", "dji-kmz", "--site", "coarse/panels.site.json", "-o", "m.kmz")
-    flown = desk.folder / "world/flown.plan.json"
-    desk.run("import", "m.kmz", "--site", flight.site, "-o", flown)
-    rendered = desk.folder / "world/second"
+    commands.run(
+        "export", "second.plan.json", "--format", "dji-kmz", "--site", "coarse/panels.site.json", "-o", "m.kmz"
+    )
+    flown = commands.folder / "world/flown.plan.json"
+    commands.run("import", "m.kmz", "--site", flight.site, "-o", flown)
+    rendered = commands.folder / "world/second"
     look = ("--look", flight.look, "--width", SECOND_PX)
-    desk.run("scene", "render", flight.site, "--plan", flown, *look, "-o", rendered)
-    shutil.copytree(rendered / "images", desk.folder / "card2")
-    return desk.folder / "card2"
+    commands.run("scene", "render", flight.site, "--plan", flown, *look, "-o", rendered)
+    shutil.copytree(rendered / "images", commands.folder / "card2")
+    return commands.folder / "card2"
 
 
-def _model(desk: Desk, photos: Path) -> None:
-    desk.run("prepare", photos, "coarse/panels.site.json", "-o", "tower.dataset")
-    desk.run("train", "tower.dataset", "-o", "tower.model", "--preset", "10min", "--iterations", N_STEPS)
-    told = desk.told("score", "model", "tower.model", "tower.dataset")
+def _model(commands: CommandLine, photos: Path) -> None:
+    commands.run("prepare", photos, "coarse/panels.site.json", "-o", "tower.dataset")
+    commands.run("train", "tower.dataset", "-o", "tower.model", "--preset", "10min", "--iterations", N_STEPS)
+    told = commands.told("score", "model", "tower.model", "tower.dataset")
     assert told["facade"]["psnr_db"] > LEAST_FACADE_DB, told
     assert told["whole"]["psnr_db"] > LEAST_WHOLE_DB, told

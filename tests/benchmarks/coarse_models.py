@@ -89,6 +89,7 @@ def _coarse(flight: Flight, photos: Path, size_px: int, points: list[_Point]) ->
 def _draw(points: list[_Point], path: Path) -> None:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
+    from matplotlib.ticker import FixedLocator, NullLocator, ScalarFormatter
 
     figure = Figure(figsize=(6.0, 4.0), layout="constrained")
     FigureCanvasAgg(figure)
@@ -96,14 +97,18 @@ def _draw(points: list[_Point], path: Path) -> None:
     for n_photos in sorted({point.n_photos for point in points}):
         line = [point for point in points if point.n_photos == n_photos]
         times, errors = [point.processor_s for point in line], [100.0 * point.error_m for point in line]
-        axes.loglog(times, errors, "o-", label=f"{n_photos} photos")
+        axes.semilogx(times, errors, "o-", label=f"{n_photos} photos")
         for point in line:
             place = (point.processor_s, 100.0 * point.error_m)
             axes.annotate(f"{point.size_px} px", place, (4, 4), textcoords="offset points", fontsize=8)
     axes.set_xlabel("time of processors, s")
     axes.set_ylabel("median error of positions, cm")
     axes.set_title("Coarse model: error against time", fontweight="bold")
-    axes.grid(alpha=0.3, which="both")
+    axes.set_ylim(bottom=0.0)
+    axes.xaxis.set_major_locator(FixedLocator([10, 20, 50, 100, 200, 500, 1000]))
+    axes.xaxis.set_major_formatter(ScalarFormatter())
+    axes.xaxis.set_minor_locator(NullLocator())
+    axes.grid(alpha=0.3)
     axes.legend()
     figure.savefig(path, dpi=110)
 
