@@ -8,11 +8,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from groundstation.services.photos.dataset import prepare_files
 from planning.base.errors import InputError
 from planning.base.files import check_folder_name
-from planning.base.findings import Finding
+from planning.base.findings import Finding, Severity
 from planning.base.json_file import read_json, write_atomically, write_together
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor, Stop, Trace, never
@@ -25,10 +26,12 @@ from planning.site.importing.importer import site_of_facades
 from planning.site.importing.options import ImportOptions
 from planning.site.importing.placement import LocalFrame, Placement
 from planning.site.importing.source import SourceModel
-from planning.site.records import Obstacle, SiteModel
+from planning.site.records import NoFlyZone, Obstacle, Site, SiteModel
 from reconstruction.coarse.build import CoarseModel, CoarseParameters, Stated, build_coarse, write_sparse
 from reconstruction.coarse.control_and_camera import read_control_points, read_lens
 from reconstruction.photos.lens import CameraKind
+
+Array = NDArray[np.float64]
 
 SITE_FILE, MESH_FILE, OBSTACLES_FILE, REPORT_FILE = "site.json", "coarse.ply", "obstacles.ply", "coarse.json"
 SPARSE, KEPT, PHOTOS_FILE, DATA_SET = Path("sparse", "0"), ".coarse", "photos.json", "dataset"
@@ -40,6 +43,15 @@ PLACE_UNKNOWN = "unknown"
 
 REACH_M = 40.0
 """What stands further from the building than the airspace reaches is no obstacle."""
+
+BESIDE_FLOWN_M = 2.0
+"""That the airspace reaches beyond the places of the photos: positions and propellers."""
+
+NOT_FLOWN_M = 10.0
+"""From the places of the photos to a zone that nobody has seen: plans keep as much from zones by default."""
+
+LEAST_ZONE_M2, ROUNDED_M = 4.0, 0.5
+"""Of zones that nobody has seen: smaller ones are left out, and by how much their sides may be simpler."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,12 +126,12 @@ def coarse_files(request: CoarseRequest, monitor: Monitor = QUIET) -> CoarseFile
     )
     coarse = build_coarse(request.photos, read.photos, request.out / KEPT, stated, parameters, monitor)
     monitor.report(say("writing the coarse model"), 0, 0)
-    _write(request.out, coarse)
+    findings = _write(request.out, coarse)
     taken_from = {"photos": str(request.photos.resolve())}
     write_atomically(request.out / KEPT / PHOTOS_FILE, json.dumps(taken_from).encode())
     report = coarse_report(coarse)
     write_atomically(request.out / REPORT_FILE, json.dumps(report, indent=1).encode())
-    return CoarseFiles(request.out / SITE_FILE, report, (*read.findings, *coarse.findings))
+    return CoarseFiles(request.out / SITE_FILE, report, (*read.findings, *coarse.findings, *findings))
 
 
 def coarse_apart(
@@ -130,17 +142,20 @@ def coarse_apart(
     return coarse_files(request, monitor)
 
 
-def _write(out: Path, coarse: CoarseModel) -> None:
-    """Write site, meshes and the sparse model."""
+def _write(out: Path, coarse: CoarseModel) -> tuple[Finding, ...]:
+    """Write site, meshes and the sparse model; findings about the airspace."""
     sparse = out / SPARSE
     for name in ("cameras", "images", "points3D"):
         (sparse / f"{name}.txt").unlink(missing_ok=True)
         (sparse / f"{name}.bin").unlink(missing_ok=True)
     write_sparse(sparse, coarse)
     model, meshes = site_of_coarse(coarse, out.resolve().name)
+    centres = np.array([image.centre_world for image in coarse.model.images.values()])
+    site, findings = where_flown(model.site, centres, model.building)
     write_together(
-        {out / SITE_FILE: site_bytes(model.site), **{out / name: ply_bytes(mesh) for name, mesh in meshes.items()}}
+        {out / SITE_FILE: site_bytes(site), **{out / name: ply_bytes(mesh) for name, mesh in meshes.items()}}
     )
+    return findings
 
 
 def site_of_coarse(coarse: CoarseModel, name: str) -> tuple[SiteModel, dict[str, TriangleMesh]]:
@@ -168,7 +183,55 @@ def site_of_coarse(coarse: CoarseModel, name: str) -> tuple[SiteModel, dict[str,
     return SiteModel(site, buildings.mesh, (others,) if near else ()), meshes
 
 
-def _bounds(mesh: TriangleMesh) -> tuple[np.ndarray, np.ndarray]:
+def where_flown(site: Site, centres_enu_m: Array, mesh: TriangleMesh) -> tuple[Site, tuple[Finding, ...]]:
+    """A site whose airspace ends where the first flight did: what stood behind its cameras is in no photo.
+
+    Parameters
+    ----------
+    centres_enu_m
+        Of the photos, shape (n, 3).
+    mesh
+        Of the building.
+    """
+    import shapely
+
+    air = site.airspace
+    if np.median(centres_enu_m[:, 2]) < air.lowest_height_m():
+        text = say("the photos were taken from the ground: what stands behind their cameras is not known, look around")
+        return site, (Finding(Severity.WARNING, "airspace-not-seen", text, "", 0.0, None, ""),)
+    hull = shapely.MultiPoint(np.vstack([centres_enu_m[:, :2], mesh.vertices_enu_m[:, :2]])).convex_hull
+    whole = shapely.box(*air.min_enu_m[:2], *air.max_enu_m[:2])
+    west, south, east, north = np.round(whole.intersection(hull.buffer(BESIDE_FLOWN_M)).bounds, 1).tolist()
+    beyond = shapely.box(west, south, east, north).difference(hull.buffer(NOT_FLOWN_M, quad_segs=2))
+    parts = [part.simplify(ROUNDED_M) for part in shapely.get_parts(beyond) if part.area > LEAST_ZONE_M2]
+    zones = tuple(
+        NoFlyZone(f"not-seen-{number}", _corners(part), air.ground_z_m - REACH_M, air.max_enu_m[2] + REACH_M)
+        for number, part in enumerate(parts, start=1)
+    )
+    low, high = (west, south, air.min_enu_m[2]), (east, north, air.max_enu_m[2])
+    home = site.home_enu_m
+    if not shapely.covers(hull, shapely.Point(home[:2])):
+        away = shapely.distance(shapely.MultiPoint(mesh.vertices_enu_m[:, :2]), shapely.points(centres_enu_m[:, :2]))
+        place = centres_enu_m[int(np.argmax(away))]
+        home = (round(float(place[0]), 1), round(float(place[1]), 1), home[2])
+    text = say(
+        "the airspace is {:.0f} m by {:.0f} m, as far as the photos were taken: what stands behind their cameras is "
+        "not known; widen it where you have looked",
+        east - west,
+        north - south,
+    )
+    found = Finding(Severity.NOTE, "airspace-as-flown", text, "", float(len(zones)), None, "")
+    air = replace(air, min_enu_m=low, max_enu_m=high, no_fly=(*air.no_fly, *zones))
+    return replace(site, airspace=air, home_enu_m=home), (found,)
+
+
+def _corners(polygon: Any) -> tuple[tuple[float, float], ...]:
+    import shapely
+
+    return tuple((round(x, 2), round(y, 2)) for x, y in shapely.get_coordinates(polygon.exterior)[:-1].tolist())
+
+
+def _bounds(mesh: TriangleMesh) -> tuple[Array, Array]:
     if not len(mesh.vertices_enu_m):
         return np.zeros(2), np.zeros(2)
     flat = mesh.vertices_enu_m[:, :2]
