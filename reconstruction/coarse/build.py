@@ -488,7 +488,7 @@ def _in_place(
 
 def _receivers(taken: _Taken) -> dict[str, Receiver]:
     return {
-        name: Receiver(one.position_enu_m, one.cam_from_enu)
+        name: Receiver(one.position_enu_m, one.cam_from_enu, one.covariance)
         for name, one in zip(taken.names, taken.measured, strict=True)
         if one.position_enu_m is not None
     }

@@ -222,8 +222,15 @@ class ColmapRun:
             self.database,
             matching_options=options,
             pairing_options=pairs,
+            verification_options=self._verification(),
             device=self.colmap.Device.cpu,
         )
+
+    def _verification(self) -> Any:
+        """Of matches, with random samples of our seed: else each run has other matches, and at times another model."""
+        options = self.colmap.TwoViewGeometryOptions()
+        options.ransac.random_seed = self.parameters.seed
+        return options
 
     def descriptors(self) -> dict[str, NDArray[np.uint8]]:
         """Of the features of each photo, shape (n, 128), by its name."""
@@ -254,6 +261,7 @@ class ColmapRun:
                 n_all=len(pairs),
                 matching_options=options,
                 pairing_options=pairing,
+                verification_options=self._verification(),
                 device=self.colmap.Device.cpu,
             )
 
@@ -269,7 +277,8 @@ class ColmapRun:
     def map(self, fixed_cameras: set[int]) -> Any | None:
         """The largest model that the matches give, in a frame of its own; None where they give none."""
         options = self.colmap.IncrementalPipelineOptions()
-        options.num_threads, options.random_seed = n_threads(), self.parameters.seed
+        # With several threads the same matches give another model each time.
+        options.num_threads, options.random_seed = 1, self.parameters.seed
         options.multiple_models, options.extract_colors = False, True
         options.min_model_size = LEAST_PHOTOS
         options.constant_cameras = fixed_cameras
@@ -325,7 +334,7 @@ class ColmapRun:
         }
         write_model(poses, ColmapModel(model.cameras, bare))
         options = self.colmap.IncrementalPipelineOptions()
-        options.num_threads, options.random_seed = n_threads(), self.parameters.seed
+        options.num_threads, options.random_seed = 1, self.parameters.seed
         options.mapper.filter_max_reproj_error = most_error_px
         start = self.colmap.Reconstruction(poses)
 

@@ -34,8 +34,12 @@ TIGHT_PX, N_TIGHT = 4.0, 2
 STAYED = 1.5
 """Times the largest distance of a photo from its receiver before, within which all remain."""
 
-LEAST_SHARE = 0.5
-"""Of the photos: a model of fewer is not what to begin with, where all say where they were and how they were turned."""
+AGREES_SIGMAS, LEAST_SHARE = 6.0, 0.5
+"""A photo is where its receiver says within so many standard deviations. A model in which fewer of all photos are is
+mirror images that fit one another, and not what to begin with."""
+
+UNKNOWN_M = 3.0
+"""Standard deviation of a position that says none: of a receiver without corrections."""
 
 ROBUST_MEDIANS, LEAST_OFF_M = 3.0, 0.01
 """The largest distance from a receiver in medians of all, where no model says it; no receiver is better than 1 cm."""
@@ -46,10 +50,17 @@ MOST_TURNED_DEG = 6.0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Receiver:
-    """Where a photo says that it was taken, shape (3,), and how it was turned, shape (3, 3); None where it does not."""
+    """Where a photo says that it was taken, shape (3,), and how it was turned, shape (3, 3); None where it does not.
+
+    Parameters
+    ----------
+    covariance
+        Of the position, m^2, or of more with the position first, shape (k, k).
+    """
 
     position_enu_m: Array
     cam_from_enu: Array | None = None
+    covariance: Array | None = None
 
     def fits(self, image: ColmapImage, most_m: float) -> bool:
         """Whether a photo of the model is there."""
@@ -62,6 +73,11 @@ class Receiver:
     def off_m(self, image: ColmapImage) -> float:
         """How far a photo of the model is from it."""
         return float(np.linalg.norm(image.centre_world - self.position_enu_m))
+
+    def agrees_at(self, place_enu_m: Array) -> bool:
+        """Whether a place, shape (3,), is where it says, within its errors."""
+        variance_m2 = UNKNOWN_M**2 if self.covariance is None else float(np.diag(self.covariance)[:3].mean())
+        return float(np.linalg.norm(place_enu_m - self.position_enu_m)) <= AGREES_SIGMAS * math.sqrt(variance_m2)
 
 
 def placed_by_receivers(
@@ -96,16 +112,27 @@ def placed_by_receivers(
         }
         good = {image.name for image in there if told[image.name].fits(image, most_m)}
         found = _placed(run, model, told, good, most_m, fixed_cameras, scratch)
-    if max(len(good), _n_placed(found)) < LEAST_SHARE * sum(one.cam_from_enu is not None for one in receivers.values()):
-        # The matches alone gave no model to speak of: begin with what the photos say, without a common error.
+    is_more = found is not None and int(found.num_reg_images()) > len(good)
+    n_agreeing = (
+        _n_agreeing(found, receivers)
+        if is_more
+        else sum(receivers[image.name].agrees_at(image.centre_world) for image in there)
+    )
+    if n_agreeing < LEAST_SHARE * sum(one.cam_from_enu is not None for one in receivers.values()):
+        # Matches alone gave no model to speak of: begin with what the photos say, without a common error.
         alone = _placed(run, ColmapModel(model.cameras, {}), receivers, (), math.inf, fixed_cameras, scratch / "again")
-        if _n_placed(alone) > max(len(good), _n_placed(found)):
+        if _n_agreeing(alone, receivers) > n_agreeing:
             return alone
-    return found if _n_placed(found) > len(good) else None
+    return found if is_more else None
 
 
-def _n_placed(found: Any | None) -> int:
-    return 0 if found is None else int(found.num_reg_images())
+def _n_agreeing(found: Any | None, receivers: Mapping[str, Receiver]) -> int:
+    """Photos of a model that are where their receivers say."""
+    images = [] if found is None else [found.image(number) for number in found.reg_image_ids()]
+    return sum(
+        image.name in receivers and receivers[image.name].agrees_at(np.asarray(image.projection_center()))
+        for image in images
+    )
 
 
 def _placed(

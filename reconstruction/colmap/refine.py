@@ -428,7 +428,10 @@ def _with_others(
     work: ColmapRun, free: Any | None, photos: Sequence[PosedPhoto], fixed_cameras: set[int], scratch: Path
 ) -> Any | None:
     """The model, if any, with the photos that matches put nowhere, or elsewhere than they say."""
-    receivers = {photo.name: Receiver(photo.pose.position_enu_m, photo.pose.cam_from_enu) for photo in photos}
+    receivers = {
+        photo.name: Receiver(photo.pose.position_enu_m, photo.pose.cam_from_enu, photo.pose.covariance)
+        for photo in photos
+    }
     if free is None:
         return placed_by_receivers(work, ColmapModel(work.cameras(), {}), receivers, (), fixed_cameras, scratch)
     model = as_model(free, scratch / "placed")

@@ -43,6 +43,7 @@ from reconstruction.training.photos.exposures import HeldOutGain
 from reconstruction.training.presets import preset
 from reconstruction.training.timer import Timer
 from reconstruction.training.train import train_model
+from reconstruction.warm_up import compile_kernels
 from tests.benchmarks.harness import DATA_VARIABLE, Benchmark, Context, Row, Skipped
 
 Array = NDArray[np.float64]
@@ -167,6 +168,7 @@ SETS = (
 
 def measure_sets(context: Context) -> Iterator[Row]:
     """Each method in as much processor time, on each set that is there."""
+    compile_kernels()  # else it would count as time of the first training
     n_there = 0
     for each in SETS:
         try:
@@ -198,13 +200,15 @@ def _measure_set(each: RealSet, source: Path, context: Context) -> Iterator[Row]
                 yield Row(each.title, title, NOT_RUN, "", None, "no panels")
                 continue
             else:
-                trained, scores = trained_within(folder, method, seconds)
+                trained, scores = trained_within(folder, method, seconds, "fitted")
                 found[method] = mean_of(score.facade.psnr_db for score in scores) or 0.0
                 shown = photos.named(trained.record.held_out)[0]
                 pictures["truth"] = photos.picture(shown)
                 view = View.of(shown, trained.model.origin_enu_m)
                 pictures[method] = np.round(255.0 * render_view(trained.model, view, ()).display).astype(np.uint8)
-                text = texts[method] = _beside(trained, scores)
+                as_taken = score_views(trained, photos, trained.record.held_out, None, "none", threads=1)
+                unfitted = mean_of(score.facade.psnr_db for score in as_taken) or 0.0
+                text = texts[method] = f"{unfitted:.2f} dB at the exposure learned; {_beside(trained, scores)}"
             yield Row(each.title, title, round(found[method], 2), "dB", None, text)
         _show(each, [pictures[name] for name in ("truth", "2dgs", DEFAULT_METHOD)], context)
     yield _difference(each.title, found, context.is_quick)
@@ -244,7 +248,7 @@ def _difference(scene: str, found: dict[str, float], is_quick: bool) -> Row:
 
 # Made photos with one fault each.
 
-N_VIEWS, WIDTH_PX, FAULT_S = 36, 128, 24.0
+N_VIEWS, WIDTH_PX, FAULT_S = 36, 128, 120.0
 QUICK_N_VIEWS, QUICK_FAULT_WIDTH_PX = 8, 64
 
 GAIN_SPREAD, BALANCE_SPREAD = 0.25, 0.08
@@ -358,6 +362,7 @@ def measure_faults(context: Context) -> Iterator[Row]:
     """2DGS and ours on the same photos with one fault after the other."""
     n_views, width_px = (QUICK_N_VIEWS, QUICK_FAULT_WIDTH_PX) if context.is_quick else (N_VIEWS, WIDTH_PX)
     seconds = QUICK_S if context.is_quick else FAULT_S
+    compile_kernels()
     with tempfile.TemporaryDirectory() as place:
         base = Path(place) / "base"
         photograph_files(SceneRequest("planar", n_views=n_views, width_px=width_px), base, 1)
@@ -378,12 +383,12 @@ BENCHMARK = Benchmark(
     "real-photos",
     "Models of real photos",
     f"Real photos, made smaller ({LONG_PX} pixels), a sixth of them held out. Usual settings, one thread, "
-    f"{LONG_S:g} s of processor for each method; facades of the views held out, where there are no panels whole "
-    "pictures. LPIPS is AlexNet's. Photos of the wall, and the picture made of one: B. Johns, E. Abdi, M. Arashpour, "
-    "Glass Curtain Wall Installation Dataset, 2023, doi 10.26180/23538198, CC BY 4.0; poses were fitted to its grid. "
-    "Sceaux castle (github.com/openMVG/ImageDataset_SceauxCastle) and the door in Lund (C. Olsson) go the way of a "
-    f"folder of JPEGs: `coarse`, `train`. {DATA_VARIABLE} names folders with more data (`multiview/sceaux`). Pictures "
-    f"of these two stay in {OTHERS}. Shown are photo, 2DGS, ours.",
+    f"{LONG_S:g} s of processor for each method; facades of the views held out, whose exposure is fitted; where "
+    "there are no panels whole pictures. LPIPS is AlexNet's. Photos of the wall, and the picture made of one: "
+    "B. Johns, E. Abdi, M. Arashpour, Glass Curtain Wall Installation Dataset, 2023, doi 10.26180/23538198, CC BY 4.0; "
+    "poses were fitted to its grid. Sceaux castle (github.com/openMVG/ImageDataset_SceauxCastle) and the door in Lund "
+    f"(C. Olsson) go the way of a folder of JPEGs: `coarse`, `train`. {DATA_VARIABLE} names folders with more data "
+    f"(`multiview/sceaux`). Pictures of these two stay in {OTHERS}. Shown are photo, 2DGS, ours.",
     measure_sets,
 )
 
