@@ -133,7 +133,7 @@ def _metadata(path: Path, header: JpegHeader) -> PhotoMetadata:
         properties.update({key: text for key, text in read_xmp(packet).items() if key not in properties})
     xmp = MakerXmp(properties)
     values = {
-        **_camera(tags, xmp),
+        **_camera(tags, xmp, header.width_px),
         **_times(tags, xmp),
         **_place(tags, xmp),
         **angles(xmp, _text(tags, Tag.MAKE) or xmp.text("Make")),
@@ -162,11 +162,16 @@ def _index(path: Path) -> int | None:
     return int(count[1]) if count else None
 
 
-def _camera(tags: dict[Tag, Value], xmp: MakerXmp) -> dict[str, Any]:
+def _camera(tags: dict[Tag, Value], xmp: MakerXmp, width_px: int) -> dict[str, Any]:
     iso = _first(tags, Tag.ISO, 1, 1e7)
     orientation = _first(tags, Tag.ORIENTATION, 1, 8)
     center = xmp.number("CalibratedOpticalCenterX"), xmp.number("CalibratedOpticalCenterY")
     flag = xmp.text("DewarpFlag")
+    px_per_mm = _px_per_mm(tags, width_px)
+    calibrated_px = xmp.number("CalibratedFocalLength", "CalibratedFocalLength/X", low=1.0)
+    perspective_mm = xmp.pix4d("PerspectiveFocalLength", 0.1, 10_000.0)
+    if calibrated_px is None and perspective_mm is not None and px_per_mm is not None:
+        calibrated_px = perspective_mm * px_per_mm
     return {
         "orientation": None if orientation is None else int(orientation),
         "make": _text(tags, Tag.MAKE) or xmp.text("Make"),
@@ -180,11 +185,30 @@ def _camera(tags: dict[Tag, Value], xmp: MakerXmp) -> dict[str, Any]:
         "iso": None if iso is None else int(iso),
         "focal_length_mm": _first(tags, Tag.FOCAL_LENGTH, 0.1, 10_000.0),
         "focal_length_35mm_mm": _first(tags, Tag.FOCAL_LENGTH_35MM, 0.1, 100_000.0),
-        "calibrated_focal_length_px": xmp.number("CalibratedFocalLength", "CalibratedFocalLength/X", low=1.0),
+        "focal_plane_px_per_mm": px_per_mm,
+        "calibrated_focal_length_px": calibrated_px,
         "optical_center_px": None if center[0] is None or center[1] is None else center,
         "dewarp": _dewarp(xmp.text("DewarpData")),
         "is_dewarped": None if flag not in ("0", "1") else flag == "1",
     }
+
+
+LEAST_SENSOR_MM, MOST_SENSOR_MM = 1.0, 100.0
+"""Widths of sensors: other resolutions are not of a sensor."""
+
+MM_OF_UNITS = {2: 25.4, 3: 10.0, 4: 1.0, 5: 0.001}
+"""EXIF's FocalPlaneResolutionUnit: inch, centimetre; cameras also write millimetre and micrometre."""
+
+
+def _px_per_mm(tags: dict[Tag, Value], width_px: int) -> float | None:
+    """Pixels of the stored picture on a millimetre of the sensor; less, where EXIF names a larger picture."""
+    resolution = _first(tags, Tag.FOCAL_PLANE_X_RESOLUTION, 1e-6, 1e7)
+    if resolution is None:
+        return None
+    unit = _first(tags, Tag.FOCAL_PLANE_RESOLUTION_UNIT, 2, 5) or 2.0
+    taken_px = _first(tags, Tag.PIXEL_X_DIMENSION, 1, 1e6) or width_px
+    px_per_mm = resolution / MM_OF_UNITS[int(unit)] * width_px / taken_px
+    return px_per_mm if LEAST_SENSOR_MM < width_px / px_per_mm < MOST_SENSOR_MM else None
 
 
 def _dewarp(text: str | None) -> Dewarp | None:

@@ -72,6 +72,8 @@ class PhotoMetadata:
         What the laser range finder hit, its height counted like the photo's own.
     exposure_s, f_number, iso, focal_length_mm, focal_length_35mm_mm
         Of the shot; the last is the equivalent on 36 mm x 24 mm.
+    focal_plane_px_per_mm
+        Pixels of the stored picture on a millimetre of the sensor, as EXIF says.
     calibrated_focal_length_px, optical_center_px, dewarp
         Calibration by the maker, or by DJI Terra.
     is_dewarped
@@ -127,6 +129,7 @@ class PhotoMetadata:
     iso: int | None = None
     focal_length_mm: float | None = None
     focal_length_35mm_mm: float | None = None
+    focal_plane_px_per_mm: float | None = None
     calibrated_focal_length_px: float | None = None
     optical_center_px: tuple[float, float] | None = None
     dewarp: Dewarp | None = None

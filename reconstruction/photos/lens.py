@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import functools
 import math
 import re
+import tomllib
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from pathlib import Path
+from typing import NamedTuple
 
 from planning.aircraft.catalogue import profiles
 from planning.base.findings import Finding, Severity
@@ -59,7 +63,9 @@ class LensSource(StrEnum):
     DEWARP = "dewarp data"
     CALIBRATED = "calibrated focal length"
     CATALOGUE = "focal length and catalogue sensor"
+    SENSOR = "focal length and sensor size"
     EQUIVALENT = "35 mm equivalent"
+    FOCAL_PLANE = "focal length and focal plane resolution"
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,17 +121,22 @@ def lens_of(photo: PhotoMetadata) -> Lens | None:
     """Intrinsics of the stored picture by the first source that the photo has; None where it says too little."""
     equivalent_px = _equivalent_px(photo)
     passed_over: list[LensSource] = []
-    for lens in (_of_dewarp(photo), _of_calibration(photo), _of_catalogue(photo)):
+    for lens in (_of_dewarp(photo), _of_calibration(photo), _of_catalogue(photo), _of_sensor(photo)):
         if lens is None:
             continue
         if equivalent_px is None or abs(math.log(lens.intrinsics.fx_px / equivalent_px)) <= math.log1p(SIZE_TOLERANCE):
             return replace(lens, passed_over=tuple(passed_over))
         passed_over.append(lens.source)
-    if equivalent_px is None:
-        return None
-    centre = photo.width_px / 2, photo.height_px / 2
-    straight = Intrinsics(photo.width_px, photo.height_px, equivalent_px, equivalent_px, *centre)
-    return Lens(straight, LensSource.EQUIVALENT, passed_over=tuple(passed_over))
+    if equivalent_px is not None:
+        return Lens(_straight(photo, equivalent_px), LensSource.EQUIVALENT, passed_over=tuple(passed_over))
+    if photo.focal_length_mm is not None and photo.focal_plane_px_per_mm is not None:
+        f_px = photo.focal_length_mm * photo.focal_plane_px_per_mm
+        return Lens(_straight(photo, f_px), LensSource.FOCAL_PLANE)
+    return None
+
+
+def _straight(photo: PhotoMetadata, f_px: float) -> Intrinsics:
+    return Intrinsics(photo.width_px, photo.height_px, f_px, f_px, photo.width_px / 2, photo.height_px / 2)
 
 
 def _of_dewarp(photo: PhotoMetadata) -> Lens | None:
@@ -170,6 +181,42 @@ def _of_catalogue(photo: PhotoMetadata) -> Lens | None:
             fx, fy = f * width / camera.sensor_width_mm, f * height / camera.sensor_height_mm
             return Lens(Intrinsics(width, height, fx, fy, width / 2, height / 2), LensSource.CATALOGUE)
     return None
+
+
+def _of_sensor(photo: PhotoMetadata) -> Lens | None:
+    """By the size of the model's sensor: pictures of another shape are as wide or as high as it."""
+    sensor = _sensors().get(_letters(photo.model))
+    if sensor is None or sensor.picture_px not in (None, (photo.width_px, photo.height_px)):
+        return None
+    f_mm = photo.focal_length_mm or sensor.focal_length_mm
+    if f_mm is None:
+        return None
+    long_px, short_px = max(photo.width_px, photo.height_px), min(photo.width_px, photo.height_px)
+    px_per_mm = max(long_px / sensor.width_mm, short_px / sensor.height_mm)
+    return Lens(_straight(photo, f_mm * px_per_mm), LensSource.SENSOR)
+
+
+class _Sensor(NamedTuple):
+    width_mm: float
+    height_mm: float
+    focal_length_mm: float | None
+    picture_px: tuple[int, ...] | None
+
+
+@functools.cache
+def _sensors() -> dict[str, _Sensor]:
+    """Sensors of `data/sensors.toml` by the letters of models."""
+    tables = tomllib.loads((Path(__file__).parent / "data" / "sensors.toml").read_text("utf-8"))["sensor"]
+    return {
+        _letters(model): _Sensor(
+            table["width_mm"],
+            table["height_mm"],
+            table.get("focal_length_mm"),
+            tuple(table["picture_px"]) if "picture_px" in table else None,
+        )
+        for table in tables
+        for model in table["models"]
+    }
 
 
 def _letters(name: str | None) -> str:

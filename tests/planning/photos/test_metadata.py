@@ -236,6 +236,17 @@ def test_calibration_is_read_with_and_without_a_date(photo):
     assert photo(xmp=with_xmp(DewarpData="1,2,3")).dewarp is None
 
 
+@pytest.mark.parametrize(("unit", "units_in_mm"), [(2, 25.4), (3, 10.0), (4, 1.0), (None, 25.4)])
+def test_resolution_on_the_sensor_counts_for_the_stored_picture(photo, unit, units_in_mm):
+    tags = {0xA20E: 10.0 * units_in_mm} | ({} if unit is None else {0xA210: unit})
+    assert photo(exif_part(photo=tags)).focal_plane_px_per_mm == pytest.approx(10.0)
+    assert photo(exif_part(photo=tags | {0xA002: 640})).focal_plane_px_per_mm == pytest.approx(1.0)  # now 64 px
+    focal = pix4d({"Camera:PerspectiveFocalLength": "3.98"})
+    assert photo(exif_part(photo=tags), focal).calibrated_focal_length_px == pytest.approx(39.8)
+    assert photo(xmp=focal).calibrated_focal_length_px is None
+    assert photo(exif_part(photo={0xA20E: 72.0 / 1000.0})).focal_plane_px_per_mm is None  # a sensor of 20 m
+
+
 def test_gimbal_angles_of_exactly_zero_are_none_unless_the_nose_points_north(photo):
     zero = dict.fromkeys(ANGLES, "+0.00")
     flight = {"FlightPitchDegree": "+1.0", "FlightRollDegree": "+0.3"}

@@ -46,7 +46,9 @@ def test_sources_are_asked_in_order_of_their_worth():
 def test_all_sources_of_one_camera_agree_to_three_percent():
     full = replace(M3E, dewarp=DEWARP, calibrated_focal_length_px=3725.15)
     photos = (full, replace(full, dewarp=None), M3E, replace(M3E, model=None))
-    lenses = [lens_of(photo) for photo in photos]
+    photos += (replace(M3E, model="L2D-20c"),)
+    unknown = replace(M3E, model=None, focal_length_35mm_mm=None, focal_plane_px_per_mm=5280 / 17.3)
+    lenses = [lens_of(photo) for photo in (*photos, unknown)]
     assert {lens.source for lens in lenses} == set(LensSource)
     focal = [lens.intrinsics.fx_px for lens in lenses]
     assert max(focal) / min(focal) < 1.03
@@ -76,6 +78,31 @@ def test_dewarp_data_that_no_camera_has_are_not_used(change):
 def test_another_lens_of_the_same_camera_is_not_the_catalogues():
     tele = replace(M3E, focal_length_mm=29.9, focal_length_35mm_mm=162.0)
     assert lens_of(tele).source is LensSource.EQUIVALENT
+
+
+@pytest.mark.parametrize(
+    ("size", "f_px"),
+    [((5472, 3648), 8.8 * 5472 / 13.2), ((5472, 3078), 8.8 * 5472 / 13.2), ((4864, 3648), 8.8 * 3648 / 8.8)],
+    ids=["3:2", "16:9 is as wide", "4:3 is as high"],
+)
+@pytest.mark.parametrize("is_upright", [False, True])
+def test_pictures_of_each_shape_are_parts_of_the_sensor(size, f_px, is_upright):
+    photo = PhotoMetadata(Path("a.jpg"), *(size[::-1] if is_upright else size), model="FC6310", focal_length_mm=8.8)
+    found = lens_of(photo)
+    assert (found.source, found.intrinsics.fx_px) == (LensSource.SENSOR, pytest.approx(f_px))
+
+
+def test_a_sensor_of_one_of_several_cameras_is_for_its_pictures_only():
+    visible = PhotoMetadata(Path("a.jpg"), 8000, 6000, model="MAVIC2-ENTERPRISE-ADVANCED", focal_length_mm=4.5)
+    assert lens_of(visible) is None
+    assert lens_of(replace(visible, focal_length_35mm_mm=24.0)).source is LensSource.EQUIVALENT
+
+
+def test_the_sensor_is_nearer_the_truth_than_the_rounded_equivalent(shared_data):
+    """Reference poses of the photos in Lund have a focal length of 2435 px."""
+    photo = read_photos(shared_data / "multiview" / "lund_door").photos[0]
+    rounded = lens_of(replace(photo, model=None)).intrinsics.fx_px
+    assert abs(lens_of(photo).intrinsics.fx_px - 2435.4) < 0.6 * abs(rounded - 2435.4)
 
 
 @pytest.mark.parametrize(
@@ -113,9 +140,14 @@ def test_real_photos_tell_their_camera_and_focal_length(shared_data):
     assert kinds.pop("Mavic2Pro_L1D-20c_issue-exifr-13.jpg") is None
     assert set(kinds.values()) == {CameraKind.THERMAL}
     lenses = {name: lens_of(photo) for name, photo in photos.items()}
-    # The older thermal cameras and the M2EA give a focal length without any sensor size, or none at all.
-    assert {name for name, lens in lenses.items() if lens is None} == {
-        "M2EA_IR.JPG", "XT2.jpg", "XT2_issue-exifr-3.jpg", "XTR.jpg", "XTS.jpg",
+    # The older thermal cameras and the M2EA say no 35 mm equivalent: their sensors are known. Views of 13 and 19 mm are
+    # 45 and 32 degrees wide, DJI's specification of the XT 2; the M2EA's is 38 mm of 35 mm equivalent.
+    sensors = {name: lens.intrinsics.fx_px for name, lens in lenses.items() if lens.source is LensSource.SENSOR}
+    assert set(sensors) == {
+        "M2EA_IR.JPG", "XT2.jpg", "XT2_issue-exifr-3.jpg", "XTR.jpg", "XTS.jpg", "Mavic2Pro_L1D-20c_issue-exifr-13.jpg",
     }  # fmt: skip
+    wide = {name: 2.0 * math.degrees(math.atan(320.0 / fx_px)) for name, fx_px in sensors.items()}
+    assert {round(wide[name]) for name in ("XT2.jpg", "XT2_issue-exifr-3.jpg", "XTR.jpg", "XTS.jpg")} == {32, 45}
+    assert sensors["M2EA_IR.JPG"] == pytest.approx(38.0 / math.hypot(36.0, 24.0) * math.hypot(640, 512), rel=0.05)
     m3t = lenses["M3T_IR.JPG"].intrinsics
     assert m3t.fx_px == pytest.approx(9.1 / 0.012, rel=0.02)  # 9.1 mm on pixels of 12 um, DJI's specification
