@@ -7542,6 +7542,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>das Fluggerät fliegt mit {0} m/s, mehr lässt DJIs Format nicht zu, und nicht mit den {1} m/s des Plans: der Flug dauert länger als geplant; mit der kleineren Geschwindigkeit planen</translation>
     </message>
     <message>
+        <source>the airspace is {0} m by {1} m, as far as the photos were taken: what stands behind their cameras is not known; widen it where you have looked</source>
+        <translation>der Luftraum misst {0} m mal {1} m, so weit, wie Fotos gemacht wurden: was hinter ihren Kameras steht, ist nicht bekannt; dort erweitern, wo nachgesehen wurde</translation>
+    </message>
+    <message>
         <source>the annotation has {0} x {1} pixels, its photo {2} x {3}</source>
         <translation>die Annotation hat {0} x {1} Pixel, ihr Foto {2} x {3}</translation>
     </message>
@@ -7668,6 +7672,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the photos show {0} of the {1} sections that the plan promised ({2} %)</source>
         <translation>die Fotos zeigen {0} der {1} Sektoren, die der Plan versprach ({2} %)</translation>
+    </message>
+    <message>
+        <source>the photos were taken from the ground: what stands behind their cameras is not known, look around</source>
+        <translation>die Fotos wurden vom Boden aus gemacht: was hinter ihren Kameras steht, ist nicht bekannt; vor dem Flug umsehen</translation>
     </message>
     <message>
         <source>the picture cannot be written</source>
@@ -15434,6 +15442,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>error</source>
         <translation>Fehler</translation>
+    </message>
+    <message>
+        <source>focal length and sensor size</source>
+        <translation>Brennweite und Sensorgröße</translation>
+    </message>
+    <message>
+        <source>focal length and focal plane resolution</source>
+        <translation>Brennweite und Auflösung auf dem Sensor</translation>
     </message>
     <message>
         <source>a divisor of 90 from 1 to 90 degrees</source>
