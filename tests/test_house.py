@@ -101,7 +101,7 @@ READERS = {
     "planning/geo/geoid.py", "planning/base/step_physical_file.py",
     "planning/site/importing/ifc_file.py", "reconstruction/records/ifc/importing.py",
     "reconstruction/exports/web.py", "reconstruction/panels/network/belief.py",
-    "reconstruction/panels/network/network.py",
+    "reconstruction/panels/network/network.py", "reconstruction/photos/lens.py",
     "reconstruction/panels/network/random_pictures.py", "reconstruction/panels/network/pool.py",
     "reconstruction/scenes/runs/cluster_workers.py", "reconstruction/scenes/runs/run_record.py",
     "reconstruction/objects/organise.py", "groundstation/services/reconstruct/choices.py",
