@@ -20,6 +20,7 @@ def python(code):
     )
 
 
+@pytest.mark.lint
 @pytest.mark.few(2)
 @pytest.mark.parametrize(
     ("package", "forbidden"),
@@ -69,6 +70,7 @@ def test_top_level_holds_the_agreed_folders_and_nothing_else_of_ours():
     assert [path.name for path in ROOT.glob("*.py")] == ["app.py"]
 
 
+@pytest.mark.lint
 def test_only_one_module_each_imports_nlopt_casadi_and_pyvrp():
     for library in ("nlopt", "casadi", "pyvrp"):
         users = [
@@ -110,6 +112,7 @@ READERS = {
 }  # fmt: skip
 
 
+@pytest.mark.lint
 def test_files_of_others_are_opened_in_one_place():
     found = {
         path.relative_to(ROOT).as_posix()
@@ -170,6 +173,7 @@ d = said is None
     assert list(identities_of_qt(source)) == [4, 5]
 
 
+@pytest.mark.lint
 @pytest.mark.parametrize("folder", ["groundstation/gui", "tests/gui"])
 def test_members_of_qt_enums_are_compared_by_value(folder):
     """Qt gives a number where an enum is expected, or a new member for flags: `is` is then false without a word."""
@@ -181,6 +185,7 @@ def test_members_of_qt_enums_are_compared_by_value(folder):
     assert found == [], "compare members of Qt enums with == and !="
 
 
+@pytest.mark.lint
 def test_dialogs_of_qt_are_asked_in_one_place():
     asking = {"QMessageBox", "QFileDialog", "QInputDialog"}
     found = [
@@ -192,6 +197,7 @@ def test_dialogs_of_qt_are_asked_in_one_place():
     assert found == [], "ask by the functions of groundstation.gui.widgets.questions: they give a bool or a path"
 
 
+@pytest.mark.lint
 def test_no_test_answers_in_place_of_a_dialog():
     """Dialogs are clicked (`tests.gui.driving.clicked`); a test that answers for one says nothing about it."""
     words = re.compile(
@@ -235,6 +241,7 @@ def plain_sentences(source):
             yield node.lineno
 
 
+@pytest.mark.lint
 def test_sentences_for_users_are_messages_that_can_be_translated():
     sentences = 'x = 1\nraise InputError(f"there is no {x}; name one")\ntext = f"{x} is not one"'
     assert set(plain_sentences(sentences)) == {2, 3}
@@ -248,6 +255,7 @@ def test_sentences_for_users_are_messages_that_can_be_translated():
     assert found == [], "make them by planning.base.messages.say: an f-string stays English"
 
 
+@pytest.mark.slow
 def test_tests_that_were_compiled_before_are_found_so_by_pytest(tmp_path):
     """In a fresh clone each of several test processes would compile all of them."""
     shutil.copy(ROOT / "tests" / "rewritten.py", tmp_path)

@@ -93,6 +93,7 @@ def test_every_benchmark_runs_quickly(benchmark: Benchmark, tmp_path: Path) -> N
     assert run_all([benchmark], tmp_path, True) == 0
 
 
+@pytest.mark.slow
 def test_commands_are_measured_and_their_errors_told() -> None:
     with pytest.raises(RuntimeError, match=r"error: .*nowhere\.json"):
         run_command(["check", "nowhere.json", "nowhere.json"])

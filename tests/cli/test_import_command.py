@@ -36,6 +36,7 @@ REFUSED = {
 }
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("file_format", sorted(ENDINGS))
 def test_what_was_exported_comes_back_with_its_views_and_coverage(reflight, pane, tmp_path, file_format):
     mission, out = tmp_path / f"m{ENDINGS[file_format]}", tmp_path / "back.json"
@@ -60,6 +61,7 @@ def test_text_tells_the_result_and_the_next_command(reflight, pane, tmp_path):
     assert done.err.splitlines()[-1] == f"next: app.py check {out} {pane / 'site.json'}"
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("name", sorted(GOOD))
 def test_missions_of_other_programs_open_at_their_own_place(reflight, pane, changed, shared_data, tmp_path, name):
     file = shared_data / "missions" / name

@@ -45,6 +45,7 @@ def test_text_tells_the_pilot_the_result_and_the_next_command(reflight, pane, tm
     assert done.err.splitlines()[-1] == f"next: app.py check '{out}' '{site}'"
 
 
+@pytest.mark.slow
 def test_a_lower_flight_is_asked_for_by_an_option_and_warned_of(reflight, pane, tmp_path):
     out = tmp_path / "plan.json"
     usual = reflight("plan", pane / "site.json", "-o", out, "--views", 9, *QUICK)
@@ -60,6 +61,7 @@ def test_a_lower_flight_is_asked_for_by_an_option_and_warned_of(reflight, pane, 
     assert "flights keep 300 m from it; raise the ceiling, or allow lower flights" in high.err
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("method", ["greedy", "pso", "noto", "orbit"])
 def test_every_method_gives_a_plan_that_is_ready_to_fly(reflight, pane, tmp_path, method):
     out = tmp_path / "plan.json"
@@ -69,6 +71,7 @@ def test_every_method_gives_a_plan_that_is_ready_to_fly(reflight, pane, tmp_path
     assert reflight("check", out, pane / "site.json").status == 0
 
 
+@pytest.mark.slow
 def test_the_three_goals_are_met(reflight, pane, tmp_path):
     site, out = pane / "site.json", tmp_path / "plan.json"
     half = plan_json(reflight, site, out, "--coverage", 0.5, "--time-budget", 600)
@@ -117,6 +120,7 @@ def test_the_same_seed_gives_the_same_views(reflight, pane, tmp_path):
     assert plans[0].viewpoints == plans[1].viewpoints
 
 
+@pytest.mark.slow
 def test_locked_viewpoints_of_another_plan_are_kept(reflight, pane, changed, tmp_path):
     site, out = pane / "site.json", tmp_path / "new.json"
     old = changed(pane / "plan.json", "viewpoints", 2, "locked", True)
@@ -140,6 +144,7 @@ def test_locked_viewpoints_of_another_plan_are_kept(reflight, pane, changed, tmp
     assert "is locked, but cannot be flown: it is" in reflight("plan", site, "-o", out, "--keep", beside).error
 
 
+@pytest.mark.slow
 def test_less_than_was_asked_for_is_said(reflight, pane, tmp_path):
     out = tmp_path / "plan.json"
     done = reflight("plan", pane / "site.json", "-o", out, "--method", "noto", "--coverage", 0.9, *QUICK)
@@ -258,6 +263,7 @@ def test_an_output_that_cannot_be_written_is_refused_before_the_work(
     assert (tmp_path / "site.json").read_bytes() == before
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="devices of a POSIX system")
 def test_a_device_is_written_to_and_not_replaced(reflight, pane):
     assert plan_json(reflight, pane / "site.json", "/dev/null", "--views", 1)["views"] == 1

@@ -151,6 +151,7 @@ def test_a_request_is_kept_with_its_plan(project):
     assert open_project(project).document.request == PlanRequest()
 
 
+@pytest.mark.slow
 def test_no_command_writes_over_what_holds_a_project_together(reflight, tmp_path):
     site = write_scene("single-panel", tmp_path)
     assert reflight("project", "new", tmp_path / "p", "--site", site).status == 0

@@ -39,6 +39,7 @@ def photos(pane, tmp_path):
     return tmp_path / "photos"
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("name", LOGS)
 def test_every_kind_of_log_gives_the_report_and_the_flight(report, pane, tmp_path, name):
     plan, site = read_plan(pane / "plan.json"), read_site(pane / "site.json").site
@@ -52,6 +53,7 @@ def test_every_kind_of_log_gives_the_report_and_the_flight(report, pane, tmp_pat
     assert flight.site_sha256 == read_site(pane / "site.json").sha256
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("name", "autopilot"),
     [("f.tlog", Autopilot.ARDUPILOT), ("f.BIN", Autopilot.ARDUPILOT), ("f.ulg", Autopilot.PX4)],
@@ -74,6 +76,7 @@ def test_the_duration_of_a_dji_flight_is_compared_with_the_plans_own(report, pan
     assert sortie["duration_predicted_s"] == pytest.approx(own_s, abs=0.1)
 
 
+@pytest.mark.slow
 def test_several_logs_are_one_flight(report, pane, tmp_path):
     plan, site = read_plan(pane / "plan.json"), read_site(pane / "site.json").site
     log = save(tmp_path / "f.tlog", tlog(flown_as_planned(plan), site))

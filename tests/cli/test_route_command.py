@@ -11,6 +11,7 @@ def berlin(shared_data):
     return shared_data / "routing" / "tsplib" / "berlin52.tsp"
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("method", "longest", "budget_s"),
     [("local-search", BERLIN, 60), ("pyvrp", 7974, 2)],

@@ -118,6 +118,7 @@ def test_views_are_planned_where_none_are_named_and_the_plan_is_kept(reflight, t
     assert "2 of them kept" in reflight(*arguments).out
 
 
+@pytest.mark.few(6)
 @pytest.mark.parametrize(
     ("arguments", "text"),
     [
@@ -242,6 +243,7 @@ def test_a_plan_without_views_is_refused(render, changed, pane, tmp_path):
     assert not (tmp_path / "photos").exists()
 
 
+@pytest.mark.slow
 def test_square_views_are_those_of_a_first_flight(render, tmp_path):
     done = render("--square", 3, "--json").json
     assert done["photos"] == 3

@@ -204,6 +204,7 @@ def test_a_vehicle_that_stands_lower_than_planned_flies_once_its_flight_is_raise
     assert heights_m == pytest.approx(planned_m, abs=0.2)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("autopilot", [slow(Autopilot.ARDUPILOT), Autopilot.PX4])
 def test_a_vehicle_at_a_link_is_flown_and_logged(fly, pane, tmp_path, autopilot):
     model = read_site(pane / "site.json")

@@ -17,6 +17,7 @@ def mesh(tmp_path_factory):
     return folder / "office.ply"
 
 
+@pytest.mark.slow
 def test_ifc_becomes_a_site_and_text_tells_panels_place_and_next_command(reflight, shared_data, tmp_path):
     out = tmp_path / "wall.site.json"
     done = reflight("site", "import", shared_data / "bim" / "curtain_wall_small.ifc", "-o", out)

@@ -51,6 +51,7 @@ def test_a_top_up_closes_what_is_missing_and_can_be_checked_and_exported(refligh
     assert mission.exists()
 
 
+@pytest.mark.slow
 def test_json_is_one_object_that_says_what_is_left_open(reflight, pane, flown, tmp_path):
     out = tmp_path / "topup.plan.json"
     arguments = (flown(2), pane / "plan.json", pane / "site.json", "-o", out, "--time-budget", 1, "--json")
@@ -125,6 +126,7 @@ def test_the_autopilots_log_serves_as_well_as_a_flight_file(reflight, pane, tmp_
     assert "km from the site" in refused.error
 
 
+@pytest.mark.slow
 def test_photos_whose_reports_were_lost_are_told_of_with_what_to_do(reflight, pane, tmp_path):
     plan, model = read_plan(pane / "plan.json"), read_site(pane / "site.json")
     (record,) = flown_as_planned(plan)

@@ -120,6 +120,7 @@ def test_route_compares_tsplib_files_and_plans_with_their_bounds_and_optima(site
     assert (out / "tradeoff-route.png").read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.slow
 def test_plan_finds_the_site_beside_it_and_asks_for_one_where_there_is_none(site, plan, tmp_path, capsys):
     beside = site.parent / "beside.json"
     beside.write_bytes(plan.read_bytes())
@@ -132,6 +133,7 @@ def test_plan_finds_the_site_beside_it_and_asks_for_one_where_there_is_none(site
     assert not (tmp_path / "b").exists()
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

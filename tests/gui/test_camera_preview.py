@@ -107,6 +107,7 @@ def projected(points, viewpoint, width, height):
     return np.stack([x, y], axis=1)
 
 
+@pytest.mark.slow
 def test_the_picture_has_the_aspect_ratio_of_the_sensor_whatever_the_window(application, preview):
     preview.set_view(office(), made_plan(POSES), "v0000")
     for size in ((1000, 700), (400, 700), (1200, 300)):
@@ -165,6 +166,7 @@ def test_a_camera_that_looks_straight_down_has_no_horizon():
     assert horizon_px(photo_pinhole(np.zeros(3), 0.0, -math.pi / 2, CAMERA, 800.0)) > 800.0
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("turn_in_flight", [False, True])
 def test_the_flight_shows_every_photo_in_its_own_pose_and_moves_no_faster_than_it_may(turn_in_flight):
     plan = made_plan(POSES, rules=FlightRules(turn_in_flight=turn_in_flight))

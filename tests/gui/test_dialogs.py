@@ -140,7 +140,7 @@ ASKING = {
 }
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("name", ASKING)
 def test_nothing_happens_when_the_user_thinks_better_of_it(application, controller, name):
     before, told = controller.context.document, controller.window.messages.texts()

@@ -44,6 +44,7 @@ def test_the_first_plan_of_a_site_is_brought_in_once(controller):
     assert view.orbit() == near, "so does the first one when it comes back"
 
 
+@pytest.mark.slow
 def test_an_edited_site_is_the_same_one_and_another_building_is_not(controller):
     context, view = controller.context, controller.window.shared_view.scene()
     model = scene("single-panel")

@@ -249,6 +249,7 @@ def test_a_grid_of_panels_is_kept(application, n_rows, n_columns, gap_m, toleran
     assert form.value() == wish
 
 
+@pytest.mark.slow
 @given(
     st.none() | numbers(-1000.0, 9000.0),
     numbers(0.0, 5000.0),

@@ -198,6 +198,7 @@ def test_other_work_comes_first(hands):
     assert order == [False]
 
 
+@pytest.mark.slow
 def test_what_fails_is_told_in_its_place_once_and_tried_again_when_asked(hands, monkeypatch):
     def fails(*_given, **_reporting):
         raise InputError("the site has no panels yet: find them")
@@ -255,6 +256,7 @@ def test_outlines_lie_over_the_photo_where_they_are_wanted(hands):
     assert (hands.preview.screenshot() == plain).all()
 
 
+@pytest.mark.slow
 def test_the_space_bar_presses_the_button_that_has_the_keyboard(hands):
     hands.preview.box.photo.setFocus()
     QTest.keyClick(hands.preview.box.photo, Qt.Key.Key_Space)

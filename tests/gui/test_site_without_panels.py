@@ -127,6 +127,7 @@ def test_a_coarse_model_is_imported_kept_filled_from_photos_and_planned(opened, 
     assert opened.errors() == []
 
 
+@pytest.mark.slow
 def test_every_tab_shows_a_site_without_panels(opened):
     model = roof()
     emptied = tuple(replace(facade, panels=()) for facade in model.site.facades)

@@ -62,6 +62,7 @@ def test_every_text_has_a_finished_translation(german):
     assert not open_ones
 
 
+@pytest.mark.lint
 def test_the_file_holds_the_texts_of_the_sources_and_no_others(german, tmp_path):
     lupdate = shutil.which("pyside6-lupdate", path=Path(sys.executable).parent)
     if lupdate is None:
@@ -111,6 +112,7 @@ def test_ends_of_texts_survive_translation(german):
         assert re.findall(r"^\s*|\s*$", source) == re.findall(r"^\s*|\s*$", translation.text), f"{context}: {source!r}"
 
 
+@pytest.mark.lint
 @pytest.mark.parametrize("path", SOURCES, ids=lambda path: str(path.relative_to(GUI)))
 def test_texts_are_literals_that_qt_linguist_finds(path, german):
     known = {source for _, source, _ in german}
@@ -121,6 +123,7 @@ def test_texts_are_literals_that_qt_linguist_finds(path, german):
             assert text.value in known, f"line {call.lineno}: Qt Linguist does not find {text.value!r}"
 
 
+@pytest.mark.lint
 @pytest.mark.parametrize("path", SOURCES, ids=lambda path: str(path.relative_to(GUI)))
 def test_no_widget_gets_a_text_that_is_not_translated(path):
     for call in calls(path):

@@ -89,6 +89,7 @@ def drag(view, start, end, button=Qt.MouseButton.LeftButton, modifier=Qt.Keyboar
     QTest.mouseRelease(canvas, button, modifier, end)
 
 
+@pytest.mark.slow
 def test_many_changes_are_painted_once_and_none_while_hidden(application, view, plan):
     model = tower()
     settle(application)
@@ -269,6 +270,7 @@ def test_dragging_turns_shifts_and_zooms_and_others_can_follow(application, view
     assert (view.orbit(), len(heard)) == (before, n_heard)
 
 
+@pytest.mark.slow
 def test_two_fingers_shift_and_zoom(application, view):
     view.set_site(office())
     before = view.orbit()
@@ -343,6 +345,7 @@ def inside(view, points_enu_m):
     return bool((depths > 0.0).all() and (pixels >= 0.0).all() and (pixels <= [view.width(), view.height()]).all())
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("heading_deg", "pitch_deg"), [(0.0, 0.0), (25.0, 10.0), (-40.0, -20.0)])
 def test_a_viewpoint_is_looked_at_together_with_what_it_photographs(application, view, plan, heading_deg, pitch_deg):
     view.set_site(office())
@@ -421,7 +424,7 @@ def lines(places, colour="#ff00ff", width_px=6.0):
     return Drawable(np.array(places, float), cells, flat(colour, len(cells)), width_px=width_px)
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     "after",
     [
@@ -603,6 +606,7 @@ def test_texts_are_readable_and_the_ground_changes_with_the_theme(application, v
         application.setStyleSheet("")
 
 
+@pytest.mark.slow
 def test_the_scale_follows_the_units(application, view):
     view.set_site(office())
     metric = view.screenshot().astype(int)
@@ -688,6 +692,7 @@ def test_viewpoints_that_are_cut_off_are_brought_in_from_where_the_view_stands(a
     assert (view.orbit().heading_deg, view.orbit().pitch_deg) == (before.heading_deg, before.pitch_deg)
 
 
+@pytest.mark.slow
 def test_a_view_that_shows_all_viewpoints_stays_as_it_is(application, view, plan):
     view.set_site(office())
     view.set_plan(plan)

@@ -37,7 +37,7 @@ def degrees_from_border(views, frames, step):
     return np.minimum(gaps[0], gaps[1] * np.sin(np.radians(theta)))
 
 
-@pytest.mark.few(15)
+@pytest.mark.few(5)
 @pytest.mark.parametrize("step", STEPS)
 @pytest.mark.parametrize("scene", ["office", "library", "roof"])
 def test_float64_kernel_equals_the_definition(scene, step):
@@ -54,7 +54,7 @@ def test_float64_kernel_equals_the_definition(scene, step):
     assert len(found.items) == (expected != NOT_SEEN).sum()
 
 
-@pytest.mark.few(5)
+@pytest.mark.few(2)
 @pytest.mark.parametrize("step", STEPS)
 def test_float32_kernel_differs_only_within_a_thousandth_of_a_degree_of_a_border(step):
     frames = frames_of("library")

@@ -192,6 +192,7 @@ def plan_here() -> Plan:
     return plan_kiosk(kiosk(), n_views=12).plan
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("offset", OFFSETS)
 @pytest.mark.parametrize("precision", ["f32", "f64"])
 def test_coverage_of_the_same_views_is_the_same_wherever_the_site_lies(offset: Vec3, precision: str) -> None:

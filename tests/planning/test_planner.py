@@ -262,6 +262,7 @@ def test_improved_plans_repeat_too_when_the_search_ends_by_itself(monkeypatch: p
     assert first.plan.coverage.covered == 3
 
 
+@pytest.mark.slow
 def test_both_precisions_plan_alike() -> None:
     plans = [
         plan_flight(kiosk(), replace(REQUESTS["share"], share=0.6, precision=precision, time_budget_s=600.0)).plan
@@ -301,6 +302,7 @@ def test_cancelling_at_any_report_throws_the_plan_away() -> None:
             plan_flight(kiosk(), REQUESTS["views"], monitor=Counting(int(n), cancel))
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("name", ["improved views", "batteries", "share", "pso"])
 def test_stopped_at_once_a_plan_comes_out_all_the_same(name: str) -> None:
     stop = StopRequest()
@@ -349,7 +351,7 @@ def test_bounds_hold_for_what_they_are_stated_for() -> None:
     assert batteries.plan.coverage.covered <= batteries.bound_for_views <= batteries.plan.coverage.reachable_upper_bound
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("request_", "error", "message"),
     [
@@ -409,6 +411,7 @@ def test_senseless_requests_are_refused(arguments: dict[str, float], message: st
         PlanRequest(**arguments)  # type: ignore[arg-type]
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("max_views", [8, 4, 3])
 def test_sharing_out_anew_keeps_the_viewpoints_and_the_contract(max_views: int) -> None:
     plan = planned_kiosk("views").plan
@@ -443,7 +446,7 @@ def test_plans_of_whole_sites_keep_the_contract(scene: str, goal: dict[str, int]
     assert is_flyable(check_plan(plan, model))
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("method", ["greedy", "pso", "noto", "orbit"])
 def test_every_method_takes_a_seed_of_63_bits(method: str, tmp_path: Path) -> None:
     """Generators of other libraries take 32 bits only."""

@@ -179,6 +179,7 @@ def test_run_that_cannot_be_done_says_why_and_a_cancelled_one_is_not_swallowed()
         run_plan(model, BASE, (30.0,), monitor=Cancelling())
 
 
+@pytest.mark.slow
 def test_report_compares_all_runs_in_the_sections_asked_for_and_in_the_finest(runs):
     report = plan_report(runs, BASE)
     assert report.names == ("greedy", "orbit", "noto", "greedy 15°")

@@ -154,6 +154,7 @@ def test_fewest_views_for_a_share_reach_it_with_fewer_than_greedy_alone():
     assert len(better.views.heading_rad) < len(plain.views.heading_rad)
 
 
+@pytest.mark.slow
 def test_solid_angle_weights_prefer_the_larger_sections():
     problem = problem_of("office")
     areas = element_weights(problem.model, True)

@@ -25,7 +25,7 @@ def page(tmp_path, results):
     return (tmp_path / "tables.md").read_text("utf-8")
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("scale", SCALES.values(), ids=SCALES)
 def test_all_cases_can_be_trained_and_no_two_of_a_table_alike(scale):
     for table in tables(scale):

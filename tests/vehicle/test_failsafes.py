@@ -53,7 +53,7 @@ def found(orders, autopilot, code, **changes):
     return next((check for check in checks if check.code == code), None)
 
 
-@pytest.mark.few(6)
+@pytest.mark.few(4)
 @pytest.mark.parametrize(
     ("autopilot", "changes", "verdict", "words"),
     [
@@ -265,6 +265,7 @@ LIMITS = [
 ]
 
 
+@pytest.mark.few(6)
 @pytest.mark.parametrize(("autopilot", "code", "name", "changes"), LIMITS)
 @pytest.mark.parametrize(
     ("more_m", "verdict"), [(-0.1, Verdict.BAD), (0.1, Verdict.WARN), (1.9, Verdict.WARN), (2.1, Verdict.OK)]

@@ -75,21 +75,25 @@ def example(template, value="Xy"):
     return filled(template, ["3.5, -2" if fields[number] == "m" else value for number in sorted(fields)])
 
 
+@pytest.mark.lint
 def test_fields_of_every_template_are_counted_from_0_in_order():
     for template in all_templates():
         assert [int(field[1]) for field in FIELD.finditer(template)] == list(range(len(FIELD.findall(template))))
 
 
+@pytest.mark.lint
 def test_what_the_window_says_instead_is_said_somewhere_and_has_the_same_fields():
     assert set(IN_WINDOW) <= all_templates()
     for template, instead in IN_WINDOW.items():
         assert re.findall(r"\{[^}]*\}", template) == re.findall(r"\{[^}]*\}", instead)
 
 
+@pytest.mark.lint
 def test_no_word_is_a_message_as_well():
     assert not set(WORDS) & all_templates()
 
 
+@pytest.mark.lint
 @pytest.mark.parametrize("language", ["en", "de"])
 def test_the_window_speaks_no_command_line(application, request, language):
     """No option without its field, no command: whoever reads it has buttons."""
@@ -133,6 +137,7 @@ def raised_as_plain_text(path):
             yield node.lineno
 
 
+@pytest.mark.lint
 def test_errors_and_findings_are_messages():
     paths = [path for house in HOUSES for path in sorted((ROOT / house).rglob("*.py"))]
     plain = [f"{path.relative_to(ROOT)}:{line}" for path in paths for line in raised_as_plain_text(path)]

@@ -214,6 +214,7 @@ def test_hardly_anything_missing_is_asked_about_with_what_it_would_cost(applicat
     assert [entry.title for entry in controller.context.document.plans] == titles
 
 
+@pytest.mark.slow
 def test_losing_the_link_shows_a_band_and_is_survived(application, radio, controller, page, monkeypatch):
     monkeypatch.setattr(page.controller, "_connection", lambda *_: radio)
     connect(application, page)
@@ -475,6 +476,7 @@ def test_pressing_the_keyboard_twice_gives_no_second_order(application, controll
     assert heard == [Request.UPLOAD]
 
 
+@pytest.mark.slow
 def test_a_double_click_on_start_asks_once_and_orders_nothing_else(application, controller, page):
     connect(application, page)
     ask_for(page, Request.UPLOAD)
@@ -512,6 +514,7 @@ def test_keys_of_a_flight_do_nothing_in_other_tabs_nor_what_is_not_allowed(appli
     assert heard == [Request.UPLOAD]
 
 
+@pytest.mark.slow
 def test_times_of_notes_carry_seconds_into_minutes(application, page):
     page.notes.add(59.96, Severity.NOTE, "nearly a minute")
     assert page.notes.texts().endswith("1:00.0  nearly a minute")
@@ -656,6 +659,7 @@ def answer(text):
     return step
 
 
+@pytest.mark.slow
 def test_a_return_through_the_building_needs_a_typed_word(application, radio, controller, page, monkeypatch):
     radio.changes = {
         "autopilot": Autopilot.PX4,

@@ -38,6 +38,7 @@ def document(application):
     return made
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("is_letter", "size_mm"), [(False, (210.0, 297.0)), (True, (215.9, 279.4))])
 def test_pdf_has_pages_of_the_paper_that_was_asked_for(document, tmp_path, is_letter, size_mm):
     from groundstation.gui.mission.brief_printer import write_pdf
@@ -76,6 +77,7 @@ def test_pages_hold_text_map_and_profiles(document):
     assert all(share > 0.02 for share in shares)
 
 
+@pytest.mark.slow
 def test_long_lists_of_findings_go_on_over_the_page(document, tmp_path):
     from groundstation.gui.mission.brief_printer import write_pdf
 

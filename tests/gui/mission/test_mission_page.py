@@ -168,6 +168,7 @@ def test_files_are_taken_in_the_order_of_their_sorties(page, context, planned, m
     assert [path.name for path in heard] == ["roof.plan", "roof-2.plan", "roof-3.plan"]
 
 
+@pytest.mark.slow
 def test_findings_are_old_as_soon_as_the_plan_changes_and_then_renewed(page, context, planned, idle):
     context.session.open(opened(planned), None)
     idle(lambda: page.findings.verdict().startswith("Ready to fly"))
@@ -244,6 +245,7 @@ def test_export_shows_findings_first_then_writes_and_remembers_the_folder(page, 
     again.close()
 
 
+@pytest.mark.slow
 def test_closed_dialogs_leave_the_window_also_while_their_jobs_run(page, context, planned, idle):
     from PySide6.QtCore import QCoreApplication, QEvent
 
@@ -274,6 +276,7 @@ def test_export_says_why_files_cannot_be_made_and_offers_no_writing(page, contex
     dialog.close()
 
 
+@pytest.mark.slow
 def test_only_the_last_wish_of_the_export_form_is_made(page, context, planned, idle):
     context.session.open(opened(planned), None)
     dialog = page.export()

@@ -309,6 +309,7 @@ def test_a_report_has_a_page_for_each_panel_and_no_markup_of_records(application
     assert "cannot be written" in opened.messages[-1].text
 
 
+@pytest.mark.slow
 def test_a_report_of_a_facade_shows_it_whole_and_the_panels_that_something_is_known_of(application, opened, tmp_path):
     card, controller = opened.controller.card, opened.controller
     panels = [each for each in card.panels if each.facade == card.panels[0].facade]

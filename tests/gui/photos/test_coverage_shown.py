@@ -104,6 +104,7 @@ def test_coverage_is_counted_again_for_panels_that_are_used_and_otherwise_once_t
     assert "of 36 sections" in found.tab.coverage.text()
 
 
+@pytest.mark.slow
 def test_a_site_that_loses_its_panels_says_so_and_paints_nothing(in_3d):
     context = in_3d.controller.context
     model = context.document.site
@@ -115,12 +116,14 @@ def test_a_site_that_loses_its_panels_says_so_and_paints_nothing(in_3d):
     assert scene(in_3d)._panel_values is None
 
 
+@pytest.mark.slow
 def test_without_photos_the_view_says_what_to_do(in_3d):
     in_3d.controller.context.session.open(Document(), None)
     assert "Open or import a site" in in_3d.tab.pane.scene._text.text()
     assert scene(in_3d) is not None
 
 
+@pytest.mark.slow
 def test_known_panels_are_drawn_into_photos_in_which_they_were_not_looked_for(found):
     found.tab.strip.choose(0)
     found.idle()
@@ -142,6 +145,7 @@ def test_known_panels_are_drawn_into_photos_in_which_they_were_not_looked_for(fo
     assert found.view._outlines[0] == pytest.approx(posed.pixels(corners))
 
 
+@pytest.mark.slow
 def test_before_a_search_the_panels_of_the_site_are_drawn(page):
     page.tab.strip.choose(0)
     page.idle()

@@ -44,6 +44,7 @@ def test_tab_goes_through_all_lines_and_then_leaves_the_picture(keyed):
     assert keyed.controller.window.focusWidget() is not keyed.view
 
 
+@pytest.mark.slow
 def test_shift_and_tab_goes_backwards(keyed):
     QTest.keyClick(keyed.view, Qt.Key.Key_Backtab, Qt.KeyboardModifier.ShiftModifier)
     assert keyed.view.chosen_line() == ("row", len(keyed.grid.rows) - 1)
@@ -111,6 +112,7 @@ def test_delete_and_insert_take_a_line_out_and_put_one_in(keyed):
     assert keyed.view.chosen_line() is None
 
 
+@pytest.mark.slow
 def test_without_a_chosen_line_arrows_move_the_picture(keyed):
     draft, corner = keyed.draft, keyed.view.to_picture(keyed.view.rect().center().toPointF())
     keyed.keys("Escape", "Right", "Down")

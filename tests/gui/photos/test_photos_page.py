@@ -71,6 +71,7 @@ def test_a_place_on_the_map_chooses_its_photo(page):
     assert page.tab.pane.card() is page.tab.controller.cards[1]
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("is_rectified", [False, True])
 def test_a_line_is_dragged_in_both_views_and_the_facade_solved_again(found, is_rectified):
     if is_rectified:
@@ -152,6 +153,7 @@ def test_photos_stay_when_the_site_is_saved_and_go_when_it_moves(found):
     assert found.tab.controller.cards == ()
 
 
+@pytest.mark.slow
 def test_photos_that_were_read_for_another_site_are_not_shown(page):
     folder = page.tab.controller.folder
     page.controller.context.session.open(Document(), None)
@@ -178,6 +180,7 @@ def test_a_new_window_shows_the_same_photos(application, found):
     turn_until(application, lambda: found.controller.window.shared_view.scene() is not None)
 
 
+@pytest.mark.slow
 def test_a_data_set_is_made_of_the_photos_and_what_was_left_out_is_said(application, page, controller, tmp_path):
     assert page.tab.data_set.isEnabled()
     with clicked(choose(tmp_path / "new")):

@@ -85,6 +85,7 @@ def test_lengths_follow_the_units(page, kept):
     page.controller.context.set_units(UnitSystem.METRIC)
 
 
+@pytest.mark.slow
 def test_without_pycolmap_it_says_what_to_install_and_the_poses_stay(page, box, monkeypatch):
     monkeypatch.setitem(sys.modules, "pycolmap", None)
     own = page.tab.controller.intake
@@ -96,6 +97,7 @@ def test_without_pycolmap_it_says_what_to_install_and_the_poses_stay(page, box, 
     assert box.refine.isEnabled()
 
 
+@pytest.mark.slow
 def test_a_refinement_that_is_refused_says_so_and_changes_no_pose(page, box, folder):
     stated = page.tab.controller.intake.posed.photos
     found = refinement(stated)

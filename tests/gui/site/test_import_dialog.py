@@ -103,6 +103,7 @@ def test_building_with_windows_is_shown_and_taken_over_in_one_step(opened, share
     assert len(hands.taken[0].sha256) == 64
 
 
+@pytest.mark.slow
 def test_mesh_becomes_a_site_field_by_field(opened, tower_mm):
     from PySide6.QtCore import QPoint, Qt
     from PySide6.QtTest import QTest
@@ -144,6 +145,7 @@ def test_mesh_becomes_a_site_field_by_field(opened, tower_mm):
     np.testing.assert_allclose(np.ptp(model.building.vertices_enu_m, axis=0), [36.0, 20.0, 42.0], atol=1e-3)
 
 
+@pytest.mark.slow
 def test_grid_beside_the_building_is_told_and_cannot_be_used(opened, tower_mm):
     hands = opened(tower_mm)
     hands.dialog.form.origin_box().setValue(Origin(47.0, 8.0, 400.0))
@@ -190,7 +192,7 @@ def test_wrong_coordinate_system_is_told_by_the_fields_name(opened, shared_data)
     assert "there are no windows" in hands.dialog._notes.toPlainText()
 
 
-@pytest.mark.few(4)
+@pytest.mark.few(2)
 @pytest.mark.parametrize(
     ("name", "content", "message"),
     [

@@ -192,6 +192,7 @@ def test_home_in_a_bad_place_is_taken_and_told_until_it_is_put_right(opened):
     assert findings.findings() == ()
 
 
+@pytest.mark.slow
 def test_escape_and_a_second_press_put_a_tool_away_and_leave_the_site(opened):
     from PySide6.QtCore import Qt
     from PySide6.QtTest import QTest
@@ -226,6 +227,7 @@ def test_values_that_cannot_be_are_told_at_the_box_and_not_taken(opened):
     assert (hands.site.airspace.min_enu_m[2], hands.site.airspace.max_enu_m[2]) == (99.0, 120.0)
 
 
+@pytest.mark.slow
 def test_names_are_changed_in_one_step_and_taken_ones_refused(opened):
     hands = opened("court")
     hands.context.select(Item(ItemKind.FACADE, "A"))
@@ -292,6 +294,7 @@ def test_panel_grid_is_picked_checked_shown_and_added(opened):
     assert detail.properties.isVisible()
 
 
+@pytest.mark.slow
 def test_panel_grid_that_is_given_up_leaves_the_view_as_it_was(opened):
     hands = opened("office")
     maker, form = hands.tab.detail.grid_maker, hands.tab.detail.grid_form
@@ -379,6 +382,7 @@ def test_site_is_checked_anew_for_the_distance_of_the_next_plan(opened):
     assert "60 m are required" in hands.tab.detail.findings.findings()[0].message
 
 
+@pytest.mark.slow
 def test_check_that_was_cancelled_does_not_stop_later_ones(opened):
     hands = opened("roof")
     editor = hands.tab.detail.editor

@@ -127,6 +127,7 @@ def test_tab_reaches_every_region_once_around_and_stops_at_no_frame(application,
     assert set(inside) == {number for number, region in enumerate(regions) if region is not None and region.isVisible()}
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("kind", "reason", "is_shown"),
     [

@@ -56,6 +56,7 @@ def planned(application, controller, request):
     return page
 
 
+@pytest.mark.slow
 def test_window_opens_a_site_plans_it_and_shows_both(application, controller):
     opened(application, controller, "roof")
     scene = controller.window.shared_view.scene()
@@ -341,6 +342,7 @@ def test_the_language_waits_while_something_runs(application, controller):
     turn_until(application, lambda: controller.window.shared_view.scene() is not None)
 
 
+@pytest.mark.slow
 def test_the_language_can_be_chosen_before_the_first_tab_is_there(application, worker, tmp_path, monkeypatch):
     monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path))
     from groundstation.gui.window.project_controller import ProjectController
@@ -357,6 +359,7 @@ def test_the_language_can_be_chosen_before_the_first_tab_is_there(application, w
     close_controller(controller)
 
 
+@pytest.mark.slow
 def test_a_window_that_was_replaced_fills_no_menu_any_more(application, controller, monkeypatch):
     old = controller.window
     filled = []

@@ -128,6 +128,7 @@ def test_a_damaged_project_is_refused_and_what_is_open_stays(application, make_c
     assert "not there any more" in controller.window.messages.texts()
 
 
+@pytest.mark.slow
 def test_a_full_disk_leaves_the_work_in_the_window(application, make_controller, entry, tmp_path, monkeypatch):
     controller = make_controller()
     with_site(application, controller)
@@ -246,6 +247,7 @@ def test_unsaved_work_that_is_not_decided_about_is_offered_again(application, ma
     assert controller.context.document.request.n_views is None
 
 
+@pytest.mark.slow
 def test_save_as_proposes_a_name_that_is_free(application, make_controller, tmp_path, monkeypatch):
     monkeypatch.setattr(Path, "home", lambda: tmp_path)
     (tmp_path / "roof").mkdir()
@@ -269,6 +271,7 @@ def test_save_as_proposes_a_name_that_is_free(application, make_controller, tmp_
     assert seen[-1] == (str(tmp_path), "roof 3")
 
 
+@pytest.mark.slow
 def test_a_folder_that_is_there_is_gone_into_and_the_name_stays(application, make_controller, tmp_path):
     (tmp_path / "here").mkdir()
     controller = make_controller()
@@ -356,6 +359,7 @@ def test_closing_while_a_plan_runs_cancels_it_and_loses_nothing(application, mak
     assert open_project(tmp_path / "project").document.site.site.name == "roof"
 
 
+@pytest.mark.slow
 def test_damaged_settings_are_told_kept_aside_and_the_window_opens_as_at_first(application, make_controller, tmp_path):
     config = tmp_path / "config"
     config.mkdir()
@@ -390,6 +394,7 @@ def test_the_layout_is_remembered(application, make_controller):
     assert second.window._around.sizes()[0] == pytest.approx(width, abs=3)
 
 
+@pytest.mark.slow
 def test_work_that_was_thrown_away_is_not_offered_again(application, make_controller, entry, tmp_path):
     controller = make_controller()
     with_site(application, controller)

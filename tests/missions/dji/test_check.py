@@ -171,7 +171,7 @@ RULES = [
 ]  # fmt: skip
 
 
-@pytest.mark.few(34)
+@pytest.mark.few(12)
 @pytest.mark.parametrize(("edit", "code", "severity"), [rule[1:] for rule in RULES], ids=[rule[0] for rule in RULES])
 def test_rule_finds_what_breaks_it(
     texts: dict[str, str], edit: Callable[[str], str], code: str, severity: Severity

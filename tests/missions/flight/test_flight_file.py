@@ -49,6 +49,7 @@ def flight(track: Track) -> Flight:
     return Flight("office", "ab", "cd", HONG_KONG, (record, replace(record, sortie=0, photos=())), report)
 
 
+@pytest.mark.slow
 @settings(max_examples=30)
 @given(tracks())
 def test_a_flight_comes_back_from_its_file_bit_for_bit(tmp_path_factory: pytest.TempPathFactory, track: Track) -> None:

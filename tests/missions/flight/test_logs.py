@@ -46,7 +46,7 @@ def written(tmp_path: Path, name: str, content: bytes) -> Path:
     return path
 
 
-@pytest.mark.few(4)
+@pytest.mark.few(2)
 @pytest.mark.parametrize("name", LOGS)
 def test_every_log_tells_the_same_flights(tmp_path: Path, name: str) -> None:
     flights = read_log(written(tmp_path, name, LOGS[name](FLOWN, SITE)), SITE)
@@ -73,6 +73,7 @@ def test_every_log_tells_the_same_flights(tmp_path: Path, name: str) -> None:
     assert codes == ({"triggers-only"} if name == "triggers.ulg" else set())
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("name", "mode", "text"),
     [
@@ -130,6 +131,7 @@ def tlog_records(content: bytes) -> list[bytes]:
     return frames
 
 
+@pytest.mark.slow
 def test_records_out_of_order_are_put_in_order_and_told_of(tmp_path: Path) -> None:
     frames = tlog_records(write.tlog(FLOWN[:1], SITE))
     frames[2000:2400], frames[2400:2800] = frames[2400:2800], frames[2000:2400]

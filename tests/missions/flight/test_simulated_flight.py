@@ -27,6 +27,7 @@ from tests.missions.simulator.flying import planned
 from tests.slow import slow
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("autopilot", [slow(Autopilot.ARDUPILOT), Autopilot.PX4])
 def test_the_telemetry_log_tells_what_the_live_record_tells(tmp_path: Path, autopilot: Autopilot) -> None:
     model, plan = planned("single-panel", 6)

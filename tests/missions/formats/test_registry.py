@@ -59,7 +59,7 @@ def there_and_back(plan: Plan, file_format: FileFormat, options: ExportOptions) 
         return [mission for path in paths for mission in read_missions(path)]
 
 
-@pytest.mark.few(3)
+@pytest.mark.few(2)
 @pytest.mark.parametrize(("file_format", "options"), WAYS, ids=IDS)
 @given(plan=plans())
 @settings(max_examples=8)

@@ -36,6 +36,7 @@ def stepped_s(length_m, speed_m_s, a, j, radius_m, step_s=1e-3):
     return time_s
 
 
+@pytest.mark.slow
 @given(st.floats(1.0, 120.0), st.floats(0.5, 15.0), st.floats(1.0, 6.0), st.floats(2.0, 20.0), st.floats(0.1, 0.9))
 @settings(max_examples=25, deadline=None)
 def test_times_are_those_of_px4s_law_stepped_through(length, speed, a, j, radius):

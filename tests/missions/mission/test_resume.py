@@ -94,6 +94,7 @@ def test_views_skipped_in_the_middle_are_flown_and_those_done_are_not(data: st.D
     assert_keeps_the_contract(site(), rest.plan, spacing_m=1.0)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("autopilot", list(Autopilot))
 @pytest.mark.parametrize("n_taken", [0, 1, 4, 8])
 def test_every_mavlink_item_around_a_photo_is_kept(autopilot: Autopilot, n_taken: int) -> None:
@@ -126,6 +127,7 @@ def around(items: tuple[MissionItem, ...], viewpoint_id: str) -> list[tuple[int,
     return kept
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("file_format", [FileFormat.DJI_KMZ, FileFormat.MAVLINK_PLAN, FileFormat.MAVLINK_WPL])
 @pytest.mark.parametrize("autopilot", list(Autopilot))
 def test_the_rest_passes_the_checks_of_every_format(file_format: FileFormat, autopilot: Autopilot) -> None:

@@ -41,6 +41,7 @@ def viewpoints(n: int = 60) -> tuple[Viewpoint, ...]:
     )
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("occlusion", [False, True])
 @pytest.mark.parametrize("step_deg", [30.0, 15.0, 90.0])
 def test_counts_are_those_of_the_contract(step_deg: float, occlusion: bool) -> None:

@@ -57,6 +57,7 @@ def sections_hit(model, space, n_seeds=6, n=3000):
     return hit
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("scene", "occlusion"), [("office", False), slow("library", False), slow("court", True), ("roof", False)]
 )
@@ -70,6 +71,7 @@ def test_nothing_proven_unreachable_is_ever_seen_from_an_allowed_place(scene, oc
     assert found.n_reachable <= found.upper_bound <= model.n_elements
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("scene", "occlusion"), [("office", False), ("canyon", True), slow("court", True)])
 def test_every_witness_covers_its_section_by_the_definition(scene, occlusion):
     model, space, found = whole_scene(scene, occlusion)

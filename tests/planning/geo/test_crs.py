@@ -64,6 +64,7 @@ def test_names_are_understood_in_every_form(name: str, meaning: str) -> None:
     assert parse_crs(name).name == meaning
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(
     ("name", "said"),
     [

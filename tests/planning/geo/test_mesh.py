@@ -52,6 +52,7 @@ def check_tower(site: ImportedSite) -> None:
     np.testing.assert_allclose(corners[-1, 2] - low, [35.95, 0.0, 41.95], atol=2e-4)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("name", ["tower.obj", "tower.ply", "tower.stl", "TOWER.OBJ"])
 def test_obj_ply_and_stl_are_z_up_metres(tmp_path: Path, name: str) -> None:
     site = import_site(written(tmp_path, name), ImportOptions(origin=HERE, panel_grids=(GRID,)))
@@ -74,6 +75,7 @@ def test_the_user_overrules_the_axis(tmp_path: Path) -> None:
     )
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(("unit", "unit_m"), [("mm", 0.001), ("cm", 0.01), ("ft", 0.3048), ("in", 0.0254)])
 def test_units_are_those_of_the_file_and_the_grid_is_metres(tmp_path: Path, unit: str, unit_m: float) -> None:
     path = written(tmp_path, "a.obj", moved(TOWER, (0.0, 0.0, 0.0), 1.0 / unit_m))
@@ -119,6 +121,7 @@ def test_single_precision_far_from_zero_is_named(tmp_path: Path) -> None:
     assert any("in steps of 0.5 m (single precision)" in note for note in site.notes)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(
     "origin", [Origin(-17.0, 179.9999, 5.0), Origin(75.0, -60.0, 10.0), Origin(31.5, 35.4, -430.0), Origin(90, 0, 0)]
 )
@@ -152,6 +155,7 @@ def test_several_grids_become_facades_by_plane(tmp_path: Path) -> None:
     assert [panel.id for panel in facades[1].panels][:2] == ["B-0000", "B-0001"]
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize(
     ("grid", "said"),
     [

@@ -139,6 +139,7 @@ def test_forms_that_are_not_read_and_lies_are_told(tmp_path, change, words):
             read_mesh(path)
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize(
     ("name", "content", "words"),
     [

@@ -115,6 +115,7 @@ def test_paths_of_no_or_one_vertex_and_legs_of_no_length_are_measured_where_they
         assert found.distance_m == pytest.approx(0.0)
 
 
+@pytest.mark.slow
 def test_very_long_flights_are_sampled_more_coarsely_but_keep_their_minima():
     found = along((-19_000.0, -8.0, 5.0), (19_000.0, -8.0, 5.0))
     assert len(found.distance_m) <= MAX_SAMPLES + 5

@@ -25,6 +25,7 @@ def insight_of(name, viewpoints=None, constraints=NEAR):
     return plan_insight(scene(name), prepared(name, constraints), its_plan, reasons(name, constraints))
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("name", ["kiosk", "roof"])
 def test_counts_and_views_are_those_of_the_contract(name):
     found = insight_of(name)

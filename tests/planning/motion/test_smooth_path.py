@@ -149,6 +149,7 @@ def slow_sweep(grid: PathGrid) -> np.ndarray:
     return squared
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("seed", range(3))
 def test_the_sweep_reaches_what_raising_speeds_bit_by_bit_does(seed: int) -> None:
     vertices = np.cumsum(np.random.default_rng(seed).normal(size=(5, 3)) * 5.0, axis=0)

@@ -66,6 +66,7 @@ def test_legs_take_what_is_worked_out_by_hand(delta: tuple[float, float, float],
     assert leg_times_s(np.array([delta]), LIMITS) == pytest.approx([seconds])
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(("length", "speed"), [(0.05, 5.0), (3.0, 5.0), (10.0, 5.0), (50.0, 5.0), (30.0, 12.0)])
 def test_the_closed_form_agrees_with_small_steps_of_time(length: float, speed: float) -> None:
     assert rest_to_rest_s(length, speed, 2.5) == pytest.approx(stepped_s(length, speed, 2.5), rel=1e-2)

@@ -97,6 +97,7 @@ def test_entities_are_never_expanded_nor_files_fetched(tmp_path):
         assert read_xmp((bomb + text.replace("</rdf:RDF>", "")).encode()) == {}  # nor where it is searched piecewise
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(
     "text",
     [

@@ -51,6 +51,7 @@ def test_a_moved_viewpoint_is_where_it_should_be_and_everything_else_where_it_wa
     assert after.counts.sum() != before.counts.sum()
 
 
+@pytest.mark.slow
 def test_legs_elsewhere_are_not_drawn_anew() -> None:
     before = planned("kiosk")
     ids = before.plan.sorties[0].viewpoint_ids

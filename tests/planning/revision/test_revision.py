@@ -54,7 +54,7 @@ def test_any_edits_leave_what_a_revision_from_scratch_gives(name: str) -> None:
     edited()
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("name", sorted(SETTINGS))
 def test_going_to_any_other_plan_gives_what_taking_it_in_hand_anew_gives(name: str) -> None:
     start = planned(name)
@@ -114,6 +114,7 @@ def test_only_what_changed_is_measured_again(monkeypatch: pytest.MonkeyPatch) ->
     assert not any(asked.values())
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("name", sorted(SETTINGS))
 def test_what_a_view_sees_does_not_depend_on_the_views_asked_for_with_it(name: str) -> None:
     model, space = prepared(name).problem.model, prepared(name).problem.space

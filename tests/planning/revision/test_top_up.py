@@ -99,6 +99,7 @@ def test_all_promised_sections_are_closed_in_no_more_time_than_flying_the_missed
     assert is_flyable(check_plan(found.plan, kiosk()))
 
 
+@pytest.mark.slow
 def test_the_plan_says_that_it_is_a_top_up_and_keeps_camera_aircraft_and_rules() -> None:
     plan = flown_plan()
     found = topped_up(plan, photos(plan, range(10)), replace(SOON, seed=4)).plan
@@ -282,6 +283,7 @@ def test_a_battery_for_one_view_flies_one_view() -> None:
     assert 0 < found.closed < found.wanted
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("charge", "words"), [(0.25, "leave nothing to fly on; change the battery"), (0.262, "change the battery")]
 )
@@ -316,6 +318,7 @@ def test_a_view_in_a_volume_that_is_forbidden_now_is_replaced_by_others() -> Non
         assert unreachable.verdicts[ids.index(section.panel_id), section.section] != 1
 
 
+@pytest.mark.slow
 def test_what_no_allowed_place_sees_any_more_is_said_to_be_unreachable() -> None:
     plan = flown_plan()
     everywhere = ((5.0, -39.0), (39.0, -39.0), (39.0, 39.0), (5.0, 39.0))
@@ -356,6 +359,7 @@ def alone(n_sections: int) -> tuple[Plan, int]:
     raise AssertionError(f"no view shows {n_sections} sections alone")
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("n_missing", "is_few"), [(1, True), (2, False)])
 def test_a_rest_is_negligible_up_to_a_two_hundredth_of_the_sections_and_its_cost_is_known(
     n_missing: int, is_few: bool

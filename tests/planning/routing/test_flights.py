@@ -85,6 +85,7 @@ def duration_by_steps_s(flight: Flight, views: ViewpointArrays, aircraft: Aircra
     return t
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     "rules",
     [FlightRules(), FlightRules(max_speed_m_s=3.0, wind_m_s=5.0), FlightRules(settle_s=0.0, photo_s=0.1)],

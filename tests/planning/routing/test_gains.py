@@ -55,6 +55,7 @@ def test_what_a_candidate_adds_never_grows_with_the_set(seed: int) -> None:
         before = gain.marginals().copy()
 
 
+@pytest.mark.slow
 def test_rounding_does_not_build_up_over_many_changes() -> None:
     rng = np.random.default_rng(0)
     weights = rng.random(50) * 10.0 ** rng.integers(-8, 8, 50)

@@ -177,6 +177,7 @@ def test_missing_legs_between_stops_are_not_flown() -> None:
     assert [sorted(sortie) for sortie in sorted(sorties)] in ([[*range(10)], [*range(10, 20)]],)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("max_stops", [1, 7, 30])
 def test_no_sortie_has_more_stops_than_allowed(max_stops: int) -> None:
     problem = facade_problem(30, 2000.0)
@@ -216,6 +217,7 @@ def test_cancelling_comes_through() -> None:
             solve_sorties(facade_problem(60, 300.0), monitor=Cancelling(n_reports, OperationCancelled))
 
 
+@pytest.mark.slow
 def test_the_trace_ends_with_the_result() -> None:
     problem = facade_problem(60, 300.0)
     trace = Trace()

@@ -195,6 +195,7 @@ def ring(n: int, seed: int) -> np.ndarray:
     return cost
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("n", [13, 40, 120])
 def test_missing_legs_are_avoided_where_a_tour_without_them_is_hidden(n: int) -> None:
     cost = ring(n, seed=n)

@@ -25,7 +25,7 @@ def occlusion_scene(name):
     return OcclusionScene(frames, space.solids.bvh.corners, places)
 
 
-@pytest.mark.few(4)
+@pytest.mark.few(2)
 @pytest.mark.parametrize(
     ("name", "on"),
     [("office", False), ("library", False), ("roof", False), ("tower", False), ("court", True), ("canyon", True)],

@@ -60,6 +60,7 @@ def test_under_even_light_colours_are_those_of_eq_19(trained):
             assert (shown - expected).abs().max() < 0.03
 
 
+@pytest.mark.slow
 @torch.no_grad()
 def test_pictures_without_mirroring_come_nearer_to_those_with_it(trained, data_set):
     scene = organised(trained)

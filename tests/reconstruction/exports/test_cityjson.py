@@ -78,7 +78,7 @@ def scene_of(shape):
     return replace(scene, components=tuple(components))
 
 
-@pytest.mark.few(4)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("shape", SHAPES)
 def test_imported_again_panes_face_where_they_did(tmp_path, shape):
     scene = scene_of(shape)

@@ -94,7 +94,7 @@ def picture(width, height, ending=".png"):
     return cv2.imencode(ending, cv2.resize(pixels, (width, height)))[1].tobytes()
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("ending", [".png", ".jpg", ".webp"])
 def test_pictures_are_made_small_and_anew(ending):
     content = picture(2000, 1000, ending)

@@ -115,6 +115,7 @@ def test_gains_count_as_far_as_they_are_beyond_what_photos_differ_in():
     assert trials_of(alike[:1], 1.0).unsure_db == (0.0, 0.0)
 
 
+@pytest.mark.few(1)
 def test_of_few_photos_others_are_held_back_again_and_again(found):
     _, rays, planes, _ = found
     tried = try_lights(rays, planes, replace(CONFIG, steps=2))

@@ -43,6 +43,7 @@ def test_a_mirror_shows_each_texel_where_it_is():
     assert torch.allclose(made(middle, torch.zeros(len(middle))), truth, atol=1e-5)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(("roughness", "share"), [(0.15, 0.05), (0.22, 0.07), (0.4, 0.05), (0.6, 0.04), (0.9, 0.02)])
 def test_rough_light_is_what_a_ggx_lobe_sees(roughness, share):
     """At and between levels; errors as shares of the spread of the light that comes out, seen three times finer."""

@@ -76,7 +76,7 @@ def assert_same(one, other):
 
 
 # At 6 steps the grid has grown once of twice.
-@pytest.mark.few(3)
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("model", "n"), [*((model, 6) for model in MODELS), ("radiance-grid", 1), ("mlp", 0)])
 def test_interrupted_it_goes_on_bit_by_bit(photos, tmp_path, model, n):
     whole = learned(photos, model)
@@ -227,7 +227,7 @@ def test_on_a_cuda_device_it_learns_the_same(photos, model):
         assert value.shape == here.panels.state_dict()[name].shape
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("model", MODELS)
 def test_on_another_device_all_that_a_step_needs_is_there(photos, model, monkeypatch):
     # The meta device has shapes and no numbers, and refuses what is on two devices; lenses here are straight.

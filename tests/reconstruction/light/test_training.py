@@ -71,7 +71,7 @@ def test_where_it_is_far_directions_are_enough(tmp_path):
     assert 20.0 < few_harmonics < mlp
 
 
-@pytest.mark.few(3)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("model", ["mlp", "environment-map", "harmonics", "radiance-grid"])
 @pytest.mark.parametrize("precision", ["float32", "bfloat16"])
 def test_the_same_seed_gives_the_same_bits_and_another_one_does_not(plain, model, precision):
@@ -99,6 +99,7 @@ def test_the_history_has_times_that_rise_and_ends_with_the_result(plain):
     assert train_reflections(rays, planes, "mlp", SHORT).history == ()
 
 
+@pytest.mark.slow
 def test_learning_leaves_the_number_of_threads_as_it_was(plain):
     rays, _, planes = plain
     before = torch.get_num_threads()

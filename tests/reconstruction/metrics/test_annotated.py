@@ -198,6 +198,7 @@ def test_real_cmp_photos_have_a_window_for_each_line_of_their_tables(shared_data
     assert all(0.95 * n <= count <= n for n, count in zip(lines, counts, strict=True))
 
 
+@pytest.mark.slow
 def test_real_cmp_photos_are_the_same_as_published(shared_data: Path, tmp_path: Path) -> None:
     for path in (shared_data / "facades" / "cmp").iterdir():
         if path.suffix in (".jpg", ".xml"):

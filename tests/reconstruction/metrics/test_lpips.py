@@ -96,6 +96,7 @@ def networks():
     return {"alex": (alex, (1, 4, 7, 9, 11)), "vgg": (vgg, (3, 8, 15, 22, 29))}
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("backbone", ["alex", "vgg"])
 def test_it_is_what_the_paper_says_of_the_network_as_torchvision_has_it(backbone):
     weights, (network, layers) = random_weights(backbone, 1), networks()[backbone]
@@ -251,6 +252,7 @@ def package(path, weights, content=None):
     return path
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("backbone", ["alex", "vgg"])
 def test_weights_of_the_package_are_those_that_were_pickled(tmp_path, backbone):
     weights = random_weights(backbone)

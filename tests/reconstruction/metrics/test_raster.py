@@ -96,6 +96,7 @@ def test_region_runs_through_under_a_brace_and_ends_at_an_inclined_edge() -> Non
     assert not regions[1][20, 60]
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("shift_px", [0.0, 0.5, 2.0])
 def test_true_corners_score_nearly_one_and_shifted_ones_less(shift_px: float) -> None:
     made = make_facade(simple_case(Layout(6, 9), intrinsics=wide_camera(800, 600), oblique_deg=15.0))

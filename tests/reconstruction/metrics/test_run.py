@@ -92,6 +92,7 @@ def test_cancelling_ends_scoring(planar: PhotoSet) -> None:
         score_set(planar, perfect, Cancelled())
 
 
+@pytest.mark.slow
 def test_own_method_answers_in_the_size_of_the_photo_and_counts_its_time() -> None:
     made = make_facade(simple_case(Layout(4, 6), intrinsics=wide_camera(800, 600)))
     ticks: Iterator[float] = iter((10.0, 12.5))
@@ -135,6 +136,7 @@ def test_view_holds_the_facade_and_little_else_unless_its_extent_is_unknown() ->
     assert shares[2] < 0.7 * shares[1]
 
 
+@pytest.mark.slow
 def test_made_sets_are_made_when_asked_for() -> None:
     for name, shape in MADE_SETS.items():
         photos = made_set(name, 10_000, SMALL)

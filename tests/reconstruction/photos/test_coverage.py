@@ -47,6 +47,7 @@ def photo(view, roll=0.0, lens=None):
     return PosedPhoto(f"{view.id}.jpg", Path("x.jpg"), lens or Intrinsics.of(CAMERA), pose)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("options", [{}, {"whole_panel": True}, {"max_distance_m": 20.0}, {"sight": True}])
 def test_photos_taken_as_planned_show_what_the_plan_counts(options):
     if "sight" in options:

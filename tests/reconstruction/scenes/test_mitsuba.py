@@ -157,6 +157,7 @@ def test_a_textured_wall_lies_alike_in_sun_and_shadow() -> None:
     assert_agree_unless(elsewhere, made, camera((0.0, -2.0, 10.0), 180.0), n_rays=8 * N_RAYS)
 
 
+@pytest.mark.slow
 def test_the_sky_is_seen_and_mirrored_alike() -> None:
     def turned_over(made: Scene) -> Scene:
         assert made.sky.panorama is not None

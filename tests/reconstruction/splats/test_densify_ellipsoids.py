@@ -159,6 +159,7 @@ def test_the_wish_for_small_ellipsoids_has_the_gradient_of_what_it_says():
     assert torch.allclose(found, splats.log_scales.grad, rtol=1e-5)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("kind", [AdaptiveControl, MarkovChain])
 def test_a_training_of_ellipsoids_that_is_interrupted_goes_on_with_the_same_bits(kind):
     views = views_around(2)

@@ -53,7 +53,7 @@ def drawn(splats, view, settings=ANTIALIASED):
     return raster.features, raster.alphas
 
 
-@pytest.mark.few(3)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("n_sizes", [2, 3])
 @pytest.mark.parametrize("opacity", [0.95, 0.5, 0.1])
 def test_a_surface_drawn_by_fewer_is_the_mean_of_a_fine_picture(n_sizes, opacity):

@@ -32,6 +32,7 @@ print(within_kb - used_kb())
 """
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not HAS_GNU_LIBRARY, reason="another C library than GNU's, which is left alone")
 def test_steps_get_no_new_pages_within_and_memory_goes_back_at_the_end():
     # In a process of its own: what a process has freed before changes what it gets.

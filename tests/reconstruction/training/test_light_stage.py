@@ -50,7 +50,7 @@ def config_of(light, **more):
     return replace(CONFIG, light=light, **more)
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("light", ["harmonics", "environment-map", "mlp", "radiance-grid"])
 def test_it_goes_on_bit_by_bit(data_set, tmp_path, light):
     config, checkpoint = config_of(light), tmp_path / "c"
@@ -98,6 +98,7 @@ def test_another_data_set_method_or_a_damaged_file_is_refused(data_set, tmp_path
             resume_model(data_set, checkpoint)
 
 
+@pytest.mark.slow
 def test_light_has_its_share_of_the_time_that_is_left_and_what_went_before_counts(data_set, tmp_path):
     now = [100.0]
     config, checkpoint = config_of("mlp", time_limit_s=60.0, light_share=0.5), tmp_path / "c"

@@ -200,6 +200,7 @@ def test_a_link_that_breaks_in_flight_is_opened_again_and_the_sortie_goes_on(fli
     assert follower.until_ended().error is None
 
 
+@pytest.mark.slow
 def test_silence_is_shown_and_survived(flight):
     """The radio loses everything for a while; what was photographed meanwhile is in the record all the same."""
     radio = Reopening()

@@ -247,6 +247,7 @@ def test_what_a_vehicle_at_a_link_flew_before_it_vanished_is_kept(tmp_path, monk
     assert len(record.photos) == 2
 
 
+@pytest.mark.slow
 def test_a_cancelled_flight_is_cancelled(small):
     site, plan = small
 

@@ -62,6 +62,7 @@ def test_sorties_that_an_autopilot_cannot_keep_are_shared_out_anew(folder, tmp_p
     assert (finding.value, finding.limit) == (12.0, 5.0)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("file_format", list(FileFormat))
 def test_a_mission_that_comes_back_covers_what_the_plan_covers(folder, tmp_path, file_format):
     plan, site = read_plan(folder / "roof.plan.json"), folder / "roof.site.json"

@@ -204,6 +204,7 @@ def slow_mirrored(case, views, sun):
     return found
 
 
+@pytest.mark.slow
 @settings(max_examples=20)
 @given(st.integers(0, 8759), st.integers(0, 2**32 - 1))
 def test_mirrored_suns_are_those_of_a_slow_reference(hour, seed):

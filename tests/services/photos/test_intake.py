@@ -25,6 +25,7 @@ def bare():
     return replace(model, site=replace(model.site, facades=()))
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("home_enu_m", "why"),
     [

@@ -36,6 +36,7 @@ def test_open_plans_are_compared_on_the_site_as_it_was_prepared():
     assert [row.values for row in found.rows] == [row.values for row in again.rows]
 
 
+@pytest.mark.slow
 def test_summaries_are_json_and_name_the_better_plan():
     found = compare(scene("single-panel"), [planned(), fewer()], ["all", "some"], prepared("single-panel"))
     summary = json.loads(json.dumps(comparison_summary(found), allow_nan=False))

@@ -104,6 +104,7 @@ def test_the_views_without_a_photo_are_closed() -> None:
     assert summary["left_open"] == {"unreachable": 0, "battery": 0, "spacing": 0}
 
 
+@pytest.mark.slow
 def test_a_complete_flight_leaves_nothing_to_do() -> None:
     first, second = sizes()
     found, findings = top_up_flight(opened([range(first), range(second)]), SOON, prepared())

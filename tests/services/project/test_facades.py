@@ -91,6 +91,7 @@ def test_a_file_that_another_program_has_changed_is_not_replaced(folder, found):
     assert known(opened.document) == 30
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("crash", [False, True])
 def test_a_save_that_breaks_off_leaves_the_old_facades_or_the_new_ones(tmp_path, found, draft, crash):
     folder = tmp_path / "p"

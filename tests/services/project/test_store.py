@@ -88,6 +88,7 @@ def test_the_process_may_end_at_every_single_write(tmp_path):
     assert set(outcomes) == {False, True}
 
 
+@pytest.mark.slow
 @settings(max_examples=40)
 @given(
     steps=st.lists(

@@ -138,6 +138,7 @@ def test_it_is_looked_at_while_it_trains_and_waits_and_its_end_is_a_model(heard,
     assert read_model_card(out).n_steps == ended.summary["iterations"]
 
 
+@pytest.mark.slow
 def test_broken_off_it_can_be_gone_on_with(heard, card, asked, tmp_path):
     out = tmp_path / "model"
     heard.send(Train(card.folder, out, asked))

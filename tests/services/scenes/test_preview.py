@@ -129,6 +129,7 @@ def test_a_camera_inside_a_building_opposite_is_told():
     assert not kept_photo(replace(request, view=VIEW)).is_walled_in
 
 
+@pytest.mark.slow
 def test_a_site_without_a_mesh_and_one_of_a_single_panel_are_photographed():
     model = single_panel()
     alone = SiteModel(replace(model.site, building_mesh=None), TriangleMesh(np.zeros((0, 3)), np.zeros((0, 3), int)))

@@ -247,6 +247,7 @@ def test_flipping_a_facade_twice_gives_it_back_and_once_turns_its_normals():
     assert (corners[:, 0, 2] < corners[:, 3, 2]).all(), "panels begin at a lower corner"
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("scene", sorted(SCENES))
 def test_bundled_sites_are_fit_to_fly(scene):
     assert site_findings(SCENES[scene]()) == ()

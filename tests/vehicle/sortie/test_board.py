@@ -75,6 +75,7 @@ def start_after(orders, toy, change, wait_s=3.0):
     return run, conduct(run, ToyLink(toy), lambda: toy.now_s, show=show)
 
 
+@pytest.mark.few(3)
 @BOTH
 @SWAPS
 def test_a_mission_that_is_another_at_start_is_not_flown(orders, autopilot, swap):
@@ -92,6 +93,7 @@ def test_a_mission_that_is_another_at_start_is_not_flown(orders, autopilot, swap
     assert run.on_board.mission is False
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("name", ["fences", "rally"])
 def test_a_fence_or_rally_points_that_are_others_at_start_ground_it_too(orders, name):
     toy = toy_at_home(orders)

@@ -121,6 +121,7 @@ def test_a_link_that_goes_one_way_is_told_so(orders):
     assert "does the link go both ways" in str(outcome.error)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("fault", "text"),
     [({"battery": 10}, "battery holds 10%"), ({"fix_type": 2}, "fix: 2-D"), ({"refuses": {400: 3}}, "not supported")],
@@ -141,6 +142,7 @@ def test_an_aircraft_far_from_the_planned_home_is_not_started(orders):
     assert "5.5 m from the planned home" in str(outcome.error)
 
 
+@pytest.mark.few(2)
 @BOTH
 @pytest.mark.parametrize("stands_m", [-3.0, 10.0])
 def test_an_aircraft_at_another_height_than_planned_is_not_started(orders, autopilot, stands_m):
@@ -201,6 +203,7 @@ def test_parameters_are_set_where_that_is_allowed_and_only_told_where_not(orders
     assert any("WPNAV_SPEED is 500" in text for text in told)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(
     ("autopilot", "parameters", "name"),
     [
@@ -225,6 +228,7 @@ def test_a_camera_that_was_just_set_up_takes_effect_after_a_reboot(orders):
     assert sum(command[0] == 246 for command in toy.commands) == 1
 
 
+@pytest.mark.slow
 def test_a_sped_up_simulation_that_forgets_what_it_was_asked_to_send_was_rebooted(orders):
     """ArduCopter 4.7.0-dev at ten times real time: when it is back, its time is beyond that before the reboot."""
     new = {"CAM1_TYPE": 0.0, "MNT1_TYPE": 0.0}
@@ -309,6 +313,7 @@ def test_a_broken_link_that_cannot_be_opened_again_is_an_error(orders):
         fly(orders, toy, link=ToyLink(toy, breaks_at_s=5.0))
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("order", "mode"), [(PilotOrder.PAUSE, "BRAKE"), (PilotOrder.RETURN, "RTL"), (PilotOrder.LAND, "LAND")]
 )
@@ -439,6 +444,7 @@ class TwoToys:
         pass
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("differs", "words"),
     [

@@ -125,7 +125,7 @@ def test_clearing_leaves_nothing(autopilot: Autopilot) -> None:
     assert isinstance(put(air, (), autopilot), NotVerified)
 
 
-@pytest.mark.few(10)
+@pytest.mark.few(2)
 @both
 @pytest.mark.parametrize("seed", range(10))
 def test_two_hundred_items_at_30_percent_loss_each_way_end_equal(autopilot: Autopilot, seed: int) -> None:
@@ -137,6 +137,7 @@ def test_two_hundred_items_at_30_percent_loss_each_way_end_equal(autopilot: Auto
     assert len(vehicle.stores.mission) == 200 + (autopilot is ARDUPILOT)
 
 
+@pytest.mark.few(1)
 @both
 @pytest.mark.parametrize("delay_s", [0.001, 0.3])
 def test_loss_on_a_fast_and_on_a_slow_link_ends_equal(autopilot: Autopilot, delay_s: float) -> None:
@@ -145,6 +146,7 @@ def test_loss_on_a_fast_and_on_a_slow_link_ends_equal(autopilot: Autopilot, dela
         assert isinstance(outcome, Verified)
 
 
+@pytest.mark.few(1)
 @both
 @pytest.mark.parametrize("loss", [0.5, 0.7])
 def test_worse_loss_ends_equal_or_clearly_not(autopilot: Autopilot, loss: float) -> None:

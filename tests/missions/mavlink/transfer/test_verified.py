@@ -269,6 +269,7 @@ def test_cancel_is_told_to_the_vehicle(autopilot: Autopilot) -> None:
 # Loss: the demand is that 200 items with 30 % loss each way end equal, ten times of ten.
 
 
+@pytest.mark.few(5)
 @both
 @pytest.mark.parametrize("seed", range(10))
 def test_two_hundred_items_at_30_percent_loss_each_way_end_equal(autopilot: Autopilot, seed: int) -> None:
@@ -279,6 +280,7 @@ def test_two_hundred_items_at_30_percent_loss_each_way_end_equal(autopilot: Auto
     assert compare(items, tuple(vehicle.lists[0]), autopilot) == ()
 
 
+@pytest.mark.few(8)
 @both
 @pytest.mark.parametrize("seed", range(5))
 @pytest.mark.parametrize("loss", [0.5, 0.7, 0.95])

@@ -45,7 +45,7 @@ def test_it_is_an_airframe_that_stands_at_home() -> None:
     assert (made.battery.remaining, made.battery.current_a) == (1.0, 0.0)
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("profile_id", ["m3e", "ardupilot", "px4", "as planned"])
 def test_a_sortie_takes_as_long_as_planned_and_photos_are_where_they_are_planned(profile_id: str) -> None:
     if profile_id == "as planned":

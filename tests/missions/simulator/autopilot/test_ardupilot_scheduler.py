@@ -86,6 +86,7 @@ def test_photos_behind_waypoints_with_hold_0_are_taken_in_flight() -> None:
     assert away[-1] <= 0.3
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("hold", [1, 2, 4])
 def test_photos_behind_waypoints_with_a_hold_are_taken_in_place(hold: int) -> None:
     """YAW, MOUNT, WP(2), DIGICAM: 0.24 m, 0.12 m/s and 0.02 deg at most."""

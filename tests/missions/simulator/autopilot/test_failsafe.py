@@ -68,6 +68,7 @@ def test_failsafe_speaks_once_and_the_flight_ends_at_home() -> None:
     assert math.dist(ground.frame.position, (0, 0, 0)) < 0.3
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize(
     ("autopilot", "parameters", "mode"),
     [
@@ -129,6 +130,7 @@ def test_fence_can_be_changed_in_flight() -> None:
     ground.until(lambda: ground.vehicle.modes.mode == "AUTO.LOITER", 20.0)
 
 
+@pytest.mark.few(5)
 @pytest.mark.parametrize(
     ("autopilot", "parameters", "mode"),
     [
@@ -222,7 +224,7 @@ def landed_at(autopilot, parameters, *points, east: float = 50.0):
     return ground.frame.position
 
 
-@pytest.mark.few(3)
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("autopilot", "parameters", "points", "place"),
     [

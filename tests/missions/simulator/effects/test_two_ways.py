@@ -86,7 +86,7 @@ def battery_share(name: str, plan: Plan, model: SiteModel, conditions: Condition
 Measure = Callable[[str, Plan, SiteModel, Conditions], float]
 
 
-@pytest.mark.few(4)
+@pytest.mark.few(2)
 @pytest.mark.parametrize(
     ("name", "site", "conditions", "settle_s", "measure", "used"),
     [

@@ -35,6 +35,7 @@ def test_positions_are_held_as_arducopter_was_measured_to_hold_them() -> None:
     assert 0.06 < math.sqrt(float(spread[:, 1, 1].sum())) < 0.14
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("step_s", [0.02, 0.2, 3.0])
 def test_gusts_and_offsets_have_the_spread_of_the_long_run(step_s: float) -> None:
     made = air(6.0, 0.0, seed=2)

@@ -121,6 +121,7 @@ def expected_enu(site: ImportedSite, ring: Ring) -> np.ndarray:
     return enu_from_geodetic(site.model.site.origin, *conversion.geodetic(points))
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("form", ["posList", "pos", "coordinates"])
 @pytest.mark.parametrize("version", ["1.0", "2.0", "3.0"])
 def test_versions_and_ways_to_write_points_give_the_same_panel(tmp_path: Path, version: str, form: str) -> None:
@@ -237,6 +238,7 @@ def test_parts_belong_to_their_building_and_may_name_it(tmp_path: Path) -> None:
     assert site.model.site.n_panels == 1
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize(
     "srs", ["EPSG:25832", "urn:ogc:def:crs,crs:EPSG::25832,crs:EPSG::7837", "urn:adv:crs:ETRS89_UTM32*DE_DHHN2016_NH"]
 )
@@ -369,7 +371,7 @@ def test_a_broken_hole_leaves_its_face(tmp_path: Path) -> None:
     assert len(site.model.building.triangles) == len(plain.model.building.triangles) + 2
 
 
-@pytest.mark.few(4)
+@pytest.mark.few(2)
 @pytest.mark.parametrize("shape", SHAPES)
 def test_windows_face_where_the_file_says(tmp_path: Path, shape: str) -> None:
     windows = [
@@ -427,7 +429,7 @@ REAL = {
 }
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("name", "n_windows"), REAL.items())
 def test_real_buildings_keep_all_windows_and_every_one_sees_the_open(
     shared_data: Path, name: str, n_windows: int

@@ -73,6 +73,7 @@ def expected_window(site: ImportedSite) -> np.ndarray:
     return enu_from_geodetic(site.model.site.origin, *crs_conversion("EPSG:7415", points).geodetic(points))
 
 
+@pytest.mark.few(6)
 @pytest.mark.parametrize("geometry", ["MultiSurface", "CompositeSurface", "Solid", "MultiSolid"])
 @pytest.mark.parametrize("version", ["1.0", "1.1", "2.0"])
 def test_every_version_and_geometry_type_gives_the_window(tmp_path: Path, version: str, geometry: str) -> None:
@@ -120,6 +121,7 @@ def test_null_values_are_plain_surfaces(tmp_path: Path) -> None:
     assert imported(content, tmp_path).model.site.n_panels == 1
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize(
     ("path", "value", "said"),
     [
@@ -161,6 +163,7 @@ def damaged(path: list[Any], value: Any) -> dict[str, Any]:
 SHAPE = ["CityObjects", "house", "geometry", 0]
 
 
+@pytest.mark.few(6)
 @pytest.mark.parametrize(
     ("path", "value", "n_triangles", "named"),
     [
@@ -254,6 +257,7 @@ def largest_wall(path: Path) -> tuple[str, np.ndarray]:
     return name, corners
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("name", "crs"), [("delft_1b", None), ("rotterdam_subset", "EPSG:7415"), ("zurich_subset_lod2", None)]
 )

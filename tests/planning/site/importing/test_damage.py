@@ -91,6 +91,7 @@ MESHES: dict[str, tuple[Callable[[], bytes], int, str]] = {
 }
 
 
+@pytest.mark.few(6)
 @pytest.mark.parametrize("name", MESHES)
 def test_what_is_whole_of_a_mesh_is_imported_and_the_rest_named(tmp_path: Path, name: str) -> None:
     make, n_triangles, named = MESHES[name]
@@ -198,7 +199,7 @@ def test_a_damaged_outline_of_a_real_building_costs_that_outline(shared_data: Pa
             assert told(site)
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("name", ["delft_1b", "multi_lod", "rotterdam_subset", "zurich_subset_lod2"])
 def test_a_damaged_part_of_a_real_city_model_costs_that_part(shared_data: Path, tmp_path: Path, name: str) -> None:
     content = json.loads((shared_data / "buildings" / "cityjson" / f"{name}.json").read_text("utf-8"))

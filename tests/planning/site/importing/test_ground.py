@@ -258,7 +258,7 @@ def test_answers_are_in_the_heights_of_the_file(tmp_path: Path) -> None:
     assert answers == (-3.0, 0.0)
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("scale", "unit", "said"),
     [
@@ -290,6 +290,7 @@ def test_a_size_that_a_building_has_is_not_mentioned(tmp_path: Path) -> None:
 # --- real points from the air: roofs, some walls, no ground ---
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("name", ["city3d_9", "city3d_12", "city3d_57", "city3d_94"])
 def test_scans_from_the_air_without_ground_are_asked_about(shared_data: Path, tmp_path: Path, name: str) -> None:
     from scipy.spatial import Delaunay

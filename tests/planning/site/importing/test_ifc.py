@@ -381,6 +381,7 @@ def test_a_window_within_a_curtain_wall_panel_is_one_panel(tmp_path: Path) -> No
     assert any("windows left out because another one shows the same pane: 1" in note for note in site.notes)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("cavity_m", [0.03, 0.3, 1.0])
 def test_two_skins_of_glass_are_one_facade_the_outer_one(tmp_path: Path, cavity_m: float) -> None:
     building = Building()
@@ -580,6 +581,7 @@ def test_a_map_conversion_puts_every_vertex_on_the_map(tmp_path: Path, schema: s
     assert site.notes[0] == "place and rotation from IfcMapConversion"
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize(
     ("unit_m", "scale", "map_unit", "at"),
     [
@@ -623,6 +625,7 @@ def test_a_senseless_map_conversion_gives_way_to_the_sites_place(tmp_path: Path)
     assert "left aside" in site.notes[0]
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("fields", "said"),
     [
@@ -754,6 +757,7 @@ def test_placeholders_do_not_name_the_site(tmp_path: Path, name: str) -> None:
     assert contents(building, tmp_path)[0].name == "Haus 7"
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("name", ["office_a", "curtain_wall_small"])
 def test_real_files_are_whole(shared_data: Path, name: str) -> None:
     assert mended(shared_data / "bim" / f"{name}.ifc") is None

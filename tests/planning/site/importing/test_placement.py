@@ -29,7 +29,7 @@ def placement(case):
     return place(frame, points, float(points[:, 2].min()), ImportOptions())
 
 
-@pytest.mark.few(4)
+@pytest.mark.few(2)
 @pytest.mark.parametrize("case", sorted(CASES))
 @given(point=st.tuples(st.floats(-1000.0, 1000.0), st.floats(-1000.0, 1000.0), st.floats(-50.0, 300.0)))
 def test_file_coordinates_lead_back_to_the_local_point(case, point):

@@ -102,6 +102,7 @@ def facade_panes(
     return panes, places, np.array(corners)
 
 
+@pytest.mark.slow
 @given(seed=st.integers(0, 10_000), n_rows=st.integers(3, 9), n_columns=st.integers(3, 9), gap=st.floats(0.05, 0.5))
 def test_panes_of_a_facade_seen_from_the_side_stand_in_its_rows_and_columns(
     seed: int, n_rows: int, n_columns: int, gap: float
@@ -281,6 +282,7 @@ def test_the_network_is_on_where_lines_take_a_close_up_for_something_else(glass:
     assert [grid.network for grid in unasked.facades] == [None]
 
 
+@pytest.mark.slow
 def test_lines_that_the_network_agrees_with_stay() -> None:
     made = make_facade(random_case("planar", 3, wide_camera(640, 480)))
     photo = scored(made)

@@ -37,7 +37,7 @@ def most_bent_px(scene: FittedFacade, curvature: float) -> float:
     return max(float(np.nanmax(line) - np.nanmin(line)) / 2.0 for line in lines)
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("curvature", [0.0, 1e-5, 0.005, 0.02, 0.05, -0.03])
 def test_the_scene_decides_so_that_lines_are_straight(curvature: float) -> None:
     scene = fitted(curvature)

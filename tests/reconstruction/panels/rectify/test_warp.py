@@ -21,6 +21,7 @@ def drawn(photo, face) -> np.ndarray:  # type: ignore[no-untyped-def]
     return np.nan_to_num(value, nan=0.0).round().astype(np.uint8).reshape(h, w)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("intrinsics", "curvature"),
     [(SMALL, 0.0), (SMALL, 0.04), (SMALL, -0.03), (BENT, 0.04), slow(BENT, 0.0), slow(BENT, -0.03)],

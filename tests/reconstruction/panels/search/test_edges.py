@@ -57,6 +57,7 @@ def test_one_edge_is_found_to_a_twentieth_of_a_pixel(x: float, seed: int) -> Non
     assert 0.0 < sigma < 0.05
 
 
+@pytest.mark.few(5)
 @pytest.mark.parametrize("shadow", [1.0, 0.6])
 @pytest.mark.parametrize("width", [1.5, 2.5, 4.0, 7.0])
 @pytest.mark.parametrize("blur", [0.6, 1.2])

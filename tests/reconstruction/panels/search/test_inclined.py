@@ -66,6 +66,7 @@ def true_pieces(row: int, column: int) -> list[Array]:
     return [clipped(box, side * off - BRACE_WIDTH_M / 2) for side in (1.0, -1.0)]
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("curvature", [0.0, 0.02])
 def test_pieces_lie_where_they_are_within_the_error_of_the_poses(curvature: float) -> None:
     facade = solved(curvature)

@@ -145,6 +145,7 @@ def test_a_mirrored_facade_that_fakes_a_grid_is_not_taken_for_frames() -> None:
     check(segment_rectified(picture), truth, 0.5)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("grey", [0, 128, 255])
 def test_even_pictures_hold_no_panels(grey: int) -> None:
     grid = segment_rectified(np.full((300, 400), grey, np.uint8))
@@ -168,6 +169,7 @@ def test_strong_noise_leaves_the_grid() -> None:
     check(segment_rectified(np.clip(noisy, 0, 255).astype(np.uint8)), truth, 0.6)
 
 
+@pytest.mark.slow
 def test_saturated_panes_leave_the_grid() -> None:
     truth = made(seed=8)
     picture = truth.picture.copy()
@@ -177,7 +179,7 @@ def test_saturated_panes_leave_the_grid() -> None:
     assert rows.shape == truth.rows.shape
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("detector", DETECTORS)
 def test_every_detector_finds_the_grid(detector: Detector) -> None:
     truth = made(seed=9)

@@ -43,6 +43,7 @@ POINTS = {
 }
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("name", POINTS)
 def test_points_are_found_among_as_many_outliers(name: str) -> None:
     rng = np.random.default_rng(5)
@@ -73,6 +74,7 @@ def test_the_same_seed_gives_the_same_points(seed: int) -> None:
     assert [p.point.tolist() for p in first] == [p.point.tolist() for p in second]
 
 
+@pytest.mark.slow
 def test_covariance_tells_the_spread_over_noise() -> None:
     """Two-sided: the mean of the squared normalised error is that of two degrees of freedom, 2."""
     truth = POINTS["far"]

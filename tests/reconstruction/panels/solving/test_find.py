@@ -52,6 +52,7 @@ def test_every_panel_is_found_in_3d_within_centimetres(curvature: float) -> None
     assert np.linalg.norm(errors, axis=1).mean() < 0.05
 
 
+@pytest.mark.slow
 def test_photos_of_nothing_are_refused_in_words() -> None:
     photos = made_photos(0.0, (0.0,))
     photos[0].image[:] = 128

@@ -82,6 +82,7 @@ def test_right_poses_stay_as_they_are() -> None:
     assert placed[1].moved_px < 1.0
 
 
+@pytest.mark.slow
 def test_the_same_photos_give_the_same_and_blank_ones_no_agreement() -> None:
     made = photos()
     views = views_of(made, [stated(one, 0.03, 0.2, i) for i, one in enumerate(made)])

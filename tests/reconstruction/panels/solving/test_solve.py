@@ -98,6 +98,7 @@ def corner_errors(facade: SolvedFacade, truth: FacadeSurface) -> tuple[Array, Ar
     return np.concatenate(errors), np.concatenate(covariances)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("curvature", [0.0, 0.02, -0.03])
 def test_all_panels_are_found_within_the_error_of_the_poses(curvature: float) -> None:
     facade, truth = solved(curvature, 0)

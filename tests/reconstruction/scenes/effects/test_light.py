@@ -51,6 +51,7 @@ def decision(made: Scene, cameras: Sequence[PosedPhoto], effect: str) -> Decisio
     return decide_effects(made, cameras, RenderSettings())[effect]
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(("bow", "used"), [(0.03, True), (0.002, True), (0.0001, False), (0.0, False)])
 def test_bows_that_move_mirror_images_are_simulated(bow: float, used: bool) -> None:
     made = scene(board(half_m=24.0, texture=ramp(12.0)), corners=facing_south(8.0, 6.0))
@@ -81,6 +82,7 @@ def room(contrast: float) -> Interiors:
     return Interiors(box, block, np.array([1.0]), np.full((1, 3), 0.5), np.zeros(1), np.zeros((1, 3)))
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("used", [True, False])
 def test_rooms_are_simulated_where_they_are_seen_through_the_glass(used: bool) -> None:
     glass = Glass(sheets=1) if used else Glass(coating=0.9, tint=(0.1, 0.1, 0.1))
@@ -139,6 +141,7 @@ def test_no_glare_without_a_sun_before_the_facade(sky: Sky, reason: str) -> None
     assert (decided.on, decided.size, decided.reason) == (False, 0.0, reason)
 
 
+@pytest.mark.slow
 def test_a_sun_over_many_small_panes_counts_once() -> None:
     # The disc covers 9 cm of them.
     row = facing_south(0.72, 0.03, 24)

@@ -111,6 +111,7 @@ def test_tilts_that_move_mirror_images_are_simulated(tilt_rad: float, used: bool
     assert decided.size == pytest.approx(moved, rel=0.25, abs=0.03)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("away_m", "used"), [(1.0, True), (20.0, False)])
 def test_double_images_are_simulated_where_they_are_seen_apart(away_m: float, used: bool) -> None:
     glass = Glass(tint=(1.0, 1.0, 1.0))
@@ -163,6 +164,7 @@ def test_shadows_are_cast_where_something_stands_in_the_sun(used: bool) -> None:
     assert decided.size == pytest.approx(change, rel=0.25)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("k1", "used"), [(-0.1, True), (-0.0005, False)])
 def test_lenses_bend_pictures_where_it_shows(k1: float, used: bool) -> None:
     made = scene(board(texture=blobs(12.0)), corners=facing_south(30.0, 18.0))

@@ -51,7 +51,7 @@ def test_rays_that_miss_or_look_away_hit_nothing() -> None:
         assert np.isnan([t, s, h]).all()
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("layout", "curvature"),
     [
@@ -111,7 +111,7 @@ def test_same_case_gives_the_same_photo_and_another_seed_another() -> None:
     assert (make_facade(random_case("curved", 5, SMALL)).image != first.image).mean() > 0.5
 
 
-@pytest.mark.few(3)
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("name", "value", "changes_glass", "changes_frames"),
     [

@@ -94,6 +94,7 @@ def at_the_cylinder(steep: bool) -> PosedPhoto:
     return photo(position, np.degrees(angle), 4.0, width_px=240, height_px=180, focal_px=500.0)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("steep", [False, True], ids=["straight", "60 degrees"])
 @pytest.mark.parametrize("radius_m", [26.0, 8.0])
 def test_bowed_panes_mirror_as_the_cylinder_on_which_their_corners_lie(radius_m: float, steep: bool) -> None:
@@ -185,6 +186,7 @@ def test_a_pane_without_tilt_and_bow_is_met_where_it_was() -> None:
     assert np.allclose(normals, met.normals_enu, atol=1e-10)
 
 
+@pytest.mark.few(10)
 @pytest.mark.parametrize("bow", [0.0, 1e-300, 0.02, -0.02, 3.0, -1e6])
 @pytest.mark.parametrize(
     ("position", "heading_deg"),

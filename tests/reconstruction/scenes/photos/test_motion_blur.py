@@ -67,6 +67,7 @@ def width_px(edge: NDArray[np.float64]) -> float:
     return float(widths[np.argmin([((ramp(width) - edge) ** 2).sum() for width in widths])])
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("wide_px", [1.0, 3.0, 7.3, 20.0])
 @pytest.mark.parametrize(
     ("heading_deg", "away_m", "layer"), [(180.0, DIRECT_M, "diffuse"), (0.0, MIRRORED_M, "reflection")]

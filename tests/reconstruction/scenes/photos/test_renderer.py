@@ -67,6 +67,7 @@ def test_corners_of_a_mirrored_checkerboard_are_where_optics_puts_them() -> None
     assert np.linalg.norm(found - expected, axis=1).max() < 0.05
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("tilt", "bow"), [((0.0, 0.0), (0.0, 0.0)), ((0.005, -0.003), (0.0, 0.0)), ((0.002, 0.001), (0.002, -0.001))]
 )
@@ -133,6 +134,7 @@ def test_a_photograph_knows_what_its_pixels_show() -> None:
     assert np.array_equal(taken.linear, taken.diffuse + taken.reflection)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(
     ("position", "heading_deg", "focal_px"),
     [

@@ -14,6 +14,7 @@ from reconstruction.scenes.world.bundled import bundled_scene
 LENS = Intrinsics(80, 60, 64.0, 64.0, 40.0, 30.0)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("name", ["planar-far", "curved-far"])
 def test_every_photo_shows_the_whole_facade_from_nearly_square_on(name):
     scene = bundled_scene(name)
@@ -43,6 +44,7 @@ def test_all_facades_of_a_court_are_photographed_from_where_nothing_stands():
     assert photos[0].path == Path("somewhere") / photos[0].name
 
 
+@pytest.mark.slow
 def test_the_seed_decides():
     scene = bundled_scene("planar-far")
     one, same, other = (square_photos(scene, LENS, 2, Path(), seed)[1].pose.position_enu_m for seed in (4, 4, 5))

@@ -123,6 +123,7 @@ def test_a_worker_with_another_program_takes_no_photos(scene, tmp_path):
         studio.take(0)
 
 
+@pytest.mark.slow
 def test_a_cluster_without_workers_is_waited_for_and_can_be_cancelled(scene, tmp_path):
     def cancel():
         raise OperationCancelled("enough")

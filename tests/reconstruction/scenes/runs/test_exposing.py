@@ -49,6 +49,7 @@ def factors(of: PhotoJob) -> list[float]:
     return [capture.exposure for capture in captures_of(of, common_exposure(of))]
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("darker", "used"), [(0.25, True), (0.97, False)])
 def test_the_scene_decides_by_how_much_photos_would_differ(darker: float, used: bool) -> None:
     made = walls(darker)

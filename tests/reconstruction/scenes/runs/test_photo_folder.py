@@ -176,6 +176,7 @@ def test_photos_whose_files_are_damaged_or_gone_are_made_again(scene, tmp_path):
     assert record_of(tmp_path) == before
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("changes", "place"),
     [
@@ -190,6 +191,7 @@ def test_photos_made_in_another_way_are_not_mixed_with_these(scene, written, cha
     assert record_of(written.folder) == before
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("seed", "look", "place"),
     [(3, Look(near=False), "seed"), (2, Look(near=False, tilt_deg=1.0), "scene_sha256")],

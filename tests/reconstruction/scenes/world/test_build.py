@@ -69,6 +69,7 @@ def share_hidden(scene: Scene, mesh: TriangleMesh, margin: float) -> float:
     return float((hits.distance_m < 1.0 + 1e-4).mean())
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("name", ["court", "library", "roof"])
 def test_panes_are_the_sites_panels_from_their_lower_left_corner(name: str) -> None:
     model = SITES[name]()
@@ -79,6 +80,7 @@ def test_panes_are_the_sites_panels_from_their_lower_left_corner(name: str) -> N
     np.testing.assert_array_equal(scene.panes.corners_enu_m, corners)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("name", ["library", "court", "canyon", "roof"])
 def test_no_ray_meets_the_wall_before_the_pane(name: str) -> None:
     model = SITES[name]()
@@ -202,6 +204,7 @@ def test_panes_are_tilted_bent_and_replaced_as_the_look_says() -> None:
     assert build_scene(model, replace(look, blinds=1.0), 3).panes.rooms.mean() > 2.0 * panes.rooms.mean()
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("heading", [-0.5 * np.pi, 0.7, 2.9])
 def test_buildings_stand_across_the_street_whatever_way_the_facade_looks(heading: float) -> None:
     outward, right = np.array([np.cos(heading), np.sin(heading)]), np.array([-np.sin(heading), np.cos(heading)])

@@ -69,7 +69,7 @@ def test_another_seed_gives_other_panes_surroundings_and_clouds(name: str) -> No
     assert (one.site.site != other.site.site) == name.isalpha(), "where other buildings stand opposite"
 
 
-@pytest.mark.few(3)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("name", NAMES)
 def test_everything_is_finite_and_sends_back_no_more_light_than_it_gets(name: str) -> None:
     scene = scene_of(name)
@@ -94,6 +94,7 @@ def test_everything_is_finite_and_sends_back_no_more_light_than_it_gets(name: st
     assert sum(len(body.mesh.triangles) for body in scene.bodies) + 2 * len(scene.panes.glass) < MOST_TRIANGLES
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("name", NAMES)
 def test_panes_are_the_panels_and_can_be_flown_before(name: str) -> None:
     scene = scene_of(name)

@@ -41,7 +41,7 @@ PLAIN, ANTIALIASED = RasterSettings(), RasterSettings(antialiased=True)
 TO_THE_END = RasterSettings(antialiased=True, min_alpha=1e-4, min_transmittance=0.0)
 
 
-@pytest.mark.few(3)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("made", [random_splats, random_ellipsoids])
 @pytest.mark.parametrize("size", [1.0, 0.2, 0.02])
 def test_compiled_rasters_are_the_defined_ones_in_values_and_gradients(

@@ -17,6 +17,7 @@ GRADIENT_ERROR = 1e-5
 """1.1e-6 was measured."""
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(("n", "seed"), [(1, 0), (2, 1), (30, 2), (300, 3)])
 def test_compiled_raster_is_the_defined_one_in_values_and_gradients(n: int, seed: int) -> None:
     view = turned_view()

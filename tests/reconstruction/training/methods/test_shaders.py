@@ -36,7 +36,7 @@ def pictures(trained, data_set):
         return [trained.model(photos.frame(number).view) for number in range(2)]
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 def test_a_method_gets_better_in_a_few_steps_and_its_pictures_are_numbers(trained, data_set):
     assert trained.n_steps == BASE.iterations
     before, after = trained.history[0].value, trained.history[-1].value
@@ -47,6 +47,7 @@ def test_a_method_gets_better_in_a_few_steps_and_its_pictures_are_numbers(traine
         assert (picture.display >= 0.0).all()
 
 
+@pytest.mark.few(2)
 def test_its_model_is_read_back_bit_by_bit(trained, data_set, tmp_path):
     save_model(trained, tmp_path / "m")
     back = read_model(tmp_path / "m")
