@@ -11,6 +11,8 @@ endif
 WORKERS ?= 3
 # What took longest is said at the end.
 SLOWEST := --durations=30 --durations-min=0.5
+# Tests that read the sources alone are part of `make check`.
+FAST_TESTS := not slow and not benchmark and not alone and not lint
 WARM := $(patsubst %,$(VENV)/.warm-%,planning missions.simulator reconstruction)
 UNUSED := tests|sympy|plotly|pymavlink.dialects|torch._inductor|torch.testing|ifcopenshell.express|open3d._ml3d
 UNUSED := $(UNUSED)|dask.array|dask.dataframe|fontTools|mypyc|pip|pygments.lexers|setuptools
@@ -20,7 +22,7 @@ TEXTS := $(wildcard groundstation/gui/translations/reflight_*.ts)
 # Compiled Python is kept also where the environment says not to: every test process would compile all of it again.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: setup demo test test-all check check-style check-types check-imports check-docs docs coverage ready-to-test compiled-tests alone benchmark tables format
+.PHONY: setup demo test test-all check check-style check-types check-imports check-sources check-docs docs coverage ready-to-test compiled-tests alone benchmark tables format
 .PHONY: translations pictures foreign clean
 
 setup: $(VENV)/.ready $(WARM)
@@ -50,7 +52,7 @@ $(WARM): $(VENV)/.warm-%: $(VENV)/.ready
 demo: setup
 	$(PY) app.py demo --out demo-out
 
-check: check-style check-types check-imports check-docs
+check: check-style check-types check-imports check-sources check-docs
 
 check-style: $(VENV)/.ready
 	$(PY) -m ruff check .
@@ -61,6 +63,10 @@ check-types: $(VENV)/.ready
 
 check-imports: $(VENV)/.ready
 	$(VENV)/bin/lint-imports
+
+# What no linter knows: where files are opened, that sentences can be translated, what is measured in prose.
+check-sources: $(VENV)/.ready
+	$(PY) -m pytest -q -n $(WORKERS) -m lint $$(grep -rl --include='test_*.py' 'mark\.lint' tests)
 
 # The site of the docs, with warnings as errors, and its generated pages as the code has them.
 check-docs: $(VENV)/.ready
@@ -73,7 +79,7 @@ docs: setup
 # Lines that the fast tests run, of the product alone, as a table by room. It is no part of `make test`: measuring makes
 # plain Python slower. Compiled kernels and other processes are not measured: their lines count as not run.
 coverage: ready-to-test
-	$(PY) -m pytest -n $(WORKERS) --dist worksteal -m 'not slow and not benchmark and not alone' \
+	$(PY) -m pytest -n $(WORKERS) --dist worksteal -m '$(FAST_TESTS)' \
 		--cov=planning --cov=missions --cov=reconstruction --cov=groundstation --cov-report=json:.coverage.json --cov-report=
 	$(PY) -m tests.coverage_table .coverage.json
 
@@ -85,7 +91,7 @@ compiled-tests: $(VENV)/.ready
 
 test:
 	$(MAKE) --jobs $(WORKERS) ready-to-test
-	$(PY) -m pytest -n $(WORKERS) --dist worksteal $(SLOWEST) -m 'not slow and not benchmark and not alone'
+	$(PY) -m pytest -n $(WORKERS) --dist worksteal $(SLOWEST) -m '$(FAST_TESTS)'
 	$(MAKE) alone FAST='not slow and'
 
 # Programs of others that read what we write, for tests that are skipped without them: Python's, those of npm,
@@ -105,7 +111,7 @@ $(VENV)/.foreign: $(VENV)/.ready tests/foreign/package-lock.json
 
 test-all: foreign check
 	$(MAKE) --jobs $(WORKERS) ready-to-test
-	$(PY) -m pytest -n $(WORKERS) --dist worksteal --hypothesis-profile thorough $(SLOWEST) -m 'not benchmark and not alone'
+	$(PY) -m pytest -n $(WORKERS) --dist worksteal --hypothesis-profile thorough $(SLOWEST) -m 'not benchmark and not alone and not lint'
 	$(MAKE) alone
 
 # Only the files with such tests are read.

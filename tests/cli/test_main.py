@@ -228,7 +228,6 @@ def processor_s(pid):
     return sum(60**place * float(part) for place, part in enumerate(reversed(told.stdout.strip().split(":"))))
 
 
-@pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="sends SIGINT as a POSIX terminal does")
 def test_ctrl_c_in_the_middle_of_a_plan_leaves_no_file_and_no_traceback(tmp_path):
     site = write_scene("tower", tmp_path)

@@ -262,7 +262,6 @@ def test_improved_plans_repeat_too_when_the_search_ends_by_itself(monkeypatch: p
     assert first.plan.coverage.covered == 3
 
 
-@pytest.mark.slow
 def test_both_precisions_plan_alike() -> None:
     plans = [
         plan_flight(kiosk(), replace(REQUESTS["share"], share=0.6, precision=precision, time_budget_s=600.0)).plan

@@ -476,7 +476,6 @@ def test_pressing_the_keyboard_twice_gives_no_second_order(application, controll
     assert heard == [Request.UPLOAD]
 
 
-@pytest.mark.slow
 def test_a_double_click_on_start_asks_once_and_orders_nothing_else(application, controller, page):
     connect(application, page)
     ask_for(page, Request.UPLOAD)
@@ -659,7 +658,6 @@ def answer(text):
     return step
 
 
-@pytest.mark.slow
 def test_a_return_through_the_building_needs_a_typed_word(application, radio, controller, page, monkeypatch):
     radio.changes = {
         "autopilot": Autopilot.PX4,

@@ -128,7 +128,6 @@ def test_a_damaged_project_is_refused_and_what_is_open_stays(application, make_c
     assert "not there any more" in controller.window.messages.texts()
 
 
-@pytest.mark.slow
 def test_a_full_disk_leaves_the_work_in_the_window(application, make_controller, entry, tmp_path, monkeypatch):
     controller = make_controller()
     with_site(application, controller)

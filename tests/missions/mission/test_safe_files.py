@@ -122,7 +122,6 @@ def test_file_too_large_or_not_a_file_is_refused(tmp_path: Path) -> None:
         read_missions(Path(os.devnull))
 
 
-@pytest.mark.slow
 def test_deeply_nested_xml_does_not_overflow(tmp_path: Path) -> None:
     depth = 200_000
     content = io.BytesIO(b"<a>" * depth + b"</a>" * depth).getvalue()

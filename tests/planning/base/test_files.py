@@ -160,7 +160,6 @@ def test_xml_of_the_worst_kinds_takes_what_is_foreseen(piece):
     assert 0.2 < share < 1.2
 
 
-@pytest.mark.slow
 def test_texts_that_would_take_gigabytes_are_refused_before_they_are_parsed(tmp_path):
     with pytest.raises(InputError, match=r"its content would take about \d+ GiB of memory; expected at most 2 GiB"):
         check_json_size(b"[]," * 22_000_000, tmp_path / "a.json")
