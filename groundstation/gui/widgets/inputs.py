@@ -13,7 +13,7 @@ from datetime import UTC, datetime
 from typing import Any
 
 from PySide6.QtCore import QEvent, QLocale, QObject, QSignalBlocker, QSize, Qt, Signal
-from PySide6.QtGui import QHelpEvent, QKeyEvent, QKeySequence, QPaintEvent, QValidator
+from PySide6.QtGui import QHelpEvent, QKeyEvent, QKeySequence, QPaintEvent, QStandardItemModel, QValidator
 from PySide6.QtWidgets import (
     QAbstractSlider,
     QAbstractSpinBox,
@@ -103,7 +103,10 @@ class ChoiceBox(QComboBox):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._n_letters = N_LETTERS_SHOWN
-        for changed in (self.model().rowsInserted, self.model().rowsRemoved, self.model().dataChanged):
+        # A model of our own: Qt's may lie where an item was that Python still knows, and comes back as that item.
+        model = QStandardItemModel(0, 1, self)
+        self.setModel(model)
+        for changed in (model.rowsInserted, model.rowsRemoved, model.dataChanged):
             changed.connect(self.updateGeometry)
         calm(self)
 
