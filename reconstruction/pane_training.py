@@ -7,17 +7,20 @@ It learns from pictures made by chance, which POOL keeps, from traced facades, a
 whose licence allows it; the other photos are left to measure with. FILE keeps facades and photos: where it is there
 already, the folders are not needed. docs/concepts/segmentation.md has its data card.
 
-    python -m reconstruction.pane_training --glass FOLDER --offices FOLDER \
+    python -m reconstruction.pane_training --pool POOL --gathered FILE --leave-out 0 --out WITHOUT-0
+    python -m reconstruction.pane_training --glass FOLDER --offices FOLDER --without WITHOUT-0 WITHOUT-1 WITHOUT-2 \
         --confidence reconstruction/panels/network/data/confidence.json
 
-fits how probable its panes are, to the same photos and to made ones that it did not learn from; weights come first.
+A network is surer of photos that it learned from than of others. So how probable panes are is fitted to pictures made
+by chance that it did not learn from, and to photos that are looked at by networks that learned from the other two
+thirds of them: those come first.
 """
 
 from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import chain, islice
 from pathlib import Path
 
@@ -28,7 +31,7 @@ from numpy.typing import NDArray
 from reconstruction.metrics.sets import PhotoSet, annotated_set, folder_set, made_set
 from reconstruction.panels.network.calibration import Source, calibrated, write_regressions
 from reconstruction.panels.network.crops import Bank
-from reconstruction.panels.network.network import LARGE, SMALL
+from reconstruction.panels.network.network import LARGE, SMALL, PaneNetwork, network_of
 from reconstruction.panels.network.pool import MADE_PX, PER_FILE, Pool, read_gathered, write_gathered
 from reconstruction.panels.network.random_pictures import MadePicture, made_picture
 from reconstruction.panels.network.training import FIRST_PICTURES, SOURCES, Wanted, train
@@ -39,6 +42,9 @@ FIRST_SEED = 100_000
 """Of traced facades that are learned from: no test and no benchmark uses seeds from here on."""
 
 EVERY_SECOND = 2
+
+FOLDS = 3
+"""Parts of the photos of each set, each left out by one of the networks that confidences are fitted with."""
 
 
 def traced_facades(n_seeds: int) -> list[MadePicture]:
@@ -110,8 +116,11 @@ WEIGHTS = 0.3, 0.6, 0.5, 2.0
 """What glass, offices, traced facades and pictures by chance count in the confidences."""
 
 
-def calibrate(glass: PhotoSet, offices: PhotoSet, out: Path) -> None:
-    """Fit confidences to panes that the network with its present weights finds, and write them."""
+def calibrate(glass: PhotoSet, offices: PhotoSet, without: Sequence[PaneNetwork], out: Path) -> None:
+    """Fit confidences to panes that the network with its present weights finds, and write them.
+
+    Photos are looked at by those of `FOLDS` networks that have not learned from them.
+    """
     n_made, n_traced = N_CALIBRATED
     first = FIRST_SEED + N_LEARNED_AT_MOST
     facades = [made_set(name, n_traced, wide_camera(1200, 900), first_seed=first) for name in KINDS]
@@ -122,7 +131,8 @@ def calibrate(glass: PhotoSet, offices: PhotoSet, out: Path) -> None:
         ((photo.image, photo.index) for photos in facades for photo in photos.photos()),
         ((picture.image, picture.index) for picture in made),
     )
-    sources = [Source(each, weight) for each, weight in zip(pictures, WEIGHTS, strict=True)]
+    looking = without, without, (), ()
+    sources = [Source(*each) for each in zip(pictures, WEIGHTS, looking, strict=True)]
     write_regressions(calibrated(sources, _tell), out)
 
 
@@ -143,13 +153,16 @@ def main() -> None:
     parser.add_argument("--device", choices=["cpu", "cuda"], default="cpu", help="one core, or a graphics card")
     parser.add_argument("--large", action="store_true", help="train the larger network, which takes twice as long")
     parser.add_argument("--start", type=Path, help="weights to go on from")
+    parser.add_argument("--leave-out", type=int, choices=range(FOLDS), help="part of the photos not to learn from")
+    parser.add_argument("--without", type=Path, nargs=FOLDS, help="weights of networks that left out each part")
     parser.add_argument("--seed", type=int, default=0)
     options = parser.parse_args()
     if options.confidence is not None:
-        if options.glass is None or options.offices is None:
-            parser.error("--confidence needs --glass and --offices")
+        if options.glass is None or options.offices is None or options.without is None:
+            parser.error("--confidence needs --glass, --offices and --without")
         glass = folder_set(options.glass / "photos", options.glass / "truth")
-        calibrate(glass, annotated_set("offices", options.offices), options.confidence)
+        without = [network_of(path.read_bytes()) for path in options.without]
+        calibrate(glass, annotated_set("offices", options.offices), without, options.confidence)
         return
     if options.pool is None or options.gathered is None:
         parser.error("--out needs --pool and --gathered")
@@ -157,23 +170,24 @@ def main() -> None:
         if not options.gathered.exists():
             write_gathered(_sources(options), options.gathered)
         bank = Bank(options.device, SOURCES, options.pictures * MADE_PX**2)
-        for source, pictures in enumerate(read_gathered(options.gathered), 1):
-            bank.add(pictures, source)
-            _tell(f"{len(pictures)} {('traced facades', 'photos')[source - 1]}")
+        traced, *photos = read_gathered(options.gathered)
+        bank.add(traced, 1)
+        for photos_of_set in photos:
+            bank.add([photo for i, photo in enumerate(photos_of_set) if i % FOLDS != options.leave_out], 2)
+        _tell(f"{len(bank)} traced facades and photos")
         bank.add(pool.arrived(least=FIRST_PICTURES), 0)
         network = Wanted(options.out, LARGE if options.large else SMALL, options.start)
         train(bank, options.minutes, [network], options.seed, pool.arrived, _tell)
 
 
-def _sources(options: argparse.Namespace) -> tuple[list[MadePicture], list[MadePicture]]:
-    """Traced facades and photos."""
-    photos: list[MadePicture] = []
+def _sources(options: argparse.Namespace) -> list[list[MadePicture]]:
+    """Traced facades, photos of glass, photos of offices."""
+    gathered = [traced_facades(options.traced)]
     if options.glass is not None:
-        glass = folder_set(options.glass / "photos", options.glass / "truth")
-        photos += list(_learned(glass, EVERY_SECOND))
+        gathered.append(list(_learned(folder_set(options.glass / "photos", options.glass / "truth"), EVERY_SECOND)))
     if options.offices is not None:
-        photos += _learned(annotated_set("offices", options.offices), EVERY_SECOND)
-    return traced_facades(options.traced), photos
+        gathered.append(list(_learned(annotated_set("offices", options.offices), EVERY_SECOND)))
+    return gathered
 
 
 def _tell(text: str) -> None:

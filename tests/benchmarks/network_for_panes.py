@@ -71,6 +71,11 @@ def _rows(scene: str, what: str, scores: SetScores, wanted: float | None = None)
     target = ("", None) if wanted is None else (f"at least {wanted}", single.mean >= wanted)
     yield Row(scene, f"individual mIoU, {what}", round(single.mean, 4), "", None, beside, *target)
     if wanted is not None:
+        percentiles = ", ".join(f"{percent} %: {part:.4f}" for percent, part in scores.coverage.items())
+        yield Row(
+            scene, "overall mIoU (glass and the rest)", round(scores.overall_miou.mean, 4), seeds=len(scores.photos)
+        )
+        yield Row(scene, "coverage percentiles", percentiles, seeds=len(scores.photos))
         share = n_false / max(n_found, 1)
         yield Row(scene, f"false panels of those found, {what}", round(share, 3), "", None, "",
                   f"under {FALSE_SHARE}", share < FALSE_SHARE)  # fmt: skip

@@ -28,7 +28,11 @@ RESULTS = "results.csv"
 
 def main(arguments: Sequence[str]) -> int:
     """Run what is asked for; returns the exit status."""
-    options = _parser().parse_args(arguments)
+    parser = _parser()
+    options = parser.parse_args(arguments)
+    unknown = set(options.only) - {table.number for table in tables(SCALES[USUAL])}
+    if unknown:
+        parser.error(f"there is no table {', '.join(sorted(unknown))}")
     scale = SCALES[options.scale]
     out = options.out or (DOCS if scale.name == USUAL else OUT)
     folder = out / "tables"
@@ -58,7 +62,7 @@ def _parser() -> argparse.ArgumentParser:
     numbers = [table.number for table in tables(SCALES[USUAL])]
     parser = argparse.ArgumentParser(prog="python -m tests.tables", description=__doc__)
     add = parser.add_argument
-    add("--only", nargs="+", choices=numbers, default=numbers, metavar="N", help=f"of {', '.join(numbers)}")
+    add("--only", nargs="*", default=numbers, metavar="N", help=f"of {', '.join(numbers)}; none: write the page anew")
     add("--scale", choices=tuple(SCALES), default=USUAL, help=f"default {USUAL}")
     add("--scene", help="one of the table's, for a part of it")
     add("--case", nargs="+", help="beginnings of titles, for a part of it")

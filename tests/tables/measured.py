@@ -15,6 +15,12 @@ MADE = {"planar": "made-planar", "curved": "made-curved"}
 
 METRICS = ("Overall mIoU", "Coverage, 20 % percentile", "Coverage, 10 %", "Coverage, 5 %", "Individual mIoU")
 
+OVERALL, INDIVIDUAL = "overall mIoU (glass and the rest)", "individual mIoU"
+"""How the benchmarks call the first and the last of them,"""
+
+AUTO = "individual mIoU, --network auto"
+"""and on real photos."""
+
 PAPER_1 = {
     "planar": ((0.9895, 1.0, 1.0, 1.0, 0.9787), (0.8597, 1.0, 1.0, 1.0, None)),
     "curved": ((0.9871, 1.0, 1.0, 1.0, 0.9709), (0.7316, 0.9058, 0.3126, 0.1641, None)),
@@ -37,6 +43,7 @@ def measured_sections(folder: Path) -> Iterator[str]:
         Of the page; files lie in `BENCHMARKS` below it.
     """
     yield from _panels(_rows(folder / BENCHMARKS / "segmentation.csv"))
+    yield from _real_panels(_rows(folder / BENCHMARKS / "network.csv"))
     yield from _views(_rows(folder / BENCHMARKS / "fig14.csv"), folder)
 
 
@@ -117,19 +124,40 @@ def _panels(rows: Rows) -> Iterator[str]:
         yield ""
 
 
-def _found(rows: Rows, made: str) -> list[str]:
+def _real_panels(rows: Rows) -> Iterator[str]:
+    sets = dict.fromkeys(scene for scene, what in rows if what == OVERALL)
+    yield "### Real photos\n"
+    yield (
+        "Photos that nothing was learned from, `--network auto`: a curtain wall (1:25), offices at night, and windows "
+        "in walls (CMP). "
+        "[benchmarks.md](benchmarks.md#the-network-for-panes-on-real-photos), "
+        "`python -m tests.benchmarks --only network`\n"
+    )
+    if not sets:
+        yield "Not run.\n"
+        return
+    yield f"| | {' | '.join(sets)} |"
+    yield "| --- |" + " ---: |" * len(sets)
+    columns = [_found(rows, scene, AUTO) for scene in sets]
+    for metric, *values in zip(METRICS, *columns, strict=True):
+        yield f"| {metric} | {' | '.join(values)} |"
+    yield ""
+
+
+def _found(rows: Rows, made: str, individual: str = INDIVIDUAL) -> list[str]:
+    """Values of `METRICS`, as far as they were measured."""
     percentiles = rows.get((made, "coverage percentiles"), {}).get("value", "")
     coverage = re.findall(r"\d+ %: ([\d.]+)", percentiles)
     values = [
-        rows.get((made, "overall mIoU (glass and the rest)"), {}).get("value", ""),
+        rows.get((made, OVERALL), {}).get("value", ""),
         *(coverage if len(coverage) == 3 else [""] * 3),
-        rows.get((made, "individual mIoU"), {}).get("value", ""),
+        rows.get((made, individual), {}).get("value", ""),
     ]
     return [f"{float(value):.4f}" if value else "not run" for value in values]
 
 
 def _n_photos(rows: Rows, made: str) -> str:
-    return rows.get((made, "individual mIoU"), {}).get("seeds", "")
+    return rows.get((made, INDIVIDUAL), {}).get("seeds", "")
 
 
 def _number(value: float | None) -> str:

@@ -98,6 +98,12 @@ def test_what_benchmarks_measured_stands_beside_the_paper_s_numbers(tmp_path):
         "made-planar,individual mIoU,0.9700,,,,,,50\n"
     )
     (measured / "segmentation.csv").write_text(head + panels, "utf-8")
+    photos = (
+        '"glass, 4 photos",overall mIoU (glass and the rest),0.9,,,,,,4\n'
+        '"glass, 4 photos",coverage percentiles,"20 %: 1.0000, 10 %: 0.9000, 5 %: 0.8000",,,,,,4\n'
+        '"glass, 4 photos","individual mIoU, --network auto",0.85,,,,,,1\n'
+    )
+    (measured / "network.csv").write_text(head + photos, "utf-8")
     views = 'office,"100 views, PSO, 2.3 s",7175.7,sections,0.7722,the bound,,,3\n'
     (measured / "fig14.csv").write_text(head + views, "utf-8")
     gap = 'planar,"64 px, street of 28 m, mlp: our plan above NOTO",3.21,dB,,"NOTO 24.0, ours 27.2 dB",,,2\n'
@@ -108,6 +114,8 @@ def test_what_benchmarks_measured_stands_beside_the_paper_s_numbers(tmp_path):
     assert "| Overall mIoU | 0.9812 | 50 | 0.9895 | 0.8597 |" in text
     assert "| Coverage, 5 % | 0.7500 | 50 | 1.0000 | 1.0000 |" in text
     assert "| Overall mIoU | not run |  | 0.9871 | 0.7316 |" in text
+    assert "| | glass, 4 photos |\n| --- | ---: |\n| Overall mIoU | 0.9000 |" in text
+    assert "| Individual mIoU | 0.8500 |" in text
     assert "| 100 | 77.2 % |  |  |  |" in text
 
 

@@ -30,8 +30,8 @@ Array = NDArray[np.float64]
 
 COEFFICIENTS = "confidence.json"
 
-BELIEVED = 0.5
-"""Confidence from which a pane is reported: on real photos about a quarter of these are not there."""
+BELIEVED = 0.55
+"""Confidence from which a pane is reported: on real photos up to a quarter of these are not there."""
 
 WORTH_A_LOOK = 0.12
 """Probability by the first regression from which a pane is looked at together with its neighbours."""

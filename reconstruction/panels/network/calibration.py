@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from itertools import cycle
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +24,7 @@ from reconstruction.panels.network.belief import (
     second_features,
 )
 from reconstruction.panels.network.looks import LONG_SIDES_PX, look_at
+from reconstruction.panels.network.network import PaneNetwork, network
 from reconstruction.panels.network.votes import Picture
 
 Array = NDArray[np.float64]
@@ -37,10 +39,22 @@ RIDGE = 1e-3
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Source:
-    """Pictures with their panes' numbers, shapes (h, w, 3) and (h, w), and how much they count together."""
+    """Pictures that a network looks at to learn how often it is right.
+
+    Parameters
+    ----------
+    pictures
+        With their panes' numbers, shapes (h, w, 3) and (h, w).
+    weight
+        How much they count together.
+    networks
+        Picture i is looked at by the (i modulo their number)-th; none: by the network that comes with the program. On
+        pictures that it has learned from a network is right too often.
+    """
 
     pictures: Iterable[tuple[Picture, Index]]
     weight: float
+    networks: Sequence[PaneNetwork] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -57,7 +71,8 @@ def calibrated(sources: Sequence[Source], tell: Callable[[str], None]) -> tuple[
     """Fit both regressions, the second to what the first one keeps."""
     seen = []
     for number, source in enumerate(sources):
-        seen.append([_seen(image, index) for image, index in source.pictures])
+        looking = cycle(source.networks or [network()])
+        seen.append([_seen(*picture, by) for picture, by in zip(source.pictures, looking, strict=False)])
         tell(f"source {number}: {sum(len(one.is_there) for one in seen[-1])} candidates")
     weights = [source.weight for source in sources]
     first = _fitted([[(one.features, one.is_there) for one in part] for part in seen], weights)
@@ -75,8 +90,8 @@ def calibrated(sources: Sequence[Source], tell: Callable[[str], None]) -> tuple[
     return first, second
 
 
-def _seen(image: Picture, index: Index) -> _Seen:
-    candidates = candidates_of(look_at(image, LONG_SIDES_PX[-1]))
+def _seen(image: Picture, index: Index, by: PaneNetwork) -> _Seen:
+    candidates = candidates_of(look_at(image, LONG_SIDES_PX[-1], by=by))
     return _Seen(candidates, first_features(candidates), index, are_there(list(candidates.quads), index))
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 import cv2
 import numpy as np
@@ -13,6 +14,9 @@ from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from reconstruction.panels.network.votes import STRIDE, Pane, Picture, gathered, signed_areas
 from reconstruction.panels.rectify.surface import Rectification
+
+if TYPE_CHECKING:
+    from reconstruction.panels.network.network import PaneNetwork
 
 Array = NDArray[np.float64]
 
@@ -84,13 +88,21 @@ class FoundPanes:
         return FoundPanes(tuple(pane for pane, is_in in zip(self.panes, shown, strict=True) if is_in), self.looks)
 
 
-def look_at(image: Picture, long_side_px: int, seen: Looks | None = None, monitor: Monitor = QUIET) -> Looks:
+def look_at(
+    image: Picture,
+    long_side_px: int,
+    seen: Looks | None = None,
+    monitor: Monitor = QUIET,
+    by: PaneNetwork | None = None,
+) -> Looks:
     """Look at a photo, shape (h, w, 3), blue, green, red, in sizes up to `long_side_px`.
 
     Parameters
     ----------
     seen
         What smaller sizes of the same photo showed: they are not looked at again.
+    by
+        Another network than the one that comes with the program.
     """
     from reconstruction.panels.network.network import pane_votes  # torch is heavy, and not always wanted
 
@@ -103,5 +115,5 @@ def look_at(image: Picture, long_side_px: int, seen: Looks | None = None, monito
         scale = size / longest
         width, height = max(1, round(image.shape[1] * scale)), max(1, round(image.shape[0] * scale))
         smaller = np.asarray(cv2.resize(image, (width, height), interpolation=cv2.INTER_AREA), np.uint8)
-        looks[size] = Look((width, height), scale, *pane_votes(smaller))
+        looks[size] = Look((width, height), scale, *pane_votes(smaller, by))
     return Looks(looks)

@@ -134,14 +134,19 @@ def as_input(image: Picture) -> Tensor:
 @cache
 def network() -> PaneNetwork:
     """The network with the weights that come with the program."""
-    stored = load((resources.files(__package__) / "data" / WEIGHTS).read_bytes())
+    return network_of((resources.files(__package__) / "data" / WEIGHTS).read_bytes())
+
+
+def network_of(weights: bytes) -> PaneNetwork:
+    """The network with these weights, the content of a file that `training` writes."""
+    stored = load(weights)
     loaded = PaneNetwork(Shape.of(stored))
     loaded.load_state_dict({name: value.float() for name, value in stored.items()})
     return loaded.eval()
 
 
-def pane_votes(image: Picture) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """What each place of a picture says.
+def pane_votes(image: Picture, by: PaneNetwork | None = None) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """What each place of a picture says, by the network that comes with the program or by another.
 
     Returns
     -------
@@ -153,7 +158,7 @@ def pane_votes(image: Picture) -> tuple[NDArray[np.float32], NDArray[np.float32]
     """
     height, width = -(-image.shape[0] // STRIDE), -(-image.shape[1] // STRIDE)
     with torch.inference_mode():
-        told = network()(as_input(image))[0, :, :height, :width]
+        told = (by or network())(as_input(image))[0, :, :height, :width]
     probability = torch.sigmoid(told[0]).numpy()
     offsets = told[1:].permute(1, 2, 0).reshape(height, width, 4, 2).numpy() * OFFSET_PX
     return probability, offsets + places_px(height, width)[:, :, None]

@@ -211,6 +211,21 @@ def test_confidences_fitted_to_pictures_are_probabilities_of_others(tmp_path: Pa
     assert is_there[probability < 0.2].mean() < 0.3
 
 
+def test_each_picture_is_looked_at_by_the_network_that_has_not_learned_from_it() -> None:
+    def n_candidates(*networks: PaneNetwork) -> int:
+        made = made_picture(7_000_200, 192)
+        told: list[str] = []
+        calibrated([Source([(made.image, made.index)] * 2, 1.0, networks)], told.append)
+        return int(told[0].split()[2])
+
+    blind = PaneNetwork().eval()
+    torch.nn.init.zeros_(blind.head.weight)
+    torch.nn.init.constant_(blind.head.bias, -9.0)
+    seen = n_candidates(network(), blind)
+    assert seen > 0
+    assert n_candidates() == n_candidates(network(), network()) == 2 * seen
+
+
 def test_a_quadrilateral_is_there_where_it_covers_a_pane_by_more_than_half() -> None:
     index = index_image([QUAD + 5.0], 60, 60)
     quads = [QUAD + 5.0, QUAD + np.array([12.0, 5.0]), QUAD + np.array([28.0, 5.0]), QUAD + 500.0]
