@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.effects import Decision
-from planning.base.files import read_given
+from planning.base.files import read_input_file
 from planning.base.json_file import JSON_FILE, expect_format, parse_json, plain_values, to_record, write_atomically
 from planning.base.messages import say
 from planning.geo.frames import Origin, Vec3
@@ -289,7 +289,7 @@ def read_plan(path: Path) -> Plan:
     InputError
         The file is missing or wrong; the message names the file, the field and what was expected.
     """
-    return plan_of(read_given(path, JSON_FILE), path)
+    return plan_of(read_input_file(path, JSON_FILE), path)
 
 
 def plan_of(written: bytes, path: Path) -> Plan:

@@ -28,7 +28,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.base.files import read_given
+from planning.base.files import read_input_file
 from reconstruction.base.tensor_files import TENSORS_FILE
 from reconstruction.metrics.sets import PhotoSet, annotated_set, folder_set, made_set
 from reconstruction.panels.network.calibration import Source, calibrated, write_regressions
@@ -163,7 +163,7 @@ def main() -> None:
         if options.glass is None or options.offices is None or options.without is None:
             parser.error("--confidence needs --glass, --offices and --without")
         glass = folder_set(options.glass / "photos", options.glass / "truth")
-        without = [network_of(read_given(path, TENSORS_FILE)) for path in options.without]
+        without = [network_of(read_input_file(path, TENSORS_FILE)) for path in options.without]
         calibrate(glass, annotated_set("offices", options.offices), without, options.confidence)
         return
     if options.pool is None or options.gathered is None:

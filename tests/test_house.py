@@ -120,7 +120,9 @@ def test_files_of_others_are_opened_in_one_place():
         for path in (ROOT / folder).rglob("*.py")
         if READS.search(path.read_text("utf-8"))
     }
-    assert found - READERS == set(), "read them by planning.base.files: read_given, open_given or check_given"
+    assert found - READERS == set(), (
+        "read them by planning.base.files: read_input_file, open_input_file or check_input_file"
+    )
     assert READERS - found == set(), "these read nothing any more"
 
 

@@ -17,7 +17,7 @@ from missions.mission.build import missions_from_plan
 from missions.mission.model import FileFormat, Mission, ReadMission
 from missions.mission.safe_files import KMZ_FILE, MISSION_FILE
 from planning.base.errors import InputError, MissionError
-from planning.base.files import open_given
+from planning.base.files import open_input_file
 from planning.base.findings import Finding, Severity
 from planning.base.json_file import write_together
 from planning.base.messages import about, glue, say
@@ -217,7 +217,7 @@ def is_mission(head: bytes) -> bool:
 
 
 def _reader(path: Path) -> _Reader:
-    with open_given(path, replace(KMZ_FILE, what=MISSION_FILE.what)) as file:
+    with open_input_file(path, replace(KMZ_FILE, what=MISSION_FILE.what)) as file:
         head = file.read(HEAD_BYTES)
     reader = _reader_of(head)
     if reader is None:

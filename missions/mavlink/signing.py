@@ -21,7 +21,7 @@ from typing import Any
 
 from missions.mavlink.messages import Address, SetupSigning
 from planning.base.errors import InputError
-from planning.base.files import FileLimit, read_given
+from planning.base.files import FileLimit, read_input_file
 from planning.base.json_file import part_file
 from planning.base.messages import say
 
@@ -231,7 +231,7 @@ class KeyStore:
         try:
             if not self.timestamp_path.exists():
                 return 0
-            return int(read_given(self.timestamp_path, KEY_FILE).decode("ascii"))
+            return int(read_input_file(self.timestamp_path, KEY_FILE).decode("ascii"))
         except (InputError, ValueError) as error:
             path = self.timestamp_path
             raise InputError.say("{} does not hold a time stamp for signing ({}); delete it", path, error) from error
@@ -252,7 +252,7 @@ class KeyStore:
                     OWNER_ONLY,
                     self.key_path,
                 )
-            return read_given(self.key_path, KEY_FILE).decode("ascii")
+            return read_input_file(self.key_path, KEY_FILE).decode("ascii")
         except FileNotFoundError:
             return None
         except (OSError, UnicodeDecodeError) as error:

@@ -9,7 +9,7 @@ from pathlib import Path, PurePosixPath
 from typing import BinaryIO
 
 from planning.base.errors import InputError, MissionError
-from planning.base.files import MIB, FileLimit, check_zip_directory, open_given, read_given
+from planning.base.files import MIB, FileLimit, check_zip_directory, open_input_file, read_input_file
 from planning.base.messages import say
 
 MISSION_FILE = FileLimit(say("a mission file"), 64 * MIB)
@@ -35,7 +35,7 @@ def read_limited(path: Path) -> bytes:
     InputError
         The file is missing, unreadable or larger than any mission.
     """
-    return read_given(path, MISSION_FILE)
+    return read_input_file(path, MISSION_FILE)
 
 
 def open_archive(source: Path | BinaryIO, label: str) -> tuple[zipfile.ZipFile, dict[str, zipfile.ZipInfo]]:
@@ -55,7 +55,7 @@ def open_archive(source: Path | BinaryIO, label: str) -> tuple[zipfile.ZipFile, 
         same name twice, encrypted content.
     """
     if isinstance(source, Path):
-        with open_given(source, KMZ_FILE) as file:
+        with open_input_file(source, KMZ_FILE) as file:
             check_zip_directory(file, label)
     try:
         archive = zipfile.ZipFile(source)

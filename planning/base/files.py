@@ -160,7 +160,7 @@ def real_path(path: Path) -> Path:
     return Path(os.path.realpath(path))
 
 
-def check_given(path: Path, limit: FileLimit) -> os.stat_result:
+def check_input_file(path: Path, limit: FileLimit) -> os.stat_result:
     """See that a name stands for a regular file of a size that is expected, for readers that open it by themselves.
 
     Raises
@@ -177,15 +177,15 @@ def check_given(path: Path, limit: FileLimit) -> os.stat_result:
 
 
 @contextmanager
-def open_given(path: Path, limit: FileLimit) -> Iterator[BufferedReader]:
+def open_input_file(path: Path, limit: FileLimit) -> Iterator[BufferedReader]:
     """A file that others wrote, open for reading.
 
     Raises
     ------
     InputError
-        As `check_given`; it cannot be opened, or reading it inside fails.
+        As `check_input_file`; it cannot be opened, or reading it inside fails.
     """
-    check_given(path, limit)
+    check_input_file(path, limit)
     # Without blocking: the name may have become a pipe's meanwhile, which waits for its other end for ever.
     flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
     try:
@@ -200,15 +200,15 @@ def open_given(path: Path, limit: FileLimit) -> Iterator[BufferedReader]:
             raise _not_read(path, error) from error
 
 
-def read_given(path: Path, limit: FileLimit) -> bytes:
+def read_input_file(path: Path, limit: FileLimit) -> bytes:
     """Content of a file that others wrote.
 
     Raises
     ------
     InputError
-        As `open_given`, or it holds more than it says.
+        As `open_input_file`, or it holds more than it says.
     """
-    with open_given(path, limit) as file:
+    with open_input_file(path, limit) as file:
         # To read takes memory for all that is asked for: what is there, one more byte, and further pieces only where
         # that byte was there (the file grows, or is one of the system's, which say that they are empty).
         size = os.fstat(file.fileno()).st_size
@@ -224,15 +224,15 @@ def read_given(path: Path, limit: FileLimit) -> bytes:
     return b"".join(pieces)
 
 
-def sha256_given(path: Path, limit: FileLimit = ANY_FILE) -> str:
+def sha256_of_file(path: Path, limit: FileLimit = ANY_FILE) -> str:
     """SHA-256 of a file's content, hexadecimal; it is read piece by piece.
 
     Raises
     ------
     InputError
-        As `open_given`.
+        As `open_input_file`.
     """
-    with open_given(path, limit) as file:
+    with open_input_file(path, limit) as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 

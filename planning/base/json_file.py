@@ -22,7 +22,7 @@ import msgspec
 import msgspec.inspect
 
 from planning.base.errors import InputError
-from planning.base.files import MIB, FileLimit, check_json_size, read_given, real_path
+from planning.base.files import MIB, FileLimit, check_json_size, read_input_file, real_path
 from planning.base.messages import Message, about, joined, plain, say, without_place
 
 if sys.platform != "win32":
@@ -57,7 +57,7 @@ def read_json(path: Path, limit: FileLimit = JSON_FILE, *, names_files: bool = F
     InputError
         Missing, unreadable, no regular file, too large, or as `parse_json`.
     """
-    return parse_json(read_given(path, limit), path, names_files=names_files)
+    return parse_json(read_input_file(path, limit), path, names_files=names_files)
 
 
 def parse_json(written: bytes, path: Path, *, names_files: bool = False) -> Any:
@@ -279,7 +279,7 @@ def read_toml(path: Path, record: type[Record]) -> Record:
     InputError
         As for `to_record`, and for a file that is not TOML, no regular file or too large.
     """
-    return to_record(parse_toml(read_given(path, TOML_FILE), path), record, path)
+    return to_record(parse_toml(read_input_file(path, TOML_FILE), path), record, path)
 
 
 def parse_toml(written: bytes, path: Path) -> dict[str, Any]:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from planning.base.errors import InputError
-from planning.base.files import MIB, FileLimit, open_given, read_given
+from planning.base.files import MIB, FileLimit, open_input_file, read_input_file
 from planning.base.messages import say
 
 IFC_FILE = FileLimit(say("an IFC file"), 4096 * MIB, say("export the facade alone"))
@@ -36,7 +36,7 @@ def check_ends(path: Path) -> None:
     InputError
         As said.
     """
-    with open_given(path, IFC_FILE) as file:
+    with open_input_file(path, IFC_FILE) as file:
         head = file.read(64)
         file.seek(max(0, file.seek(0, os.SEEK_END) - TAIL_BYTES))
         tail = file.read(TAIL_BYTES)
@@ -65,7 +65,7 @@ def mended(path: Path) -> Mended | None:
     InputError
         The file cannot be read.
     """
-    content = read_given(path, IFC_FILE)
+    content = read_input_file(path, IFC_FILE)
     start, end = content.find(DATA), content.rfind(END_OF_SECTION)
     if not 0 <= start < end:
         return None

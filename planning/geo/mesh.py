@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InputError
-from planning.base.files import MAX_PARSED_BYTES, MIB, FileLimit, read_given
+from planning.base.files import MAX_PARSED_BYTES, MIB, FileLimit, read_input_file
 from planning.base.json_file import parse_json, write_atomically
 from planning.base.messages import about, say
 
@@ -260,7 +260,7 @@ def mesh_content(path: Path) -> tuple[bytes, str]:
         raise InputError.say("expected a mesh file ({}), got '{}'", ", ".join(MESH_SUFFIXES), path.suffix, place=path)
     if not path.exists():
         raise InputError.say("there is no such mesh file", place=path)
-    return read_given(path, MESH_FILE), path.suffix.lower()
+    return read_input_file(path, MESH_FILE), path.suffix.lower()
 
 
 def load_triangles(content: bytes, kind: str, path: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]:

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from planning.base.errors import InputError
-from planning.base.files import MIB, FileLimit, open_given
+from planning.base.files import MIB, FileLimit, open_input_file
 from planning.base.messages import say
 
 PHOTO_FILE = FileLimit(say("a photo"), 512 * MIB)
@@ -78,7 +78,7 @@ def read_header(path: Path) -> JpegHeader:
     InputError
         The file is missing, unreadable, no JPEG, or its header is cut off.
     """
-    with open_given(path, PHOTO_FILE) as file:
+    with open_input_file(path, PHOTO_FILE) as file:
         return _header(file, str(path))
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InputError
-from planning.base.files import MIB, FileLimit, check_lines, read_given
+from planning.base.files import MIB, FileLimit, check_lines, read_input_file
 from planning.base.messages import about, say
 
 Array = NDArray[np.float64]
@@ -149,7 +149,7 @@ def _is_number(word: str) -> bool:
 
 def _read(path: Path) -> _File:
     """Split a file into header fields and sections."""
-    content = read_given(path, TSPLIB_FILE)
+    content = read_input_file(path, TSPLIB_FILE)
     check_lines(content, MAX_LINES, path)
     text = content.decode("utf-8-sig", "replace")
     fields: dict[str, _Line] = {}

@@ -10,7 +10,7 @@ from typing import Any
 import msgspec
 
 from planning.base.errors import InputError
-from planning.base.files import read_given
+from planning.base.files import read_input_file
 from planning.base.json_file import (
     JSON_FILE,
     encoded,
@@ -32,7 +32,7 @@ def read_site(path: Path) -> SiteModel:
     InputError
         The file or a mesh is missing or wrong; the message names the file, the field and what was expected.
     """
-    return site_of(read_given(path, JSON_FILE), path)
+    return site_of(read_input_file(path, JSON_FILE), path)
 
 
 def site_of(written: bytes, path: Path) -> SiteModel:

@@ -6,7 +6,7 @@ import os
 from pathlib import Path
 
 from planning.base.errors import InputError
-from planning.base.files import MIB, FileLimit, open_given
+from planning.base.files import MIB, FileLimit, open_input_file
 from planning.base.json_file import parse_json
 from planning.base.messages import say
 
@@ -30,7 +30,7 @@ def tensor_bytes(path: Path, advice: str = say("get the file again")) -> bytes:
     InputError
         It is missing, no such file, damaged or cut off.
     """
-    with open_given(path, TENSORS_FILE) as file:
+    with open_input_file(path, TENSORS_FILE) as file:
         size = os.fstat(file.fileno()).st_size
         start = file.read(8)
         length = int.from_bytes(start, "little")

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InputError
-from planning.base.files import open_given
+from planning.base.files import open_input_file
 from planning.base.findings import Finding, Severity
 from planning.base.json_file import read_json, write_atomically
 from planning.base.messages import say
@@ -396,7 +396,7 @@ def _prepare_folder(kept: Path, taken: _Taken, parameters: CoarseParameters) -> 
 
 def _start_of(path: Path) -> str:
     """Digest of a file's start: copying keeps it, where it does not keep the time."""
-    with open_given(path, PHOTO_FILE) as file:
+    with open_input_file(path, PHOTO_FILE) as file:
         return hashlib.sha256(file.read(START_BYTES)).hexdigest()
 
 

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from planning.base.errors import InputError
-from planning.base.files import MIB, FileLimit, check_lines, read_given
+from planning.base.files import MIB, FileLimit, check_lines, read_input_file
 from planning.base.json_file import parse_json, parse_toml, to_record
 from planning.base.messages import say
 from planning.geo.crs import crs_conversion
@@ -25,7 +25,7 @@ from reconstruction.coarse.build import ControlPoint
 from reconstruction.colmap.folder import read_cameras_text
 from reconstruction.colmap.record import intrinsics_of
 
-GIVEN_FILE, MAX_LINES = FileLimit(say("a file of control points or of a camera"), 16 * MIB), 100_000
+INPUT_FILE, MAX_LINES = FileLimit(say("a file of control points or of a camera"), 16 * MIB), 100_000
 
 
 def read_control_points(path: Path, sizes_wh: dict[str, tuple[int, int]]) -> tuple[ControlPoint, ...]:
@@ -41,7 +41,7 @@ def read_control_points(path: Path, sizes_wh: dict[str, tuple[int, int]]) -> tup
     InputError
         The file is none of control points, or its coordinate system is not known.
     """
-    content = read_given(path, GIVEN_FILE)
+    content = read_input_file(path, INPUT_FILE)
     if path.suffix.lower() == ".json":
         return _of_opensfm(parse_json(content, path), path, sizes_wh)
     check_lines(content, MAX_LINES, path)
@@ -173,7 +173,7 @@ def read_lens(path: Path, sizes_wh: dict[str, tuple[int, int]]) -> Intrinsics:
     InputError
         The file is none of a camera.
     """
-    content = read_given(path, GIVEN_FILE)
+    content = read_input_file(path, INPUT_FILE)
     if path.suffix.lower() in (".json", ".toml"):
         parsed = parse_json(content, path) if path.suffix.lower() == ".json" else parse_toml(content, path)
         return _of_record(to_record(parsed.get("camera", parsed), _Camera, path), path)

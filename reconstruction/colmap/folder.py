@@ -16,7 +16,7 @@ from typing import Any, Literal, TypeVar
 import numpy as np
 
 from planning.base.errors import InputError
-from planning.base.files import MIB, FileLimit, check_lines, read_given
+from planning.base.files import MIB, FileLimit, check_lines, read_input_file
 from planning.base.json_file import encoded, plain_values, read_json, to_record, write_atomically
 from planning.base.messages import say
 from planning.geo.frames import Origin
@@ -465,7 +465,7 @@ def _read(
     of_text: Callable[[str, str], Any],
 ) -> Content:
     path = folder / f"{name}.{kind}"
-    content = read_given(path, COLMAP_FILE)
+    content = read_input_file(path, COLMAP_FILE)
     if kind == "bin":
         return of_bytes(content, str(path))
     check_lines(content, MAX_LINES, path)

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from planning.base.effects import Assessment, Decision, EffectSetting, decide
 from planning.base.errors import InputError
-from planning.base.files import is_empty, read_given
+from planning.base.files import is_empty, read_input_file
 from planning.base.findings import Finding, Severity
 from planning.base.jit import n_threads
 from planning.base.messages import say
@@ -263,7 +263,7 @@ def _photo(
     """Write one photo's layers; a photo that cannot be read is a finding."""
     lens = photo.intrinsics
     try:
-        content = decoded(read_given(photo.path, PICTURE_FILE), cv2.IMREAD_COLOR, str(photo.path))
+        content = decoded(read_input_file(photo.path, PICTURE_FILE), cv2.IMREAD_COLOR, str(photo.path))
     except InputError:
         return Finding(
             Severity.WARNING, "photo-unreadable", say("the picture cannot be decoded; it was left out"), photo.name

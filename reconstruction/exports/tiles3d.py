@@ -22,7 +22,7 @@ import torch
 from numpy.typing import NDArray
 
 from planning.base.errors import InputError
-from planning.base.files import make_folder, sha256_given
+from planning.base.files import make_folder, sha256_of_file
 from planning.base.json_file import new_file_beside, write_together
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
@@ -434,7 +434,7 @@ class _Folder:
         try:
             with new_file_beside(self._folder / f"{name}-{layer}.glb") as new:
                 write_glb(new, made.content(nodes), made.buffer)
-                file = f"{name}-{layer}-{sha256_given(new)[:12]}.glb"
+                file = f"{name}-{layer}-{sha256_of_file(new)[:12]}.glb"
                 self.files.add(file)
                 new.replace(self._folder / file)
         except OSError as error:

@@ -22,7 +22,7 @@ import torch
 from numpy.typing import NDArray
 
 from planning.base.errors import InputError
-from planning.base.files import MIB, FileLimit, make_folder, open_given
+from planning.base.files import MIB, FileLimit, make_folder, open_input_file
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from reconstruction.exports.component_parts import Ellipsoids, ellipsoids_of_all
@@ -477,7 +477,7 @@ def _check_folder(folder: Path) -> None:
             raise InputError(say("cannot be written: this is a file; name a folder", place=folder))
         page = folder / PAGE
         if page.is_file():
-            with open_given(page, PAGE_FILE) as stream:
+            with open_input_file(page, PAGE_FILE) as stream:
                 if SIGN.encode() in stream.read(1000):
                     return
             raise InputError(say("is a page of somebody else's; name another folder", place=page))

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InputError
-from planning.base.files import read_given
+from planning.base.files import read_input_file
 from planning.base.json_file import expect_format, read_json, to_record
 from planning.base.messages import say
 from reconstruction.base.cameras import PosedPhoto
@@ -241,7 +241,7 @@ def held_out_names(names: Sequence[str], share: float, seed: int) -> tuple[str, 
 
 def _image(path: Path, flags: int, photo: PosedPhoto) -> NDArray[np.uint8] | NDArray[np.uint16]:
     lens = photo.intrinsics
-    image = decoded(read_given(path, PICTURE_FILE), flags, str(path))
+    image = decoded(read_input_file(path, PICTURE_FILE), flags, str(path))
     if image.shape[:2] != (lens.height_px, lens.width_px):
         raise InputError(
             say(

@@ -32,7 +32,7 @@ from torch import Tensor
 from torch.nn.functional import avg_pool2d, conv2d, max_pool2d, relu
 
 from planning.base.errors import InputError
-from planning.base.files import MIB, FileLimit, read_given
+from planning.base.files import MIB, FileLimit, read_input_file
 from planning.base.jit import chunks
 from planning.base.messages import say
 
@@ -178,7 +178,7 @@ def read_lpips_weights(paths: Sequence[Path]) -> LpipsWeights:
     missing = next((path for path in paths if not path.is_file()), None)
     if missing is not None:
         raise InputError(say("is no file; {}", UNAVAILABLE, place=missing))
-    contents = {path: read_given(path, WEIGHTS_FILE) for path in paths}
+    contents = {path: read_input_file(path, WEIGHTS_FILE) for path in paths}
     for path, written in contents.items():
         for name, value in _tensors(path, written).items():
             # torchvision's names, and those of the authors' package.
@@ -284,7 +284,7 @@ def packaged_weights(path: Path, backbone: Backbone) -> dict[str, Tensor]:
 
 
 def _packed(path: Path, backbone: Backbone) -> bytes:
-    written = read_given(path, PACKAGE_FILE)
+    written = read_input_file(path, PACKAGE_FILE)
     if path.suffix == ".ckpt":
         return written
     with tarfile.open(fileobj=io.BytesIO(written), mode="r:gz") as archive:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InputError
-from planning.base.files import read_given
+from planning.base.files import read_input_file
 from planning.base.json_file import write_atomically
 from planning.base.messages import glue, say
 from planning.photos.metadata import read_photo
@@ -88,7 +88,7 @@ def _decoded(path: Path, flags: int) -> NDArray[Any]:
 
 
 def _content(path: Path) -> bytes:
-    content = read_given(path, PICTURE_FILE)
+    content = read_input_file(path, PICTURE_FILE)
     if not content:
         raise InputError(say("the file is empty; copy it again", place=path))
     return content

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InputError
-from planning.base.files import MIB, FileLimit, parse_xml, read_given
+from planning.base.files import MIB, FileLimit, parse_xml, read_input_file
 from planning.base.json_file import read_json
 from planning.base.messages import say
 from reconstruction.base.cameras import Intrinsics
@@ -161,7 +161,7 @@ def _files(folder: Path, pattern: str) -> list[Path]:
 
 def _rectangles(path: Path) -> list[tuple[float, float, float, float]]:
     try:
-        rows = list(csv.DictReader(read_given(path, TABLE_FILE).decode("utf-8").splitlines()))
+        rows = list(csv.DictReader(read_input_file(path, TABLE_FILE).decode("utf-8").splitlines()))
         return [(float(row["x0"]), float(row["y0"]), float(row["x1"]), float(row["y1"])) for row in rows]
     except (csv.Error, ValueError, KeyError, TypeError) as error:
         raise InputError(
@@ -175,7 +175,7 @@ def _cmp_windows(path: Path, width: int, height: int) -> list[tuple[float, float
     The file is a row of `object` elements without a root. In `points`, two `x` are shares of the photo's height and two
     `y` of its width, rounded to five digits: rows come first there.
     """
-    content = read_given(path, CMP_FILE)
+    content = read_input_file(path, CMP_FILE)
     try:
         root = parse_xml(b"<objects>" + XML_DECLARATION.sub(b"", content) + b"</objects>", path)
         objects = list(root.iter("object"))

@@ -22,7 +22,7 @@ from safetensors import SafetensorError, safe_open
 from safetensors.numpy import save
 
 from planning.base.errors import InputError
-from planning.base.files import check_given, make_folder, open_given
+from planning.base.files import check_input_file, make_folder, open_input_file
 from planning.base.json_file import expect_format, read_json, to_record, write_atomically
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
@@ -423,7 +423,7 @@ class StoredScene:
     def _checked(self, part: StoredPart) -> dict[str, Array]:
         """All that a file has, if it is the one that was written."""
         path = self.folder / part.file
-        with open_given(path, TENSORS_FILE) as stream:
+        with open_input_file(path, TENSORS_FILE) as stream:
             # A file of another length is not read to its end: it may be a very long one.
             is_same = os.fstat(stream.fileno()).st_size == part.n_bytes
             is_same = is_same and hashlib.file_digest(stream, "sha256").hexdigest() == part.sha256
@@ -438,7 +438,7 @@ class StoredScene:
 
     def _opened(self, part: StoredPart, read: Any) -> dict[str, Array]:
         path = self.folder / part.file
-        check_given(path, TENSORS_FILE)
+        check_input_file(path, TENSORS_FILE)
         try:
             with safe_open(path, framework="numpy") as file:
                 found: dict[str, Array] = read(file)

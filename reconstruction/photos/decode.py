@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InputError
-from planning.base.files import MIB, FileLimit, read_given
+from planning.base.files import MIB, FileLimit, read_input_file
 from planning.base.messages import say
 from planning.photos.jpeg import MAX_STRAY_BYTES, PHOTO_FILE
 from planning.photos.record import PhotoMetadata
@@ -77,7 +77,7 @@ def colour_picture(photo: PhotoMetadata, scale: Scale = 1) -> NDArray[np.uint8]:
 def _picture(photo: PhotoMetadata, flag: int, scale: Scale) -> NDArray[np.uint8]:
     place = str(photo.path)
     _check_size((photo.width_px, photo.height_px), place, MAX_PIXELS)
-    content = read_given(photo.path, PHOTO_FILE)
+    content = read_input_file(photo.path, PHOTO_FILE)
     if not photo.is_complete:
         raise InputError(
             say("the file was cut off, so that part of the picture is missing; copy it again", place=place)

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from planning.base.errors import InputError
-from planning.base.files import MIB, FileLimit, check_lines, make_folder, read_given
+from planning.base.files import MIB, FileLimit, check_lines, make_folder, read_input_file
 from planning.base.json_file import write_together
 from planning.base.messages import joined, say
 from reconstruction.records.book import RecordBook
@@ -424,7 +424,7 @@ class _Objects:
 
 
 def _read(path: Path) -> _Table:
-    content = read_given(path, TABLE_FILE)
+    content = read_input_file(path, TABLE_FILE)
     check_lines(content, MAX_LINES, path)
     try:
         text = content.decode("utf-8-sig")

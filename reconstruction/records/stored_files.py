@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from planning.base.errors import InputError
-from planning.base.files import MIB, FileLimit, make_folder, read_given, sha256_given
+from planning.base.files import MIB, FileLimit, make_folder, read_input_file, sha256_of_file
 from planning.base.json_file import write_atomically
 from planning.base.messages import say
 from reconstruction.records.book import RecordBook
@@ -49,7 +49,7 @@ def store_picture(book: RecordBook, picture: Path | bytes) -> StoredFile:
     InputError
         It cannot be read, is no PNG, JPEG or WebP, is too large, or cannot be written.
     """
-    content = picture if isinstance(picture, bytes) else read_given(picture, PICTURE_FILE)
+    content = picture if isinstance(picture, bytes) else read_input_file(picture, PICTURE_FILE)
     where = say("the picture") if isinstance(picture, bytes) else str(picture)
     if len(content) > PICTURE_FILE.max_bytes:
         raise InputError(say("has {} bytes; pictures may have {}", len(content), PICTURE_FILE.max_bytes, place=where))
@@ -68,7 +68,7 @@ def store_document(book: RecordBook, path: Path) -> StoredFile:
         It cannot be read, is too large, or cannot be written.
     """
     ending = path.suffix.lower()
-    return _stored(book, read_given(path, DOCUMENT_FILE), ending if _ENDING.fullmatch(ending) else "")
+    return _stored(book, read_input_file(path, DOCUMENT_FILE), ending if _ENDING.fullmatch(ending) else "")
 
 
 def shown_place(place: str) -> str:
@@ -97,7 +97,7 @@ def stored_path(book: RecordBook, name: str) -> Path:
     path = book.files / name
     if path.is_symlink() or not path.is_file():
         raise InputError(say("the file is missing; copy it back beside the records", place=path))
-    digest = sha256_given(path, DOCUMENT_FILE)
+    digest = sha256_of_file(path, DOCUMENT_FILE)
     if digest != path.name.partition(".")[0]:
         raise InputError(say("is not the file that was stored; copy it back", place=path))
     return path
@@ -141,7 +141,7 @@ def _stored(book: RecordBook, content: bytes, ending: str) -> StoredFile:
     clear_strays(book)
     path = book.files / f"{digest}{ending}"
     # A link of this name could lead anywhere.
-    if path.is_symlink() or not path.is_file() or sha256_given(path) != digest:
+    if path.is_symlink() or not path.is_file() or sha256_of_file(path) != digest:
         path.unlink(missing_ok=True)
         write_atomically(path, content)
     else:

@@ -20,7 +20,7 @@ import torch
 from numpy.typing import NDArray
 
 from planning.base.errors import InputError
-from planning.base.files import MIB, FileLimit, open_given, real_path
+from planning.base.files import MIB, FileLimit, open_input_file, real_path
 from planning.base.json_file import part_file
 from planning.base.messages import say
 from reconstruction.light.shading import BASE_REFLECTANCE, REFLECTIVITY
@@ -104,7 +104,7 @@ def read_header(path: Path) -> PlyHeader:
     InputError
         The file is missing, is no PLY file, is damaged or cut off, or is of a kind that is not read.
     """
-    with open_given(path, SPLATS_FILE) as stream:
+    with open_input_file(path, SPLATS_FILE) as stream:
         lines = _header_lines(stream, path)
         return _parsed(lines, stream.tell(), os.fstat(stream.fileno()).st_size, path)
 
@@ -118,7 +118,7 @@ def read_blocks(path: Path, header: PlyHeader, at_once: int = AT_ONCE) -> Iterat
         The file cannot be read, or got shorter meanwhile.
     """
     row = header.row_type
-    with open_given(path, SPLATS_FILE) as stream:
+    with open_input_file(path, SPLATS_FILE) as stream:
         stream.seek(header.start)
         for first in range(0, header.n_rows, at_once):
             block = np.fromfile(stream, row, min(at_once, header.n_rows - first))

@@ -26,7 +26,7 @@ from PySide6.QtWidgets import QListView, QStyle, QStyledItemDelegate, QStyleOpti
 
 from groundstation.gui.widgets.theme import colours
 from planning.base.errors import InputError
-from planning.base.files import read_given
+from planning.base.files import read_input_file
 from reconstruction.photos.decode import PICTURE_FILE, decoded
 
 # Small copies of photos for the strip, decoded on another thread, those last that were asked for first.
@@ -112,7 +112,7 @@ class SmallPictures(QObject):
 def _small(path: Path, longest_px: int) -> QImage | None:
     scale = max(each for each in FLAGS if each == 1 or longest_px // each >= SIDE_PX)
     try:
-        content = read_given(path, PICTURE_FILE)
+        content = read_input_file(path, PICTURE_FILE)
         picture = decoded(content, FLAGS[scale] | cv2.IMREAD_IGNORE_ORIENTATION, str(path))
     except InputError:
         return None

@@ -20,7 +20,7 @@ from groundstation.services.project.project_file import SITE_FOLDER, check_not_i
 from missions.formats.encode import DEFAULT_OPTIONS, ExportOptions
 from missions.formats.registry import encode, mission_format, sortie_path, write_files
 from planning.base.errors import InputError
-from planning.base.files import check_ending, real_path, sha256_given
+from planning.base.files import check_ending, real_path, sha256_of_file
 from planning.base.findings import Finding, Severity
 from planning.base.json_file import JSON_FILE, check_output
 from planning.base.messages import say
@@ -69,7 +69,7 @@ def _site_beside(plan: Plan, plan_path: Path) -> Path | None:
 def _is_site_of(path: Path, plan: Plan) -> bool:
     """Whether a file beside a plan is its site; what cannot be read is not."""
     try:
-        return sha256_given(path, JSON_FILE) == plan.site_sha256
+        return sha256_of_file(path, JSON_FILE) == plan.site_sha256
     except InputError:
         return False
 

@@ -186,10 +186,10 @@ def read_mission_files(paths: Sequence[Path], *, strict: bool = False) -> tuple[
     for number, path in enumerate(paths):
         if resolved[number] in resolved[:number]:
             raise InputError(say("this mission file is named twice; name the file of each sortie once", place=path))
-    return tuple(mission for path in paths for mission in _read_given_missions(path, strict))
+    return tuple(mission for path in paths for mission in _read_missions(path, strict))
 
 
-def _read_given_missions(path: Path, strict: bool) -> tuple[ReadMission, ...]:
+def _read_missions(path: Path, strict: bool) -> tuple[ReadMission, ...]:
     with expecting(FileKind.MISSION, path):
         return read_missions(path, strict=strict)
 

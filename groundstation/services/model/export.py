@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from planning.base.errors import InputError
-from planning.base.files import check_ending, check_folder_name, read_given
+from planning.base.files import check_ending, check_folder_name, read_input_file
 from planning.base.messages import say
 from planning.base.parameters import Choice, check, parameter
 from planning.base.plugins import Plugin, PluginGroup, expect_type, guarded, load_plugins, told_problem
@@ -254,7 +254,7 @@ def _web(export: ModelToExport) -> list[str]:
 
         def content_of(name: str) -> bytes | None:
             try:
-                return None if book is None else read_given(stored_path(book, name), DOCUMENT_FILE)
+                return None if book is None else read_input_file(stored_path(book, name), DOCUMENT_FILE)
             except InputError:
                 return None
 

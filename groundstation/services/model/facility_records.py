@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from planning.base.errors import InputError
-from planning.base.files import read_given
+from planning.base.files import read_input_file
 from planning.base.json_file import plain_values
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
@@ -125,7 +125,7 @@ def attachments_of(
             monitor.report(say("reading what is attached"), number, len(names))
             found[name] = Attachment()
             with suppress(InputError):
-                content = read_given(stored_path(book, name), DOCUMENT_FILE)
+                content = read_input_file(stored_path(book, name), DOCUMENT_FILE)
                 found[name] = Attachment(len(content))
                 if name.endswith(PICTURES):
                     found[name] = Attachment(len(content), small_jpeg(name, content, longest_px))

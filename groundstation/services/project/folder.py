@@ -40,7 +40,7 @@ from groundstation.services.project.store import (
     settle,
 )
 from planning.base.errors import InputError
-from planning.base.files import read_given, real_path
+from planning.base.files import read_input_file, real_path
 from planning.base.findings import Finding, Severity
 from planning.base.json_file import JSON_FILE, plain_values, to_record
 from planning.base.messages import glue, say
@@ -163,7 +163,7 @@ def plan_file(
     known = before.plan(entry.id)
     if known is not None:
         with contextlib.suppress(InputError):  # what cannot be read does not hold the plan
-            found = read_given(folder / known.file, JSON_FILE)
+            found = read_input_file(folder / known.file, JSON_FILE)
             if found != content and plan_of(found, folder / known.file) == entry.plan:
                 content = found
     if (
@@ -351,7 +351,7 @@ def _unused(folder: Path, present: ProjectIndex, record: ProjectRecord, meshes: 
     unused = [path for file, path in own.items() if file not in kept]
     old_site = own.get(present.record.site)
     if old_site is not None:
-        old_meshes = mesh_names(read_given(old_site, JSON_FILE)) - meshes
+        old_meshes = mesh_names(read_input_file(old_site, JSON_FILE)) - meshes
         unused += [old_site.with_name(name) for name in sorted(old_meshes) if is_plain(name)]
     return unused
 

@@ -17,7 +17,7 @@ from groundstation.services.project.project_file import ProjectRecord, is_projec
 from groundstation.services.project.store import PROJECT_FILE
 from missions.formats.registry import HEAD_BYTES, is_mission
 from planning.base.errors import InputError, MissionError
-from planning.base.files import ANY_FILE, open_given
+from planning.base.files import ANY_FILE, open_input_file
 from planning.base.json_file import read_json
 from planning.base.messages import say
 from planning.plan import PLAN_FORMAT, Plan, read_plan
@@ -145,7 +145,7 @@ def kind_of(path: Path) -> FileKind | None:
     if not os.path.lexists(path):
         return FileKind.NOTHING
     try:
-        with open_given(path, ANY_FILE) as file:
+        with open_input_file(path, ANY_FILE) as file:
             head = file.read(HEAD_BYTES)
     except InputError:
         return None

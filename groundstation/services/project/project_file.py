@@ -11,7 +11,7 @@ from typing import Any
 from groundstation.services.project.migration import FORMAT, VERSION, Content, Listing, migrate
 from groundstation.services.project.store import PROJECT_FILE, digest
 from planning.base.errors import InputError
-from planning.base.files import read_given
+from planning.base.files import read_input_file
 from planning.base.json_file import JSON_FILE, parse_json, plain_values, read_json, to_record
 from planning.base.messages import about, glue, say
 from planning.plan import PLAN_FORMAT
@@ -177,7 +177,7 @@ def read_index(folder: Path) -> ProjectIndex:
     """
     file = folder / PROJECT_FILE
     try:
-        written = read_given(file, JSON_FILE)
+        written = read_input_file(file, JSON_FILE)
     except InputError:
         if is_project(folder):
             raise

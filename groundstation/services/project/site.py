@@ -18,7 +18,7 @@ import numpy as np
 from groundstation.services.project.project_file import MAX_NAME_LENGTH
 from groundstation.services.project.store import digest, holds
 from planning.base.errors import InputError
-from planning.base.files import read_given, real_path, sha256_given
+from planning.base.files import read_input_file, real_path, sha256_of_file
 from planning.base.json_file import JSON_FILE, parse_json, to_record
 from planning.base.messages import say
 from planning.geo.mesh import MESH_FILE, TriangleMesh, empty_mesh, ply_bytes, read_mesh
@@ -125,7 +125,7 @@ def spare_meshes(folder: Path, used: set[str]) -> list[Path]:
 
 def _begins(path: Path, start: str) -> bool:
     try:
-        return sha256_given(path).startswith(start)
+        return sha256_of_file(path).startswith(start)
     except InputError:
         return False
 
@@ -151,7 +151,7 @@ def _site_bytes(site: Site) -> bytes:
 def _unchanged(source: Path, model: SiteModel) -> bytes | None:
     """Content of a site file that the model was read from and still is the same as."""
     try:
-        content = read_given(source, JSON_FILE)
+        content = read_input_file(source, JSON_FILE)
         if digest(content) != model.sha256:
             return None
         if content != _site_bytes(model.site) and to_record(parse_json(content, source), Site, source) != model.site:
@@ -171,7 +171,7 @@ def _copies(source: Path, content: bytes, folder: Path) -> dict[str, bytes] | No
     copies = {}
     for name in sorted(mesh_names(content)):
         target = folder / name
-        mesh = read_given(source / name, MESH_FILE)
+        mesh = read_input_file(source / name, MESH_FILE)
         if not is_plain(name) or (target.exists() and not holds(target, mesh)):
             return None
         if not target.exists():

@@ -14,7 +14,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
 from planning.base.errors import InputError
-from planning.base.files import read_given, sha256_given
+from planning.base.files import read_input_file, sha256_of_file
 from planning.base.json_file import JSON_FILE, write_atomically
 from planning.base.messages import say
 
@@ -31,7 +31,7 @@ def digest(content: bytes) -> str:
 def has_digest(path: Path, sha256: str) -> bool:
     """Whether there is a file with this SHA-256."""
     try:
-        return sha256_given(path) == sha256
+        return sha256_of_file(path) == sha256
     except InputError:
         return False
 
@@ -74,10 +74,10 @@ def current_content(folder: Path, file: str, sha256: str) -> tuple[Path, bytes]:
     path = folder / file
     if sha256:
         with contextlib.suppress(InputError):
-            content = read_given(_staged(path), JSON_FILE)
+            content = read_input_file(_staged(path), JSON_FILE)
             if digest(content) == sha256:
                 return _staged(path), content
-    return path, read_given(path, JSON_FILE)
+    return path, read_input_file(path, JSON_FILE)
 
 
 def settle(folder: Path, checksums: Mapping[str, str]) -> None:

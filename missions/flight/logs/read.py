@@ -10,7 +10,7 @@ from missions.flight.logs.raw import RawLog
 from missions.flight.logs.telemetry import looks_like_tlog, read_tlog
 from missions.flight.logs.ulog import looks_like_ulog, read_ulog
 from planning.base.errors import InputError
-from planning.base.files import MIB, FileLimit, open_given, read_given
+from planning.base.files import MIB, FileLimit, open_input_file, read_input_file
 from planning.base.progress import QUIET, Monitor
 from planning.site.records import Site
 
@@ -34,7 +34,7 @@ def read_log(path: Path, site: Site, heights: HeightSource = "takeoff", monitor:
 def is_log(path: Path) -> bool:
     """Whether a file begins like a flight log; False for one that cannot be read."""
     try:
-        with open_given(path, LOG_FILE) as file:
+        with open_input_file(path, LOG_FILE) as file:
             head = file.read(HEAD_BYTES)
     except InputError:
         return False
@@ -42,7 +42,7 @@ def is_log(path: Path) -> bool:
 
 
 def _content(path: Path) -> bytes:
-    content = read_given(path, LOG_FILE)
+    content = read_input_file(path, LOG_FILE)
     if not content:
         raise InputError.say("the log is empty; copy it from the vehicle again", place=path)
     return content

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InputError
-from planning.base.files import MIB, FileLimit, HostileXml, parse_xml, read_given
+from planning.base.files import MIB, FileLimit, HostileXml, parse_xml, read_input_file
 from planning.base.messages import say
 from planning.base.progress import Monitor
 from planning.base.step_physical_file import real_name
@@ -82,7 +82,7 @@ def read_citygml(path: Path, options: ImportOptions, monitor: Monitor) -> Source
 
 def _parse(path: Path) -> Any:
     try:
-        return parse_xml(read_given(path, CITYGML_FILE), path, forbid_dtd=False)
+        return parse_xml(read_input_file(path, CITYGML_FILE), path, forbid_dtd=False)
     except HostileXml as error:
         raise InputError.say("the XML {}, which a CityGML file has no need of; refused", error, place=path) from error
     except ValueError as error:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from planning.base.files import read_given
+from planning.base.files import read_input_file
 from planning.base.json_file import JSON_FILE, expect_format, parse_json, to_record
 from planning.geo.frames import Vec3
 from planning.site.records import Panel
@@ -85,7 +85,7 @@ def read_facades(path: Path) -> FoundFacades:
     InputError
         It cannot be read, or a field is missing or wrong.
     """
-    return facades_of(read_given(path, JSON_FILE), path)
+    return facades_of(read_input_file(path, JSON_FILE), path)
 
 
 def facades_of(written: bytes, path: Path) -> FoundFacades:

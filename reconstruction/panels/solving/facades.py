@@ -198,7 +198,7 @@ def files_by_photo(photos: Sequence[PosedPhoto], files: Mapping[str, PanelsFile]
     return found
 
 
-def given_grid(
+def grid_from_file(
     record: PanelsFile, photo: PosedPhoto, facade: Facade, view: Rectification, facade_id: str
 ) -> FacadeGrid | None:
     """What a file says about one facade, in a rectified view of it; None where it says nothing.

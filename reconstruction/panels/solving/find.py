@@ -34,7 +34,7 @@ from reconstruction.panels.search.record import FacadeGrid, GridLine
 from reconstruction.panels.search.segment import segment_views
 from reconstruction.panels.segment import segment_view
 from reconstruction.panels.solving.association import TOGETHER, associate, seen_lines
-from reconstruction.panels.solving.facades import Facade, building_facades, files_by_photo, given_grid
+from reconstruction.panels.solving.facades import Facade, building_facades, files_by_photo, grid_from_file
 from reconstruction.panels.solving.record import SeenLine, SolvedFacade, SurfaceLine
 from reconstruction.panels.solving.register import registered
 from reconstruction.panels.solving.solve import REACH_SIGMAS, reach_m, solve_facade
@@ -325,7 +325,7 @@ def search_facade(
         except InfeasibleError:
             continue
         if number in given:
-            grid = given_grid(given[number], photos[number], facade, drawn, name)
+            grid = grid_from_file(given[number], photos[number], facade, drawn, name)
             if grid is not None:
                 grids[number] = grid
         else:

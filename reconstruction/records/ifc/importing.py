@@ -16,7 +16,7 @@ from typing import TypeVar
 import msgspec
 
 from planning.base.errors import InputError
-from planning.base.files import read_given
+from planning.base.files import read_input_file
 from planning.base.json_file import check_output, encoded, write_atomically
 from planning.base.messages import about, glue, packed, say, unpacked
 from planning.base.progress import QUIET, Monitor
@@ -212,7 +212,7 @@ def _extend(path: Path, copy: Path, wanted: _Sets) -> Extension:
     """Write the copy, and see that it has as many instances as it should."""
     found = extension(path, wanted.sets, wanted.known)
     try:
-        copy.write_bytes(edited(read_given(path, IFC_FILE), found.lines, found.replaced))
+        copy.write_bytes(edited(read_input_file(path, IFC_FILE), found.lines, found.replaced))
     except InputError as error:
         raise InputError(about(path, error)) from error
     n_instances = len(list(open_model(copy)))

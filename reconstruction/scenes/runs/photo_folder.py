@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from planning.base.effects import Decision
 from planning.base.errors import InputError
-from planning.base.files import read_given
+from planning.base.files import read_input_file
 from planning.base.json_file import write_atomically
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
@@ -213,7 +213,7 @@ def _write_records(job: PhotoJob, folder: Path, decisions: Sequence[Decision], m
     everything = RayCaster(_mesh(job.scene, tuple(Layer)))
     for done, photo in enumerate(job.photos):
         monitor.report("colouring points", done, len(job.photos))
-        picture = decoded(read_given(photo.path, PICTURE_FILE), cv2.IMREAD_COLOR, str(photo.path))
+        picture = decoded(read_input_file(photo.path, PICTURE_FILE), cv2.IMREAD_COLOR, str(photo.path))
         points.add(photo, np.asarray(picture, np.uint8), everything)
     monitor.report(say("writing cameras and points"), 0, 1)
     # What an earlier end of this run left; models are written into empty folders only.

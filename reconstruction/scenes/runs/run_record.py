@@ -13,7 +13,7 @@ import numpy as np
 
 from planning.base.effects import Decision
 from planning.base.errors import InputError
-from planning.base.files import is_empty, sha256_given
+from planning.base.files import is_empty, sha256_of_file
 from planning.base.json_file import expect_format, read_json, write_atomically
 from planning.base.messages import say
 from reconstruction.scenes.record import Scene
@@ -179,7 +179,7 @@ def _is_complete(folder: Path, sums: Any) -> bool:
     if not isinstance(sums, dict) or not sums:
         return False
     try:
-        return all(_is_inside(path) and sha256_given(folder / path) == sha256 for path, sha256 in sums.items())
+        return all(_is_inside(path) and sha256_of_file(folder / path) == sha256 for path, sha256 in sums.items())
     except InputError:
         return False
 

@@ -23,13 +23,13 @@ from planning.base.files import (
     HostileXml,
     _json_bytes,
     _xml_bytes,
-    check_given,
+    check_input_file,
     check_json_size,
     check_lines,
     check_zip_directory,
     parse_xml,
-    read_given,
-    sha256_given,
+    read_input_file,
+    sha256_of_file,
 )
 
 THING = FileLimit("a thing", MIB, "make it smaller")
@@ -37,7 +37,7 @@ THING = FileLimit("a thing", MIB, "make it smaller")
 
 def refusals(path, limit=THING):
     said = set()
-    for read in (check_given, read_given, lambda *a: sha256_given(*a)):
+    for read in (check_input_file, read_input_file, lambda *a: sha256_of_file(*a)):
         with pytest.raises(InputError) as caught:
             read(path, limit)
         said.add(str(caught.value))
@@ -62,15 +62,15 @@ def test_what_is_no_regular_file_is_refused_and_never_waited_for(tmp_path):
 
 def test_a_name_that_becomes_a_pipe_meanwhile_is_not_waited_for(tmp_path, monkeypatch):
     os.mkfifo(tmp_path / "pipe")
-    monkeypatch.setattr("planning.base.files.check_given", lambda *_: None)
+    monkeypatch.setattr("planning.base.files.check_input_file", lambda *_: None)
     with pytest.raises(InputError, match="a device or a pipe"):
-        read_given(tmp_path / "pipe", THING)
+        read_input_file(tmp_path / "pipe", THING)
 
 
 def test_files_beyond_the_limit_are_refused_and_those_at_it_are_read(tmp_path):
     path = tmp_path / "a"
     path.write_bytes(bytes(MIB))
-    assert read_given(path, THING) == bytes(MIB)
+    assert read_input_file(path, THING) == bytes(MIB)
     path.write_bytes(bytes(MIB + 1))
     assert refusals(path) == "the file has more than 1 MiB; expected a thing; make it smaller"
     with path.open("r+b") as file:
@@ -83,7 +83,7 @@ def test_reading_takes_no_more_memory_than_the_file_has(tmp_path):
     path = tmp_path / "a"
     path.write_bytes(b"x" * 1000)
     tracemalloc.start()
-    assert len(read_given(path, FileLimit("a thing", 1 << 40))) == 1000
+    assert len(read_input_file(path, FileLimit("a thing", 1 << 40))) == 1000
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert peak < 200_000
@@ -91,7 +91,7 @@ def test_reading_takes_no_more_memory_than_the_file_has(tmp_path):
 
 def test_a_file_that_says_it_is_empty_or_grows_is_read_to_its_end_or_refused(tmp_path):
     # The system's own files have no size.
-    assert b"MemTotal" in read_given(Path("/proc/meminfo"), THING)
+    assert b"MemTotal" in read_input_file(Path("/proc/meminfo"), THING)
     path = tmp_path / "a"
     path.write_bytes(b"")
     stop, failed = threading.Event(), []
@@ -106,7 +106,7 @@ def test_a_file_that_says_it_is_empty_or_grows_is_read_to_its_end_or_refused(tmp
     try:
         for _ in range(2000):
             try:
-                content = read_given(path, FileLimit("a thing", 30 * MIB))
+                content = read_input_file(path, FileLimit("a thing", 30 * MIB))
                 assert len(content) <= 30 * MIB
             except InputError as error:
                 failed.append(str(error))

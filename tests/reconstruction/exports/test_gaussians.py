@@ -42,20 +42,20 @@ def unpacked(words):
 
 @given(st.integers(1, 60), st.integers(0, 2**31), st.sampled_from((0, 1, 2, 3)))
 def test_unpacked_gaussians_are_those_that_were_packed(n, seed, degree):
-    given_ = some(n, seed)
+    splats = some(n, seed)
     panes = np.random.default_rng(seed).integers(-1, 65_535, n).astype(np.int32)
-    result = packed(given_, panes, degree)
+    result = packed(splats, panes, degree)
     found = unpacked(result.words)
-    order = [int(np.flatnonzero((given_.means_m == mean).all(axis=1))[0]) for mean in found["means_m"]]
+    order = [int(np.flatnonzero((splats.means_m == mean).all(axis=1))[0]) for mean in found["means_m"]]
     assert sorted(order) == list(range(n))
     assert np.array_equal(found["panes"], panes[order])
-    np.testing.assert_allclose(found["quats"], given_.quats[order], atol=2.5e-4)
-    np.testing.assert_allclose(found["scales_m"], given_.scales_m[order], rtol=6e-4)
-    np.testing.assert_allclose(found["opacities"], given_.opacities[order], atol=0.5 / 255 + 1e-6)
-    expected = np.clip(0.5 + FLAT * given_.sh[order, 0], *COLOUR_RANGE)
+    np.testing.assert_allclose(found["quats"], splats.quats[order], atol=2.5e-4)
+    np.testing.assert_allclose(found["scales_m"], splats.scales_m[order], rtol=6e-4)
+    np.testing.assert_allclose(found["opacities"], splats.opacities[order], atol=0.5 / 255 + 1e-6)
+    expected = np.clip(0.5 + FLAT * splats.sh[order, 0], *COLOUR_RANGE)
     np.testing.assert_allclose(found["colours"], expected, atol=1.5 / 255 / 2 + 1e-6)
     rest = result.rest * result.rest_steps[:, None]
-    wanted = given_.sh[order, 1 : (degree + 1) ** 2]
+    wanted = splats.sh[order, 1 : (degree + 1) ** 2]
     assert rest.shape == wanted.shape
     largest = 127.0 * result.rest_steps[:, None] + 1e-6
     np.testing.assert_allclose(
@@ -66,10 +66,10 @@ def test_unpacked_gaussians_are_those_that_were_packed(n, seed, degree):
 def test_the_most_visible_come_first_and_the_faintest_not_at_all():
     sizes = np.full((4, 3), 0.1)
     sizes[2, :2] = 1.0
-    given_ = some(4, scales_m=sizes, opacities=[0.5, 0.9, 0.5, 0.5 * FAINTEST])
+    splats = some(4, scales_m=sizes, opacities=[0.5, 0.9, 0.5, 0.5 * FAINTEST])
     none = np.full(4, -1, np.int32)
-    assert np.array_equal(unpacked(packed(given_, none, 0).words)["means_m"], given_.means_m[[2, 1, 0]])
-    assert np.array_equal(unpacked(packed(given_, none, 0, most=1).words)["means_m"], given_.means_m[[2]])
+    assert np.array_equal(unpacked(packed(splats, none, 0).words)["means_m"], splats.means_m[[2, 1, 0]])
+    assert np.array_equal(unpacked(packed(splats, none, 0, most=1).words)["means_m"], splats.means_m[[2]])
 
 
 def test_chunks_are_words_then_coefficients():

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InputError
-from planning.base.files import MIB, FileLimit, check_zip_directory, open_given
+from planning.base.files import MIB, FileLimit, check_zip_directory, open_input_file
 from planning.base.json_file import parse_json, to_record
 from reconstruction.exports.component_parts import NO_PANEL, Ellipsoids
 from reconstruction.exports.gaussian_blocks import Axes, turned_back
@@ -88,7 +88,7 @@ def read_sog(path: Path, axes: Axes = "y-down") -> Ellipsoids:
         The file is missing, is no such file, is damaged, or holds more than can be read.
     """
     try:
-        with open_given(path, SOG_FILE) as file:
+        with open_input_file(path, SOG_FILE) as file:
             check_zip_directory(file, path)
             with zipfile.ZipFile(file) as archive:
                 meta = _meta(archive, path)

@@ -12,7 +12,7 @@ from backports import zstd
 from numpy.typing import NDArray
 
 from planning.base.errors import InputError
-from planning.base.files import MIB, FileLimit, open_given
+from planning.base.files import MIB, FileLimit, open_input_file
 from reconstruction.exports import spz
 from reconstruction.exports.component_parts import NO_PANEL, Ellipsoids
 from reconstruction.exports.gaussian_blocks import (
@@ -64,7 +64,7 @@ def read_spz(path: Path, axes: Axes = "y-up") -> Ellipsoids:
     InputError
         The file is missing, is no such file, says what it does not hold, or holds more than can be read.
     """
-    with open_given(path, SPZ_FILE) as stream:
+    with open_input_file(path, SPZ_FILE) as stream:
         size = os.fstat(stream.fileno()).st_size
         start = stream.read(4)
         stream.seek(0)

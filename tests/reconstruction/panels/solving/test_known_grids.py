@@ -18,7 +18,7 @@ from reconstruction.panels.rectify.fit import SurfaceFit, ViewKind
 from reconstruction.panels.rectify.view import surface_view
 from reconstruction.panels.search.cells import facade_grid
 from reconstruction.panels.search.record import FacadeGrid, GridLine, InclinedLine, Segmentation
-from reconstruction.panels.solving.facades import Facade, given_grid
+from reconstruction.panels.solving.facades import Facade, grid_from_file
 from reconstruction.panels.solving.find import FindParameters, find_panels
 from reconstruction.scenes.facades.record import MadeFacade
 from tests.reconstruction.made_photos import coarse_model, made_photos
@@ -103,7 +103,7 @@ def test_cut_cells_come_back_cut(curvature: float, open_side: int) -> None:
     facade = Facade(
         fit, low, high, Decision("curvature", bool(curvature), "user", "as made", 1.0, 0.5, "px", 0.0), (0,)
     )
-    back = given_grid(record, photo, facade, view, "A")
+    back = grid_from_file(record, photo, facade, view, "A")
     assert back is not None
     assert [panel.id for panel in back.panels] == [panel.id for panel in cut.panels]
     assert {len(panel.corners_px) for panel in back.panels} > {4}

@@ -9,7 +9,7 @@ from planning.request import PlanRequest
 from planning.site.bundled import write_scene
 from tests.planning.revision.cases import QUICK
 
-GIVEN = {
+INPUT_FILES = {
     "project": ("project", "a project"),
     "index": ("project/project.json", "a project"),
     "folder": ("folder", "a folder"),
@@ -63,9 +63,9 @@ COMMANDS = {
     "tradeoff plan": (("tradeoff", "plan", ..., "-o", "out"), "a site file", {"site"}),
     "tradeoff route": (("tradeoff", "route", ..., "-o", "out"), "a plan file", {"plan", "site", "tsp"}),
 }
-"""Arguments with `...` for what is given, what is wanted, and what of `GIVEN` it takes or its reader judges."""
+"""Arguments with `...` for what is given, what is wanted, and what of `INPUT_FILES` it takes or its reader judges."""
 
-WRONG = [(command, given) for command, (_, _, taken) in COMMANDS.items() for given in GIVEN if given not in taken]
+WRONG = [(command, given) for command, (_, _, taken) in COMMANDS.items() for given in INPUT_FILES if given not in taken]
 
 
 @pytest.fixture(scope="module")
@@ -119,7 +119,7 @@ def typed(reflight, files, tmp_path, monkeypatch):
 @pytest.mark.few(105)
 @pytest.mark.parametrize(("command", "given"), WRONG)
 def test_a_file_of_another_kind_is_refused_with_what_was_expected_and_found(typed, tmp_path, command, given):
-    name, found = GIVEN[given]
+    name, found = INPUT_FILES[given]
     error = typed(command, name).error
     assert error.startswith(f"error: {name}: expected {COMMANDS[command][1]}")
     reason, semicolon, advice = error.partition("; ")
