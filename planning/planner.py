@@ -35,11 +35,11 @@ from planning.site.free_space import LEG_MARGIN_M, free_space
 from planning.site.records import SiteModel
 from planning.viewpoints.budget import best_flights, views_within_budget, with_fewer_views
 from planning.viewpoints.candidates import places_around
-from planning.viewpoints.greedy import greedy, most_telling
+from planning.viewpoints.greedy import greedy, most_covering
 from planning.viewpoints.methods import method_named
 from planning.viewpoints.prepare import Prepared, prepare
 from planning.viewpoints.problem import Goal, Optimiser, ViewProblem, locked_views, nothing_to_see, take
-from planning.viewpoints.spacing import Apart, merge_close_views
+from planning.viewpoints.spacing import SpacingRule, merge_close_views
 
 # Chosen views and flights as the records of a plan: rounded as in files, named, in the order of flight.
 
@@ -99,7 +99,7 @@ def _record(viewpoint_id: str, views: ViewpointArrays, view: int) -> Viewpoint:
 # Why sections that may be seen stay open: no viewpoint of a plan covers them, and none is proven not to see them.
 
 
-class WhyOpen(StrEnum):
+class OpenReason(StrEnum):
     """What keeps a section from being covered."""
 
     UNDECIDED = "undecided"
@@ -118,7 +118,7 @@ class OpenSection:
 
     panel: int
     section: int
-    why: WhyOpen
+    why: OpenReason
 
 
 def open_sections(
@@ -144,15 +144,15 @@ def open_sections(
     )
     kept = problem.flyable(places)
     places, number = places[kept], number[kept]
-    is_apart = ~Apart(places, positions_enu_m, spacing_m).are_too_close(places)
+    is_apart = ~SpacingRule(places, positions_enu_m, spacing_m).are_too_close(places)
     flyable, apart = set(number.tolist()), set(number[is_apart].tolist())
     of_known = iter(
-        WhyOpen.SEARCH if k in apart else WhyOpen.SPACING if k in flyable else WhyOpen.CUT_OFF
+        OpenReason.SEARCH if k in apart else OpenReason.SPACING if k in flyable else OpenReason.CUT_OFF
         for k in range(len(known))
     )
     panel, section = np.divmod(elements, problem.model.grid.n_sections)
     return tuple(
-        OpenSection(int(panel[k]), int(section[k]), next(of_known) if is_known[k] else WhyOpen.UNDECIDED)
+        OpenSection(int(panel[k]), int(section[k]), next(of_known) if is_known[k] else OpenReason.UNDECIDED)
         for k in range(len(elements))
     )
 
@@ -238,7 +238,7 @@ def plan_flight(
     spent_s = 0.0 if started_s is None else time.perf_counter() - started_s
     limit = TimeLimit(request.time_budget_s - spent_s)
     watch = _StopWatch()
-    prepared = serving(() if prepared is None else (prepared,), site_model, request)
+    prepared = first_reusable(() if prepared is None else (prepared,), site_model, request)
     if prepared is None:
         proving = any_of(stop, TimeLimit(REACHABILITY_SHARE * limit.remaining_s()))
         prepared = _prepared(site_model, request, chosen_profile, proving, monitor)
@@ -291,7 +291,7 @@ def _that_can_be_routed(
     metric = round_trip_metric(motion_limits(chosen_profile.aircraft, request.rules))
     n_locked = len(request.locked)
     n_views = max(FEWEST_ROUTED, n_locked, n_stops_within(problem.roadmap, views.positions_enu_m, metric, seconds))
-    return most_telling(problem.model, views, n_views, n_locked)
+    return most_covering(problem.model, views, n_views, n_locked)
 
 
 def _open_sections(problem: ViewProblem, plan: Plan, request: PlanRequest) -> tuple[OpenSection, ...]:
@@ -317,7 +317,7 @@ def _prepared(
     )
 
 
-def serving(known: Iterable[Prepared], site_model: SiteModel, request: PlanRequest) -> Prepared | None:
+def first_reusable(known: Iterable[Prepared], site_model: SiteModel, request: PlanRequest) -> Prepared | None:
     """The first prepared site that serves a request, under the site's present checksum; None where none does."""
     camera = profile(request.profile_id).camera
     wanted = (site_model, camera, request.constraints, request.precision, request.seed)
@@ -432,7 +432,7 @@ def _plan(
     )
 
 
-def share_out_anew(plan: Plan, site_model: SiteModel, max_views: int, monitor: Monitor = QUIET) -> Plan:
+def resplit_sorties(plan: Plan, site_model: SiteModel, max_views: int, monitor: Monitor = QUIET) -> Plan:
     """The same viewpoints in sorties of at most `max_views`.
 
     Raises

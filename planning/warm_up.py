@@ -13,9 +13,9 @@ from planning.checks import check_plan
 from planning.coverage.model import CoverageModel
 from planning.coverage.sections import PanelFrames, SectionGrid, panel_frames
 from planning.insight.clearance import route_clearance
+from planning.insight.obstructions import first_obstructions_hit, obstructions_of
 from planning.insight.reasons import section_reasons
 from planning.insight.sections import panel_sampling
-from planning.insight.things import first_things_hit, things_of
 from planning.motion import speed_profile
 from planning.parameters import DEFAULT_PROFILE, Constraints, GreedyParameters, Precision
 from planning.plan import Sortie, ViewpointArrays
@@ -35,9 +35,9 @@ def _analyse() -> None:
     frames, camera = prepared.problem.model.frames, prepared.problem.model.camera
     panel_sampling(frames, camera, frames.centroids + frames.normals, np.zeros((len(frames), len(frames)), np.int16))
     space = prepared.problem.space
-    things = things_of(model, space)
+    things = obstructions_of(model, space)
     route_clearance(Sortie((), ((0.0, -20.0, 5.0), (5.0, -20.0, 5.0)), 5.0, 5.0), space, things)
-    first_things_hit(space.solids, things.solid_owner, space.home_enu_m[None], space.column_top_enu_m[None])
+    first_obstructions_hit(space.solids, things.solid_owner, space.home_enu_m[None], space.column_top_enu_m[None])
 
 
 LONG_ENOUGH_S = 60.0

@@ -30,13 +30,13 @@ from numpy.typing import NDArray
 
 from planning.base.files import read_input_file
 from reconstruction.base.tensor_files import TENSORS_FILE
-from reconstruction.metrics.sets import PhotoSet, annotated_set, folder_set, made_set
+from reconstruction.metrics.sets import PhotoSet, annotated_set, folder_set, synthetic_set
 from reconstruction.panels.network.calibration import Source, calibrated, write_regressions
-from reconstruction.panels.network.crops import Bank
+from reconstruction.panels.network.crops import CropSampler
 from reconstruction.panels.network.network import LARGE, SMALL, PaneNetwork, network_of
 from reconstruction.panels.network.pool import MADE_PX, PER_FILE, Pool, read_gathered, write_gathered
-from reconstruction.panels.network.random_pictures import MadePicture, made_picture
-from reconstruction.panels.network.training import FIRST_PICTURES, SOURCES, Wanted, train
+from reconstruction.panels.network.random_pictures import SyntheticPicture, synthetic_picture
+from reconstruction.panels.network.training import FIRST_PICTURES, SOURCES, NetworkToTrain, train
 from reconstruction.panels.search.cells import from_lower_left
 from reconstruction.scenes.facades.cases import wide_camera
 
@@ -49,29 +49,29 @@ FOLDS = 3
 """Parts of the photos of each set, each left out by one of the networks that confidences are fitted with."""
 
 
-def traced_facades(n_seeds: int) -> list[MadePicture]:
+def traced_facades(n_seeds: int) -> list[SyntheticPicture]:
     """Facades of the program's own scenes."""
-    sets = (made_set(name, n_seeds, wide_camera(640, 480), first_seed=FIRST_SEED) for name in KINDS)
+    sets = (synthetic_set(name, n_seeds, wide_camera(640, 480), first_seed=FIRST_SEED) for name in KINDS)
     return list(chain.from_iterable(_learned(photos) for photos in sets))
 
 
 KINDS = ("made-planar", "made-curved")
 
 
-def _learned(photos: PhotoSet, every: int = 1) -> Iterator[MadePicture]:
+def _learned(photos: PhotoSet, every: int = 1) -> Iterator[SyntheticPicture]:
     for photo in islice(photos.photos(), 0, None, every):
-        yield learned_photo(photo.image, photo.index)
+        yield training_photo(photo.image, photo.index)
 
 
 LONGEST_PX = 1280
 """Size of a photo that is learned from."""
 
 
-def learned_photo(
+def training_photo(
     photo: NDArray[np.uint8],
     truth: NDArray[np.uint16],
     longest_px: int = LONGEST_PX,
-) -> MadePicture:
+) -> SyntheticPicture:
     """A photo, shape (h, w, 3), and its panes' numbers, shape (h, w), as a picture of that size to learn from.
 
     Corners of panes that its border cuts are not known.
@@ -83,7 +83,7 @@ def learned_photo(
     corners = np.full((int(index.max(initial=0)), 4, 2), np.nan, np.float32)
     for number in range(1, len(corners) + 1):
         corners[number - 1] = _corners(index == number)
-    return MadePicture(image, index, corners)
+    return SyntheticPicture(image, index, corners)
 
 
 def _corners(mask: NDArray[np.bool_]) -> NDArray[np.float32]:
@@ -125,8 +125,8 @@ def calibrate(glass: PhotoSet, offices: PhotoSet, without: Sequence[PaneNetwork]
     """
     n_made, n_traced = N_CALIBRATED
     first = FIRST_SEED + N_LEARNED_AT_MOST
-    facades = [made_set(name, n_traced, wide_camera(1200, 900), first_seed=first) for name in KINDS]
-    made = (made_picture(PER_FILE * N_LEARNED_AT_MOST + seed, CALIBRATED_PX) for seed in range(n_made))
+    facades = [synthetic_set(name, n_traced, wide_camera(1200, 900), first_seed=first) for name in KINDS]
+    made = (synthetic_picture(PER_FILE * N_LEARNED_AT_MOST + seed, CALIBRATED_PX) for seed in range(n_made))
     pictures = (
         ((photo.image, photo.index) for photo in islice(glass.photos(), 0, None, EVERY_SECOND)),
         ((photo.image, photo.index) for photo in islice(offices.photos(), 0, None, EVERY_SECOND)),
@@ -171,18 +171,18 @@ def main() -> None:
     with Pool(options.pool, options.pictures, options.processes) as pool:
         if not options.gathered.exists():
             write_gathered(_sources(options), options.gathered)
-        bank = Bank(options.device, SOURCES, options.pictures * MADE_PX**2)
+        bank = CropSampler(options.device, SOURCES, options.pictures * MADE_PX**2)
         traced, *photos = read_gathered(options.gathered)
         bank.add(traced, 1)
         for photos_of_set in photos:
             bank.add([photo for i, photo in enumerate(photos_of_set) if i % FOLDS != options.leave_out], 2)
         _tell(f"{len(bank)} traced facades and photos")
         bank.add(pool.arrived(least=FIRST_PICTURES), 0)
-        network = Wanted(options.out, LARGE if options.large else SMALL, options.start)
+        network = NetworkToTrain(options.out, LARGE if options.large else SMALL, options.start)
         train(bank, options.minutes, [network], options.seed, pool.arrived, _tell)
 
 
-def _sources(options: argparse.Namespace) -> list[list[MadePicture]]:
+def _sources(options: argparse.Namespace) -> list[list[SyntheticPicture]]:
     """Traced facades, photos of glass, photos of offices."""
     gathered = [traced_facades(options.traced)]
     if options.glass is not None:

@@ -19,7 +19,7 @@ from planning.base.messages import Message, about, glue, say
 
 if TYPE_CHECKING:
     from missions.flight.outcome import FlightReport
-    from planning.tradeoff.runner import Compared
+    from planning.tradeoff.runner import ComparisonFiles
 
 Result = TypeVar("Result")
 Found = TypeVar("Found")
@@ -120,7 +120,7 @@ def print_json(content: dict[str, Any]) -> None:
 def show_tradeoff(
     name: str,
     is_json: bool,
-    work: Callable[[JobContext], Compared[Found]],
+    work: Callable[[JobContext], ComparisonFiles[Found]],
     summary: Callable[[Found], dict[str, Any]],
     tell: Callable[[Found], object],
 ) -> int:

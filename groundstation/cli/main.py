@@ -24,7 +24,7 @@ from groundstation.cli.options import new_folder
 from groundstation.services.messages import LANGUAGES
 from planning.base.errors import GroundStationError, OperationCancelled, PluginError, shortened
 from planning.base.messages import glue, say
-from planning.base.plugins import PluginGroup, blamed, untold_problems
+from planning.base.plugins import PluginGroup, new_plugin_problems, with_plugin_named
 
 EXIT_DONE, EXIT_FAILED, EXIT_USAGE = 0, 1, 2
 
@@ -155,7 +155,7 @@ def _make_streams_safe() -> None:
 
 
 def _tell_of_plugins() -> None:
-    for problem in untold_problems():
+    for problem in new_plugin_problems():
         print(f"{worded('warning')}: {_in_one_line(GroundStationError(str(problem)))}", file=sys.stderr)
 
 
@@ -204,7 +204,7 @@ def _outcome(arguments: Sequence[str], open_window: OpenWindow, stack: ExitStack
     except Exception as error:
         if debug:
             raise
-        _report(blamed(error))
+        _report(with_plugin_named(error))
     return EXIT_FAILED
 
 

@@ -35,7 +35,7 @@ from groundstation.services.fly.events import Request
 from groundstation.services.fly.options import ConnectionChoice
 from groundstation.services.fly.sortie import TakeOff
 from groundstation.services.model.panel_colours import Computed
-from groundstation.services.photos.synthetic_flight import write_made_flight
+from groundstation.services.photos.synthetic_flight import write_synthetic_flight
 from groundstation.services.project.document import Item, ItemKind
 from groundstation.services.reconstruct.choices import TrainChoice
 from groundstation.services.settings import CONFIG_VARIABLE, Language, Theme
@@ -374,7 +374,7 @@ class _Tour(QObject):
         site, photos = flight / "made.site.json", flight / "photos"
         if not site.exists():
             flight.mkdir()
-            site, photos = write_made_flight(flight)
+            site, photos = write_synthetic_flight(flight)
 
         def page() -> PhotosPage:
             return self._page("photos", PhotosPage)
@@ -432,7 +432,7 @@ class _Tour(QObject):
         if not (photos / "dataset.json").exists():
             # Rendering is loaded by its name only: it is no part of the window.
             request = import_module("groundstation.services.scenes.views").SceneRequest
-            render = import_module("groundstation.services.scenes.photos").photograph_files
+            render = import_module("groundstation.services.scenes.photos").render_photos
             render(request("planar", n_views=N_VIEWS, width_px=WIDTH_PX), photos)
         out = self._scratch / f"planar-{self._window.width()}.model"
 
@@ -475,7 +475,7 @@ class _Tour(QObject):
             page().pane.view.orbited.emit(-0.08, 0.02)
         rest()
         self._take("reconstruct-from-elsewhere")
-        page().pane.view.homeAsked.emit()
+        page().pane.view.homeRequested.emit()
         rest()
         for name in self._in_each_look():
             self._window.show_tab("reconstruct")

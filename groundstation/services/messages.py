@@ -26,7 +26,7 @@ _OPTION = re.compile(
 )
 
 
-def in_window_words(text: str, labels: Mapping[str, str], quoted: str = "“{0}”") -> str:
+def with_window_labels(text: str, labels: Mapping[str, str], quoted: str = "“{0}”") -> str:
     """A message with the label of a field in place of each option and of the placeholder behind it.
 
     Parameters

@@ -21,7 +21,7 @@ from groundstation.vehicle.watch import DISTANCE_TOLERANCE_M
 from missions.mavlink.autopilots import Autopilot
 from planning.base.messages import say
 from planning.geo.frames import Vec3
-from planning.routing.rally import return_way
+from planning.routing.rally import return_route
 
 # The vehicle's own limits, a height and a circle around home, against the sortie's path before take-off.
 #
@@ -141,7 +141,7 @@ NAMES = {
 """Parameters that decide it, by autopilot."""
 
 
-class Deed(Enum):
+class FailsafeAction(Enum):
     """What a vehicle does by itself."""
 
     GO_ON = auto()
@@ -154,16 +154,23 @@ class Deed(Enum):
 
 LINK_ACTIONS = {
     Autopilot.ARDUPILOT: {
-        0: Deed.GO_ON,
-        1: Deed.RETURN,
-        2: Deed.RETURN,
-        3: Deed.RETURN,
-        4: Deed.LAND,
-        5: Deed.LAND,
-        6: Deed.RETURN,
-        7: Deed.HOVER,
+        0: FailsafeAction.GO_ON,
+        1: FailsafeAction.RETURN,
+        2: FailsafeAction.RETURN,
+        3: FailsafeAction.RETURN,
+        4: FailsafeAction.LAND,
+        5: FailsafeAction.LAND,
+        6: FailsafeAction.RETURN,
+        7: FailsafeAction.HOVER,
     },
-    Autopilot.PX4: {0: Deed.GO_ON, 1: Deed.HOVER, 2: Deed.RETURN, 3: Deed.LAND, 5: Deed.FALL, 6: Deed.FALL},
+    Autopilot.PX4: {
+        0: FailsafeAction.GO_ON,
+        1: FailsafeAction.HOVER,
+        2: FailsafeAction.RETURN,
+        3: FailsafeAction.LAND,
+        5: FailsafeAction.FALL,
+        6: FailsafeAction.FALL,
+    },
 }
 """FS_GCS_ENABLE and NAV_DLL_ACT; SmartRTL (3, 4) flies back along its own way, or does what stands here."""
 
@@ -175,54 +182,73 @@ NO_STICKS = 4
 
 REMOTE_CONTROL_ACTIONS = {
     Autopilot.ARDUPILOT: {
-        0: Deed.GO_ON,
-        1: Deed.RETURN,
-        2: Deed.RETURN,
-        3: Deed.LAND,
-        4: Deed.RETURN,
-        5: Deed.RETURN,
-        6: Deed.RETURN,
-        7: Deed.LAND,
+        0: FailsafeAction.GO_ON,
+        1: FailsafeAction.RETURN,
+        2: FailsafeAction.RETURN,
+        3: FailsafeAction.LAND,
+        4: FailsafeAction.RETURN,
+        5: FailsafeAction.RETURN,
+        6: FailsafeAction.RETURN,
+        7: FailsafeAction.LAND,
     },
-    Autopilot.PX4: {0: Deed.GO_ON, 1: Deed.HOVER, 2: Deed.RETURN, 3: Deed.LAND, 5: Deed.FALL, 6: Deed.FALL},
+    Autopilot.PX4: {
+        0: FailsafeAction.GO_ON,
+        1: FailsafeAction.HOVER,
+        2: FailsafeAction.RETURN,
+        3: FailsafeAction.LAND,
+        5: FailsafeAction.FALL,
+        6: FailsafeAction.FALL,
+    },
 }
 """FS_THR_ENABLE and NAV_RCL_ACT."""
 
 BATTERY_ACTIONS_ARDUPILOT = {
-    0: Deed.GO_ON,
-    1: Deed.LAND,
-    2: Deed.RETURN,
-    3: Deed.RETURN,
-    4: Deed.RETURN,
-    5: Deed.FALL,
-    6: Deed.RETURN,
-    7: Deed.LAND,
+    0: FailsafeAction.GO_ON,
+    1: FailsafeAction.LAND,
+    2: FailsafeAction.RETURN,
+    3: FailsafeAction.RETURN,
+    4: FailsafeAction.RETURN,
+    5: FailsafeAction.FALL,
+    6: FailsafeAction.RETURN,
+    7: FailsafeAction.LAND,
 }
 """BATT_FS_LOW_ACT and BATT_FS_CRT_ACT; they act where a voltage or a charge is set for it."""
 
 BATTERY_STAGES_PX4 = {
-    1: (("BAT_CRIT_THR", Deed.RETURN, False), ("BAT_EMERGEN_THR", Deed.LAND, True)),
-    2: (("BAT_CRIT_THR", Deed.LAND, True),),
-    3: (("BAT_CRIT_THR", Deed.RETURN, False), ("BAT_EMERGEN_THR", Deed.LAND, True)),
+    1: (("BAT_CRIT_THR", FailsafeAction.RETURN, False), ("BAT_EMERGEN_THR", FailsafeAction.LAND, True)),
+    2: (("BAT_CRIT_THR", FailsafeAction.LAND, True),),
+    3: (("BAT_CRIT_THR", FailsafeAction.RETURN, False), ("BAT_EMERGEN_THR", FailsafeAction.LAND, True)),
 }
 """By COM_LOW_BAT_ACT, 0 only warns: the parameter with the charge, what is done below it, and whether more follows."""
 
 POSITION_ACTIONS = {
-    Autopilot.ARDUPILOT: {0: Deed.DRIFT, 1: Deed.LAND, 2: Deed.DRIFT, 3: Deed.LAND},
-    Autopilot.PX4: {0: Deed.DRIFT, 1: Deed.LAND},
+    Autopilot.ARDUPILOT: {
+        0: FailsafeAction.DRIFT,
+        1: FailsafeAction.LAND,
+        2: FailsafeAction.DRIFT,
+        3: FailsafeAction.LAND,
+    },
+    Autopilot.PX4: {0: FailsafeAction.DRIFT, 1: FailsafeAction.LAND},
 }
 """FS_EKF_ACTION (0 only reports, 2 keeps the height) and COM_POSCTL_NAVL."""
 
 FENCE_ACTIONS = {
     Autopilot.ARDUPILOT: {
-        0: Deed.GO_ON,
-        1: Deed.RETURN,
-        2: Deed.LAND,
-        3: Deed.RETURN,
-        4: Deed.HOVER,
-        5: Deed.LAND,
+        0: FailsafeAction.GO_ON,
+        1: FailsafeAction.RETURN,
+        2: FailsafeAction.LAND,
+        3: FailsafeAction.RETURN,
+        4: FailsafeAction.HOVER,
+        5: FailsafeAction.LAND,
     },
-    Autopilot.PX4: {0: Deed.GO_ON, 1: Deed.GO_ON, 2: Deed.HOVER, 3: Deed.RETURN, 4: Deed.FALL, 5: Deed.LAND},
+    Autopilot.PX4: {
+        0: FailsafeAction.GO_ON,
+        1: FailsafeAction.GO_ON,
+        2: FailsafeAction.HOVER,
+        3: FailsafeAction.RETURN,
+        4: FailsafeAction.FALL,
+        5: FailsafeAction.LAND,
+    },
 }
 """FENCE_ACTION and GF_ACTION."""
 
@@ -278,23 +304,23 @@ def failsafe_checks(
     )
 
 
-def _stated(code: str, deed: Deed | None, when: str, set_so: str) -> PreflightCheck:
+def _stated(code: str, action: FailsafeAction | None, when: str, set_so: str) -> PreflightCheck:
     """One line: what happens then, as the parameters have it."""
-    match deed:
-        case Deed.GO_ON:
+    match action:
+        case FailsafeAction.GO_ON:
             verdict, text = Verdict.OK, say("{}, and it flies the mission on ({})", when, set_so)
-        case Deed.RETURN:
+        case FailsafeAction.RETURN:
             verdict, text = Verdict.OK, say("{}, and it breaks the mission off and returns ({})", when, set_so)
-        case Deed.LAND:
+        case FailsafeAction.LAND:
             verdict, text = Verdict.WARN, say("{}, and it lands, whatever is below it ({})", when, set_so)
-        case Deed.HOVER:
+        case FailsafeAction.HOVER:
             verdict, text = Verdict.WARN, say("{}, and it hovers until its battery is low ({})", when, set_so)
-        case Deed.DRIFT:
+        case FailsafeAction.DRIFT:
             text = say(
                 "{}, and it only keeps its height and drifts with the wind: take over at once ({})", when, set_so
             )
             verdict = Verdict.WARN
-        case Deed.FALL:
+        case FailsafeAction.FALL:
             verdict, text = (
                 Verdict.BAD,
                 say("{}, and it stops its motors and falls ({}): set it otherwise", when, set_so),
@@ -313,13 +339,13 @@ def _link(autopilot: Autopilot, values: Mapping[str, float]) -> Iterator[Preflig
         yield PreflightCheck("link-loss", Verdict.WARN, text)
         return
     options, bit = ("FS_OPTIONS", CONTINUE_MISSION) if is_ardupilot else ("COM_DLL_EXCEPT", EXCEPT_MISSION)
-    deed = LINK_ACTIONS[autopilot].get(int(number))
-    if deed is Deed.GO_ON or int(values.get(options, 0.0)) & bit:
+    action = LINK_ACTIONS[autopilot].get(int(number))
+    if action is FailsafeAction.GO_ON or int(values.get(options, 0.0)) & bit:
         yield PreflightCheck(
             "link-loss", Verdict.OK, say("without the link it flies the mission on, and lands at home")
         )
     else:
-        yield _stated("link-loss", deed, say("{:g} s without the link", values.get(wait, 0.0)), f"{name} {number:g}")
+        yield _stated("link-loss", action, say("{:g} s without the link", values.get(wait, 0.0)), f"{name} {number:g}")
 
 
 def _remote_control(autopilot: Autopilot, values: Mapping[str, float]) -> Iterator[PreflightCheck]:
@@ -336,9 +362,9 @@ def _remote_control(autopilot: Autopilot, values: Mapping[str, float]) -> Iterat
         return
     options = "FS_OPTIONS" if is_ardupilot else "COM_RCL_EXCEPT"
     goes_on = bool(int(values.get(options, 0.0)) & EXCEPT_MISSION)
-    deed = Deed.GO_ON if goes_on else REMOTE_CONTROL_ACTIONS[autopilot].get(int(number))
+    action = FailsafeAction.GO_ON if goes_on else REMOTE_CONTROL_ACTIONS[autopilot].get(int(number))
     set_so = f"{options} {values[options]:g}" if goes_on else f"{name} {number:g}"
-    yield _stated("rc-loss", deed, say("{:g} s without the remote control", values.get(wait, 1.0)), set_so)
+    yield _stated("rc-loss", action, say("{:g} s without the remote control", values.get(wait, 1.0)), set_so)
 
 
 def _battery(autopilot: Autopilot, values: Mapping[str, float], orders: SortieOrders) -> Iterator[PreflightCheck]:
@@ -351,7 +377,7 @@ def _battery(autopilot: Autopilot, values: Mapping[str, float], orders: SortieOr
     reserve = orders.surroundings[autopilot].rules.battery_reserve
     left = 1.0 - (orders.battery_needed_by(autopilot) - reserve)
     for stage in stages:
-        if stage.level is not None and stage.level > left and stage.deed is not Deed.GO_ON:
+        if stage.level is not None and stage.level > left and stage.action is not FailsafeAction.GO_ON:
             text = say(
                 "the vehicle breaks the mission off at a charge of {:.0%}, and the sortie ends with {:.0%}: set "
                 "{} so that it lasts",
@@ -363,15 +389,15 @@ def _battery(autopilot: Autopilot, values: Mapping[str, float], orders: SortieOr
         else:
             when = say("battery below {}", stage.below)
             # To land where it is, with the last charge, is what is left.
-            check = _stated("battery-low", stage.deed, when, stage.set_so)
-            yield replace(check, verdict=Verdict.OK) if stage.deed is Deed.LAND and stage.is_last else check
+            check = _stated("battery-low", stage.action, when, stage.set_so)
+            yield replace(check, verdict=Verdict.OK) if stage.action is FailsafeAction.LAND and stage.is_last else check
 
 
 @dataclass(frozen=True, slots=True)
 class _Stage:
     """A level of charge at which the vehicle does something; `level` is its part of a full battery, where it is one."""
 
-    deed: Deed | None
+    action: FailsafeAction | None
     below: str
     name: str
     set_so: str
@@ -395,10 +421,12 @@ def _battery_stages(autopilot: Autopilot, values: Mapping[str, float]) -> Iterat
         below = [f"{voltage_v:g} V"] if voltage_v > 0.0 else []
         level = charge_mah / capacity_mah if charge_mah > 0.0 and capacity_mah > 0.0 else None
         below += [say("{:g} mAh", charge_mah)] if charge_mah > 0.0 else []
-        deed = BATTERY_ACTIONS_ARDUPILOT.get(int(number))
-        if below and deed is not Deed.GO_ON:
+        action = BATTERY_ACTIONS_ARDUPILOT.get(int(number))
+        if below and action is not FailsafeAction.GO_ON:
             name = f"BATT_{kind}_MAH"
-            yield _Stage(deed, " / ".join(below), name, say("BATT_FS_{}_ACT {:g}", kind, number), level, kind == "CRT")
+            yield _Stage(
+                action, " / ".join(below), name, say("BATT_FS_{}_ACT {:g}", kind, number), level, kind == "CRT"
+            )
 
 
 def _position(autopilot: Autopilot, values: Mapping[str, float]) -> Iterator[PreflightCheck]:
@@ -410,10 +438,10 @@ def _position(autopilot: Autopilot, values: Mapping[str, float]) -> Iterator[Pre
         yield PreflightCheck("position-loss", Verdict.WARN, text)
         return
     is_off = autopilot is Autopilot.ARDUPILOT and values.get("FS_EKF_THRESH", 1.0) <= 0.0
-    deed = Deed.DRIFT if is_off else POSITION_ACTIONS[autopilot].get(int(number))
+    action = FailsafeAction.DRIFT if is_off else POSITION_ACTIONS[autopilot].get(int(number))
     set_so = say("FS_EKF_THRESH {:g}", values["FS_EKF_THRESH"]) if is_off else f"{name} {number:g}"
-    check = _stated("position-loss", deed, say("position lost"), set_so)
-    yield replace(check, verdict=Verdict.OK) if deed is Deed.LAND else check
+    check = _stated("position-loss", action, say("position lost"), set_so)
+    yield replace(check, verdict=Verdict.OK) if action is FailsafeAction.LAND else check
 
 
 def return_of(autopilot: Autopilot, values: Mapping[str, float], orders: SortieOrders) -> Return | None:
@@ -449,7 +477,7 @@ def _return(autopilot: Autopilot, values: Mapping[str, float], orders: SortieOrd
     if len(around.path_enu_m) == 0:
         return
     limit_m = around.space.min_distance_m
-    way = return_way(
+    way = return_route(
         around.space,
         around.path_enu_m,
         found.destinations_enu_m,
@@ -494,7 +522,7 @@ def _gap_of_best_m(orders: SortieOrders, around: Surroundings, found: Return) ->
     """Smallest distance of the ways of return at the height that the plan advises."""
     best_z_m = orders.home_enu_m[2] + orders.return_height_m
     upper_m = 2.0 * around.space.min_distance_m + 10.0
-    way = return_way(around.space, around.path_enu_m, found.destinations_enu_m, best_z_m, found.cone_slope, upper_m)
+    way = return_route(around.space, around.path_enu_m, found.destinations_enu_m, best_z_m, found.cone_slope, upper_m)
     return way.gap_m
 
 
@@ -503,20 +531,20 @@ def _fence(autopilot: Autopilot, values: Mapping[str, float], orders: SortieOrde
         return
     name = "FENCE_ACTION" if autopilot is Autopilot.ARDUPILOT else "GF_ACTION"
     number = values.get(name)
-    deed = None if number is None else FENCE_ACTIONS[autopilot].get(int(number))
+    action = None if number is None else FENCE_ACTIONS[autopilot].get(int(number))
     is_off = autopilot is Autopilot.ARDUPILOT and not values.get("FENCE_ENABLE", 0.0)
     switch, value = ("FENCE_ENABLE", 0.0) if is_off else (name, number or 0.0)
     set_so = f"{switch} {value:g}"
-    if is_off or deed is Deed.GO_ON:
+    if is_off or action is FailsafeAction.GO_ON:
         verdict = Verdict.WARN
         text = say("the geofence is on board, but nothing keeps the aircraft from leaving it ({})", set_so)
-    elif deed is Deed.RETURN:
+    elif action is FailsafeAction.RETURN:
         verdict, text = Verdict.OK, say("at the geofence it returns ({})", set_so)
-    elif deed is Deed.LAND:
+    elif action is FailsafeAction.LAND:
         verdict, text = Verdict.OK, say("at the geofence it lands ({})", set_so)
-    elif deed is Deed.HOVER:
+    elif action is FailsafeAction.HOVER:
         verdict, text = Verdict.OK, say("at the geofence it hovers ({})", set_so)
-    elif deed is Deed.FALL:
+    elif action is FailsafeAction.FALL:
         verdict, text = Verdict.BAD, say("at the geofence it stops its motors and falls ({}): set it otherwise", set_so)
     else:
         verdict, text = Verdict.WARN, say("what the vehicle does at the geofence is not known: see {}", name)

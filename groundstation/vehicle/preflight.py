@@ -64,7 +64,7 @@ class OnBoard:
 
     Parameters
     ----------
-    doubt
+    reason_to_reread
         Why what was equal is not known any more (`board.py`); empty where nothing speaks against it.
     changes
         Parameters that should be set for the plan; None while they were not read.
@@ -75,7 +75,7 @@ class OnBoard:
     mission: bool | None = None
     fence: bool | None = None
     rally: bool | None = None
-    doubt: str = ""
+    reason_to_reread: str = ""
     changes: tuple[ParameterChange, ...] | None = None
     failsafes: tuple[PreflightCheck, ...] = ()
 
@@ -122,16 +122,20 @@ def preflight_checks(
         *_sensors(state),
         _wind(state, orders),
         *_low_flight(orders),
-        _board("mission", "mission", on_board.mission, on_board.doubt),
-        *([_board("geofence", "geofence", on_board.fence, on_board.doubt)] if orders.fences else []),
-        *([_board("rally", say("list of rally points"), on_board.rally, on_board.doubt)] if orders.rally else []),
+        _board("mission", "mission", on_board.mission, on_board.reason_to_reread),
+        *([_board("geofence", "geofence", on_board.fence, on_board.reason_to_reread)] if orders.fences else []),
+        *(
+            [_board("rally", say("list of rally points"), on_board.rally, on_board.reason_to_reread)]
+            if orders.rally
+            else []
+        ),
         *_parameters(on_board.changes),
         *on_board.failsafes,
     )
     return overruled(checks, overrules)
 
 
-class Mend(Enum):
+class Remedy(Enum):
     """What the pilot can do about a check from here."""
 
     SET_PARAMETERS = "set-parameters"
@@ -156,16 +160,18 @@ def overruled(checks: Iterable[PreflightCheck], codes: frozenset[str]) -> tuple[
     )
 
 
-def mends(check: PreflightCheck, on_board: OnBoard) -> tuple[Mend, ...]:
+def remedies(check: PreflightCheck, on_board: OnBoard) -> tuple[Remedy, ...]:
     """What can be done about a check, the best first; nothing about one that is well, or that time mends."""
     if check.verdict not in (Verdict.WARN, Verdict.BAD):
         return ()
-    ways: list[Mend] = []
+    ways: list[Remedy] = []
     if check.code in ("parameters", "return") and on_board.changes:
-        ways.append(Mend.SET_PARAMETERS)
+        ways.append(Remedy.SET_PARAMETERS)
     if check.verdict is Verdict.BAD:
-        ways += {"home": [Mend.PLAN_FROM_HERE], "home-height": [Mend.RAISE, Mend.PLAN_FROM_HERE]}.get(check.code, [])
-        ways += [Mend.OVERRULE] if check.code in OVERRULABLE else []
+        ways += {"home": [Remedy.PLAN_FROM_HERE], "home-height": [Remedy.RAISE, Remedy.PLAN_FROM_HERE]}.get(
+            check.code, []
+        )
+        ways += [Remedy.OVERRULE] if check.code in OVERRULABLE else []
     return tuple(ways)
 
 
@@ -405,9 +411,11 @@ def _parameters(changes: tuple[ParameterChange, ...] | None) -> Iterator[Preflig
         yield PreflightCheck("parameters", Verdict.WARN, text, float(len(changes)), 0.0)
 
 
-def _board(code: str, what: str, is_equal: bool | None, doubt: str) -> PreflightCheck:
-    if is_equal is None and doubt:
-        return PreflightCheck(code, Verdict.WAIT, say("the {} was uploaded, but {}: it is read again", what, doubt))
+def _board(code: str, what: str, is_equal: bool | None, reason_to_reread: str) -> PreflightCheck:
+    if is_equal is None and reason_to_reread:
+        return PreflightCheck(
+            code, Verdict.WAIT, say("the {} was uploaded, but {}: it is read again", what, reason_to_reread)
+        )
     if is_equal is None:
         return PreflightCheck(code, Verdict.WAIT, say("the {} was not uploaded yet", what))
     if not is_equal:

@@ -88,7 +88,7 @@ class LocalFrame:
         return (float(x), float(y), float(z))
 
 
-def folded(state: VehicleState, received: messages.Received, frame: LocalFrame) -> VehicleState:
+def updated_state(state: VehicleState, received: messages.Received, frame: LocalFrame) -> VehicleState:
     """State after one more message; the same object where it says nothing new.
 
     Messages of other systems, and all that come before the first heartbeat of an autopilot, are passed over. Positions

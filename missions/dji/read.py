@@ -20,7 +20,7 @@ from missions.mission.model import (
     ReadWaypoint,
     Stay,
     are_too_many,
-    as_remark,
+    as_warning,
     bearing_deg,
     courses_deg,
     leg_lengths_m,
@@ -393,7 +393,7 @@ def read_dji(path: Path, *, strict: bool = False) -> tuple[ReadMission, ...]:
     if unknown or (strict and errors):
         others = [finding for finding in errors if finding not in unknown]
         raise MissionError.say("aircraft would refuse this mission: {}", reasons([*unknown, *others]), place=path)
-    remarks = tuple(map(as_remark, findings))
+    remarks = tuple(map(as_warning, findings))
     return tuple(_read_wayline(path, parts, folder, remarks) for folder in parts.waylines.folders)
 
 

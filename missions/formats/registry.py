@@ -21,7 +21,15 @@ from planning.base.files import open_input_file
 from planning.base.findings import Finding, Severity
 from planning.base.json_file import write_together
 from planning.base.messages import about, glue, say
-from planning.base.plugins import Plugin, PluginGroup, doubted, expect_type, guarded, load_plugins, told_problem
+from planning.base.plugins import (
+    Plugin,
+    PluginGroup,
+    expect_type,
+    guarded,
+    guarded_question,
+    load_plugins,
+    plugin_problem,
+)
 from planning.geo.frames import Origin, Vec3
 from planning.plan import Plan
 
@@ -106,7 +114,7 @@ def _of_plugin(plugin: Plugin, found: object) -> MissionFormat:
         own,
         title=own.title or plugin.name,
         encode=guarded(plugin, own.encode, EncodedFiles),
-        begins=None if own.begins is None else doubted(plugin, own.begins),
+        begins=None if own.begins is None else guarded_question(plugin, own.begins),
         read=None if own.read is None else guarded(plugin, own.read, tuple),
     )
 
@@ -122,7 +130,7 @@ def mission_format(name: str) -> MissionFormat:
     if name in FORMATS:
         return FORMATS[name]
     if name not in mission_formats():
-        problem = told_problem(PluginGroup.MISSION_FORMATS, name)
+        problem = plugin_problem(PluginGroup.MISSION_FORMATS, name)
         known = ", ".join(mission_formats())
         raise InputError(
             say("there is no mission format '{}'; known are: {}", name, known) if problem is None else str(problem)

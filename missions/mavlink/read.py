@@ -21,7 +21,7 @@ from missions.mission.model import (
     ReadWaypoint,
     Stay,
     are_too_many,
-    as_remark,
+    as_warning,
     bearing_deg,
     courses_deg,
     distance_m,
@@ -432,7 +432,7 @@ def read_mavlink(path: Path, file: MavlinkFile, file_format: str, *, strict: boo
         finish=flight.finish,
         climb_above_takeoff_m=flight.climb_m,
         speed_m_s=file.cruise_speed_m_s or flight.speed_m_s,
-        findings=(*file.findings, *map(as_remark, checks), *flight.findings, *_on_rally(file)),
+        findings=(*file.findings, *map(as_warning, checks), *flight.findings, *_on_rally(file)),
     )
 
 

@@ -353,7 +353,7 @@ class ReadMission:
         return sum(len(waypoint.photos) for waypoint in self.waypoints)
 
 
-def as_remark(finding: Finding) -> Finding:
+def as_warning(finding: Finding) -> Finding:
     """A check's error, which grounds a file but not the evaluation of what it would do, as a warning."""
     if finding.severity is not Severity.ERROR:
         return finding

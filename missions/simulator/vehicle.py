@@ -37,12 +37,12 @@ from missions.simulator.autopilot.guidance import DEG, Guidance, Place
 from missions.simulator.autopilot.instruments import Instruments, Telemetry
 from missions.simulator.autopilot.manoeuvres import CM, Manoeuvres, Returning
 from missions.simulator.autopilot.mission_store import MissionStores, TransferMessage
-from missions.simulator.autopilot.modes import FlightDeck, FlightModes
+from missions.simulator.autopilot.modes import FlightModes, ModeContext
 from missions.simulator.autopilot.parameters import ParameterTable
 from missions.simulator.autopilot.payload import Actions, CameraControl, GimbalControl
 from missions.simulator.autopilot.profiles import vehicle_profile
 from missions.simulator.autopilot.px4_scheduler import Px4Scheduler
-from missions.simulator.autopilot.scheduler import Cockpit, MissionState, Scheduler
+from missions.simulator.autopilot.scheduler import MissionState, Scheduler, SchedulerContext
 from planning.geo.frames import Origin, Vec3
 
 CONTROL_STEP_S = 0.02
@@ -111,7 +111,7 @@ class SimulatedVehicle:
         self._start_s = profile.estimator_ready_s if is_ready else 0.0
         self.parameters = ParameterTable(autopilot, parameters)
         self._parameters_revision = self.parameters.revision
-        self.place = Place(origin, airframe.believed.position_enu_m if home_enu_m is None else home_enu_m)
+        self.place = Place(origin, airframe.estimate.position_enu_m if home_enu_m is None else home_enu_m)
         self._guidance = Guidance(airframe)
         self._guidance.now_s = self._start_s
         self._take_speeds()
@@ -121,14 +121,14 @@ class SimulatedVehicle:
         self.stores = MissionStores(autopilot, self.place.home_item, self._may_clear, self._say)
         returning = Returning(autopilot, self.parameters, self.place, self.stores.rally, self._is_forbidden)
         manoeuvres = Manoeuvres(autopilot, self.parameters, self.place, self._guidance, returning)
-        cockpit = Cockpit(
+        context = SchedulerContext(
             self.stores.mission, self._guidance, actions, manoeuvres, self.parameters, self.place,
             self._note_reached, self._say, self._is_forbidden,
         )  # fmt: skip
         self.scheduler: Scheduler = (
-            ArduPilotScheduler(cockpit, profile) if autopilot is Autopilot.ARDUPILOT else Px4Scheduler(cockpit, profile)
+            ArduPilotScheduler(context, profile) if autopilot is Autopilot.ARDUPILOT else Px4Scheduler(context, profile)
         )
-        deck = FlightDeck(
+        deck = ModeContext(
             autopilot,
             profile,
             self._guidance,

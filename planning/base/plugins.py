@@ -7,7 +7,8 @@ on the command line, and what it stands for is documented by the registry of its
     flight-table = "my_package:FLIGHT_TABLE"
 
 Nothing is looked for before a registry is asked for something that it does not have itself, and nothing is imported
-before a list of the registry is shown. A plug-in that cannot be used is left out, and said by name: `untold_problems`.
+before a list of the registry is shown. A plug-in that cannot be used is left out, and said by name:
+`new_plugin_problems`.
 """
 
 from __future__ import annotations
@@ -67,7 +68,7 @@ class PluginProblem:
 
 
 _PROBLEMS: list[PluginProblem] = []
-_TOLD: list[PluginProblem] = []
+_REPORTED: list[PluginProblem] = []
 """Of this process, as its plug-ins are: each is imported once."""
 
 
@@ -163,7 +164,7 @@ def guarded(plugin: Plugin, call: Callable[..., R], returns: type[R]) -> Callabl
     return guarded_call
 
 
-def doubted(plugin: Plugin, call: Callable[..., bool]) -> Callable[..., bool]:
+def guarded_question(plugin: Plugin, call: Callable[..., bool]) -> Callable[..., bool]:
     """A question that every plug-in is asked: one that fails at it says no, and is noted as a problem."""
 
     @functools.wraps(call)
@@ -177,7 +178,7 @@ def doubted(plugin: Plugin, call: Callable[..., bool]) -> Callable[..., bool]:
     return doubted_call
 
 
-def blamed(error: BaseException) -> BaseException:
+def with_plugin_named(error: BaseException) -> BaseException:
     """The error to tell: one that nobody expected, and that went through the code of a plug-in, names the plug-in."""
     if isinstance(error, (GroundStationError, OSError)) or not isinstance(error, Exception):
         return error
@@ -203,16 +204,16 @@ def plugin_problems() -> tuple[PluginProblem, ...]:
     return tuple(_PROBLEMS)
 
 
-def told_problem(group: PluginGroup, name: str) -> PluginProblem | None:
+def plugin_problem(group: PluginGroup, name: str) -> PluginProblem | None:
     """Why the plug-in of that name was left out, for a message; None where there is no such plug-in."""
     found = next((each for each in _PROBLEMS if (each.plugin.group, each.plugin.name) == (group, name)), None)
-    if found is not None and found not in _TOLD:
-        _TOLD.append(found)
+    if found is not None and found not in _REPORTED:
+        _REPORTED.append(found)
     return found
 
 
-def untold_problems() -> tuple[PluginProblem, ...]:
+def new_plugin_problems() -> tuple[PluginProblem, ...]:
     """Those of `plugin_problems` that nobody has asked for before: each is told to the user once."""
-    untold = tuple(problem for problem in _PROBLEMS if problem not in _TOLD)
-    _TOLD.extend(untold)
+    untold = tuple(problem for problem in _PROBLEMS if problem not in _REPORTED)
+    _REPORTED.extend(untold)
     return untold

@@ -46,14 +46,14 @@ def check_ends(path: Path) -> None:
         raise InputError.say("the file is cut off (END-ISO-10303-21 is missing); copy or export it again", place=path)
 
 
-class Mended(NamedTuple):
+class RepairedFile(NamedTuple):
     """Content of a file without its broken instances, and their numbers."""
 
     content: bytes
     broken: tuple[str, ...]
 
 
-def mended(path: Path) -> Mended | None:
+def repaired_file(path: Path) -> RepairedFile | None:
     """Content of a file whose instances are not all whole; None where they are.
 
     IfcOpenShell takes what it can of a broken line and, where a text does not end, of all lines up to the next quote,
@@ -82,7 +82,7 @@ def mended(path: Path) -> Mended | None:
         number = _NUMBER.match(content[start + first : start + last])
         numbers.append(f"#{number[1].decode()}" if number else "")
         place = start + last
-    return Mended(b"".join([*kept, content[place:]]), tuple(numbers))
+    return RepairedFile(b"".join([*kept, content[place:]]), tuple(numbers))
 
 
 def _broken(data: bytes, text: re.Pattern[bytes]) -> list[tuple[int, int]]:

@@ -27,7 +27,7 @@ from planning.motion.timing import (
     stopping_times_s,
 )
 from planning.plan import Plan, Sortie, Viewpoint
-from planning.routing.rally import ReturnWay, ways_home
+from planning.routing.rally import ReturnRoute, return_routes
 from planning.site.free_space import FreeSpace, unchecked_space
 from planning.site.records import SiteModel
 from planning.viewpoints.prepare import coverage_model, decide_occlusion
@@ -98,7 +98,7 @@ class Measures:
         Views of each section, shape (m, n_sections).
     solid_gaps, no_fly_gaps
         To panels, building and obstacles; to no-fly volumes.
-    ways_home
+    return_routes
         Of an aircraft that returns from anywhere on a leg, at `planning.routing.rally.return_height`.
     flights
         By path and photos; None where the path is none or misses a viewpoint. Empty in wind that allows no flight.
@@ -109,7 +109,7 @@ class Measures:
     counts: NDArray[np.int64]
     solid_gaps: Gaps
     no_fly_gaps: Gaps
-    ways_home: Mapping[Leg, ReturnWay]
+    return_routes: Mapping[Leg, ReturnRoute]
     flights: Mapping[FlightKey, TimedFlight | None]
 
 
@@ -152,10 +152,10 @@ def measure(plan: Plan, space: FreeSpace, model: CoverageModel, known: Measures 
         counts=section_counts(model, [seen[pose_of(viewpoint)] for viewpoint in plan.viewpoints]),
         solid_gaps=_gaps(space.solids, plan, known.solid_gaps),
         no_fly_gaps=_gaps(space.no_fly, plan, known.no_fly_gaps) if len(space.no_fly.part) else _NO_GAPS,
-        ways_home=_completed(
+        return_routes=_completed(
             itertools.chain.from_iterable(legs_of(sortie) for sortie in plan.sorties),
-            known.ways_home,
-            lambda legs: ways_home(space, [np.array(leg) for leg in legs]),
+            known.return_routes,
+            lambda legs: return_routes(space, [np.array(leg) for leg in legs]),
         ),
         flights=_flights(plan, known.flights),
     )

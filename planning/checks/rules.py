@@ -492,7 +492,7 @@ def return_home(case: Case) -> Iterator[Finding]:
     the path itself does wrong is not said of the return again.
     """
     gaps = case.measures
-    ways = gaps.ways_home.values()
+    ways = gaps.return_routes.values()
     if not ways:
         return
     found, gap_m = return_height(case.space), min(way.gap_m for way in ways)

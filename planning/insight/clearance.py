@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from planning.base.jit import kernel
 from planning.geo.bvh import point_triangle_d2
 from planning.geo.solids import Solids
-from planning.insight.things import Things, nearest_things, nearest_triangles
+from planning.insight.obstructions import Obstructions, nearest_obstructions, nearest_triangles
 from planning.plan import Sortie
 from planning.site.free_space import FreeSpace
 
@@ -34,7 +34,7 @@ class Clearance:
     clearance_m
         Distance to the nearest skin, negative inside a solid, shape (q,).
     thing
-        Number of the nearest thing in `Things.all`, shape (q,).
+        Number of the nearest thing in `Obstructions.all`, shape (q,).
     leg_minimum_m, leg_thing
         Least clearance of each leg and the nearest thing, shape (k - 1,). To a micrometre where the leg stays outside
         of solids; inside, the depth is that of the samples.
@@ -76,7 +76,9 @@ class RouteClearance:
     no_fly: Clearance | None
 
 
-def route_clearance(sortie: Sortie, space: FreeSpace, things: Things, spacing_m: float = SPACING_M) -> RouteClearance:
+def route_clearance(
+    sortie: Sortie, space: FreeSpace, things: Obstructions, spacing_m: float = SPACING_M
+) -> RouteClearance:
     """Clearances along a sortie's path, sampled every `spacing_m` or closer; empty where the sortie has no path."""
     if not spacing_m > 0.0:
         raise ValueError(f"spacing_m: expected more than 0, got {spacing_m}")
@@ -123,7 +125,7 @@ def _clearance(
     clearance_m = solids.clearance_m(points)
     leg_minimum_m = np.full(len(leg_thing), np.inf)
     np.minimum.at(leg_minimum_m, leg, clearance_m)
-    return Clearance(clearance_m, nearest_things(solids, owner, points), leg_minimum_m, leg_thing)
+    return Clearance(clearance_m, nearest_obstructions(solids, owner, points), leg_minimum_m, leg_thing)
 
 
 @kernel

@@ -23,8 +23,8 @@ from planning.checks import check_plan
 from planning.coverage.model import exact_sections
 from planning.coverage.reach_kernel import UNREACHABLE
 from planning.insight.clearance import route_clearance
+from planning.insight.obstructions import obstructions_of
 from planning.insight.sections import PanelSampling, panel_sampling, section_counts
-from planning.insight.things import things_of
 from planning.parameters import Constraints
 from planning.plan import Plan, viewpoint_arrays
 from planning.site.records import SiteModel
@@ -201,7 +201,7 @@ def _quality_rows(
     yield Row("gsd-worst", say("coarsest pixel"), "m/px", Better.LOWER, worst)
     yield Row("gsd-worst-panel", say("finest pixel on the worst panel"), "m/px", Better.LOWER, coarsest)
     space = prepared.problem.space
-    things = things_of(site_model, space)
+    things = obstructions_of(site_model, space)
     smallest: list[float | None] = []
     for plan in plans:
         on_way = [route_clearance(sortie, space, things).solids.clearance_m for sortie in plan.sorties]

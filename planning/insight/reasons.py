@@ -26,7 +26,13 @@ from planning.coverage.reachability import reach_bodies, reach_limits
 from planning.geo.bvh import nearest_d2, segment_is_free
 from planning.geo.frames import Vec3
 from planning.geo.solids import _is_inside
-from planning.insight.things import Thing, Things, first_things_hit, nearest_things, things_of
+from planning.insight.obstructions import (
+    Obstruction,
+    Obstructions,
+    first_obstructions_hit,
+    nearest_obstructions,
+    obstructions_of,
+)
 from planning.site.free_space import FreeSpace
 from planning.site.records import SiteModel
 from planning.viewpoints.prepare import Prepared
@@ -365,7 +371,7 @@ class BrokenRule:
 
     rule: Rule
     amount: float
-    thing: Thing | None = None
+    thing: Obstruction | None = None
     inside: bool = False
 
     def __str__(self) -> str:
@@ -427,7 +433,7 @@ class SectionReasons:
     amounts: Array
     things: NDArray[np.int64]
     places_enu_m: Array
-    all_things: tuple[Thing, ...]
+    all_things: tuple[Obstruction, ...]
     min_distance_m: float
     no_fly_distance_m: float
 
@@ -483,7 +489,7 @@ def section_reasons(
     """
     problem = prepared.problem
     model, space = problem.model, problem.space
-    things = things_of(site_model, space)
+    things = obstructions_of(site_model, space)
     shape = problem.reachability.verdicts.shape
     verdicts = np.full(shape, UNDECIDED, np.int8)
     asked = slice(None) if panels is None else panels
@@ -546,7 +552,7 @@ def _explain(
 def _name_things(
     model: CoverageModel,
     space: FreeSpace,
-    things: Things,
+    things: Obstructions,
     panel: NDArray[np.int64],
     masks: NDArray[np.int64],
     places: Array,
@@ -554,8 +560,8 @@ def _name_things(
     """Number of the thing that each row's rules are about, shape (q, len(RULES)); -1 for none."""
     named = np.full((len(masks), len(RULES)), -1, np.int64)
     near, zone, hidden = (masks >> rule & 1 == 1 for rule in (DISTANCE, NO_FLY, HIDDEN))
-    named[near, DISTANCE] = nearest_things(space.solids, things.solid_owner, places[near])
-    named[zone, NO_FLY] = nearest_things(space.no_fly, things.no_fly_owner, places[zone])
+    named[near, DISTANCE] = nearest_obstructions(space.solids, things.solid_owner, places[near])
+    named[zone, NO_FLY] = nearest_obstructions(space.no_fly, things.no_fly_owner, places[zone])
     targets = model.targets_enu_m[panel[hidden]]
-    named[hidden, HIDDEN] = first_things_hit(space.solids, things.solid_owner, targets, places[hidden])
+    named[hidden, HIDDEN] = first_obstructions_hit(space.solids, things.solid_owner, targets, places[hidden])
     return named

@@ -28,7 +28,7 @@ from planning.routing.orienteering import solve_orienteering
 from planning.routing.tour import nearest_neighbour
 from planning.viewpoints.budget import CoverGain, shortlist
 from planning.viewpoints.candidates import Pool, join_pools, keep
-from planning.viewpoints.greedy import choose_greedily, needed
+from planning.viewpoints.greedy import choose_greedily, necessary_views
 from planning.viewpoints.problem import NONE_LOCKED, ViewProblem, concatenate, take
 from planning.viewpoints.spacing import merge_close_views
 
@@ -60,7 +60,7 @@ POINTS_PER_CHUNK = 4_000_000
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Wanted:
+class ClosingTask:
     """Sections that are to be seen, and how they may be flown to.
 
     Parameters
@@ -79,9 +79,9 @@ class Wanted:
 
     def mask(self) -> NDArray[np.bool_]:
         """Whether each element is wanted, shape (n_elements,)."""
-        wanted = np.zeros(self.problem.model.n_elements, np.bool_)
-        wanted[self.elements] = True
-        return wanted
+        task = np.zeros(self.problem.model.n_elements, np.bool_)
+        task[self.elements] = True
+        return task
 
     def pool(self, views: ViewpointArrays) -> Pool:
         """The views with the wanted sections that each shows, numbered as in `elements`."""
@@ -117,23 +117,23 @@ class Candidates:
 
 
 def candidates(
-    wanted: Wanted, known: ViewpointArrays, rng: np.random.Generator, monitor: Monitor = QUIET
+    task: ClosingTask, known: ViewpointArrays, rng: np.random.Generator, monitor: Monitor = QUIET
 ) -> Candidates:
     """Views to choose from; those of the `known` ones that show anything wanted come first."""
-    problem = wanted.problem
+    problem = task.problem
     monitor.report(say("trying viewpoints"), 0, 1)
-    first = _useful(wanted.pool(as_written(problem, known)))
-    found = as_written(problem, _aimed(wanted, _places(wanted, first, rng), rng))
-    further = shortlist(_useful(wanted.pool(found)), np.ones(len(wanted.elements)), None, MAX_CANDIDATES, DEPTHS)
-    pool = join_pools(first, _well_apart(wanted, first, further))
+    first = _useful(task.pool(as_written(problem, known)))
+    found = as_written(problem, _aimed(task, _places(task, first, rng), rng))
+    further = shortlist(_useful(task.pool(found)), np.ones(len(task.elements)), None, MAX_CANDIDATES, DEPTHS)
+    pool = join_pools(first, _well_apart(task, first, further))
     in_sight = np.unique(pool.elements.items)
     is_known = np.arange(len(pool.views.heading_rad)) < len(first.views.heading_rad)
-    times = flight_times(problem.roadmap, pool.views, wanted.aircraft, wanted.rules, monitor)
+    times = flight_times(problem.roadmap, pool.views, task.aircraft, task.rules, monitor)
     alone_s = times.travel_s[0, 1:] + times.service_s + times.travel_s[1:, 0]
-    within = alone_s <= wanted.longest_s
+    within = alone_s <= task.longest_s
     if not within.all():
         pool, is_known = keep(pool, within), is_known[within]
-        times = flight_times(problem.roadmap, pool.views, wanted.aircraft, wanted.rules, monitor)
+        times = flight_times(problem.roadmap, pool.views, task.aircraft, task.rules, monitor)
     return Candidates(pool, is_known, times, in_sight)
 
 
@@ -141,7 +141,7 @@ def _useful(pool: Pool) -> Pool:
     return keep(pool, np.diff(pool.elements.starts) > 0)
 
 
-def _well_apart(wanted: Wanted, first: Pool, further: Pool) -> Pool:
+def _well_apart(task: ClosingTask, first: Pool, further: Pool) -> Pool:
     """The further views, those nearer to earlier ones than waypoints may be moved onto them.
 
     Those without which a section is lost are kept where they were as well.
@@ -150,26 +150,26 @@ def _well_apart(wanted: Wanted, first: Pool, further: Pool) -> Pool:
     n_first = len(first.views.heading_rad)
     for i in range(n_first, len(positions)):
         away_m = np.linalg.norm(positions[:i] - positions[i], axis=1)
-        if away_m.min(initial=np.inf) < wanted.aircraft.min_waypoint_spacing_m:
+        if away_m.min(initial=np.inf) < task.aircraft.min_waypoint_spacing_m:
             positions[i] = positions[np.argmin(away_m)]
-    moved = wanted.pool(further.views._replace(positions_enu_m=positions[n_first:]))
-    is_lost = np.zeros(len(wanted.elements), np.bool_)
+    moved = task.pool(further.views._replace(positions_enu_m=positions[n_first:]))
+    is_lost = np.zeros(len(task.elements), np.bool_)
     is_lost[further.elements.items] = True
     is_lost[np.concatenate([first.elements.items, moved.elements.items])] = False
     needed_there = [bool(is_lost[further.elements.of(view)].any()) for view in range(len(further.views.heading_rad))]
     return join_pools(_useful(moved), keep(further, np.array(needed_there, np.bool_)))
 
 
-def _places(wanted: Wanted, known: Pool, rng: np.random.Generator) -> Array:
+def _places(task: ClosingTask, known: Pool, rng: np.random.Generator) -> Array:
     """Allowed positions to look from, shape (n, 3)."""
-    problem = wanted.problem
+    problem = task.problem
     reachability = problem.reachability
-    is_open = np.ones(len(wanted.elements), np.bool_)
+    is_open = np.ones(len(task.elements), np.bool_)
     is_open[known.elements.items] = False
     # Witnesses of what the known views show are for variety only.
     is_asked = is_open | (rng.random(len(is_open)) < MAX_WITNESSES / max(1, len(is_open)))
-    is_asked &= reachability.verdicts.reshape(-1)[wanted.elements] == REACHABLE
-    witnesses = reachability.witnesses_enu_m.reshape(-1, 3)[wanted.elements[is_asked]]
+    is_asked &= reachability.verdicts.reshape(-1)[task.elements] == REACHABLE
+    witnesses = reachability.witnesses_enu_m.reshape(-1, 3)[task.elements[is_asked]]
     centres = np.concatenate([known.views.positions_enu_m, witnesses])
     around = np.zeros((0, 3))
     if len(centres):
@@ -182,12 +182,12 @@ def _places(wanted: Wanted, known: Pool, rng: np.random.Generator) -> Array:
     return places[problem.space.is_allowed(places)]
 
 
-def _aimed(wanted: Wanted, places_enu_m: Array, rng: np.random.Generator) -> ViewpointArrays:
+def _aimed(task: ClosingTask, places_enu_m: Array, rng: np.random.Generator) -> ViewpointArrays:
     """Two views from each place that any wanted section can be seen from.
 
     One looks at the middle of the panels whose wanted sections the place lies in, one at one of them, drawn at random.
     """
-    model, mask = wanted.problem.model, wanted.mask()
+    model, mask = task.problem.model, task.mask()
     views = []
     for start, end in chunks(len(places_enu_m), max(1, POINTS_PER_CHUNK // max(1, len(model.frames)))):
         places = places_enu_m[start:end]
@@ -221,7 +221,7 @@ IDLE_ROUNDS, LEAST_GAIN = 2, 0.002
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Shortest:
+class ShortestFlight:
     """Views in the order of flight that show all wanted sections that can be shown.
 
     Parameters
@@ -244,7 +244,7 @@ class Shortest:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Most:
+class FlightsInBudget:
     """Views that fit into the sorties allowed.
 
     Parameters
@@ -259,15 +259,15 @@ class Most:
     bound: int
 
 
-def show_all(
-    wanted: Wanted,
+def shortest_covering_flight(
+    task: ClosingTask,
     known: ViewpointArrays,
     *,
     seed: int = 0,
     stop: Stop = never,
     durations: Trace | None = None,
     monitor: Monitor = QUIET,
-) -> Shortest:
+) -> ShortestFlight:
     """Shortest single flight found that shows all wanted sections that can be shown; anytime.
 
     It is no longer than one through those of the `known` views, in their order, that are needed, by the times that
@@ -279,27 +279,27 @@ def show_all(
         Gets the duration whenever it falls.
     """
     rng = np.random.default_rng(seed)
-    search = _Shortening(wanted, known, Trace() if durations is None else durations)
+    search = _Shortening(task, known, Trace() if durations is None else durations)
     in_sight = np.zeros(0, np.int32)
     idle = 0
     for round_number in itertools.count():
-        found = candidates(wanted, search.views, rng, monitor)
+        found = candidates(task, search.views, rng, monitor)
         in_sight = np.union1d(in_sight, found.in_sight)
         limit = any_of(stop, TimeLimit(ROUND_S))
         idle = 0 if search.among(found, seed + round_number, limit, monitor) else idle + 1
         if idle == IDLE_ROUNDS or len(found.shown) == 0 or stop():
             break
     monitor.report(say("bounding the optimum"), 0, 1)
-    return Shortest(search.views, found.shown, in_sight, search.duration_s, _bound_s(found))
+    return ShortestFlight(search.views, found.shown, in_sight, search.duration_s, _bound_s(found))
 
 
 class _Shortening:
     """The shortest flight so far, through the candidates of round after round."""
 
-    def __init__(self, wanted: Wanted, known: ViewpointArrays, durations: Trace) -> None:
+    def __init__(self, task: ClosingTask, known: ViewpointArrays, durations: Trace) -> None:
         self.views = known
         self.duration_s, self._n_shown = np.inf, 0
-        self._wanted, self._durations = wanted, durations
+        self._wanted, self._durations = task, durations
 
     def among(self, found: Candidates, seed: int, stop: Stop, monitor: Monitor) -> bool:
         """Look for a flight among candidates that shows more or is shorter; whether there was one.
@@ -331,7 +331,7 @@ class _Shortening:
         """Two routes to begin with: the known views that are needed, and the fewest views, from each to the nearest."""
         weights = np.ones(len(self._wanted.elements))
         is_first = np.flatnonzero(found.is_known)
-        known = is_first[needed(keep(found.pool, found.is_known).elements, weights)]
+        known = is_first[necessary_views(keep(found.pool, found.is_known).elements, weights)]
         fewest, _ = choose_greedily(found.pool, weights, len(found.is_known), np.inf, Trace(), QUIET)
         places = np.concatenate([[0], fewest + 1])
         order = nearest_neighbour(found.times.travel_s[np.ix_(places, places)])
@@ -351,8 +351,8 @@ def _bound_s(found: Candidates) -> float:
     return cover_bound_s(found.times.travel_s, found.times.service_s, covers, len(shown))
 
 
-def show_most(
-    wanted: Wanted,
+def most_covering_flights(
+    task: ClosingTask,
     known: ViewpointArrays,
     budget_s: float,
     n_sorties: int,
@@ -361,26 +361,26 @@ def show_most(
     stop: Stop = never,
     trace: Trace | None = None,
     monitor: Monitor = QUIET,
-) -> Most:
+) -> FlightsInBudget:
     """Views within `n_sorties` of `budget_s` that show as many wanted sections as could be found; anytime.
 
     `trace` gets the number of sections whenever it rises.
     """
-    found = candidates(wanted, known, np.random.default_rng(seed), monitor)
+    found = candidates(task, known, np.random.default_rng(seed), monitor)
     selection = solve_orienteering(
         found.times.travel_s,
         found.times.service_s,
         budget_s,
         n_sorties,
-        CoverGain(found.pool.elements, np.ones(len(wanted.elements))),
-        max_stops=max(1, wanted.aircraft.max_waypoints - 2),
+        CoverGain(found.pool.elements, np.ones(len(task.elements))),
+        max_stops=max(1, task.aircraft.max_waypoints - 2),
         seed=seed,
         stop=stop,
         trace=trace,
         monitor=monitor,
     )
     groups = tuple(take(found.pool.views, np.array(sortie, np.int64)) for sortie in selection.sorties)
-    return Most(groups, int(min(selection.bound + 1e-6, len(found.shown))))
+    return FlightsInBudget(groups, int(min(selection.bound + 1e-6, len(found.shown))))
 
 
 SHARING_S = 1.0
@@ -432,7 +432,7 @@ class ClosingFlights:
     in_sight, in_reach
         The wanted elements that some allowed place shows, and those of them that the batteries reach at all.
     shortest_s
-        As `closing.Shortest.bound_s`; None where the batteries do not allow all that is in reach.
+        As `closing.ShortestFlight.bound_s`; None where the batteries do not allow all that is in reach.
     bound
         No flights within the batteries over the views compared show more wanted elements.
     """
@@ -447,7 +447,7 @@ class ClosingFlights:
 
 
 def closing_flights(
-    wanted: Wanted,
+    task: ClosingTask,
     known: ViewpointArrays,
     batteries: Batteries,
     *,
@@ -481,7 +481,7 @@ def closing_flights(
     InfeasibleError
         The wind is too strong for the aircraft, or no flight is short enough.
     """
-    return _Search(known, batteries, seed, limit, stop, trace, durations, monitor).run(wanted)
+    return _Search(known, batteries, seed, limit, stop, trace, durations, monitor).run(task)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -503,108 +503,110 @@ class _Search:
     durations: Trace
     monitor: Monitor
 
-    def run(self, wanted: Wanted) -> ClosingFlights:
+    def run(self, task: ClosingTask) -> ClosingFlights:
         """On the battery on board where it allows all, else on as few full ones as do, else on all there are."""
         on_board_s, n_full = self.batteries.on_board_s or 0.0, self.batteries.n_full
         is_limited = self.batteries.on_board_s is not None or n_full is not None
-        first = self._shortest(wanted, FIRST_SHARE if is_limited else 1.0, self.durations)
+        first = self._shortest(task, FIRST_SHARE if is_limited else 1.0, self.durations)
         everything = len(first.shown)
         if everything == 0:
-            return self._result(wanted, first, [], None, 0)
+            return self._result(task, first, [], None, 0)
         if on_board_s > 0.0:
-            part = self._drawn(wanted, [first.views])
-            if _fits(part, wanted, on_board_s, 1):
-                return self._result(wanted, first, [part], first.bound_s, everything, on_board=True)
+            part = self._drawn(task, [first.views])
+            if _fits(part, task, on_board_s, 1):
+                return self._result(task, first, [part], first.bound_s, everything, on_board=True)
         if n_full == 0:
-            part, bound = self._most(wanted, first, on_board_s, 1)
-            return self._result(wanted, first, [part], None, bound, on_board=True)
-        part = self._on_full(wanted, first)
+            part, bound = self._most(task, first, on_board_s, 1)
+            return self._result(task, first, [part], None, bound, on_board=True)
+        part = self._on_full(task, first)
         if n_full is None or len(part.flights) <= n_full:
-            return self._result(wanted, first, [part], first.bound_s, everything)
+            return self._result(task, first, [part], first.bound_s, everything)
         if on_board_s <= 0.0:
-            part, bound = self._most(wanted, first, self.batteries.full_s, n_full)
-            return self._result(wanted, first, [part], None, bound)
-        parts = [self._most(wanted, first, on_board_s, 1)[0]]
-        rest = replace(wanted, elements=_left(wanted, parts))
+            part, bound = self._most(task, first, self.batteries.full_s, n_full)
+            return self._result(task, first, [part], None, bound)
+        parts = [self._most(task, first, on_board_s, 1)[0]]
+        rest = replace(task, elements=_left(task, parts))
         if len(rest.elements):
             parts += self._rest(rest, n_full)
-        return self._result(wanted, first, parts, None, everything, on_board=len(parts[0].flights) > 0)
+        return self._result(task, first, parts, None, everything, on_board=len(parts[0].flights) > 0)
 
-    def _rest(self, wanted: Wanted, n_full: int) -> list[_Part]:
+    def _rest(self, task: ClosingTask, n_full: int) -> list[_Part]:
         """What the battery on board left, on full ones."""
-        shortest = self._shortest(wanted, FIRST_SHARE, Trace(self.trace.clock))
+        shortest = self._shortest(task, FIRST_SHARE, Trace(self.trace.clock))
         if len(shortest.shown) == 0:
             return []
-        part = self._on_full(wanted, shortest)
+        part = self._on_full(task, shortest)
         if len(part.flights) <= n_full:
             return [part]
-        return [self._most(wanted, shortest, self.batteries.full_s, n_full)[0]]
+        return [self._most(task, shortest, self.batteries.full_s, n_full)[0]]
 
-    def _shortest(self, wanted: Wanted, share: float, durations: Trace) -> Shortest:
+    def _shortest(self, task: ClosingTask, share: float, durations: Trace) -> ShortestFlight:
         until = any_of(self.stop, TimeLimit(share * self.limit.remaining_s()))
-        return show_all(wanted, self.known, seed=self.seed, stop=until, durations=durations, monitor=self.monitor)
+        return shortest_covering_flight(
+            task, self.known, seed=self.seed, stop=until, durations=durations, monitor=self.monitor
+        )
 
-    def _on_full(self, wanted: Wanted, shortest: Shortest) -> _Part:
+    def _on_full(self, task: ClosingTask, shortest: ShortestFlight) -> _Part:
         """Sorties through all views, on as many full batteries as it takes."""
-        part = self._drawn(wanted, [shortest.views])
-        if _fits(part, wanted, self.batteries.full_s, 1):
+        part = self._drawn(task, [shortest.views])
+        if _fits(part, task, self.batteries.full_s, 1):
             return part
-        times = self._times(wanted, part.views)
+        times = self._times(task, part.views)
         until = any_of(self.stop, TimeLimit(SHARING_S))
         flights = plan_flights(
-            times, part.views, wanted.aircraft, wanted.rules, seed=self.seed, stop=until, monitor=self.monitor
+            times, part.views, task.aircraft, task.rules, seed=self.seed, stop=until, monitor=self.monitor
         )
         return _Part(part.views, flights)
 
-    def _drawn(self, wanted: Wanted, groups: Sequence[ViewpointArrays]) -> _Part:
+    def _drawn(self, task: ClosingTask, groups: Sequence[ViewpointArrays]) -> _Part:
         """One flight through each group of views, in order."""
         if not groups:
             return _Part(NONE_LOCKED, ())
-        covered = np.where(wanted.mask(), 0, 1).astype(np.int32)
-        spacing_m = wanted.aircraft.min_waypoint_spacing_m
-        views = merge_close_views(wanted.problem, concatenate(list(groups)), spacing_m, covered=covered)
+        covered = np.where(task.mask(), 0, 1).astype(np.int32)
+        spacing_m = task.aircraft.min_waypoint_spacing_m
+        views = merge_close_views(task.problem, concatenate(list(groups)), spacing_m, covered=covered)
         ends = np.cumsum([len(group.heading_rad) for group in groups])
         sorties = tuple(
             tuple(range(end - len(group.heading_rad), end)) for end, group in zip(ends, groups, strict=True)
         )
-        times = self._times(wanted, views)
-        return _Part(views, draw_flights(times, sorties, views, wanted.aircraft, wanted.rules, self.monitor))
+        times = self._times(task, views)
+        return _Part(views, draw_flights(times, sorties, views, task.aircraft, task.rules, self.monitor))
 
-    def _times(self, wanted: Wanted, views: ViewpointArrays) -> FlightTimes:
-        return flight_times(wanted.problem.roadmap, views, wanted.aircraft, wanted.rules, self.monitor)
+    def _times(self, task: ClosingTask, views: ViewpointArrays) -> FlightTimes:
+        return flight_times(task.problem.roadmap, views, task.aircraft, task.rules, self.monitor)
 
-    def _most(self, wanted: Wanted, shortest: Shortest, budget_s: float, n_sorties: int) -> tuple[_Part, int]:
+    def _most(self, task: ClosingTask, shortest: ShortestFlight, budget_s: float, n_sorties: int) -> tuple[_Part, int]:
         """Sorties that show most, and the bound on that; tighter ones where exact durations do not fit."""
         known = concatenate([shortest.views, self.known])
         allowed_s, most = budget_s, 0
         for attempt in range(ATTEMPTS):
             until = any_of(self.stop, TimeLimit(self.limit.remaining_s() / (ATTEMPTS - attempt)))
-            found = show_most(
-                wanted, known, allowed_s, n_sorties, seed=self.seed, stop=until, trace=self.trace, monitor=self.monitor
+            found = most_covering_flights(
+                task, known, allowed_s, n_sorties, seed=self.seed, stop=until, trace=self.trace, monitor=self.monitor
             )
             most = max(most, found.bound)
-            part = self._drawn(wanted, found.groups)
-            if _fits(part, wanted, budget_s, n_sorties):
+            part = self._drawn(task, found.groups)
+            if _fits(part, task, budget_s, n_sorties):
                 return part, most
-            allowed_s *= TIGHTER * budget_s / max(_longest_s(part, wanted), budget_s)
+            allowed_s *= TIGHTER * budget_s / max(_longest_s(part, task), budget_s)
         raise InfeasibleError.say(
             "no flight through missing sections was found that fits {}'s waypoint limit and the {:.0f} s "
             "that the battery allows; change the battery",
-            wanted.aircraft.name,
+            task.aircraft.name,
             budget_s,
         )
 
     def _result(
         self,
-        wanted: Wanted,
-        first: Shortest,
+        task: ClosingTask,
+        first: ShortestFlight,
         parts: Sequence[_Part],
         bound_s: float | None,
         bound: int,
         *,
         on_board: bool = False,
     ) -> ClosingFlights:
-        self.trace.record(len(wanted.elements) - len(_left(wanted, parts)))
+        self.trace.record(len(task.elements) - len(_left(task, parts)))
         offsets = np.cumsum([0, *(len(part.views.heading_rad) for part in parts)])
         flights = tuple(
             replace(flight, views=flight.views + offset)
@@ -612,25 +614,25 @@ class _Search:
             for flight in part.flights
         )
         views = concatenate([NONE_LOCKED, *(part.views for part in parts)])
-        in_sight, in_reach = wanted.elements[first.in_sight], wanted.elements[first.shown]
+        in_sight, in_reach = task.elements[first.in_sight], task.elements[first.shown]
         return ClosingFlights(views, flights, on_board, in_sight, in_reach, bound_s, bound)
 
 
-def _fits(part: _Part, wanted: Wanted, budget_s: float, n_sorties: int) -> bool:
+def _fits(part: _Part, task: ClosingTask, budget_s: float, n_sorties: int) -> bool:
     """Whether sorties are few enough, and each within its time and the aircraft's waypoints."""
     most_points = max((len(flight.path_enu_m) - 2 for flight in part.flights), default=0)
-    is_short = _longest_s(part, wanted) <= budget_s and most_points <= wanted.aircraft.max_waypoints
+    is_short = _longest_s(part, task) <= budget_s and most_points <= task.aircraft.max_waypoints
     return len(part.flights) <= n_sorties and is_short
 
 
-def _longest_s(part: _Part, wanted: Wanted) -> float:
+def _longest_s(part: _Part, task: ClosingTask) -> float:
     """Longest time between take-off and landing."""
-    return max((flight.duration_s for flight in part.flights), default=0.0) - wanted.rules.takeoff_landing_s
+    return max((flight.duration_s for flight in part.flights), default=0.0) - task.rules.takeoff_landing_s
 
 
-def _left(wanted: Wanted, parts: Sequence[_Part]) -> NDArray[np.int64]:
+def _left(task: ClosingTask, parts: Sequence[_Part]) -> NDArray[np.int64]:
     """Wanted elements that no part shows."""
-    shown = np.zeros(wanted.problem.model.n_elements, np.bool_)
+    shown = np.zeros(task.problem.model.n_elements, np.bool_)
     for part in parts:
-        shown[wanted.problem.model.elements(part.views).items] = True
-    return wanted.elements[~shown[wanted.elements]]
+        shown[task.problem.model.elements(part.views).items] = True
+    return task.elements[~shown[task.elements]]

@@ -50,7 +50,7 @@ from planning.plan import (
 from planning.routing.legs import joined_nodes, pull_tight
 from planning.routing.roadmap import LegMetric, Roadmap, leg_length
 from planning.site.free_space import LEG_MARGIN_M
-from planning.viewpoints.prepare import Prepared, settled
+from planning.viewpoints.prepare import Prepared, with_site_limits
 
 Array = NDArray[np.float64]
 
@@ -67,7 +67,7 @@ Place = Vec3 | None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Ways:
+class RoadmapPaths:
     """Ways over one roadmap.
 
     Parameters
@@ -83,7 +83,7 @@ class Ways:
     edges: tuple[NDArray[np.int64], Array]
 
     @classmethod
-    def over(cls, roadmap: Roadmap, aircraft: Aircraft, rules: FlightRules) -> Ways:
+    def over(cls, roadmap: Roadmap, aircraft: Aircraft, rules: FlightRules) -> RoadmapPaths:
         """Ways for an aircraft; the shortest instead of the fastest where the wind allows no flight."""
         try:
             metric = round_trip_metric(motion_limits(aircraft, rules))
@@ -174,7 +174,7 @@ class Revision:
     """
 
     prepared: Prepared
-    ways: Ways
+    paths: RoadmapPaths
     case: Case
     findings: tuple[Finding, ...]
 
@@ -229,17 +229,17 @@ def revise(plan: Plan, prepared: Prepared, before: Revision | None = None) -> Re
     if plan.camera != prepared.problem.model.camera:
         raise ValueError(f"prepared: is for the camera {prepared.problem.model.camera.name}, not {plan.camera.name}")
     wanted = replace(plan.constraints, occlusion=prepared.constraints.occlusion)
-    wanted = settled(wanted, prepared.site_model, plan.camera)
+    wanted = with_site_limits(wanted, prepared.site_model, plan.camera)
     if wanted != prepared.constraints or plan.constraints.occlusion not in ("auto", wanted.occlusion):
         raise ValueError(f"prepared: is for {prepared.constraints}, not {plan.constraints}")
     if before is None or before.prepared is not prepared:
         case = Case.of(plan, prepared.site_model)
-        ways = Ways.over(prepared.problem.roadmap, plan.aircraft, plan.rules)
+        paths = RoadmapPaths.over(prepared.problem.roadmap, plan.aircraft, plan.rules)
     else:
-        case, ways = before.case.with_plan(plan), before.ways
+        case, paths = before.case.with_plan(plan), before.paths
         if (plan.aircraft, plan.rules) != (before.plan.aircraft, before.plan.rules):
-            ways = Ways.over(prepared.problem.roadmap, plan.aircraft, plan.rules)
-    return Revision(prepared, ways, case, check_case(case))
+            paths = RoadmapPaths.over(prepared.problem.roadmap, plan.aircraft, plan.rules)
+    return Revision(prepared, paths, case, check_case(case))
 
 
 def _with_route(revision: Revision, viewpoints: Iterable[Viewpoint], sorties: Iterable[Sortie]) -> Revision:
@@ -273,9 +273,9 @@ Neighbours = tuple[str, str]
 AT_HOME = ""
 
 
-def pieces(sortie: Sortie, by_id: Viewpoints) -> dict[Neighbours, tuple[Vec3, ...]]:
+def legs_between_stops(sortie: Sortie, by_id: Viewpoints) -> dict[Neighbours, tuple[Vec3, ...]]:
     """Vertices from each stop of a sortie to the next, both included; empty where its path misses a viewpoint."""
-    vertices = cuts(sortie, by_id)
+    vertices = stop_vertices(sortie, by_id)
     if vertices is None:
         return {}
     return {
@@ -284,7 +284,7 @@ def pieces(sortie: Sortie, by_id: Viewpoints) -> dict[Neighbours, tuple[Vec3, ..
     }
 
 
-def cuts(sortie: Sortie, by_id: Viewpoints) -> list[int] | None:
+def stop_vertices(sortie: Sortie, by_id: Viewpoints) -> list[int] | None:
     """Vertices of a sortie's path at which it is at a stop, its ends included; None where it misses a viewpoint."""
     vertices = photo_vertices(sortie, by_id)
     if vertices is None or len(sortie.path_enu_m) < 2:
@@ -302,8 +302,8 @@ def place_of(stop: str, by_id: Viewpoints) -> Place:
     return HOME if stop == AT_HOME else by_id[stop].position_enu_m
 
 
-def redrawn(
-    sortie: Sortie, before: Viewpoints, viewpoint_ids: tuple[str, ...], after: Viewpoints, ways: Ways
+def with_other_stops(
+    sortie: Sortie, before: Viewpoints, viewpoint_ids: tuple[str, ...], after: Viewpoints, paths: RoadmapPaths
 ) -> Sortie:
     """A sortie with other stops, or with stops elsewhere; length and duration are still those it had.
 
@@ -313,14 +313,14 @@ def redrawn(
         Viewpoints as they were and as they are.
     """
     pairs = neighbours(viewpoint_ids)
-    known = pieces(sortie, before)
+    known = legs_between_stops(sortie, before)
     is_moved = {
         stop
         for stop in viewpoint_ids
         if stop not in before or before[stop].position_enu_m != after[stop].position_enu_m
     }
     missing = [pair for pair in pairs if pair not in known or not is_moved.isdisjoint(pair)]
-    found = ways.between([(place_of(a, after), place_of(b, after)) for a, b in missing])
+    found = paths.between([(place_of(a, after), place_of(b, after)) for a, b in missing])
     legs = {**known, **dict(zip(missing, found, strict=True))}
     path = [*legs[pairs[0]], *itertools.chain.from_iterable(legs[pair][1:] for pair in pairs[1:])]
     passing = tuple(each for each in sortie.in_passing_ids if each in viewpoint_ids and each not in is_moved)
@@ -395,14 +395,14 @@ def with_stop(revision: Revision, new: Viewpoint) -> tuple[Sortie, ...]:
     costs = _Costs.of(plan)
     gaps = sorted(_gaps(revision, before, new, costs))
     full: set[int] = set()
-    while gap := _cheapest([gap for gap in gaps if gap.sortie not in full], revision.ways, plan, after, new, costs):
+    while gap := _cheapest([gap for gap in gaps if gap.sortie not in full], revision.paths, plan, after, new, costs):
         old = plan.sorties[gap.sortie]
         ids = (*old.viewpoint_ids[: gap.place], new.id, *old.viewpoint_ids[gap.place :])
-        changed = redrawn(old, before, ids, after, revision.ways)
+        changed = with_other_stops(old, before, ids, after, revision.paths)
         if _fits(changed, after, costs):
             return (*plan.sorties[: gap.sortie], changed, *plan.sorties[gap.sortie + 1 :])
         full.add(gap.sortie)
-    return (*plan.sorties, redrawn(Sortie((), (), 0.0, 0.0), before, (new.id,), after, revision.ways))
+    return (*plan.sorties, with_other_stops(Sortie((), (), 0.0, 0.0), before, (new.id,), after, revision.paths))
 
 
 def _fits(sortie: Sortie, by_id: Mapping[str, Viewpoint], costs: _Costs) -> bool:
@@ -418,7 +418,7 @@ def _gaps(revision: Revision, before: Mapping[str, Viewpoint], new: Viewpoint, c
     """All places in sorties that have room, with straight legs to and from the new stop."""
     plan, flights = revision.plan, revision.case.measures.flights
     added = viewpoint_arrays((new,))
-    home = _home_legs(revision.ways.roadmap, added.positions_enu_m[0], costs)
+    home = _home_legs(revision.paths.roadmap, added.positions_enu_m[0], costs)
     for number, sortie in enumerate(plan.sorties):
         if len(sortie.path_enu_m) - 1 > plan.aircraft.max_waypoints:
             continue
@@ -438,7 +438,7 @@ def _home_legs(roadmap: Roadmap, place_enu_m: Array, costs: _Costs) -> tuple[flo
 
 def _present_legs(sortie: Sortie, by_id: Mapping[str, Viewpoint], views: ViewpointArrays, costs: _Costs) -> Array:
     """Cost of the legs between neighbours, from home to home, shape (m + 1,), as they are drawn."""
-    at = cuts(sortie, by_id)
+    at = stop_vertices(sortie, by_id)
     if at is None:  # its path misses a viewpoint and will be drawn anew
         return np.concatenate([np.zeros(1), costs.legs(np.diff(views.positions_enu_m, axis=0)), np.zeros(1)])
     legs = costs.legs(np.diff(np.array(sortie.path_enu_m, np.float64), axis=0))
@@ -469,7 +469,7 @@ def _added(
 
 def _cheapest(
     gaps: Sequence[_Gap],
-    ways: Ways,
+    paths: RoadmapPaths,
     plan: Plan,
     by_id: Mapping[str, Viewpoint],
     new: Viewpoint,
@@ -482,7 +482,7 @@ def _cheapest(
     looked_at = gaps[:MAX_LOOKED_AT]
     if not looked_at:
         return None
-    space, position = ways.roadmap.space, np.array(new.position_enu_m)
+    space, position = paths.roadmap.space, np.array(new.position_enu_m)
     if not space.is_allowed(position[None], LEG_MARGIN_M)[0]:
         return looked_at[0]
     best, least, n_around = looked_at[0], np.inf, 0
@@ -496,18 +496,20 @@ def _cheapest(
             return gap
         if n_around < MAX_AROUND:
             n_around += 1
-            more = gap.added + _detour(pair, ways, by_id, new, costs)
+            more = gap.added + _detour(pair, paths, by_id, new, costs)
             best, least = (gap, more) if more < least else (best, least)
     return best
 
 
-def _detour(pair: tuple[str, str], ways: Ways, by_id: Mapping[str, Viewpoint], new: Viewpoint, costs: _Costs) -> float:
+def _detour(
+    pair: tuple[str, str], paths: RoadmapPaths, by_id: Mapping[str, Viewpoint], new: Viewpoint, costs: _Costs
+) -> float:
     """What the ways to and from a new stop cost more than straight ones."""
-    drawn = ways.between(
+    drawn = paths.between(
         [(place_of(pair[0], by_id), new.position_enu_m), (new.position_enu_m, place_of(pair[1], by_id))]
     )
     flown = sum(float(costs.legs(np.diff(np.array(way), axis=0)).sum()) for way in drawn)
-    home = _home_legs(ways.roadmap, np.array(new.position_enu_m), costs)
+    home = _home_legs(paths.roadmap, np.array(new.position_enu_m), costs)
     straight = 0.0
     for stop, sign, from_home in zip(pair, (1.0, -1.0), home, strict=True):
         place = place_of(stop, by_id)
@@ -546,7 +548,7 @@ def move(
     before = {viewpoint.id: viewpoint for viewpoint in revision.plan.viewpoints}
     after = {**before, viewpoint_id: new}
     sorties = [
-        redrawn(sortie, before, sortie.viewpoint_ids, after, revision.ways)
+        with_other_stops(sortie, before, sortie.viewpoint_ids, after, revision.paths)
         if viewpoint_id in sortie.viewpoint_ids
         else sortie
         for sortie in revision.plan.sorties
@@ -590,7 +592,7 @@ def delete(revision: Revision, viewpoint_ids: Collection[str]) -> Revision:
         if left == sortie.viewpoint_ids:
             sorties.append(sortie)
         elif left:
-            sorties.append(redrawn(sortie, before, left, after, revision.ways))
+            sorties.append(with_other_stops(sortie, before, left, after, revision.paths))
     return _with_route(revision, after.values(), sorties)
 
 

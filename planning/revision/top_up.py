@@ -27,9 +27,9 @@ from planning.motion.timing import usable_battery_s
 from planning.parameters import PlanParameters
 from planning.plan import HistoryPoint, Plan, Viewpoint, ViewpointArrays, viewpoint_arrays
 from planning.planner import plan_records
-from planning.revision.closing_flights import Batteries, ClosingFlights, Wanted, closing_flights
+from planning.revision.closing_flights import Batteries, ClosingFlights, ClosingTask, closing_flights
 from planning.site.records import SiteModel
-from planning.viewpoints.prepare import Prepared, prepare, settled
+from planning.viewpoints.prepare import Prepared, prepare, with_site_limits
 from planning.viewpoints.problem import NONE_LOCKED
 
 METHOD = "top-up"
@@ -210,7 +210,7 @@ def top_up(
         trace.record_bound(int(np.count_nonzero(verdicts[elements] != UNREACHABLE)))
         is_few = is_negligible(len(elements), int(target.sum()))
         batteries = _batteries(plan, request, is_few)
-        wanted = Wanted(problem, plan.aircraft, plan.rules, elements, batteries.longest_s)
+        wanted = ClosingTask(problem, plan.aircraft, plan.rules, elements, batteries.longest_s)
         found = closing_flights(
             wanted,
             planned,
@@ -262,7 +262,9 @@ def _prepared(
             stop=stop,
             monitor=monitor,
         )
-    wanted = settled(replace(plan.constraints, occlusion=prepared.constraints.occlusion), site_model, plan.camera)
+    wanted = with_site_limits(
+        replace(plan.constraints, occlusion=prepared.constraints.occlusion), site_model, plan.camera
+    )
     if plan.camera != prepared.problem.model.camera or wanted != prepared.constraints:
         raise ValueError(f"prepared: is for {prepared.constraints}, not for {plan.constraints} and {plan.camera.name}")
     return prepared

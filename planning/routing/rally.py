@@ -102,7 +102,7 @@ def _findings(point: RallyPoint, model: SiteModel, space: FreeSpace) -> Iterator
 
 
 @dataclass(frozen=True, slots=True)
-class ReturnWay:
+class ReturnRoute:
     """How near aircraft come to things when they return from anywhere on a path.
 
     Parameters
@@ -123,14 +123,14 @@ class ReturnWay:
     n_places: int
 
 
-def return_way(
+def return_route(
     space: FreeSpace,
     path_enu_m: Array,
     destinations_enu_m: tuple[Vec3, ...],
     height_z_m: float,
     cone_slope: float = 0.0,
     upper_m: float = 100.0,
-) -> ReturnWay:
+) -> ReturnRoute:
     """Ways of return from anywhere on a path: straight up, level to the nearest destination, straight down.
 
     Parameters
@@ -154,7 +154,7 @@ def return_way(
     return _return_ways(space, [path_enu_m], destinations_enu_m, height_z_m, cone_slope, upper_m)[0]
 
 
-def ways_home(space: FreeSpace, paths_enu_m: Sequence[Array]) -> list[ReturnWay]:
+def return_routes(space: FreeSpace, paths_enu_m: Sequence[Array]) -> list[ReturnRoute]:
     """Ways of return to home from anywhere on each path, shape (k, 3), at `return_height`."""
     if not paths_enu_m:
         return []
@@ -170,7 +170,7 @@ def _return_ways(
     height_z_m: float,
     cone_slope: float,
     upper_m: float,
-) -> list[ReturnWay]:
+) -> list[ReturnRoute]:
     if not destinations_enu_m:
         raise ValueError("destinations_enu_m: expected home at least, got none")
     places = [_places(path) for path in paths_enu_m]
@@ -197,7 +197,7 @@ def _return_ways(
         crosses = nearest_m(space.no_fly, 1.0) <= 0.0
     n_elsewhere = np.add.reduceat(nearest > 0, firsts, dtype=np.int64)
     found = zip(gaps_m.tolist(), crosses.tolist(), n_elsewhere.tolist(), n_places.tolist(), strict=True)
-    return [ReturnWay(*each) for each in found]
+    return [ReturnRoute(*each) for each in found]
 
 
 def _places(path_enu_m: Array) -> Array:

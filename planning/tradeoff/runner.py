@@ -3,7 +3,7 @@
 What is compared (plans, tours, searches for panels, rendered photos, trainings) is a `Subject`: how its results become
 rows of a table, panels of a picture and a title. `compare` runs it and writes both files together, `tradeoff-NAME.csv`
 and `.png`; runs that fail or are cancelled leave nothing behind. Where knobs are turned one at a time, each result is
-`Turned`, and `knob_lines` draws them alike.
+`KnobResult`, and `knob_lines` draws them alike.
 """
 
 from __future__ import annotations
@@ -367,7 +367,7 @@ class Subject(Generic[Found]):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Compared(Generic[Found]):
+class ComparisonFiles(Generic[Found]):
     """What was found, and the files written: the table, the picture, further tables."""
 
     found: Found
@@ -381,7 +381,7 @@ class Compared(Generic[Found]):
         return (self.csv_path, self.picture_path, *self.more_paths)
 
 
-def compare(subject: Subject[Found], out: Path, run: Callable[[Path], Found]) -> Compared[Found]:
+def compare(subject: Subject[Found], out: Path, run: Callable[[Path], Found]) -> ComparisonFiles[Found]:
     """Run, and write what comes of it into `out`.
 
     Parameters
@@ -402,10 +402,12 @@ def compare(subject: Subject[Found], out: Path, run: Callable[[Path], Found]) ->
         more = subject.more(found)
         for name, rows in more.items():
             write_rows(folder / f"{stem}-{name}.csv", rows)
-    return Compared(found, out / f"{stem}.csv", out / f"{stem}.png", tuple(out / f"{stem}-{name}.csv" for name in more))
+    return ComparisonFiles(
+        found, out / f"{stem}.csv", out / f"{stem}.png", tuple(out / f"{stem}-{name}.csv" for name in more)
+    )
 
 
-class Turned(Protocol):
+class KnobResult(Protocol):
     """What came of one setting: of all knobs one was turned, or none (""); how long it took, and its gap."""
 
     @property
@@ -425,10 +427,12 @@ class Turned(Protocol):
         """From the best there is."""
 
 
-AnyTurned = TypeVar("AnyTurned", bound=Turned)
+AnyKnobResult = TypeVar("AnyKnobResult", bound=KnobResult)
 
 
-def knob_lines(results: Sequence[AnyTurned], nothing_turned: str, text: Callable[[AnyTurned], str]) -> tuple[Line, ...]:
+def knob_lines(
+    results: Sequence[AnyKnobResult], nothing_turned: str, text: Callable[[AnyKnobResult], str]
+) -> tuple[Line, ...]:
     """A line for each knob: the smallest gap that its settings reach in the time they take, and the best in words."""
     lines = []
     for knob in dict.fromkeys(result.knob for result in results):

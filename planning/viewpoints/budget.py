@@ -26,7 +26,7 @@ from planning.viewpoints.candidates import Pool, candidate_pool, join_pools, kee
 from planning.viewpoints.greedy import Choice, element_weights
 from planning.viewpoints.improve import cover_state
 from planning.viewpoints.problem import NONE_LOCKED, ViewProblem, covered_by, take
-from planning.viewpoints.spacing import ANYWHERE, Apart, apart_of, rounding_spacing_m
+from planning.viewpoints.spacing import ANYWHERE, SpacingRule, rounding_spacing_m, spacing_rule
 
 Array = NDArray[np.float64]
 
@@ -109,7 +109,7 @@ def views_within_budget(
     spacing_m = rounding_spacing_m(aircraft.min_waypoint_spacing_m)
     choice = Choice(problem, weights, covered, locked, spacing_m, seed, stop, Trace(trace.clock), monitor)
     free, _, _ = choice.greedily(candidate_pool(problem, seed, parameters.n_candidates), n_free, np.inf)
-    free = shortlist(free, weights, covered, n_free, apart=apart_of(free.views, locked, spacing_m))
+    free = shortlist(free, weights, covered, n_free, apart=spacing_rule(free.views, locked, spacing_m))
     pool = join_pools(Pool(locked, problem.model.elements(locked)), free)
     times = flight_times(problem.roadmap, pool.views, aircraft, rules, monitor)
     gain = CoverGain(pool.elements, weights)
@@ -199,7 +199,7 @@ def shortlist(
     covered: NDArray[np.int32] | None,
     n_most: int,
     depths: Sequence[int] = CHOICE_DEPTHS,
-    apart: Apart = ANYWHERE,
+    apart: SpacingRule = ANYWHERE,
 ) -> Pool:
     """The candidates that greedy takes first, for several depths, beside what is `covered` all the same."""
     state = cover_state(pool.elements, weights, covered, apart)

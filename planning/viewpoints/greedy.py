@@ -26,7 +26,7 @@ from planning.viewpoints import cover_kernel
 from planning.viewpoints.candidates import Pool, candidate_pool, join_pools, keep
 from planning.viewpoints.improve import Exchange, cover_state, improve_views
 from planning.viewpoints.problem import NONE_LOCKED, Goal, ViewProblem, ViewSet, concatenate, covered_by, take
-from planning.viewpoints.spacing import ANYWHERE, Apart, apart_of, rounding_spacing_m, views_apart
+from planning.viewpoints.spacing import ANYWHERE, SpacingRule, rounding_spacing_m, spaced_views, spacing_rule
 
 Array = NDArray[np.float64]
 
@@ -142,9 +142,9 @@ def greedy(
     choice = Choice(problem, weights, covered, locked, rounding_spacing_m(spacing_m), seed, stop, trace, monitor)
     if goal.share is not None:
         sharp = _fewest_sharp_views(choice, pool, goal.share, parameters)
-        beside = choice.beside(sharp)
-        found = _fewest_views(beside, pool, goal.share * everything, parameters)
-        return ViewSet(concatenate([beside.locked, found]))
+        with_present_views = choice.with_present_views(sharp)
+        found = _fewest_views(with_present_views, pool, goal.share * everything, parameters)
+        return ViewSet(concatenate([with_present_views.locked, found]))
     assert goal.n_views is not None  # Goal's own check
     n_free = goal.n_views - len(locked.heading_rad)
     pool, chosen, value = choice.greedily(pool, n_free, np.inf)
@@ -154,7 +154,7 @@ def greedy(
         bound = _bound(pool.elements, weights, covered, n_free, value, stop)
     if value < everything - 1e-9 and len(chosen) > 0 and parameters.improve:
         views = improve_views(problem, pool, chosen, weights, seed, stop, trace, monitor, locked, choice.spacing_m)
-        views = take(views, needed(problem.model.elements(views), weights, covered))
+        views = take(views, necessary_views(problem.model.elements(views), weights, covered))
         pool = join_pools(Pool(views, problem.model.elements(views)), pool)
         pool, chosen, _ = choice.greedily(pool, n_free, np.inf, np.arange(len(views.heading_rad)))
     chosen = spend_spare_views(problem.model, pool, chosen, n_free, monitor, locked, choice.spacing_m)
@@ -170,7 +170,7 @@ class Choice:
     covered
         How many of the `locked` views cover each element.
     spacing_m
-        As in `Apart`.
+        As in `SpacingRule`.
     """
 
     problem: ViewProblem
@@ -183,7 +183,7 @@ class Choice:
     trace: Trace
     monitor: Monitor
 
-    def beside(self, views: ViewpointArrays) -> Choice:
+    def with_present_views(self, views: ViewpointArrays) -> Choice:
         """The choice of further views where some are there in any case, too."""
         if len(views.heading_rad) == 0:
             return self
@@ -220,7 +220,7 @@ class Choice:
                 break
             self.monitor.report(say("choosing views"), len(chosen), n_wanted)
             pool = self._with_more_places(pool, chosen, lost, shown_by, rng)
-            apart, seed = apart_of(pool.views, self.locked, self.spacing_m), self.seed + len(pool.views.heading_rad)
+            apart, seed = spacing_rule(pool.views, self.locked, self.spacing_m), self.seed + len(pool.views.heading_rad)
             exchange = Exchange(pool.elements, self.weights, chosen, seed, self.covered, apart)
             # As many views more as there are open elements: with room for any number the search would be another one.
             exchange.make_room(lost, min(n_wanted, len(chosen) + len(lost)), self.stop)
@@ -248,13 +248,13 @@ class Choice:
         alone = [(e, positions[k]) for k in near for e in pool.elements.of(chosen[k]) if counts[e] == 1]
         elements = np.concatenate([lost, np.array([e for e, _ in alone], np.int64)])
         places = np.concatenate([seen_from, np.array([place for _, place in alone]).reshape(-1, 3)])
-        views = views_apart(self.problem, elements, places, positions, rng)
+        views = spaced_views(self.problem, elements, places, positions, rng)
         return join_pools(pool, Pool(views, self.problem.model.elements(views)))
 
     def _chosen(
         self, pool: Pool, chosen: NDArray[np.int64], n_wanted: int, enough: float
     ) -> tuple[NDArray[np.int64], float]:
-        apart = apart_of(pool.views, self.locked, self.spacing_m)
+        apart = spacing_rule(pool.views, self.locked, self.spacing_m)
         return choose_greedily(
             pool, self.weights, n_wanted, enough, self.trace, self.monitor, self.covered, apart, chosen
         )
@@ -273,7 +273,7 @@ def _shown_by(pool: Pool, n_elements: int) -> NDArray[np.int64]:
     return shown_by
 
 
-def most_telling(model: CoverageModel, views: ViewpointArrays, n_views: int, n_locked: int) -> ViewpointArrays:
+def most_covering(model: CoverageModel, views: ViewpointArrays, n_views: int, n_locked: int) -> ViewpointArrays:
     """So many of the views, the locked ones in front, chosen greedily by what they cover; then those chosen first.
 
     All of them where they are no more.
@@ -299,7 +299,7 @@ def _bound(
     return given + dual_bound(elements, np.where(covered > 0, 0.0, weights), n_views, known - given, stop=stop)
 
 
-def needed(elements: Elements, weights: Array, covered: NDArray[np.int32] | None = None) -> NDArray[np.bool_]:
+def necessary_views(elements: Elements, weights: Array, covered: NDArray[np.int32] | None = None) -> NDArray[np.bool_]:
     """Which views are left when those are dropped, one after the other, without which nothing is lost."""
     state = cover_state(elements, weights, covered)
     kept = np.ones(len(elements.starts) - 1, np.bool_)
@@ -320,7 +320,7 @@ def choose_greedily(
     trace: Trace,
     monitor: Monitor,
     covered: NDArray[np.int32] | None = None,
-    apart: Apart = ANYWHERE,
+    apart: SpacingRule = ANYWHERE,
     first: NDArray[np.int64] = NOTHING,
 ) -> tuple[NDArray[np.int64], float]:
     """Numbers of the candidates chosen, in order, and the weight that is covered with them (and `covered` without).
@@ -372,7 +372,7 @@ def _fewest_views(choice: Choice, pool: Pool, target: float, parameters: GreedyP
     enough = target - 1e-9
     pool, chosen, value = choice.greedily(pool, len(pool.views.heading_rad), enough)
     if parameters.improve and value >= enough:
-        apart = apart_of(pool.views, choice.locked, choice.spacing_m)
+        apart = spacing_rule(pool.views, choice.locked, choice.spacing_m)
         exchange = Exchange(pool.elements, choice.weights, chosen, choice.seed, choice.covered, apart)
         while len(chosen) > 1 and not choice.stop():
             exchange.drop_least_useful()
@@ -413,7 +413,7 @@ def spend_spare_views(
         monitor.report(say("spending spare views"), len(chosen), n_views)
         elements = pool.elements if finer is model else finer.elements(pool.views)
         taken = np.concatenate([locked.positions_enu_m, pool.views.positions_enu_m[chosen]])
-        apart = Apart(pool.views.positions_enu_m, taken, spacing_m)
+        apart = SpacingRule(pool.views.positions_enu_m, taken, spacing_m)
         state = cover_state(elements, np.ones(finer.n_elements), covered_by(finer, locked), apart)
         state.depth[0] = depth
         for candidate in chosen:

@@ -14,7 +14,7 @@ from planning.plan import ViewpointArrays
 from planning.viewpoints import cover_kernel as kernel
 from planning.viewpoints.candidates import Pool, spread_candidates
 from planning.viewpoints.problem import NONE_LOCKED, ViewProblem, concatenate, covered_by, take
-from planning.viewpoints.spacing import ANYWHERE, Apart, apart_of
+from planning.viewpoints.spacing import ANYWHERE, SpacingRule, spacing_rule
 
 Array = NDArray[np.float64]
 
@@ -46,7 +46,7 @@ def refine_views(
     monitor: Monitor = QUIET,
     improved: Callable[[NDArray[np.int64]], None] | None = None,
     covered: NDArray[np.int32] | None = None,
-    apart: Apart = ANYWHERE,
+    apart: SpacingRule = ANYWHERE,
 ) -> ViewpointArrays:
     """Views of at least the same value, in the same order, as far apart as `apart` says of them.
 
@@ -81,7 +81,9 @@ def refine_views(
 class _PoseSearch:
     """Local search for one pose; remembers the best one that can be flown to, and what it covers."""
 
-    def __init__(self, problem: ViewProblem, open_weights: Array, items: NDArray[np.int32], others: Apart) -> None:
+    def __init__(
+        self, problem: ViewProblem, open_weights: Array, items: NDArray[np.int32], others: SpacingRule
+    ) -> None:
         self.problem, self.open_weights, self.items, self.others = problem, open_weights, items, others
         self.value = float(open_weights[items].sum())
         self.pose: Array | None = None
@@ -146,7 +148,7 @@ RADIANS_PER_METRE = 0.05
 
 
 def cover_state(
-    elements: Elements, weights: Array, covered: NDArray[np.int32] | None = None, apart: Apart = ANYWHERE
+    elements: Elements, weights: Array, covered: NDArray[np.int32] | None = None, apart: SpacingRule = ANYWHERE
 ) -> kernel.CoverState:
     """State with nothing chosen and depth 1; `covered` counts the views that each element has all the same."""
     inverse_starts, inverse_items = kernel.invert(elements.starts, elements.items, len(weights))
@@ -161,7 +163,7 @@ def cover_state(
         gains=np.zeros(n_candidates),
         depth=np.ones(1, np.int64),
         positions=np.array(apart.positions_enu_m, np.float64, order="C"),
-        taken=np.array(apart.taken_enu_m, np.float64, order="C"),
+        taken=np.array(apart.present_enu_m, np.float64, order="C"),
         spacing=float(apart.spacing_m),
     )
     kernel.refresh_gains(state)
@@ -178,7 +180,7 @@ class Exchange:
         chosen: NDArray[np.int64],
         seed: int,
         covered: NDArray[np.int32] | None = None,
-        apart: Apart = ANYWHERE,
+        apart: SpacingRule = ANYWHERE,
     ) -> None:
         self.elements, self.chosen, self.seed = elements, chosen.copy(), seed
         self.state = cover_state(elements, weights, covered, apart)
@@ -260,7 +262,7 @@ def improve_views(
     covered = covered_by(problem.model, locked)
     while idle < IDLE_ROUNDS and not stop():
         monitor.report(say("improving views"), round_number, 0)
-        apart = apart_of(pool.views, locked, spacing_m)
+        apart = spacing_rule(pool.views, locked, spacing_m)
         exchange = Exchange(pool.elements, weights, chosen, seed + 7919 * round_number, covered, apart)
         exchange.run(stop)
         trace.record(exchange.n_covered())
@@ -273,7 +275,7 @@ def improve_views(
             monitor,
             lambda counts: trace.record(int(np.count_nonzero(counts))),
             covered,
-            apart_of(views, locked, spacing_m),
+            spacing_rule(views, locked, spacing_m),
         )
         reached = float(weights[problem.model.covered(views) | (covered > 0)].sum())
         idle = 0 if reached > value + 1e-9 else idle + 1

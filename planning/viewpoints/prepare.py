@@ -143,7 +143,7 @@ class Prepared:
         """
         is_by_user = any(effect.decided_by == "user" for effect in self.effects)
         asked = replace(self.constraints, occlusion=self.constraints.occlusion if is_by_user else "auto")
-        constraints = settled(constraints, site_model, camera)
+        constraints = with_site_limits(constraints, site_model, camera)
         return (
             is_same_place(site_model, self.site_model)
             and (camera, precision) == (self.problem.model.camera, self.problem.model.precision)
@@ -151,7 +151,7 @@ class Prepared:
         )
 
 
-def settled(constraints: Constraints, site_model: SiteModel, camera: Camera) -> Constraints:
+def with_site_limits(constraints: Constraints, site_model: SiteModel, camera: Camera) -> Constraints:
     """The constraints with the lowest height and the largest pixel of sharp views that hold on a site for a camera."""
     lowest_m = site_model.site.airspace.lowest_height_m(constraints.min_height_above_ground_m)
     wanted_mm = constraints.wanted_gsd_mm
@@ -233,7 +233,7 @@ def prepare(
     """
     require_panels(site_model.site)
     monitor.report(say("reading the site"), 0, 1)
-    constraints = settled(constraints, site_model, camera)
+    constraints = with_site_limits(constraints, site_model, camera)
     space = free_space(site_model, constraints.min_distance_m, constraints.min_height_above_ground_m)
     decision = decide_occlusion(site_model, space, constraints.occlusion, seed)
     decided = replace(constraints, occlusion="on" if decision.on else "off")

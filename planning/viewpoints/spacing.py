@@ -1,8 +1,8 @@
 """How far apart views stand: at one place, or as far as the autopilot wants waypoints (half a metre for DJI).
 
-Two photos from one waypoint are fine. The greedy method keeps the rule (`Apart`) while it chooses, and looks for other
-places for what it keeps it from (`views_apart`). Methods that know nothing of it, and flights through candidates that
-were compared without it, are put right afterwards (`merge_close_views`), which may cost coverage.
+Two photos from one waypoint are fine. The greedy method keeps the rule (`SpacingRule`) while it chooses, and looks for
+other places for what it keeps it from (`spaced_views`). Methods that know nothing of it, and flights through candidates
+that were compared without it, are put right afterwards (`merge_close_views`), which may cost coverage.
 """
 
 from __future__ import annotations
@@ -58,21 +58,21 @@ def merge_close_views(
     return moved
 
 
-class Apart(NamedTuple):
+class SpacingRule(NamedTuple):
     """How far apart views must stand that are chosen from some.
 
     Parameters
     ----------
     positions_enu_m
         Of those that are chosen from, shape (n, 3).
-    taken_enu_m
+    present_enu_m
         Places of views that are there in any case, shape (k, 3).
     spacing_m
         Two stand at one place or at least this far apart; 0: it does not matter.
     """
 
     positions_enu_m: NDArray[np.float64]
-    taken_enu_m: NDArray[np.float64]
+    present_enu_m: NDArray[np.float64]
     spacing_m: float
 
     def is_too_close(self, point_enu_m: NDArray[np.float64]) -> bool:
@@ -83,26 +83,26 @@ class Apart(NamedTuple):
         """Whether places, shape (m, 3), are too close to any of those taken."""
         from scipy.spatial.distance import cdist
 
-        if self.spacing_m <= 0.0 or len(self.taken_enu_m) == 0:
+        if self.spacing_m <= 0.0 or len(self.present_enu_m) == 0:
             return np.zeros(len(points_enu_m), np.bool_)
-        away_m = cdist(points_enu_m, self.taken_enu_m)
+        away_m = cdist(points_enu_m, self.present_enu_m)
         return np.asarray(((away_m > 0.0) & (away_m < self.spacing_m)).any(axis=1))
 
-    def of_others(self, positions_enu_m: NDArray[np.float64], but: int) -> Apart:
+    def of_others(self, positions_enu_m: NDArray[np.float64], but: int) -> SpacingRule:
         """With the places of all views but one as taken."""
         if self.spacing_m <= 0.0:
             return self
         others = np.delete(positions_enu_m, but, axis=0)
-        return self._replace(taken_enu_m=np.concatenate([self.taken_enu_m, others]))
+        return self._replace(present_enu_m=np.concatenate([self.present_enu_m, others]))
 
 
 _NOWHERE = np.zeros((0, 3))
-ANYWHERE = Apart(_NOWHERE, _NOWHERE, 0.0)
+ANYWHERE = SpacingRule(_NOWHERE, _NOWHERE, 0.0)
 
 
-def apart_of(views: ViewpointArrays, taken: ViewpointArrays, spacing_m: float) -> Apart:
+def spacing_rule(views: ViewpointArrays, taken: ViewpointArrays, spacing_m: float) -> SpacingRule:
     """The rule for views that are chosen beside others that are there in any case."""
-    return Apart(views.positions_enu_m, taken.positions_enu_m, spacing_m)
+    return SpacingRule(views.positions_enu_m, taken.positions_enu_m, spacing_m)
 
 
 def rounding_spacing_m(spacing_m: float) -> float:
@@ -110,7 +110,7 @@ def rounding_spacing_m(spacing_m: float) -> float:
     return spacing_m + 2.0 * 10.0**-POSITION_DECIMALS if spacing_m > 0.0 else 0.0
 
 
-def views_apart(
+def spaced_views(
     problem: ViewProblem,
     elements: NDArray[np.int64],
     seen_from_enu_m: NDArray[np.float64],

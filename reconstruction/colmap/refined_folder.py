@@ -212,7 +212,7 @@ LENGTH_DECIMALS, TURN_DECIMALS = 4, 7
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class KeptRefinement:
+class StoredRefinement:
     """What a folder holds.
 
     Parameters
@@ -330,7 +330,7 @@ def check_refined_folder(folder: Path) -> None:
         raise InputError(say("holds something other than refined poses; name another folder", place=folder))
 
 
-def read_refined(folder: Path, photos: Sequence[PosedPhoto]) -> KeptRefinement:
+def read_refined(folder: Path, photos: Sequence[PosedPhoto]) -> StoredRefinement:
     """Refined poses as they were written, for the photos at hand.
 
     Parameters
@@ -363,7 +363,7 @@ def read_refined(folder: Path, photos: Sequence[PosedPhoto]) -> KeptRefinement:
         for photo in found
         if photo.name in by_name
     )
-    return KeptRefinement(
+    return StoredRefinement(
         record.photos_sha256,
         record.parameters,
         refined,

@@ -22,7 +22,7 @@ from planning.geo.frames import Vec3
 from reconstruction.objects.gs_scene import GsElement
 from reconstruction.photos.decode import decoded
 from reconstruction.records.entries import is_address
-from reconstruction.records.stored_files import STARTS, told_name
+from reconstruction.records.stored_files import STARTS, download_name
 
 # Files that records name, for a web page: pictures small, documents as they are.
 #
@@ -96,7 +96,7 @@ def files_of(
     for row in rows:
         place = str(row.get("place", ""))
         if row["record"] == "document" and place and not is_address(place):
-            row["file"] = told_name(str(row.get("title", "")), place)
+            row["file"] = download_name(str(row.get("title", "")), place)
             (pictures if place.endswith(PICTURES) else documents).add(place)
     found = WebFiles({}, {}, {}, {})
     n_bytes = 0

@@ -249,8 +249,7 @@ class _Multiplied(torch.autograd.Function):
 # Lookups in cubes of texels and the way back, compiled, float32 in main memory.
 #
 # Cubes are padded (`cube_faces.padding`), so that a lookup's four texels lie in one face, and come finest first, one
-# below the other. The formulas are those of `cube_lookup.looked_up_twin`. Gradients of texels are added up ray by ray
-# in
+# below the other. The formulas are those of `looked_up_reference`. Gradients of texels are added up ray by ray in
 # up to four parts, whose number depends on sizes alone: the same bits for any number of threads.
 
 SHORTEST, LONGEST = 1e-20, 1e20
@@ -392,7 +391,7 @@ def _turn_back(
 
 
 def looked_up(directions: Tensor, levels: Tensor, texels: Tensor, sides: Integers, offsets: Integers) -> Tensor:
-    """See `cube_lookup.looked_up_twin`; all tensors float32 in main memory."""
+    """See `cube_lookup.looked_up_reference`; all tensors float32 in main memory."""
     return cast(Tensor, _LookedUp.apply(directions, levels, texels, sides, offsets))  # type: ignore[no-untyped-call]
 
 
@@ -465,7 +464,7 @@ class Levels:
     def look_up(self, directions: Tensor, levels: Tensor, texels: Tensor) -> Tensor:
         """What cubes show, shape (n, c).
 
-        Compiled for float32 in main memory, else by `looked_up_twin`.
+        Compiled for float32 in main memory, else by `looked_up_reference`.
 
         Parameters
         ----------
@@ -479,10 +478,10 @@ class Levels:
         tensors = (directions, levels, texels)
         if all(each.device.type == "cpu" and each.dtype == torch.float32 for each in tensors):
             return looked_up(directions, levels, texels, self.sides, self.offsets)
-        return looked_up_twin(directions, levels, texels, self)
+        return looked_up_reference(directions, levels, texels, self)
 
 
-def looked_up_twin(directions: Tensor, levels: Tensor, texels: Tensor, where: Levels) -> Tensor:
+def looked_up_reference(directions: Tensor, levels: Tensor, texels: Tensor, where: Levels) -> Tensor:
     """What `Levels.look_up` says, in plain torch, of any precision on any device."""
     axes = directions.detach().abs().argmax(dim=-1, keepdim=True)
     major, across, up = (directions.gather(-1, (axes + shift) % 3).squeeze(-1) for shift in range(3))

@@ -209,7 +209,7 @@ class EnvironmentMap(nn.Module):
         levels = list(self.levels)
         if directions.device.type == "cpu" and directions.dtype == levels[0].dtype == torch.float32:
             return looked_up(directions, levels)
-        return looked_up_twin(directions, levels)
+        return looked_up_reference(directions, levels)
 
 
 def turns_and_rows(directions: Tensor) -> tuple[Tensor, Tensor]:
@@ -227,7 +227,7 @@ def turns_and_rows(directions: Tensor) -> tuple[Tensor, Tensor]:
     return torch.atan2(east, north) / (2.0 * math.pi), 0.5 - torch.atan2(up, level) / math.pi
 
 
-def looked_up_twin(directions: Tensor, levels: list[Tensor]) -> Tensor:
+def looked_up_reference(directions: Tensor, levels: list[Tensor]) -> Tensor:
     """What pictures show in unit directions, added up, in plain torch, of any precision on any device, shape (n, 3)."""
     turns, rows = turns_and_rows(directions)
     return torch.stack([_looked_up(texels, turns, rows) for texels in levels]).sum(dim=0)

@@ -21,7 +21,7 @@ from reconstruction.light.environment_map import EnvironmentMap
 from reconstruction.light.glass_rays import GlassRays
 from reconstruction.light.photo_set import PanelPlanes
 from reconstruction.light.radiance_grid import RadianceGrid
-from reconstruction.light.ray_table import Met, RayTable
+from reconstruction.light.ray_table import PaneHits, RayTable
 from reconstruction.light.reflection_mlp import ReflectionMlp
 from reconstruction.light.shading import reflected_directions
 
@@ -135,7 +135,7 @@ class GlassLight(nn.Module):
         """What follows the last step of all, also of a training that a time limit ended."""
         self.after_step(config, config.grid.rest - 1, 1.0)
 
-    def mirrored(self, table: RayTable, met: Met, panels: Tensor) -> tuple[Tensor, Tensor]:
+    def mirrored(self, table: RayTable, met: PaneHits, panels: Tensor) -> tuple[Tensor, Tensor]:
         """Where rays go on, unit, shape (n, 3), and cosines of their angles of incidence, shape (n,), float32."""
         if met.directions.requires_grad or met.directions.device.type != "cpu":
             normals, directions = self.normals(table, met, panels), met.directions.float()
@@ -146,7 +146,7 @@ class GlassLight(nn.Module):
         found: tuple[Tensor, Tensor] = _Mirror.apply(self.true_tilts(), bows, met, panels, normals, self.edges)  # type: ignore[no-untyped-call]
         return found
 
-    def normals(self, table: RayTable, met: Met, panels: Tensor) -> Tensor:
+    def normals(self, table: RayTable, met: PaneHits, panels: Tensor) -> Tensor:
         """Unit, at the places that rays meet, shape (n, 3), float32."""
         normals = table.normals[panels].float()
         if self.tilts is None and self.bows is None:
@@ -172,7 +172,7 @@ class GlassLight(nn.Module):
 class _Mirror(torch.autograd.Function):
     @staticmethod
     def forward(
-        ctx: Any, tilts: Tensor, bows: Tensor, met: Met, panels: Tensor, normals: Tensor, edges: Tensor
+        ctx: Any, tilts: Tensor, bows: Tensor, met: PaneHits, panels: Tensor, normals: Tensor, edges: Tensor
     ) -> tuple[Tensor, Tensor]:
         n = len(panels)
         values = (met.directions, met.shares, panels, normals, edges, tilts, bows)

@@ -22,7 +22,7 @@ from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.light.photo_set import PhotoSet
-from reconstruction.light.ray_table import Met, RayTable
+from reconstruction.light.ray_table import PaneHits, RayTable
 from reconstruction.light.shading import reflected_directions
 
 DEFAULT_BYTES = 1 << 30
@@ -98,7 +98,7 @@ class GlassRays:
         """Exposure of each ray's photo on top of that of all photos, shape (n,), float32."""
         return self.table.gains[self.photos].float()
 
-    def met(self, offsets_px: Tensor | None = None, moves: Tensor | None = None) -> Met:
+    def met(self, offsets_px: Tensor | None = None, moves: Tensor | None = None) -> PaneHits:
         """One ray of each pixel, through its middle or off it by `offsets_px`, shape (n, 2); see `RayTable.meet`."""
         places = self.middles_px if offsets_px is None else self.middles_px + offsets_px
         return self.table.meet(self.photos, places, self.panels, moves)

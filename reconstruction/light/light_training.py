@@ -45,7 +45,7 @@ BETAS = (0.9, 0.99)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Keeping:
+class CheckpointSettings:
     """How a training's state is kept.
 
     Parameters
@@ -97,7 +97,7 @@ class LightTraining:
         config: ReflectionConfig,
         precision: Precision,
         generator: torch.Generator,
-        keeping: Keeping | None = None,
+        keeping: CheckpointSettings | None = None,
         device: str = "cpu",
         clock: Clock = time.perf_counter,
     ) -> None:

@@ -34,7 +34,7 @@ SHORTEST = np.float32(1e-12)
 
 
 @kernel
-def unbent(x: float, y: float, distortion: Array, n_steps: int) -> tuple[float, float]:
+def undistorted(x: float, y: float, distortion: Array, n_steps: int) -> tuple[float, float]:
     """Place in a straight picture of one in the photo, in focal lengths, by a fixed-point iteration."""
     k1, k2, p1, p2, k3 = distortion
     u, v = x, y
@@ -54,7 +54,7 @@ def meet(
     corners: Array, normals: Array, n_steps: int, least: float,
     points: Array, directions: Array, cosines: Array, shares: Array, distances: Array,
 ) -> None:  # fmt: skip
-    """Write the fields of `Met`; the other arguments are those of `RayTable.meet`, and fields of the table.
+    """Write the fields of `PaneHits`; the other arguments are those of `RayTable.meet`, and fields of the table.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def meet(
             (places[ray, 1] - lenses[photo, 3]) / lenses[photo, 1],
         )
         if n_steps > 0:
-            x, y = unbent(x, y, distortions[photo], n_steps)
+            x, y = undistorted(x, y, distortions[photo], n_steps)
         turn = turns[photo]
         dx = turn[0, 0] * x + turn[0, 1] * y + turn[0, 2]
         dy = turn[1, 0] * x + turn[1, 1] * y + turn[1, 2]
@@ -95,7 +95,7 @@ def meet(
 
 
 @kernel
-def leaning(
+def tilted_normal(
     panel: int, normals: Single, edges: Single, tilts: Single, bows: Single, a: Number, b: Number
 ) -> tuple[Number, Number, Number]:
     """Normal of a pane, not yet unit, at a place that is `a` and `b` off its middle, -1 to 1."""
@@ -124,7 +124,7 @@ def mirror(
     Parameters
     ----------
     directions, shares
-        Of `Met`.
+        Of `PaneHits`.
     panels
         Shape (n,).
     normals, edges
@@ -136,7 +136,7 @@ def mirror(
     """
     for ray in range(len(panels)):
         a, b = off_middle(shares[ray, 0]), off_middle(shares[ray, 1])
-        nx, ny, nz = leaning(panels[ray], normals, edges, tilts, bows, a, b)
+        nx, ny, nz = tilted_normal(panels[ray], normals, edges, tilts, bows, a, b)
         length = max(np.float32(math.sqrt(nx * nx + ny * ny + nz * nz)), SHORTEST)
         nx, ny, nz = nx / length, ny / length, nz / length
         dx, dy, dz = np.float32(directions[ray, 0]), np.float32(directions[ray, 1]), np.float32(directions[ray, 2])
@@ -155,7 +155,7 @@ def mirror_back(
     for ray in range(len(panels)):
         panel = panels[ray]
         a, b = off_middle(shares[ray, 0]), off_middle(shares[ray, 1])
-        nx, ny, nz = leaning(panel, normals, edges, tilts, bows, a, b)
+        nx, ny, nz = tilted_normal(panel, normals, edges, tilts, bows, a, b)
         length = max(np.float32(math.sqrt(nx * nx + ny * ny + nz * nz)), SHORTEST)
         nx, ny, nz = nx / length, ny / length, nz / length
         dx, dy, dz = np.float32(directions[ray, 0]), np.float32(directions[ray, 1]), np.float32(directions[ray, 2])
@@ -183,12 +183,12 @@ def mirror_back(
 LEAST_COSINE = 1e-3
 """Between a ray and its panel's normal: below, at 89.94 degrees, a pixel is as long as a hundred panels."""
 
-UNBENT_STEPS = 12
+UNDISTORT_STEPS = 12
 """Of the fixed-point iteration that takes Brown's distortion away: each leaves a fifth of the error at most."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Met:
+class PaneHits:
     """Where n rays meet the planes of their panels.
 
     Parameters
@@ -269,7 +269,7 @@ class RayTable:
         """The same on another device."""
         return RayTable(*(getattr(self, field.name).to(device) for field in fields(self)))
 
-    def meet(self, photos: Tensor, places_px: Tensor, panels: Tensor, moves: Tensor | None = None) -> Met:
+    def meet(self, photos: Tensor, places_px: Tensor, panels: Tensor, moves: Tensor | None = None) -> PaneHits:
         """Rays through places in pictures, met with the planes of panels.
 
         Parameters
@@ -301,9 +301,9 @@ class RayTable:
         heights = ((origins - corners[:, 0]) * normals).sum(dim=1)
         distances = heights / cosines.clamp(min=LEAST_COSINE)
         points = origins + distances[:, None] * directions
-        return Met(points, directions, cosines, _shares(points, corners), distances)
+        return PaneHits(points, directions, cosines, _shares(points, corners), distances)
 
-    def _met(self, photos: Tensor, places_px: Tensor, panels: Tensor) -> Met:
+    def _met(self, photos: Tensor, places_px: Tensor, panels: Tensor) -> PaneHits:
         """The same without corrections, on a processor."""
         n = len(photos)
         found = tuple(np.empty((n, *shape)) for shape in ((3,), (3,), (), (2,), ()))
@@ -312,11 +312,11 @@ class RayTable:
         run(
             photos.long().numpy(), places_px.double().contiguous().numpy(), panels.long().numpy(),
             *(np.ascontiguousarray(part.numpy()) for part in parts),
-            UNBENT_STEPS if bool(self.distortions.any()) else 0, LEAST_COSINE, *found,
+            UNDISTORT_STEPS if bool(self.distortions.any()) else 0, LEAST_COSINE, *found,
         )  # fmt: skip
-        return Met(*(torch.from_numpy(part) for part in found))
+        return PaneHits(*(torch.from_numpy(part) for part in found))
 
-    def arriving(self, points_m: Tensor, directions: Tensor, panels: Tensor) -> Met:
+    def arriving(self, points_m: Tensor, directions: Tensor, panels: Tensor) -> PaneHits:
         """Rays that come from no camera, but arrive at places of panels from infinitely far away.
 
         Parameters
@@ -328,9 +328,9 @@ class RayTable:
         """
         cosines = -(directions * self.normals[panels]).sum(dim=1)
         shares = _shares(points_m, self.corners_m[panels])
-        return Met(points_m, directions, cosines, shares, torch.full_like(cosines, torch.inf))
+        return PaneHits(points_m, directions, cosines, shares, torch.full_like(cosines, torch.inf))
 
-    def inside(self, met: Met, panels: Tensor) -> Tensor:
+    def inside(self, met: PaneHits, panels: Tensor) -> Tensor:
         """Whether rays meet the fronts of their panels, which are convex, inside their edges, shape (n,), bool."""
         corners, normals = self.corners_m[panels], self.normals[panels]
         found = met.cosines > LEAST_COSINE
@@ -355,7 +355,7 @@ class RayTable:
             return torch.stack([x, y], dim=1)
         k1, k2, p1, p2, k3 = self.distortions[photos].unbind(dim=1)
         u, v = x, y
-        for _ in range(UNBENT_STEPS):
+        for _ in range(UNDISTORT_STEPS):
             r2 = u * u + v * v
             radial = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3))
             u, v = (

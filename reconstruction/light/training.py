@@ -22,7 +22,7 @@ from reconstruction.light.environment_map import EnvironmentMap
 from reconstruction.light.glass_light import GlassLight, LightModel
 from reconstruction.light.glass_rays import GlassRays, rays_of_photo
 from reconstruction.light.harmonics import MAX_DEGREE, HarmonicTexture
-from reconstruction.light.light_training import Keeping, LightTraining, on_device
+from reconstruction.light.light_training import CheckpointSettings, LightTraining, on_device
 from reconstruction.light.photo_set import PanelPlanes, PhotoSet
 from reconstruction.light.radiance_grid import GridBox, RadianceGrid, box_of
 from reconstruction.light.reflection_mlp import MlpHealth, MlpShape, ReflectionMlp
@@ -96,7 +96,7 @@ def train_reflections(
     unseen: GlassRays | None = None,
     monitor: Monitor = QUIET,
     clock: Clock = time.perf_counter,
-    keeping: Keeping | None = None,
+    keeping: CheckpointSettings | None = None,
     device: str = "cpu",
 ) -> TrainedReflections:
     """Train a model on rays.

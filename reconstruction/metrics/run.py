@@ -195,7 +195,7 @@ def viewed(photo: ScoredPhoto, kind: ViewKind) -> tuple[Rectification, ...]:
     return tuple(views)
 
 
-def together_method(n_views: int, parameters: SegmentationParameters, clock: Clock = time.perf_counter) -> Method:
+def fused_method(n_views: int, parameters: SegmentationParameters, clock: Clock = time.perf_counter) -> Method:
     """The same in a photo and `n_views` - 1 beside it, brought onto one another and searched at once."""
 
     def answer(photo: ScoredPhoto, monitor: Monitor) -> Answer:

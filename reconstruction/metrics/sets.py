@@ -25,8 +25,8 @@ from reconstruction.panels.rectify.view import SurfaceView, surface_view
 from reconstruction.panels.search.views import WholePicture
 from reconstruction.panels.solving.adjustment import moved_pose
 from reconstruction.scenes.facades.cases import Shape, case_name, photo_of, random_case
-from reconstruction.scenes.facades.record import Case, MadeFacade
-from reconstruction.scenes.facades.render import make_facade
+from reconstruction.scenes.facades.record import Case, SyntheticFacade
+from reconstruction.scenes.facades.render import render_facade
 from reconstruction.scenes.facades.scene import BASE_ABOVE_GROUND_M, BORDER_M
 
 if TYPE_CHECKING:
@@ -218,7 +218,7 @@ def _checked(index: NDArray[np.uint16], image: NDArray[np.uint8], path: Path) ->
 
 Mask = NDArray[np.bool_]
 
-MADE_SETS: dict[str, Shape] = {"made-planar": "planar", "made-curved": "curved", "made-irregular": "irregular"}
+SYNTHETIC_SETS: dict[str, Shape] = {"made-planar": "planar", "made-curved": "curved", "made-irregular": "irregular"}
 EXTENT_MARGIN_M = 2.0
 """What a coarse model of a glass building may be wrong by at its edges."""
 
@@ -228,7 +228,7 @@ BESIDE_DEG = ((12.0, 3.0), (-12.0, 6.0), (20.0, -3.0), (-20.0, 9.0), (6.0, 12.0)
 STATED_POSE = np.diag([0.03**2] * 3 + [np.radians(0.3) ** 2] * 3)
 """Covariance of the errors of their stated poses, position (m) and turn (rad)."""
 
-SET_NAMES = (*MADE_SETS, *READERS, "folder")
+SET_NAMES = (*SYNTHETIC_SETS, *READERS, "folder")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -275,7 +275,7 @@ class PhotoSet:
         return len(self.photo_names)
 
 
-def made_set(
+def synthetic_set(
     name: str,
     n_seeds: int,
     intrinsics: Intrinsics | None = None,
@@ -283,27 +283,29 @@ def made_set(
     n_beside: int = 0,
     first_seed: int = 0,
 ) -> PhotoSet:
-    """Made facades with strong reflections: one of `MADE_SETS`, `n_seeds` seeds from `first_seed` on; see `scored`.
+    """Synthetic facades with strong reflections, one of `SYNTHETIC_SETS`; see `scored`.
+
+    There are `n_seeds` of them, from `first_seed` on.
 
     Parameters
     ----------
     n_beside
         More photos of each facade, from other places, with poses as good as RTK and a gimbal's angles are.
     """
-    shape = MADE_SETS[name]
+    shape = SYNTHETIC_SETS[name]
     seeds = range(first_seed, first_seed + n_seeds)
 
     def photos() -> Iterator[ScoredPhoto]:
         for seed in seeds:
             case = random_case(shape, seed, intrinsics)
-            photo = scored(make_facade(case), extent_margin_m)
+            photo = scored(render_facade(case), extent_margin_m)
             (view,) = photo.views or ()
             yield replace(photo, beside=tuple(_beside(case, view, number) for number in range(n_beside)))
 
     return PhotoSet(name, tuple(case_name(shape, seed) for seed in seeds), photos)
 
 
-def scored(made: MadeFacade, extent_margin_m: float | None = EXTENT_MARGIN_M) -> ScoredPhoto:
+def scored(made: SyntheticFacade, extent_margin_m: float | None = EXTENT_MARGIN_M) -> ScoredPhoto:
     """A made facade as a photo to score, with what its stated pose shows of the wall's surface as its view.
 
     Parameters
@@ -328,7 +330,7 @@ def _beside(case: Case, view: Rectification, number: int) -> tuple[NDArray[np.ui
     aside, above = BESIDE_DEG[number % len(BESIDE_DEG)]
     lens = case.truth.intrinsics
     camera = photo_of(case.wall, case.layout, lens, seed=case.seed, oblique_deg=aside, from_below_deg=above)
-    made = make_facade(replace(case, truth=camera))
+    made = render_facade(replace(case, truth=camera))
     off = np.random.default_rng([case.seed, number]).multivariate_normal(np.zeros(6), STATED_POSE)
     stated = replace(moved_pose(camera.pose, off), covariance=STATED_POSE)
     return made.image, replace(view, photo=replace(made.photo, pose=stated))

@@ -16,9 +16,9 @@ from planning.base.effects import Assessment, Decision, decide
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.site.importing.facades import facade_name
-from reconstruction.panels.network.belief import BELIEVED, find_panes
+from reconstruction.panels.network.confidence import LEAST_BELIEVED, find_panes
 from reconstruction.panels.network.grids import grid_in_view, network_facades
-from reconstruction.panels.network.looks import LONG_SIDES_PX, FoundPanes, Looks, look_at
+from reconstruction.panels.network.predictions import LONG_SIDES_PX, FoundPanes, PhotoPrediction, predict_photo
 from reconstruction.panels.network.sides import measured
 from reconstruction.panels.network.votes import LEAST_SIDE_PX
 from reconstruction.panels.rectify.surface import Rectification
@@ -32,7 +32,7 @@ Array = NDArray[np.float64]
 NO_GLASS, GLASS = 0.3, 0.6
 """Probability that a place lies on a pane below which a panel there is doubted, and from which a panel is missed."""
 
-ASKED = 64
+LEAST_DISAGREEMENT = 64
 """Places along either side of the photo at which panels may be missed."""
 
 LEAST_GLASS = 0.01
@@ -50,7 +50,7 @@ class _Compared:
     """Panels between lines, and what the network says of the part of the same photo that shows their facade."""
 
     grids: Sequence[FacadeGrid]
-    looks: Looks
+    predictions: PhotoPrediction
     view: Rectification
     size_px: tuple[int, int]
     seconds: float
@@ -70,7 +70,7 @@ class NetworkForPanes:
 
     def assess(self, scene: _Compared) -> Assessment:
         """The larger share: of panels where the network sees no glass, or of its glass where there is no panel."""
-        no_glass, no_panel = doubt(scene.grids, scene.looks, scene.view, scene.size_px)
+        no_glass, no_panel = disagreement_with_network(scene.grids, scene.predictions, scene.view, scene.size_px)
         reason = say(
             "the network sees no glass on {:.0f} % of {} panels, and {:.0f} % of its glass lies outside them",
             *(100.0 * no_glass, sum(len(grid.panels) for grid in scene.grids), 100.0 * no_panel),
@@ -78,8 +78,8 @@ class NetworkForPanes:
         return Assessment(max(no_glass, no_panel), reason, scene.seconds)
 
 
-def doubt(
-    grids: Sequence[FacadeGrid], looks: Looks, view: Rectification, size_px: tuple[int, int]
+def disagreement_with_network(
+    grids: Sequence[FacadeGrid], predictions: PhotoPrediction, view: Rectification, size_px: tuple[int, int]
 ) -> tuple[float, float]:
     """Share of panels on which the network sees no glass, and share of the glass it sees that no panel covers.
 
@@ -95,20 +95,20 @@ def doubt(
     panels = [panel for grid in grids for panel in grid.panels]
     no_glass = 0.0
     if panels:
-        scale = max((look.scale for look in looks.by_size.values()), default=0.0)
+        scale = max((look.scale for look in predictions.by_size.values()), default=0.0)
         sides = [float(np.sqrt(cv2.contourArea(panel.corners_px.astype(np.float32)))) for panel in panels]
         if np.median(sides) * scale < LEAST_SIDE_PX:
             return 0.0, 0.0
         asked = np.concatenate([_inner(panel.corners_px) for panel in panels])
-        told = looks.probability_at(asked).reshape(len(panels), len(INNER)).mean(axis=1)
+        told = predictions.probability_at(asked).reshape(len(panels), len(INNER)).mean(axis=1)
         no_glass = float((told < NO_GLASS).mean())
-    share = (np.arange(ASKED) + 0.5) / ASKED
+    share = (np.arange(LEAST_DISAGREEMENT) + 0.5) / LEAST_DISAGREEMENT
     x, y = (each.ravel() for each in np.meshgrid(share * view.width_px, share * view.height_px))
     places = view.to_photo(np.column_stack([x, y]))
     seen = np.isfinite(places).all(axis=1) & (places >= 0.0).all(axis=1) & (places < size_px).all(axis=1)
     places = places[seen]
-    glass = places[looks.probability_at(places) > GLASS] if len(places) else places
-    if len(glass) < LEAST_GLASS * ASKED**2:
+    glass = places[predictions.probability_at(places) > GLASS] if len(places) else places
+    if len(glass) < LEAST_GLASS * LEAST_DISAGREEMENT**2:
         return no_glass, 0.0
     covered = np.zeros(len(glass), bool)
     for grid in grids:
@@ -214,13 +214,13 @@ class _Network:
         full_px = min(parameters.long_side_px, LONG_SIDES_PX[-1], max(image.shape[:2]))
         looked_px = full_px if parameters.network == "on" else min(FIRST_LOOK_PX, full_px)
         started = time.perf_counter()
-        self.first = look_at(colour, looked_px, monitor=monitor)
+        self.first = predict_photo(colour, looked_px, monitor=monitor)
         self.seconds = (full_px / looked_px) ** 2 * (time.perf_counter() - started)
 
     @cached_property
     def full(self) -> FoundPanes:
-        found = find_panes(look_at(self._image, self._parameters.long_side_px, self.first, self._monitor))
-        believed = [pane for pane in found.panes if pane.confidence >= BELIEVED]
+        found = find_panes(predict_photo(self._image, self._parameters.long_side_px, self.first, self._monitor))
+        believed = [pane for pane in found.panes if pane.confidence >= LEAST_BELIEVED]
         return replace(found, panes=tuple(measured(believed, self._image)))
 
     def decide(self, grids: Sequence[FacadeGrid], view: Rectification) -> Decision:

@@ -47,13 +47,13 @@ _PLAIN = frozenset({"date", "found_on", "repaired_on", "next_due", "key", "inspe
 """Fields in which blanks at the ends mean nothing."""
 
 
-def guarded(text: str) -> str:
+def escaped_formula(text: str) -> str:
     """Text that no spreadsheet takes for a formula."""
     return f"'{text}" if _FORMULA.match(text) else text
 
 
-def unguarded(text: str) -> str:
-    """The text that `guarded` was given."""
+def unescaped_formula(text: str) -> str:
+    """The text that `escaped_formula` was given."""
     return text[1:] if _GUARDED.match(text) else text
 
 
@@ -239,7 +239,7 @@ def column_of_head(head: str) -> Column:
 def _bytes(head: Iterable[str], lines: Iterable[Iterable[str]], delimiter: str) -> bytes:
     text = io.StringIO(newline="")
     writer = csv.writer(text, delimiter=delimiter, lineterminator="\r\n")
-    writer.writerow(guarded(cell) for cell in head)
+    writer.writerow(escaped_formula(cell) for cell in head)
     writer.writerows(lines)
     # The mark at the start tells spreadsheets that it is UTF-8.
     return text.getvalue().encode("utf-8-sig")
@@ -251,7 +251,11 @@ def _table(book: RecordBook, kind: Kind, names: Mapping[str, ObjectRow]) -> tupl
         return _wide(entries, names)
     columns = [field.name for field in fields(kind.record) if field.name != "global_id"]
     lines = [
-        [entry.global_id, guarded(names[entry.global_id].name), *(_cell(getattr(entry, column)) for column in columns)]
+        [
+            entry.global_id,
+            escaped_formula(names[entry.global_id].name),
+            *(_cell(getattr(entry, column)) for column in columns),
+        ]
         for entry in entries
     ]
     return [*OBJECT, *columns], lines
@@ -271,7 +275,7 @@ def _wide(entries: Iterable[Attribute], names: Mapping[str, ObjectRow]) -> tuple
     for global_id, row in names.items():
         found = values.get(global_id, {})
         sizes = [_cell(row.width_m), _cell(row.height_m)]
-        lines.append([global_id, guarded(row.name), *sizes, *(found.get(column, "") for column in columns)])
+        lines.append([global_id, escaped_formula(row.name), *sizes, *(found.get(column, "") for column in columns)])
     return [*OBJECT, *(f"{name} [m]" for name in COMPUTED), *map(column_head, columns)], lines
 
 
@@ -284,7 +288,7 @@ def _cell(value: Any) -> str:
         return number_cell(value)
     if isinstance(value, tuple):
         return json.dumps(value) if value else ""
-    return guarded(str(value))
+    return escaped_formula(str(value))
 
 
 class TableError(InputError):
@@ -308,7 +312,7 @@ _FIELD = re.compile(r"[a-z_][a-z0-9_, ]{0,60}")
 
 
 @dataclass(frozen=True, slots=True)
-class Taken:
+class ImportedTable:
     """What came of a table: lines read, and records that were added or changed by it."""
 
     kind: str
@@ -352,7 +356,7 @@ def kind_of_table(path: Path) -> Kind:
     raise InputError(say("expected a name of {}, or name the kind with --kind", names, place=path))
 
 
-def read_tables(book: RecordBook, tables: Sequence[tuple[Path, Kind]]) -> tuple[Taken, ...]:
+def read_tables(book: RecordBook, tables: Sequence[tuple[Path, Kind]]) -> tuple[ImportedTable, ...]:
     """Take tables over, all of all of them or nothing.
 
     A line with the key of an entry replaces it, one without key is a new entry; an attribute's empty cell leaves what
@@ -375,7 +379,7 @@ def read_tables(book: RecordBook, tables: Sequence[tuple[Path, Kind]]) -> tuple[
     return tuple(taken)
 
 
-def _take(table: _Table, kind: Kind, objects: _Objects, changes: Changes) -> Taken:
+def _take(table: _Table, kind: Kind, objects: _Objects, changes: Changes) -> ImportedTable:
     problems, n_before = _Problems(), changes.n_changed
     read = _attributes if kind.record is Attribute else _entries
     entries = list(read(table, kind, objects, problems))
@@ -392,7 +396,7 @@ def _take(table: _Table, kind: Kind, objects: _Objects, changes: Changes) -> Tak
             problems.add(line, "key", error)
     if problems.texts:
         raise TableError(table.path, tuple(problems.texts))
-    return Taken(kind.name, len(table.lines), changes.n_changed - n_before)
+    return ImportedTable(kind.name, len(table.lines), changes.n_changed - n_before)
 
 
 class _Objects:
@@ -456,7 +460,7 @@ def _read(path: Path) -> _Table:
         raise InputError(say("is no CSV ({})", error, place=f"{path}: line {start}")) from error
     if not lines:
         raise InputError(say("the table is empty; expected a line with the names of its columns", place=path))
-    head = tuple(unguarded(cell).strip() for cell in lines[0][1])
+    head = tuple(unescaped_formula(cell).strip() for cell in lines[0][1])
     repeated = next((name for name in head if head.count(name) > 1), None) if len(set(head)) < len(head) else None
     if repeated is not None:
         raise InputError(say("line 1: the column '{}' occurs twice", repeated[:60], place=path))
@@ -479,7 +483,7 @@ def _listed(names: Sequence[str]) -> str:
 
 
 def _cells(table: _Table, cells: list[str]) -> dict[str, str]:
-    return {name: unguarded(cell) for name, cell in zip(table.head, cells, strict=True)}
+    return {name: unescaped_formula(cell) for name, cell in zip(table.head, cells, strict=True)}
 
 
 def _object(objects: _Objects, cells: dict[str, str], line: int, problems: _Problems) -> str:

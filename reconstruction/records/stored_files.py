@@ -71,13 +71,13 @@ def store_document(book: RecordBook, path: Path) -> StoredFile:
     return _stored(book, read_input_file(path, DOCUMENT_FILE), ending if _ENDING.fullmatch(ending) else "")
 
 
-def shown_place(place: str) -> str:
+def display_place(place: str) -> str:
     """Where a document is, for people: its address or name; of a file that is kept under its checksum, what it is."""
     stem, _, ending = place.partition(".")
     return ending.upper() if SHA256.fullmatch(stem) else place
 
 
-def told_name(title: str, stored: str) -> str:
+def download_name(title: str, stored: str) -> str:
     """What a stored document is called when somebody gets it: its title, with the ending of its file."""
     ending = Path(stored).suffix
     stem = "".join("_" if character in '<>:"/\\|?*' or character < " " else character for character in title)

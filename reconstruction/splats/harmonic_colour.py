@@ -43,7 +43,7 @@ NEAREST_M = 1e-6
 def display_colours(means: Tensor, sh: Tensor, position: Tensor, degree: int) -> Tensor:
     """Display values, shape (n, 3), of splats seen from a place; below 0 and above 1, too.
 
-    On the processor in float32 by a compiled kernel (a quarter of torch's time), else by `display_colours_twin`.
+    On the processor in float32 by a compiled kernel (a quarter of torch's time), else by `display_colours_reference`.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def display_colours(means: Tensor, sh: Tensor, position: Tensor, degree: int) ->
     if means.device.type == "cpu" and means.dtype == sh.dtype == torch.float32:
         found = _Colours.apply(means, sh, position.detach().to(means), n_used, False)  # type: ignore[no-untyped-call]
         return cast(Tensor, found)
-    return display_colours_twin(means, sh, position, degree)
+    return display_colours_reference(means, sh, position, degree)
 
 
 def seen_light(means: Tensor, sh: Tensor, position: Tensor, degree: int) -> Tensor:
@@ -68,10 +68,10 @@ def seen_light(means: Tensor, sh: Tensor, position: Tensor, degree: int) -> Tens
     if means.device.type == "cpu" and means.dtype == sh.dtype == torch.float32:
         found = _Colours.apply(means, sh, position.detach().to(means), n_harmonics(degree), True)  # type: ignore[no-untyped-call]
         return cast(Tensor, found)
-    return light_of_display(display_colours_twin(means, sh, position, degree))
+    return light_of_display(display_colours_reference(means, sh, position, degree))
 
 
-def display_colours_twin(means: Tensor, sh: Tensor, position: Tensor, degree: int) -> Tensor:
+def display_colours_reference(means: Tensor, sh: Tensor, position: Tensor, degree: int) -> Tensor:
     """What `display_colours` says, in plain torch, of any type on any device."""
     n_used = n_harmonics(degree)
     towards = means - position.detach().to(means)

@@ -27,9 +27,9 @@ from reconstruction.splats.surfels import (
     SAME_SURFACE_M,
     KnownScene,
     Surfels,
-    beside_panels,
     joined,
     n_on_panel,
+    panel_proximity,
     panel_surfels,
     plane_normals,
     spacings_of,
@@ -59,7 +59,7 @@ LEAST_COSINE = 0.02
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class SeenSurfaces:
+class VisibleSurfaces:
     """Places of surfaces, how finely they are seen, whether a surface is known there, and what panel is beside.
 
     Normals of loose points are 0.
@@ -73,7 +73,7 @@ class SeenSurfaces:
     edges_enu: Array
 
 
-def seen_surfaces(
+def visible_surfaces(
     scene: KnownScene,
     photos: Sequence[PosedPhoto],
     origin_enu_m: Array,
@@ -81,7 +81,7 @@ def seen_surfaces(
     n_rays: int,
     coarser_around: float,
     seed: int,
-) -> SeenSurfaces:
+) -> VisibleSurfaces:
     """Mesh and ground that rays meet, and points that lie off both; none where a panel is, nor out of reach.
 
     Parameters
@@ -100,11 +100,11 @@ def seen_surfaces(
     everything, all_normals = np.concatenate([points, loose]), np.concatenate([normals, np.zeros_like(loose)])
     pixel_m = pixel_sizes(everything, all_normals, photos)
     is_near = np.linalg.norm(everything - origin_enu_m, axis=1) <= reach_m
-    beside = beside_panels(everything, scene.corners_enu_m, SAME_SURFACE_M, BESIDE_M)
+    beside = panel_proximity(everything, scene.corners_enu_m, SAME_SURFACE_M, BESIDE_M)
     pixel_m = np.where(np.isfinite(beside.gaps_m), 1.0, coarser_around) * pixel_m
     kept = is_near & (beside.panels < 0) & np.isfinite(pixel_m)
     is_known = np.concatenate([is_known, np.zeros(len(loose), bool)])
-    return SeenSurfaces(
+    return VisibleSurfaces(
         everything[kept],
         all_normals[kept],
         pixel_m[kept],
@@ -280,7 +280,7 @@ def initial_splats(
     monitor.report(say("placing splats"), 0, 3)
     n_rays = RAYS_PER_SPLAT * parameters.n_splats
     around, reach_m = parameters.coarser_around, parameters.reach_m
-    seen = seen_surfaces(scene, photos, origin_enu_m, reach_m, n_rays, around, parameters.seed)
+    seen = visible_surfaces(scene, photos, origin_enu_m, reach_m, n_rays, around, parameters.seed)
     monitor.report(say("placing splats"), 1, 3)
     surfels, n_known = _placed(scene, photos, seen, parameters)
     if not len(surfels):
@@ -308,7 +308,7 @@ def initial_splats(
 
 
 def _placed(
-    scene: KnownScene, photos: Sequence[PosedPhoto], seen: SeenSurfaces, parameters: InitialParameters
+    scene: KnownScene, photos: Sequence[PosedPhoto], seen: VisibleSurfaces, parameters: InitialParameters
 ) -> tuple[Surfels, int]:
     """Surfels, known ones first, and how many those are; one spacing in pixels for all, found by halving."""
     corners = scene.corners_enu_m

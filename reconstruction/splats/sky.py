@@ -102,10 +102,10 @@ def _twice_as_fine(picture: Tensor) -> Tensor:
 def _behind(picture: Tensor, directions: Tensor, alphas: Tensor) -> Tensor:
     if picture.device.type == "cpu" and picture.dtype == directions.dtype == alphas.dtype == torch.float32:
         return cast(Tensor, _Behind.apply(picture, directions, alphas))  # type: ignore[no-untyped-call]
-    return behind_twin(picture, directions, alphas)
+    return behind_reference(picture, directions, alphas)
 
 
-def behind_twin(picture: Tensor, directions: Tensor, alphas: Tensor) -> Tensor:
+def behind_reference(picture: Tensor, directions: Tensor, alphas: Tensor) -> Tensor:
     """(1 - alpha) L in plain torch, of any type on any device, shape (n, 3).
 
     Parameters

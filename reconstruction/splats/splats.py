@@ -78,7 +78,7 @@ def flattened(quats_wxyz: Tensor, log_scales: Tensor) -> tuple[Tensor, Tensor]:
 
 # What discs add to a picture besides their colour, seen from a place, with gradients, in one go on a processor.
 #
-# In plain torch (`Splats.features_twin`) each of a dozen steps goes through all splats again, which takes twice as
+# In plain torch (`Splats.features_reference`) each of a dozen steps goes through all splats again, which takes twice as
 # long
 # and longer (`python -m tests.benchmarks --only modelling-parts`).
 
@@ -399,9 +399,9 @@ class Splats(nn.Module):
             return disc_features(
                 colours, self.means, self.quats, self.reflectivity_logits, self.f0_logits, self.panels, view_position
             )
-        return self.features_twin(view_position, colours)
+        return self.features_reference(view_position, colours)
 
-    def features_twin(self, view_position: Tensor, colours: Tensor) -> Tensor:
+    def features_reference(self, view_position: Tensor, colours: Tensor) -> Tensor:
         """What `features` says, in plain torch, of any type on any device, of ellipsoids, too."""
         normals, offsets = self._facing(view_position)
         parts = (colours, self.reflectivity[:, None], self.f0, normals, offsets[:, None])

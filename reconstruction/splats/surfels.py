@@ -83,7 +83,7 @@ def surfels_between(points_enu_m: Array, normals_enu: Array, spacings_m: Array, 
     Parameters
     ----------
     gaps_m, edges
-        Of `beside_panels`.
+        Of `panel_proximity`.
     """
     helper = np.zeros_like(normals_enu)
     helper[np.arange(len(helper)), np.abs(normals_enu).argmin(axis=1)] = 1.0
@@ -139,7 +139,7 @@ def _sides(corners_enu_m: Array) -> tuple[Array, Array]:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Beside:
+class PanelProximity:
     """Where points lie as the panels see it.
 
     Parameters
@@ -157,7 +157,7 @@ class Beside:
     edges_enu: Array
 
 
-def beside_panels(points_enu_m: Array, corners_enu_m: Array, within_m: float, reach_m: float) -> Beside:
+def panel_proximity(points_enu_m: Array, corners_enu_m: Array, within_m: float, reach_m: float) -> PanelProximity:
     """Which points are a panel's, and how far the others are from glass.
 
     Parameters
@@ -168,7 +168,7 @@ def beside_panels(points_enu_m: Array, corners_enu_m: Array, within_m: float, re
         To which gaps are told.
     """
     n = len(points_enu_m)
-    found = Beside(np.full(n, -1, np.int32), np.full(n, np.inf), np.zeros((n, 3)))
+    found = PanelProximity(np.full(n, -1, np.int32), np.full(n, np.inf), np.zeros((n, 3)))
     if not n or not len(corners_enu_m):
         return found
     tree = cKDTree(points_enu_m)
@@ -335,7 +335,7 @@ def known_scene(photo_set: PhotoSet) -> KnownScene:
     return KnownScene(photo_set.panels.corners_enu_m, mesh, points, rgb, _ground_z_m(folder, mesh))
 
 
-def points_alone(scene: KnownScene, folder: Path, *, knows_panels: bool) -> KnownScene:
+def points_only(scene: KnownScene, folder: Path, *, knows_panels: bool) -> KnownScene:
     """What a method knows that begins at points of photogrammetry, none of which are on glass, and maybe of panels.
 
     Raises
@@ -344,7 +344,7 @@ def points_alone(scene: KnownScene, folder: Path, *, knows_panels: bool) -> Know
         There are no such points; the message names the folder that the scene is of.
     """
     corners = scene.corners_enu_m
-    on_glass = beside_panels(scene.points_enu_m, corners, SAME_SURFACE_M, 0.0).panels >= 0
+    on_glass = panel_proximity(scene.points_enu_m, corners, SAME_SURFACE_M, 0.0).panels >= 0
     if on_glass.all():
         raise InputError(
             say(
@@ -406,7 +406,7 @@ class PointsForMesh:
         return Assessment(scene.share, reason, 0.0)
 
 
-def begun_on_points(
+def scene_of_points(
     scene: KnownScene, cameras_enu_m: Array, setting: EffectSetting = "auto"
 ) -> tuple[KnownScene, Decision | None]:
     """The scene that splats begin on, points and ground alone where the decision is on; None where none is to be made.

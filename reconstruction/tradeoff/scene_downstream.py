@@ -24,7 +24,7 @@ from reconstruction.light.reflective_panels import ModelName
 from reconstruction.light.training import ReflectionScore, TrainedReflections, score_views, train_reflections
 from reconstruction.scenes.parameters import RenderSettings
 from reconstruction.scenes.record import Scene
-from reconstruction.scenes.runs.photo_folder import photograph
+from reconstruction.scenes.runs.photo_folder import render_photo_folder
 from reconstruction.scenes.runs.photo_job import PhotoJob
 
 HISTORY_VIEWS = 4
@@ -171,7 +171,7 @@ def _rendered_s(
     """Seconds that the photos of a folder took."""
     placed = tuple(replace(photo, path=folder / "images" / photo.name) for photo in photos)
     started = time.perf_counter()
-    photograph(PhotoJob(scene, placed, settings, {}, n_points=N_POINTS), folder, 1, monitor)
+    render_photo_folder(PhotoJob(scene, placed, settings, {}, n_points=N_POINTS), folder, 1, monitor)
     return time.perf_counter() - started
 
 

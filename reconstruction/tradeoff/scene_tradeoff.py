@@ -41,7 +41,7 @@ from reconstruction.scenes.parameters import (
     RenderSettings,
 )
 from reconstruction.scenes.photos.lens_effects import developed, metered_exposure
-from reconstruction.scenes.photos.renderer import Photograph, Renderer
+from reconstruction.scenes.photos.renderer import RenderedPhoto, Renderer
 from reconstruction.scenes.record import Scene
 
 # Rendered photos of scenes as photos to score: what they show of each facade is known from pose and site.
@@ -124,7 +124,7 @@ ERROR_AXIS = GapAxis(
 class CanRender(Protocol):
     """Something that takes photographs of a scene."""
 
-    def render(self, photo: PosedPhoto, seed: int = 0) -> Photograph:
+    def render(self, photo: PosedPhoto, seed: int = 0) -> RenderedPhoto:
         """Take one."""
 
 
@@ -257,8 +257,8 @@ class Truth:
     """
 
     name: str
-    taken: tuple[Photograph, ...]
-    again: tuple[Photograph, ...] | None
+    taken: tuple[RenderedPhoto, ...]
+    again: tuple[RenderedPhoto, ...] | None
     seconds: float
     panels: SetScores
 
@@ -295,7 +295,7 @@ def make_truth(
     settings = RenderSettings(samples=TRUTH_SAMPLES, effects=dict.fromkeys(EFFECTS, "on"))
     renderer = Renderer(scene, settings) if make is None else make[0](scene, settings, make[1])
     passes, started = (1 if make is None else 2), clock()
-    taken: list[list[Photograph]] = [[] for _ in range(passes)]
+    taken: list[list[RenderedPhoto]] = [[] for _ in range(passes)]
     for again in range(passes):
         for number, photo in enumerate(photos):
             monitor.report("rendering the truth", again * len(photos) + number, passes * len(photos))
@@ -375,7 +375,7 @@ def run_scene_variants(
     return tuple(trials)
 
 
-def _panel_scores(photo: PosedPhoto, taken: Photograph, exposure: float, seen: Sequence[Wall]) -> PhotoScores:
+def _panel_scores(photo: PosedPhoto, taken: RenderedPhoto, exposure: float, seen: Sequence[Wall]) -> PhotoScores:
     scored = rendered_photo(photo, developed(taken, exposure), taken.panel, seen)
     return score_answer(scored, own_method()(scored, QUIET))
 
@@ -385,7 +385,7 @@ def _narrowed(photo: PosedPhoto, width_px: int) -> PosedPhoto:
     return replace(photo, intrinsics=lens.scaled(width_px, max(1, round(width_px * lens.height_px / lens.width_px))))
 
 
-def _grey(taken: Photograph, exposure: float) -> NDArray[np.uint8]:
+def _grey(taken: RenderedPhoto, exposure: float) -> NDArray[np.uint8]:
     return developed(replace(taken, in_camera=taken.in_camera - {NOISE}), exposure)
 
 

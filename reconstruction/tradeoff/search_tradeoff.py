@@ -9,7 +9,7 @@ from typing import Any
 from planning.base.progress import QUIET, Monitor
 from planning.tradeoff.runner import GapAxis, Panel, knob_lines
 from reconstruction.metrics.metrics import PhotoScores, SetScores, summarise
-from reconstruction.metrics.run import Method, own_method, score_answer, together_method, viewed, viewed_method
+from reconstruction.metrics.run import Method, fused_method, own_method, score_answer, viewed, viewed_method
 from reconstruction.metrics.sets import PhotoSet
 from reconstruction.panels.rectify.fit import VIEW_KINDS, ViewKind
 from reconstruction.panels.rectify.surface import PolynomialView
@@ -157,7 +157,7 @@ def _settings(base: SegmentationParameters, variants: SegmentVariants) -> list[_
             _Setting(knob, value, parameters, own_method(parameters))
             for knob, value, parameters in [("", "", base), *changed]
         ),
-        *(_Setting(VIEWS_NAME, str(n), base, together_method(n, base)) for n in variants.n_views),
+        *(_Setting(VIEWS_NAME, str(n), base, fused_method(n, base)) for n in variants.n_views),
         *(_Setting(RECTIFIED_NAME, kind, base, viewed_method(kind, base), kind) for kind in variants.view_kinds),
     ]
 

@@ -36,11 +36,11 @@ class HeldOut:
     gain: float
 
 
-VisitState = Literal["training", "paused", "settling"]
+SnapshotState = Literal["training", "paused", "settling"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Visit:
+class TrainingSnapshot:
     """A training between two steps, for somebody who looks at its model and must not change it.
 
     Parameters
@@ -64,7 +64,7 @@ class Visit:
     model: SceneModel
     exposures: Exposures
     record: dict[str, Any]
-    state: VisitState
+    state: SnapshotState
     step: int
     seconds: float
     progress: float
@@ -98,7 +98,7 @@ class Callbacks:
     pause: Stop = never
     trace: Trace | None = None
     preview: Callable[[Preview], None] | None = None
-    visit: Callable[[Visit], None] | None = None
+    visit: Callable[[TrainingSnapshot], None] | None = None
 
 
 @torch.no_grad()

@@ -163,7 +163,7 @@ class TrainConfig:
         Whether each photo has a gain and a white balance of its own: `exposures.OwnExposures`. Off, gains stay what the
         folder says.
     light_apart
-        Whether light that is learned apart from the splats is worth it: `start.LightApart`. On, rays of glass alone
+        Whether light that is learned apart from the splats is worth it: `start.SeparateLight`. On, rays of glass alone
         decide which; off, nothing is tried.
     points_for_mesh
         Whether splats begin on points in the place of a mesh that these do not lie on: `surfels.PointsForMesh`.

@@ -16,7 +16,7 @@ from functools import cache
 from typing import Any, Literal
 
 from planning.base.messages import say
-from planning.base.plugins import Plugin, PluginGroup, expect_type, guarded, load_plugins, told_problem
+from planning.base.plugins import Plugin, PluginGroup, expect_type, guarded, load_plugins, plugin_problem
 
 Primitive = Literal["discs", "ellipsoids"]
 """What splats are: flat Gaussian discs (2DGS), or Gaussian ellipsoids drawn by EWA splatting (3DGS)."""
@@ -186,7 +186,7 @@ def method_named(name: str) -> Method:
     if name in METHODS:
         return METHODS[name]
     if name not in training_methods():
-        problem = told_problem(PluginGroup.TRAINING_METHODS, name)
+        problem = plugin_problem(PluginGroup.TRAINING_METHODS, name)
         expected = say("method: expected {}, got '{}'", ", ".join(training_methods()), name)
         raise ValueError(expected if problem is None else str(problem))
     return training_methods()[name]

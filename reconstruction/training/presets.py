@@ -67,7 +67,7 @@ def preset(name: str) -> TrainConfig:
     return replace(_CONFIGS[name], time_limit_s=None if minutes is None else minutes * MINUTE_S)
 
 
-def as_asked(base: TrainConfig, asked: TrainRequest) -> TrainConfig:
+def with_request(base: TrainConfig, asked: TrainRequest) -> TrainConfig:
     """Settings with what was asked for by itself; iterations alone take the preset's time limit away.
 
     Raises

@@ -23,7 +23,7 @@ from planning.base.progress import QUIET, Monitor
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.light.choose_light import LightTrials, chosen, try_lights, white_of
 from reconstruction.light.glass_rays import GlassRays, glass_rays
-from reconstruction.light.light_training import Keeping
+from reconstruction.light.light_training import CheckpointSettings
 from reconstruction.light.photo_set import PanelPlanes, PhotoSet, held_out_names
 from reconstruction.light.reflective_panels import ModelName, ReflectivePanels
 from reconstruction.light.shading import display_from_linear, reflected_directions
@@ -35,11 +35,11 @@ from reconstruction.splats.ply import read_splats
 from reconstruction.splats.rasterising.views import View
 from reconstruction.splats.sky import Sky
 from reconstruction.splats.splats import NO_PANEL, Splats, splats_from_tensors, splats_to_tensors
-from reconstruction.splats.surfels import begun_on_points, known_scene, model_origin, points_alone
+from reconstruction.splats.surfels import known_scene, model_origin, points_only, scene_of_points
 from reconstruction.training.callbacks import Callbacks, HeldOut
 from reconstruction.training.config import TrainConfig
 from reconstruction.training.methods.shader import Shader
-from reconstruction.training.methods.shaders import Surroundings, as_method_has_them, shader_of, with_primitive
+from reconstruction.training.methods.shaders import Surroundings, converted_for_method, shader_of, with_primitive
 from reconstruction.training.model.joint_model import SceneModel
 from reconstruction.training.model.record import SiteRecord, site_record
 from reconstruction.training.photos.exposures import Exposures, Move, learned_moves, moved, own_exposures
@@ -79,7 +79,7 @@ class LightStage:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class BegunLight:
+class InterruptedLightStage:
     """A first stage that was interrupted.
 
     Parameters
@@ -98,7 +98,7 @@ class BegunLight:
     spent_s: float
 
 
-def write_light(path: Path, begun: BegunLight) -> None:
+def write_light(path: Path, begun: InterruptedLightStage) -> None:
     """Write a checkpoint, whole or not at all.
 
     Raises
@@ -117,7 +117,7 @@ def write_light(path: Path, begun: BegunLight) -> None:
     )
 
 
-def begun_light(content: dict[str, Any], path: Path) -> BegunLight | None:
+def interrupted_light_stage(content: dict[str, Any], path: Path) -> InterruptedLightStage | None:
     """The first stage in the content of a checkpoint; None where it is of the joint training.
 
     Raises
@@ -131,7 +131,7 @@ def begun_light(content: dict[str, Any], path: Path) -> BegunLight | None:
     splats, state, spent_s = (content.get(name) for name in ("splats", "training", "spent_s"))
     if not isinstance(splats, dict) or not isinstance(state, dict) or not isinstance(spent_s, float):
         raise InputError(say("holds no state of a training; begin the training anew", place=path))
-    return BegunLight(stage, splats, state, spent_s)
+    return InterruptedLightStage(stage, splats, state, spent_s)
 
 
 def checksum(rays: GlassRays) -> str:
@@ -162,7 +162,7 @@ DEGREE = 2
 
 
 @torch.no_grad()
-def hand_over(
+def warm_start_splats(
     panels: ReflectivePanels, splats: Splats, planes: PanelPlanes, origin_enu_m: Array, cameras_enu_m: Array
 ) -> None:
     """Give the splats on each pane its r and F0, and the colour c that its places have.
@@ -326,7 +326,7 @@ def start_model(
     monitor: Monitor = QUIET,
     watch: Timer | None = None,
     checkpoint: Path | None = None,
-    begun: BegunLight | None = None,
+    begun: InterruptedLightStage | None = None,
     given: Path | None = None,
 ) -> Start:
     """Place splats, learn the light that glass mirrors from its rays alone, and put both together.
@@ -373,10 +373,10 @@ def start_model(
     else:
         parameters = InitialParameters(n_splats=config.n_splats, seed=config.seed)
         if config.start_from == "points":
-            start = points_alone(scene, source.folder, knows_panels=config.trained_by.knows_panels)
+            start = points_only(scene, source.folder, knows_panels=config.trained_by.knows_panels)
         else:
             places = np.array([photo.pose.position_enu_m for photo in learned])
-            start, on_points = begun_on_points(scene, places, config.points_for_mesh)
+            start, on_points = scene_of_points(scene, places, config.points_for_mesh)
             decisions += () if on_points is None else (on_points,)
         splats = initial_splats(start, learned, origin, parameters, source.picture, monitor)
     light: TrainedReflections | None = None
@@ -388,13 +388,13 @@ def start_model(
     if not config.trained_by.knows_panels:
         triangles = (scene.mesh.corners_enu_m - origin).astype(np.float32).reshape(-1, 3, 3)
         shader = shader_of(config, Surroundings(triangles))
-        splats = as_method_has_them(splats, config, shader)
+        splats = converted_for_method(splats, config, shader)
     else:
         light, decisions = _learned_light(source, learned, config, splats, monitor, watch, checkpoint, begun, decisions)
     moves = learned_moves(None if light is None else light.panels.light, len(learned))
     cameras = np.array([photo.pose.position_enu_m for photo in moved(learned, moves)])
     if light is not None:
-        hand_over(light.panels, splats, source.panels, origin, cameras)
+        warm_start_splats(light.panels, splats, source.panels, origin, cameras)
     return Start(
         config,
         _joined(source, learned, splats, light, shader, origin, config),
@@ -443,7 +443,7 @@ NEVER_S = 1e9
 
 
 @dataclass(frozen=True, slots=True)
-class LightApart:
+class SeparateLight:
     """Whether light that is learned apart from the splats tells unseen views better."""
 
     name: str = say("light apart from the splats")
@@ -460,7 +460,7 @@ class LightApart:
 
 
 @dataclass(frozen=True, slots=True)
-class _Told:
+class _NamedReports:
     """Reports under the name of the choice."""
 
     monitor: Monitor
@@ -498,7 +498,7 @@ def _is_worth(
     for model in (name, "harmonics"):
         light = tried.found[model]
         own = splats_from_tensors(splats_to_tensors(splats), str(source.folder))
-        hand_over(light.panels, own, source.panels, origin, cameras)
+        warm_start_splats(light.panels, own, source.panels, origin, cameras)
         joint = _joined(source, seen, own, light, None, origin, config)
         with ExitStack() as closing:
             with_normals = config.losses.normal_prior > 0.0
@@ -516,9 +516,9 @@ def _is_worth(
                 extent_m=_extent_m(cameras),
                 watch=Timer(watch.clock),
             )
-            trainer.run(Callbacks(_Told(monitor)))
+            trainer.run(Callbacks(_NamedReports(monitor)))
             scores[model] = trainer.at.history[-1][1]
-    return decide(LightApart(), (scores[name], scores["harmonics"], tried.trials.seconds))
+    return decide(SeparateLight(), (scores[name], scores["harmonics"], tried.trials.seconds))
 
 
 def with_white(config: TrainConfig, white: float) -> TrainConfig:
@@ -535,7 +535,7 @@ def _learned_light(
     monitor: Monitor,
     watch: Timer,
     checkpoint: Path | None,
-    begun: BegunLight | None,
+    begun: InterruptedLightStage | None,
     before: tuple[Decision, ...],
 ) -> tuple[TrainedReflections, tuple[Decision, ...]]:
     """The light, and the decisions about what learns it after those that were made before."""
@@ -555,13 +555,13 @@ def _learned_light(
     if begun is None:
         name, decisions = config.light, no_decisions
         if name == "auto" and config.light_apart == "off":
-            name, decisions = "harmonics", (decide(LightApart(), None, "off"),)
+            name, decisions = "harmonics", (decide(SeparateLight(), None, "off"),)
         elif name == "auto":
             quick = replace(settings, time_limit_s=_light_limit_s(config, watch))
             tried = try_lights(rays, source.panels, quick, monitor, device=config.device)
             name, decisions = ("environment-map", no_decisions) if tried is None else chosen(tried.trials)
             if config.light_apart == "on":
-                decisions = (*decisions, decide(LightApart(), None, "on"))
+                decisions = (*decisions, decide(SeparateLight(), None, "on"))
             elif tried is not None and name != "harmonics" and decisions[0].size < CLEAR_DB:
                 worth = _is_worth(source, learned, splats, tried, name, config, watch, monitor)
                 name, decisions = (name if worth.on else "harmonics"), (*decisions, worth)
@@ -579,8 +579,8 @@ def _learned_light(
     keeping = None
     if checkpoint is not None:
         placed = splats_to_tensors(splats)
-        write = lambda state: write_light(checkpoint, BegunLight(stage, placed, state, watch()))  # noqa: E731
-        keeping = Keeping(write, config.checkpoint_every_s, None if begun is None else begun.state)
+        write = lambda state: write_light(checkpoint, InterruptedLightStage(stage, placed, state, watch()))  # noqa: E731
+        keeping = CheckpointSettings(write, config.checkpoint_every_s, None if begun is None else begun.state)
     settings = replace(settings, time_limit_s=stage.time_limit_s)
     try:
         trained = train_reflections(

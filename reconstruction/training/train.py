@@ -27,7 +27,7 @@ from reconstruction.training.model.score import quality_of, score_views
 from reconstruction.training.photos.exposures import moved
 from reconstruction.training.photos.photo_stream import PhotoStream, StreamSettings
 from reconstruction.training.ranks import ALONE, Ranks
-from reconstruction.training.start import Start, begun_light, held_out_views, start_model
+from reconstruction.training.start import Start, held_out_views, interrupted_light_stage, start_model
 from reconstruction.training.timer import Timer
 from reconstruction.training.trainer import SHOWN_VIEWS, Trainer, strategy_of
 from reconstruction.training.training_state import read_checkpoint
@@ -44,7 +44,7 @@ USUAL_KEPT, USUAL_AHEAD, USUAL_PIECE = 1 << 26, 1 << 17, 1 << 25
 
 
 @contextmanager
-def freed_memory_kept() -> Iterator[None]:
+def freed_memory_retained() -> Iterator[None]:
     """Keep what is freed within a block, up to `KEPT`; at its end all that is free is given back."""
     library = _gnu_library()
     if library is None:
@@ -75,7 +75,7 @@ SHOWN_SHARE = 0.25
 """Of the memory for photos, at most, for held-out ones that the quality is measured on."""
 
 
-@freed_memory_kept()
+@freed_memory_retained()
 def train_model(
     folder: Path,
     config: TrainConfig,
@@ -165,7 +165,7 @@ def _started(
         return _finished(trainer, record, source, watching)
 
 
-@freed_memory_kept()
+@freed_memory_retained()
 def resume_model(
     folder: Path,
     checkpoint: Path,
@@ -191,7 +191,7 @@ def resume_model(
     content = read_checkpoint(checkpoint)
     # Nobody writes another one before all have read this one.
     ranks.wait()
-    begun = begun_light(content, checkpoint)
+    begun = interrupted_light_stage(content, checkpoint)
     if begun is None:
         return _resumed(folder, checkpoint, content, watching, method, ranks, watch)
     config = begun.stage.config
@@ -314,7 +314,7 @@ def _last_look(trainer: Trainer, trained: TrainedModel, source: PhotoSet, watchi
     if not trainer.is_first:
         return None
     names, config = trained.record.held_out, trained.record.config
-    share = trainer.most_last_s() / max(trainer.last_look_s(), 1e-9)
+    share = trainer.most_final_scoring_s() / max(trainer.final_scoring_s(), 1e-9)
     n_views = len(names) if share >= 1.0 else max(1, int(share * len(names)))
     chosen = [names[number * len(names) // n_views] for number in range(n_views)]
     return quality_of(

@@ -25,7 +25,15 @@ from reconstruction.splats.densification.adaptive import AdaptiveControl, Adapti
 from reconstruction.splats.densification.mcmc import MarkovChain, McmcParameters
 from reconstruction.splats.densification.strategy import Densification, FixedNumber, Limits
 from reconstruction.splats.rasterising.raster_types import Raster
-from reconstruction.training.callbacks import Callbacks, HeldOut, Preview, Progress, Visit, VisitState, quality_db
+from reconstruction.training.callbacks import (
+    Callbacks,
+    HeldOut,
+    Preview,
+    Progress,
+    SnapshotState,
+    TrainingSnapshot,
+    quality_db,
+)
 from reconstruction.training.config import TrainConfig
 from reconstruction.training.model.joint_model import Picture, SceneModel
 from reconstruction.training.objective import objective, on_device
@@ -54,7 +62,7 @@ def strategy_of(config: TrainConfig, n_splats: int) -> Densification:
     return AdaptiveControl(AdaptiveParameters(start=0, stop=ALWAYS, reset_every=0), limits)
 
 
-def show(
+def observe_pictures(
     strategy: Densification, raster: Raster, offsets: Tensor, samples: Sequence[Sample], ranks: Ranks, weight: float
 ) -> None:
     """Tell a strategy about a picture, and those of other processes, in the same order everywhere.
@@ -86,7 +94,7 @@ MOST_S = 60.0
 
 
 @dataclass(frozen=True, slots=True)
-class Settling:
+class CoolDown:
     """How far a stopped training has settled.
 
     Parameters
@@ -184,7 +192,7 @@ class Trainer(TrainingState):
         self._reserve_s = 0.0
         self._last_px = last_px
         self._with_glass = config.trained_by.knows_panels
-        self._settling: Settling | None = None
+        self._settling: CoolDown | None = None
         self._terms: dict[str, float] = {}
 
     @property
@@ -258,7 +266,7 @@ class Trainer(TrainingState):
                 self._visit(watching, "paused")
                 time.sleep(PAUSE_S)
 
-    def _visit(self, watching: Callbacks, state: VisitState = "training") -> None:
+    def _visit(self, watching: Callbacks, state: SnapshotState = "training") -> None:
         """Let somebody look at the model as it is."""
         if watching.visit is None or not self._ranks.is_first:
             return
@@ -266,7 +274,7 @@ class Trainer(TrainingState):
         state = "settling" if self._settling is not None and state == "training" else state
         self.model.eval()
         watching.visit(
-            Visit(
+            TrainingSnapshot(
                 self.model,
                 self.exposures,
                 self._record,
@@ -286,20 +294,20 @@ class Trainer(TrainingState):
         numbers = [self._watch(), self._needed_s(), float(watching.stop())]
         self.at.spent_s, self._reserve_s, is_stopped = self._ranks.agreed(numbers)
         if is_stopped and self._settling is None:
-            self._settling = Settling(self.progress, self.at.spent_s)
+            self._settling = CoolDown(self.progress, self.at.spent_s)
         return self._settling is not None and self._settling.share(self.at.spent_s) >= 1.0
 
     def _needed_s(self) -> float:
         """For the last looks at the quality, and for writing the model."""
         look_s, save_s = (self._watch.lasted_s.get(part, 0.0) for part in ("look", "save"))
-        return look_s + min(self.last_look_s(), self.most_last_s()) + WRITTEN * save_s
+        return look_s + min(self.final_scoring_s(), self.most_final_scoring_s()) + WRITTEN * save_s
 
-    def last_look_s(self) -> float:
+    def final_scoring_s(self) -> float:
         """That it would take to look at all held-out views in full, judged by what looks have taken."""
         seen_px = sum(held_out.sample.facade.numel() for held_out in self.shown)
         return self._watch.lasted_s.get("look", 0.0) * self._last_px / max(seen_px, 1)
 
-    def most_last_s(self) -> float:
+    def most_final_scoring_s(self) -> float:
         """For that, at most."""
         limit_s = self.config.time_limit_s
         return math.inf if limit_s is None else LAST_SHARE * limit_s
@@ -344,7 +352,9 @@ class Trainer(TrainingState):
         is_growing = settling is None and config.densify_from <= self.progress < config.densify_until
         strategy = self.strategy if is_growing else self._no_more
         stage = config.losses.stage(self.progress) if self._with_glass else None
-        show(strategy, picture.raster, offsets, samples, self._ranks, 0.0 if stage is None else stage.weight)
+        observe_pictures(
+            strategy, picture.raster, offsets, samples, self._ranks, 0.0 if stage is None else stage.weight
+        )
         strategy.before_step(at.step, splats, self.optimiser)
         take_step(self.optimiser, splats, config.rates)
         self.exposures.project()

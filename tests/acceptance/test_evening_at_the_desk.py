@@ -5,7 +5,7 @@ import subprocess
 
 import pytest
 
-from groundstation.services.photos.synthetic_flight import write_made_flight
+from groundstation.services.photos.synthetic_flight import write_synthetic_flight
 from groundstation.services.settings import Language
 from tests.gui.driving import choose, clicked, press
 
@@ -15,7 +15,7 @@ def flight(tmp_path):
     """A site as somebody drew it before the flight, and what lies on the camera's card after it."""
     folder = tmp_path / "flight"
     folder.mkdir()
-    return write_made_flight(folder)
+    return write_synthetic_flight(folder)
 
 
 @pytest.mark.slow

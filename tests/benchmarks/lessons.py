@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import torch
 
-from groundstation.services.scenes.photos import photograph_files
+from groundstation.services.scenes.photos import render_photos
 from planning.base.jit import n_threads
 from reconstruction.light.config import GridSettings, ReflectionConfig
 from reconstruction.light.glass_rays import glass_rays
@@ -46,7 +46,7 @@ Course = dict[str, Lesson]
 def rendered(scene: str, folder: Path, n_views: int, width_px: int) -> Path:
     """Photos of a bundled scene."""
     request = SceneRequest(scene, n_views=n_views, width_px=width_px, n_points=0, settings=RenderSettings())
-    photograph_files(request, folder, 1)
+    render_photos(request, folder, 1)
     return folder
 
 

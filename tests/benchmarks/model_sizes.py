@@ -16,7 +16,7 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from groundstation.services.scenes.photos import photograph_files
+from groundstation.services.scenes.photos import render_photos
 from reconstruction.exports.component_parts import Ellipsoids, ellipsoids_of_all
 from reconstruction.exports.compression import PRESETS, Compressed, Compression
 from reconstruction.exports.mesh import ALMOST_NO_LOGIT, baked
@@ -84,7 +84,7 @@ def measure(context: Context) -> Iterator[Row]:
     n_views, width = (QUICK_N_VIEWS, QUICK_WIDTH_PX) if is_quick else (N_VIEWS, WIDTH_PX)
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place) / "planar"
-        photograph_files(SceneRequest("planar", n_views=n_views, width_px=width), folder, 1)
+        render_photos(SceneRequest("planar", n_views=n_views, width_px=width), folder, 1)
         trained = train_model(folder, _config(is_quick))
         scene = baked(organised(trained), trained.model)
         photos = read_photo_set(folder).photos

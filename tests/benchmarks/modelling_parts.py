@@ -21,10 +21,10 @@ from reconstruction.colmap.folder import write_model
 from reconstruction.colmap.georeference import model_of
 from reconstruction.dataset.prepare import layer_path
 from reconstruction.light.reflection_mlp import MlpShape, ReflectionMlp
-from reconstruction.splats.harmonic_colour import display_colours_twin, light_of_display
+from reconstruction.splats.harmonic_colour import display_colours_reference, light_of_display
 from reconstruction.training.losses import dssim, dssim_torch
 from reconstruction.training.photos.decoded_photo import Decoding, decoded_bytes
-from reconstruction.training.train import freed_memory_kept
+from reconstruction.training.train import freed_memory_retained
 from tests.benchmarks.harness import Benchmark, Context, Row
 from tests.reconstruction.light.made_folder import cameras, corners_of
 from tests.reconstruction.splats.learned_scenes import random_splats
@@ -78,7 +78,9 @@ def _features(n: int) -> Iterator[Row]:
     light = given[:, :3]
 
     def in_torch() -> Tensor:
-        return splats.features_twin(eye, light_of_display(display_colours_twin(splats.means, splats.sh, eye, 3)))
+        return splats.features_reference(
+            eye, light_of_display(display_colours_reference(splats.means, splats.sh, eye, 3))
+        )
 
     def there_and_back(features: Callable[[], Tensor], gradient: Tensor) -> Callable[[], None]:
         def work() -> None:
@@ -108,7 +110,7 @@ def _kept_memory(n: int) -> Iterator[Row]:
         mlp(points[:shown], directions[:shown]).sum().backward()
 
     plain_ms = _mean_ms(there_and_back, N_STEPS)
-    with freed_memory_kept():
+    with freed_memory_retained():
         kept_ms = _mean_ms(there_and_back, N_STEPS)
     name = f"{n} rays, Reflection MLP {SHAPE.layers} x {SHAPE.width}"
     yield Row(name, "there and back, memory given back to the system", round(plain_ms, 2), "ms")

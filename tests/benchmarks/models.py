@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
-from groundstation.services.scenes.photos import photograph_files
+from groundstation.services.scenes.photos import render_photos
 from reconstruction.light.photo_set import read_photo_set
 from reconstruction.scenes.parameters import SceneRequest
 from reconstruction.training.config import LightSetting, TrainConfig
@@ -32,7 +32,7 @@ def measure(context: Context) -> Iterator[Row]:
     n_views, width = (QUICK_N_VIEWS, QUICK_WIDTH_PX) if context.is_quick else (N_VIEWS, WIDTH_PX)
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place) / "planar"
-        photograph_files(SceneRequest("planar", n_views=n_views, width_px=width), folder, 1)
+        render_photos(SceneRequest("planar", n_views=n_views, width_px=width), folder, 1)
         source = read_photo_set(folder)
         found: dict[str, float] = {}
         for name, method, light in KINDS:

@@ -12,16 +12,16 @@ from planning.tradeoff.runner import draw
 from reconstruction.metrics.metrics import SetScores, summarise
 from reconstruction.metrics.run import own_method, score_answer
 from reconstruction.metrics.sets import ScoredPhoto, annotated_set, folder_set
-from reconstruction.panels.network.belief import BELIEVED, find_panes
 from reconstruction.panels.network.calibration import are_there
-from reconstruction.panels.network.looks import LONG_SIDES_PX, look_at
+from reconstruction.panels.network.confidence import LEAST_BELIEVED, find_panes
+from reconstruction.panels.network.predictions import LONG_SIDES_PX, predict_photo
 from reconstruction.panels.search.parameters import SegmentationParameters
 from reconstruction.tradeoff.search_tradeoff import MIOU_AXIS, SettingScores, variants_panel
 from tests.benchmarks.harness import Benchmark, Context, Row
 
 SIZES_PX = (144, 216, 324, 486, 729, 1094)
 FEW = 2
-REPORTED = (0.15, 0.3, BELIEVED, 0.6, 0.75, 0.9, 1.0)
+REPORTED = (0.15, 0.3, LEAST_BELIEVED, 0.6, 0.75, 0.9, 1.0)
 """Confidences between which panes are counted together."""
 
 WANTED = {"glass": 0.6, "offices": 0.3, "cmp": 0.45}
@@ -86,7 +86,7 @@ def _reliability(scene: str, photos: list[ScoredPhoto]) -> Iterator[Row]:
     told: list[float] = []
     there: list[bool] = []
     for photo in photos:
-        panes = find_panes(look_at(photo.image, LONG_SIDES_PX[-1])).panes
+        panes = find_panes(predict_photo(photo.image, LONG_SIDES_PX[-1])).panes
         told += [pane.confidence for pane in panes]
         there += are_there([pane.corners_px for pane in panes], np.asarray(photo.index, np.uint16)).tolist()
     confidence, is_there = np.array(told), np.array(there, bool)
@@ -104,6 +104,6 @@ BENCHMARK = Benchmark(
     "Photos of real glass and of offices at night of which the others were learned from, and CMP, of which none was: "
     "by lines, by what the photo calls for, and by the network in photos of several sizes (a size includes the smaller "
     "ones). Then, of panes with a confidence, how many are there; those below "
-    f"{BELIEVED} are not reported.",
+    f"{LEAST_BELIEVED} are not reported.",
     measure,
 )

@@ -20,11 +20,11 @@ import torch
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from groundstation.services.model.rendering import kept_lpips_weights
+from groundstation.services.model.rendering import stored_lpips_weights
 from groundstation.services.photos.coarse import SITE_FILE, SPARSE, CoarseRequest, coarse_files
 from groundstation.services.project.input_files import read_input_site
 from groundstation.services.reconstruct.training import PLAIN_METHOD
-from groundstation.services.scenes.photos import photograph_files
+from groundstation.services.scenes.photos import render_photos
 from reconstruction.base.cameras import Pose, PosedPhoto
 from reconstruction.colmap.folder import read_model, write_model
 from reconstruction.colmap.georeference import Similarity, model_of, posed_photos
@@ -74,7 +74,7 @@ def trained_within(
     finally:
         torch.set_num_threads(before[0])
         numba.set_num_threads(before[1])
-    kept = kept_lpips_weights()
+    kept = stored_lpips_weights()
     weights = read_lpips_weights(kept) if kept else None
     return trained, score_views(trained, read_photo_set(folder), trained.record.held_out, weights, gain, threads=1)
 
@@ -365,7 +365,7 @@ def measure_faults(context: Context) -> Iterator[Row]:
     compile_kernels()
     with tempfile.TemporaryDirectory() as place:
         base = Path(place) / "base"
-        photograph_files(SceneRequest("planar", n_views=n_views, width_px=width_px), base, 1)
+        render_photos(SceneRequest("planar", n_views=n_views, width_px=width_px), base, 1)
         for name, fault in FAULTS.items():
             folder = Path(place) / "with-fault"
             shutil.copytree(base, folder, ignore=shutil.ignore_patterns("depth", "diffuse", "glass", "reflection"))

@@ -13,7 +13,7 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from groundstation.services.scenes.photos import photograph_files
+from groundstation.services.scenes.photos import render_photos
 from reconstruction.light.config import GlassLearned, ReflectionConfig
 from reconstruction.light.glass_rays import GlassRays, glass_rays
 from reconstruction.light.photo_set import PanelPlanes, PhotoSet, held_out_names, read_photo_set
@@ -163,7 +163,7 @@ def measure(context: Context) -> Iterator[Row]:
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place) / "planar"
         request = SceneRequest("planar", n_views=n_views, width_px=width, n_points=0, settings=RenderSettings())
-        photograph_files(request, folder, 1)
+        render_photos(request, folder, 1)
         rays = rays_of(folder)
     right: dict[str, float] = {}
     for learner in learners(context.is_quick):

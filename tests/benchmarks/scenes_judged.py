@@ -28,7 +28,7 @@ from reconstruction.scenes.parameters import (
     RenderSettings,
 )
 from reconstruction.scenes.photos.lens_effects import MIDDLE_GREY, grey_levels
-from reconstruction.scenes.photos.renderer import Photograph, Renderer
+from reconstruction.scenes.photos.renderer import RenderedPhoto, Renderer
 from reconstruction.scenes.record import Scene
 from reconstruction.scenes.world.bundled import SCENES, bundled_scene
 from tests.benchmarks.harness import Benchmark, Context, Row, Skipped, stopwatch
@@ -123,7 +123,7 @@ def _embedded(case: _Case) -> Iterator[Row]:
     yield Row(case.name, "brought by what the scene leaves out", round(brought, 2), "dB", None, left_out)
 
 
-def _taken(case: _Case, settings: RenderSettings) -> tuple[Photograph, float, float]:
+def _taken(case: _Case, settings: RenderSettings) -> tuple[RenderedPhoto, float, float]:
     """A photo, and seconds for it as the first and as another one."""
     renderer = Renderer(case.scene, settings)
     with stopwatch() as first_s:

@@ -16,10 +16,10 @@ from reconstruction.metrics.metrics import PhotoScores, SetScores, summarise
 from reconstruction.metrics.overlaps import pixel_overlaps
 from reconstruction.metrics.pictures import write_picture
 from reconstruction.metrics.run import Method, ScoredAnswer, own_method, picture, score_answer, score_set
-from reconstruction.metrics.sets import PhotoSet, ScoredPhoto, annotated_set, made_set
+from reconstruction.metrics.sets import PhotoSet, ScoredPhoto, annotated_set, synthetic_set
 from reconstruction.panels.search.parameters import DETECTORS, SegmentationParameters
 from reconstruction.scenes.facades.cases import random_case, wide_camera
-from reconstruction.scenes.facades.render import make_facade
+from reconstruction.scenes.facades.render import render_facade
 from reconstruction.tradeoff.search_tradeoff import (
     MIOU_AXIS,
     SegmentVariants,
@@ -59,11 +59,11 @@ def measure(context: Context) -> Iterator[Row]:
     """Made facades, large photos, knobs, real facades, and the counting itself."""
     n_seeds = QUICK_SEEDS if context.is_quick else SEEDS
     for name in ("made-planar", "made-curved"):
-        scores, worst = score_set(made_set(name, n_seeds), own_method())
+        scores, worst = score_set(synthetic_set(name, n_seeds), own_method())
         yield from _scores(name, scores, n_seeds, has_targets=True)
         write_picture(context.folder / f"segmentation-{name}-worst.jpg", picture(worst[0]))
         n_few = QUICK_SEEDS if context.is_quick else FEW_SEEDS
-        scores, _ = score_set(made_set(name, n_few, extent_margin_m=None), own_method())
+        scores, _ = score_set(synthetic_set(name, n_few, extent_margin_m=None), own_method())
         yield from _scores(f"{name}, extent of the wall not known", scores, n_few)
     yield from _large(1 if context.is_quick else 4)
     yield from _knobs(context)
@@ -105,7 +105,7 @@ def _large(n_seeds: int) -> Iterator[Row]:
     """Photos of 5280 x 3956 pixels, the second run of each: compiling is in no one's time."""
     method = own_method()
     for name in ("made-planar", "made-curved"):
-        photos = made_set(name, n_seeds, LARGE)
+        photos = synthetic_set(name, n_seeds, LARGE)
         method(next(photos.photos()), QUIET)
         scores, _ = score_set(photos, method)
         slowest, single = scores.seconds.worst, scores.individual_miou
@@ -119,7 +119,7 @@ def _knobs(context: Context) -> Iterator[Row]:
     n_seeds, camera, sizes_px, samples = 3, LARGE, SIZES_PX, (16, 32, 64, 128, 512, 2048)
     if context.is_quick:
         n_seeds, camera, sizes_px, samples = 1, wide_camera(), SIZES_PX[:4], (16, 512)
-    photos = made_set("made-planar", n_seeds, camera)
+    photos = synthetic_set("made-planar", n_seeds, camera)
     runs = run_variants(photos, SegmentationParameters(), SegmentVariants(sizes_px, samples))
     scene = f"made-planar, {camera.width_px} x {camera.height_px}"
     title = f"{scene}, {n_seeds} photos"
@@ -132,7 +132,7 @@ def _steps(n_seeds: int) -> Iterator[Row]:
     """The search with one of its steps left out, or another put in."""
     methods = {what: own_method(SegmentationParameters(**changed)) for what, changed in STEPS.items()}
     for name in ("made-planar", "made-curved"):
-        for what, scores in _compared(made_set(name, n_seeds), methods).items():
+        for what, scores in _compared(synthetic_set(name, n_seeds), methods).items():
             yield _individual(name, what, scores, n_seeds)
 
 
@@ -141,7 +141,7 @@ def _irregular(n_seeds: int) -> Iterator[Row]:
     methods = {
         f"inclined lines {setting}": own_method(SegmentationParameters(inclined=setting)) for setting in ("auto", "off")
     }
-    for what, scores in _compared(made_set("made-irregular", n_seeds), methods).items():
+    for what, scores in _compared(synthetic_set("made-irregular", n_seeds), methods).items():
         yield from _scores(f"made-irregular, {what}", scores, n_seeds)
 
 
@@ -158,7 +158,7 @@ def _detectors(n_seeds: int) -> Iterator[Row]:
     """What finds the lines, all else as it is by default."""
     for name in ("made-planar", "made-curved"):
         variants = SegmentVariants((), (), DETECTORS)
-        runs = run_variants(made_set(name, n_seeds), SegmentationParameters(), variants)
+        runs = run_variants(synthetic_set(name, n_seeds), SegmentationParameters(), variants)
         yield from (_setting(name, run, n_seeds) for run in runs if run.knob)
 
 
@@ -201,7 +201,7 @@ def _counting() -> Iterator[Row]:
     case = random_case("planar", 0, LARGE)
     layout = replace(case.layout, n_rows=20, n_columns=30)
     with stopwatch() as making:
-        made = make_facade(replace(case, layout=layout))
+        made = render_facade(replace(case, layout=layout))
     yield Row("5280 x 3956", "rendering a made photo", making(), "s")
     found = np.roll(made.index, 2, axis=1)
     pixel_overlaps(made.index, found, made.facade, made.facade)

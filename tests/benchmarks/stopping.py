@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from reconstruction.light.photo_set import read_photo_set
-from reconstruction.training.callbacks import Callbacks, Visit
+from reconstruction.training.callbacks import Callbacks, TrainingSnapshot
 from reconstruction.training.config import TrainConfig, config_of
 from reconstruction.training.model.score import mean_of, score_views
 from reconstruction.training.presets import preset
@@ -51,7 +51,7 @@ def stopped(folder: Path, config: TrainConfig, n: int, step_s: float) -> float:
     """
     steps = [0]
 
-    def visit(at: Visit) -> None:
+    def visit(at: TrainingSnapshot) -> None:
         steps[0] = at.step
 
     watch = Timer(lambda: step_s * steps[0], 0.0)

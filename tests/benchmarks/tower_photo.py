@@ -17,7 +17,7 @@ from planning.plan import Viewpoint
 from planning.site.bundled import tower
 from reconstruction.scenes.parameters import RenderSettings
 from reconstruction.scenes.photos.flight_views import Shot, lens_of, posed_photos
-from reconstruction.scenes.runs.photo_folder import photograph
+from reconstruction.scenes.runs.photo_folder import render_photo_folder
 from reconstruction.scenes.runs.photo_job import PhotoJob
 from reconstruction.scenes.world.build import build_scene
 
@@ -48,7 +48,7 @@ def measured(width_px: int) -> dict[str, float]:
     with tempfile.TemporaryDirectory() as name:
         shots = [Shot(view, timedelta(seconds=5 * i)) for i, view in enumerate(views)]
         photos = posed_photos(shots, lens, Path(name) / "images")
-        photograph(PhotoJob(scene, photos, RenderSettings(), {}, n_points=0), Path(name), 1, stages)
+        render_photo_folder(PhotoJob(scene, photos, RenderSettings(), {}, n_points=0), Path(name), 1, stages)
     (cpu_s, wall_s), (last_cpu_s, last_wall_s) = stages.began[1:3]
     return {"cpu_s": last_cpu_s - cpu_s, "wall_s": last_wall_s - wall_s, "height_px": lens.height_px}
 

@@ -186,7 +186,7 @@ def training(dataset: Path, out: Path) -> dict[str, Any]:
         came.clear()
         _turn_for(application, TURN_EVERY_S)
     turned_ms = gaps.gaps_ms
-    page.controller.break_off()
+    page.controller.cancel_training()
     _turn_until(application, lambda: not page.controller.is_busy)
     return {"idle_ms": idle_ms, "watched_ms": watched_ms, "turned_ms": turned_ms, "waits_ms": waits_ms}
 

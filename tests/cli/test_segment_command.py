@@ -8,14 +8,14 @@ import pytest
 
 from reconstruction.scenes.facades.cases import wide_camera
 from reconstruction.scenes.facades.record import Layout
-from reconstruction.scenes.facades.render import make_facade
+from reconstruction.scenes.facades.render import render_facade
 from tests.reconstruction.made_photos import simple_case
 
 
 @pytest.fixture(scope="module")
 def photo(tmp_path_factory):
     path = tmp_path_factory.mktemp("photo") / "facade.png"
-    made = make_facade(simple_case(Layout(4, 6), intrinsics=wide_camera(800, 600)))
+    made = render_facade(simple_case(Layout(4, 6), intrinsics=wide_camera(800, 600)))
     cv2.imwrite(str(path), made.image)
     return path
 

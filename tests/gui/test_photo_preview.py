@@ -204,7 +204,7 @@ def test_what_fails_is_told_in_its_place_once_and_tried_again_when_asked(hands, 
         raise InputError("the site has no panels yet: find them")
 
     with monkeypatch.context() as patched:
-        patched.setattr("groundstation.gui.camera_preview.photo_controller.kept_photo", fails)
+        patched.setattr("groundstation.gui.camera_preview.photo_controller.cached_photo", fails)
         hands.preview.box.photo.click()
         turn_until(hands.application, lambda: "could not be rendered" in hands.preview.note())
         hands.until_rest()
@@ -218,7 +218,7 @@ def test_a_photo_that_was_cancelled_stays_away_until_it_is_asked_for(hands, monk
     gate = Gate()
     with monkeypatch.context() as patched:
         patched.setattr(
-            "groundstation.gui.camera_preview.photo_controller.kept_photo",
+            "groundstation.gui.camera_preview.photo_controller.cached_photo",
             lambda _request, **reporting: gate(reporting["monitor"]),
         )
         hands.preview.box.photo.click()

@@ -104,7 +104,7 @@ def test_tree_keeps_selection_and_folding_over_an_edit_and_delete_asks(applicati
     from groundstation.gui.site.site_tree import SiteTree
 
     tree = SiteTree()
-    chosen, removed = heard(tree.valueChanged), heard(tree.removeAsked)
+    chosen, removed = heard(tree.valueChanged), heard(tree.removeRequested)
     tree.set_site(COURT, METRIC)
     tree.setValue(Item(ItemKind.PANEL, "B-0003"))
     assert tree.isExpanded(tree.model().index_of(Item(ItemKind.FACADE, "B")))

@@ -169,7 +169,7 @@ def least_px(widget):
     return max(widget.minimumSizeHint().width(), widget.minimumWidth())
 
 
-class Looks:
+class ViewPictures:
     """Looks at the window in each state."""
 
     def __init__(self, application, controller):
@@ -221,7 +221,7 @@ def looks(application, worker, tmp_path, monkeypatch, request):
     controller.choose(language=language, text_scale=scale)
     turn_until(application, lambda: controller.window.shared_view.scene() is not None)
     controller.window.setGeometry(SCREEN)
-    yield Looks(application, controller)
+    yield ViewPictures(application, controller)
     # What follows is in English and of usual size, in a window that is there no longer.
     controller.choose(language=Language.ENGLISH, text_scale=1.0)
     turn_until(application, lambda: controller.window.shared_view.scene() is not None)

@@ -21,7 +21,7 @@ from planning.base.progress import StopRequest, Trace
 from planning.checks import check_plan
 from planning.parameters import LARGEST_SEED, Constraints, FlightRules, GreedyParameters, Precision
 from planning.plan import Plan, plan_to_json, read_plan, write_plan
-from planning.planner import Planned, plan_flight, share_out_anew
+from planning.planner import Planned, plan_flight, resplit_sorties
 from planning.request import PlanRequest
 from planning.site.bundled import SCENES
 from planning.site.records import SiteModel
@@ -414,7 +414,7 @@ def test_senseless_requests_are_refused(arguments: dict[str, float], message: st
 @pytest.mark.parametrize("max_views", [8, 4, 3])
 def test_sharing_out_anew_keeps_the_viewpoints_and_the_contract(max_views: int) -> None:
     plan = planned_kiosk("views").plan
-    anew = share_out_anew(plan, kiosk(), max_views)
+    anew = resplit_sorties(plan, kiosk(), max_views)
     assert anew.viewpoints == plan.viewpoints
     assert max(len(sortie.viewpoint_ids) for sortie in anew.sorties) <= max_views
     assert math.ceil(8 / max_views) <= len(anew.sorties) <= math.ceil(8 / max_views) + 1

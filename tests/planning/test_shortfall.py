@@ -16,7 +16,7 @@ from planning.coverage.reach_kernel import REACHABLE, UNDECIDED
 from planning.geo.mesh import box_mesh
 from planning.parameters import Constraints, GreedyParameters
 from planning.plan import viewpoint_arrays
-from planning.planner import WhyOpen, open_sections, plan_flight
+from planning.planner import OpenReason, open_sections, plan_flight
 from planning.request import PlanRequest
 from planning.site.records import Obstacle, SiteModel
 from planning.viewpoints.prepare import prepare
@@ -38,7 +38,7 @@ def test_a_share_that_spacing_keeps_from_being_reached_names_it_and_the_panels()
     coverage = planned.plan.coverage
     assert coverage.covered < coverage.reachable_upper_bound
     assert Counter(each.why for each in planned.open_sections) == {
-        WhyOpen.SPACING: coverage.reachable_upper_bound - coverage.covered
+        OpenReason.SPACING: coverage.reachable_upper_bound - coverage.covered
     }
     less, spacing = planned.findings
     assert (less.code, spacing.code, spacing.severity) == ("less-coverage", "open-spacing", Severity.WARNING)
@@ -59,11 +59,11 @@ def test_sections_that_more_views_would_cover_are_told_from_those_never_decided(
     nothing = np.zeros(reachable.shape, np.bool_)
     found = open_sections(problem, nothing, np.zeros((0, 3)), 0.5)
     assert len(found) == reachable.sum()
-    assert {each.why for each in found} == {WhyOpen.SEARCH}
+    assert {each.why for each in found} == {OpenReason.SEARCH}
     verdicts = problem.reachability.verdicts.copy()
     verdicts[verdicts == REACHABLE] = UNDECIDED
     undecided = replace(problem, reachability=replace(problem.reachability, verdicts=verdicts))
-    assert {each.why for each in open_sections(undecided, nothing, np.zeros((0, 3)), 0.5)} == {WhyOpen.UNDECIDED}
+    assert {each.why for each in open_sections(undecided, nothing, np.zeros((0, 3)), 0.5)} == {OpenReason.UNDECIDED}
     covered = np.ones_like(nothing)
     covered[0] = False
     assert {each.panel for each in open_sections(problem, covered, np.zeros((0, 3)), 0.5)} == {0}
@@ -81,7 +81,7 @@ def test_places_behind_a_wall_are_cut_off() -> None:
     behind = SiteModel(site, model.building, (box_mesh(low, high),))
     problem = prepare(behind, profile("m3e").camera, gap).problem
     nothing = np.zeros(problem.reachability.verdicts.shape, np.bool_)
-    assert {each.why for each in open_sections(problem, nothing, np.zeros((0, 3)), 0.5)} == {WhyOpen.CUT_OFF}
+    assert {each.why for each in open_sections(problem, nothing, np.zeros((0, 3)), 0.5)} == {OpenReason.CUT_OFF}
 
 
 @pytest.mark.slow
@@ -100,7 +100,7 @@ def test_what_was_not_decided_asks_for_time_only_where_time_was_short(is_cut_sho
     model = turned_site(20.0, n_rows=2, n_columns=2)
     prepared = prepare(model, profile("m3e").camera, NEAR, max_positions=512, max_cells=1)
     planned = plan_flight(model, EVERYTHING, prepared=replace(prepared, is_cut_short=is_cut_short))
-    assert all(each.why is WhyOpen.UNDECIDED for each in planned.open_sections)
+    assert all(each.why is OpenReason.UNDECIDED for each in planned.open_sections)
     (finding,) = why_open(planned)
     assert finding.value == len(planned.open_sections) > 0
     assert finding.message.endswith("allow it more time" if is_cut_short else "more time does not help")

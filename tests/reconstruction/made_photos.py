@@ -16,10 +16,10 @@ from reconstruction.scenes.facades.record import (
     Case,
     Disturbances,
     Layout,
-    MadeFacade,
+    SyntheticFacade,
     Wall,
 )
-from reconstruction.scenes.facades.render import make_facade, write_photos
+from reconstruction.scenes.facades.render import render_facade, write_photos
 from tests.reconstruction.panels.rectify.scenes import surface_mesh
 
 ORIGIN = Origin(22.3372, 114.2636, 62.0)
@@ -28,11 +28,11 @@ DISTURBED = Disturbances(reflection=0.4, tilt_deg=0.3, clutter=True, blur_px=0.5
 CAMERA = wide_camera(960, 720)
 
 
-def made_photos(curvature: float = 0.0, obliques: Sequence[float] = (0.0, 12.0)) -> list[MadeFacade]:
+def made_photos(curvature: float = 0.0, obliques: Sequence[float] = (0.0, 12.0)) -> list[SyntheticFacade]:
     """Photos of one reflecting wall from several directions."""
     wall = Wall((3.0, -4.0, 0.5), 200.0, curvature)
     return [
-        make_facade(simple_case(LAYOUT, DISTURBED, wall=wall, intrinsics=CAMERA, seed=7, oblique_deg=angle))
+        render_facade(simple_case(LAYOUT, DISTURBED, wall=wall, intrinsics=CAMERA, seed=7, oblique_deg=angle))
         for angle in obliques
     ]
 
@@ -46,7 +46,7 @@ def coarse_model(wall: Wall) -> TriangleMesh:
     return join([surface_mesh(face, (-9.0, 0.0), (9.0, 14.0), 0.5, 0.05), ground])
 
 
-def write_flight(folder: Path, photos: Sequence[MadeFacade]) -> None:
+def write_flight(folder: Path, photos: Sequence[SyntheticFacade]) -> None:
     """All photos as JPEG files with RTK positions, gimbal angles and a calibrated lens."""
     write_photos(folder, [(made.photo, made.image) for made in photos], ORIGIN)
 

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from groundstation.services.fly.connection import FlownBefore, with_charge
-from groundstation.services.mission.readiness import shared_out, too_long
+from groundstation.services.fly.connection import PartlyDischarged, with_charge
+from groundstation.services.mission.readiness import split_to_fit, too_long
 from missions.mavlink.autopilots import Autopilot, facts
 from missions.mavlink.items import photos_that_fit
 from missions.simulator.airframe.state import Target
@@ -39,7 +39,7 @@ def test_where_either_autopilot_may_answer_the_one_with_less_room_counts():
 def test_views_are_shared_out_so_that_each_is_in_one_sortie_that_fits():
     model, plan = planned()
     found = replace(too_long(with_long_sortie(300)), limit=4)
-    anew = shared_out(plan, model, found)
+    anew = split_to_fit(plan, model, found)
     flown = [view_id for each in anew.sorties for view_id in each.viewpoint_ids]
     assert sorted(flown) == sorted(plan.sorties[0].viewpoint_ids)
     assert max(len(each.viewpoint_ids) for each in anew.sorties) <= 4
@@ -73,4 +73,4 @@ def test_an_empty_battery_stays_empty_and_a_full_one_is_the_airframe_itself():
     assert with_charge(frame, 1.0, decisions) is frame
     assert with_charge(frame, 0.0, decisions).battery.remaining == 0.0
     with pytest.raises(ValueError, match="charge: expected 0 to 1"):
-        FlownBefore(frame, 1.2, sags=False)
+        PartlyDischarged(frame, 1.2, sags=False)

@@ -11,7 +11,7 @@ import numpy as np
 
 from groundstation.services.fly.flying import FlightRequest, fly_files
 from groundstation.services.plan.planning import plan_site
-from groundstation.services.scenes.photos import photograph_files
+from groundstation.services.scenes.photos import render_photos
 from groundstation.services.scenes.views import SITE_FILE
 from groundstation.services.scenes.views import as_written as site_as_written
 from planning.parameters import Constraints, GreedyParameters
@@ -88,7 +88,7 @@ def photos_in(work: Path, photos: Photos) -> Path:
     wish = SceneRequest(
         scene, plan=plan_path, flight=flight_path, look=look, width_px=photos.width_px, n_points=n_points
     )
-    photograph_files(wish, folder, 1)
+    render_photos(wish, folder, 1)
     return folder
 
 
@@ -116,7 +116,7 @@ def site_file(work: Path, scene: str) -> Path:
     """Of a scene, which all its photos have in common; made if it is not there yet, and not by several at once."""
     folder = work / f"{scene}-site"
     if not (folder / SITE_FILE).is_file():
-        photograph_files(SceneRequest(scene, n_square=1, width_px=SITE_WIDTH_PX, n_points=0), folder, 1)
+        render_photos(SceneRequest(scene, n_square=1, width_px=SITE_WIDTH_PX, n_points=0), folder, 1)
     return folder / SITE_FILE
 
 

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from groundstation.vehicle.state import LINK_LOST_S, Landed, VehicleState
-from groundstation.vehicle.telemetry import LocalFrame, folded
+from groundstation.vehicle.telemetry import LocalFrame, updated_state
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.messages import (
     Address,
@@ -48,7 +48,7 @@ NOTHING = VehicleState()
 
 def heard(*messages, state=NOTHING, time_s=10.0, source=VEHICLE):
     for message in messages:
-        state = folded(state, Received(message, source, time_s), FRAME)
+        state = updated_state(state, Received(message, source, time_s), FRAME)
     return state
 
 

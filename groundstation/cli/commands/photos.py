@@ -45,14 +45,14 @@ def add_parser(subparsers: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Read, check, print; returns the exit status."""
-    from groundstation.services.photos.intake import intake_summary, take_in
+    from groundstation.services.photos.intake import intake_summary, read_photo_intake
     from groundstation.services.units import per_cent
     from reconstruction.photos.quality import QualityLimits
 
     limits, refine = QualityLimits(scale=options.scale), refine_request(options)
     intake = run_job(
         "photos",
-        lambda context: take_in(
+        lambda context: read_photo_intake(
             options.photos,
             options.site,
             options.plan,

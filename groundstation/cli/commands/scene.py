@@ -99,7 +99,7 @@ def run_list(options: argparse.Namespace) -> int:
 
 def run_render(options: argparse.Namespace) -> int:
     """Render, write and print; returns the exit status."""
-    from groundstation.services.scenes.photos import photograph_files, rendered_summary
+    from groundstation.services.scenes.photos import render_photos, rendered_summary
 
     request = _request(options)
     if options.jobs is not None and options.jobs < 1:
@@ -108,7 +108,7 @@ def run_render(options: argparse.Namespace) -> int:
         raise InputError(say("--jobs is for this machine; leave it out, or --cluster"))
     rendered = run_job(
         "scene",
-        lambda context: photograph_files(request, options.out, options.jobs, context, address=options.cluster),
+        lambda context: render_photos(request, options.out, options.jobs, context, address=options.cluster),
     )
     if options.json:
         print_json(rendered_summary(rendered))

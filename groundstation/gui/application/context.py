@@ -30,7 +30,7 @@ from groundstation.services.project.session import Session
 from groundstation.services.units import UnitSystem
 from planning.base.errors import GroundStationError, shortened
 from planning.base.findings import Severity
-from planning.base.plugins import untold_problems
+from planning.base.plugins import new_plugin_problems
 
 # Brings job events from worker threads to the window's thread as Qt signals.
 
@@ -189,7 +189,7 @@ class ApplicationContext(QObject):
 
     def tell_of_plugins(self) -> None:
         """Say which plug-ins are left out of a list that was just filled, each once."""
-        for problem in untold_problems():
+        for problem in new_plugin_problems():
             self.say(Severity.WARNING, self.words(str(problem)))
 
     def start(

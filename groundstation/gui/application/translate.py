@@ -12,7 +12,7 @@ from PySide6.QtCore import QCoreApplication, QLibraryInfo, QLocale, QTranslator
 from PySide6.QtGui import QKeySequence
 from PySide6.QtWidgets import QApplication
 
-from groundstation.services.messages import in_window_words, told
+from groundstation.services.messages import told, with_window_labels
 from groundstation.services.settings import Language
 from groundstation.services.units import UnitSystem
 from planning.base.findings import Finding
@@ -412,7 +412,7 @@ def with_fields(text: str) -> str:
     if "--" not in text:
         return text
     labels = {option: QCoreApplication.translate(*label) for option, label in OPTION_FIELDS.items()}
-    return in_window_words(text, labels, QCoreApplication.translate("Words", "“{0}”"))
+    return with_window_labels(text, labels, QCoreApplication.translate("Words", "“{0}”"))
 
 
 def translated_finding(finding: Finding, units: UnitSystem) -> Finding:

@@ -26,8 +26,8 @@ from groundstation.services.scenes.preview import (
     LEFT_OUT,
     MAX_WIDTH_PX,
     PhotoRequest,
-    SeenPhoto,
-    kept_photo,
+    PreviewPhoto,
+    cached_photo,
     quick_width_px,
     site_key,
     site_photo,
@@ -49,7 +49,7 @@ class EffectsWindow(QDialog):
         self.setWindowTitle(self.tr("Effects of the photo"))
         self.resize(1000, 560)
         self._units = UnitSystem.METRIC
-        self._photo: SeenPhoto | None = None
+        self._photo: PreviewPhoto | None = None
         self._words = QLabel()
         self._words.setWordWrap(True)
         self.model: RowModel[Decision] = RowModel(self._columns(), self)
@@ -73,7 +73,7 @@ class EffectsWindow(QDialog):
     def _size_text(self, found: Decision) -> str:
         return self.tr("{0:.3g} {1}").format(found.size, translated(found.unit, self._units))
 
-    def set_photo(self, photo: SeenPhoto | None) -> None:
+    def set_photo(self, photo: PreviewPhoto | None) -> None:
         """Show the decisions of a photo; a quick one has none yet."""
         self._photo = photo
         self.model.set_rows(() if photo is None else photo.decisions)
@@ -151,11 +151,11 @@ class PhotoController(QObject):
         self._wanted: _Wanted | None = None
         self._refused: _Wanted | None = None
         """The view of what failed or was cancelled."""
-        self._job: Job[tuple[SeenPhoto, QImage]] | None = None
+        self._job: Job[tuple[PreviewPhoto, QImage]] | None = None
         self._job_view: _Wanted | None = None
         self._is_given_up = False
-        self._shown: SeenPhoto | None = None
-        self._cached: OrderedDict[_Wanted, tuple[SeenPhoto, QImage]] = OrderedDict()
+        self._shown: PreviewPhoto | None = None
+        self._cached: OrderedDict[_Wanted, tuple[PreviewPhoto, QImage]] = OrderedDict()
         self._key: tuple[SiteModel, str] | None = None
         self._seconds_per_px: float | None = None
         self._effects: EffectsWindow | None = None
@@ -170,7 +170,7 @@ class PhotoController(QObject):
         context.bridge.progressed.connect(self._show_progress)
         context.unitsChanged.connect(self._show_units)
 
-    def shown(self) -> SeenPhoto | None:
+    def shown(self) -> PreviewPhoto | None:
         """The photo that is shown, coarse or fine; None while lines are."""
         return self._shown
 
@@ -256,9 +256,9 @@ class PhotoController(QObject):
             request = replace(request, width_px=quick, is_quick=True)
         known = self._key[1] if self._key is not None and self._key[0] is model else None
 
-        def work(context: JobContext) -> tuple[SeenPhoto, QImage]:
+        def work(context: JobContext) -> tuple[PreviewPhoto, QImage]:
             asked = replace(request, site_key=site_key(model) if known is None else known)
-            photo = context.apart(kept_photo, asked)
+            photo = context.apart(cached_photo, asked)
             if photo is None:
                 photo = context.apart(site_photo, model, asked)
             return photo, painted(photo.picture)
@@ -268,7 +268,7 @@ class PhotoController(QObject):
             self.tr("Render the photo"), work, lambda found: self._done(wanted, *found), self._failed
         )
 
-    def _done(self, wanted: _Wanted, photo: SeenPhoto, image: QImage) -> None:
+    def _done(self, wanted: _Wanted, photo: PreviewPhoto, image: QImage) -> None:
         self._key = wanted.model, photo.request.site_key
         self._seconds_per_px = photo.seconds / (photo.picture.shape[0] * photo.picture.shape[1])
         if not photo.request.is_quick:
@@ -298,14 +298,14 @@ class PhotoController(QObject):
 
     # What is shown
 
-    def _show(self, photo: SeenPhoto | None, image: QImage | None) -> None:
+    def _show(self, photo: PreviewPhoto | None, image: QImage | None) -> None:
         self._shown = photo
         self._preview.show_picture(image, np.zeros(0, np.int64) if photo is None else photo.panels)
         self._preview.show_note("" if photo is None else self._note(photo))
         if self._effects is not None:
             self._effects.set_photo(photo)
 
-    def _note(self, photo: SeenPhoto) -> str:
+    def _note(self, photo: PreviewPhoto) -> str:
         if photo.is_walled_in:
             return self.tr(
                 "The camera stands inside something here: a building opposite, a tree or an obstacle. Take the made-up "

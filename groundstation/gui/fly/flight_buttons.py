@@ -11,7 +11,7 @@ from groundstation.gui.widgets.tab_order import set_enabled
 from groundstation.gui.widgets.theme import colours
 from groundstation.services.fly.events import Request
 from groundstation.services.units import UnitSystem
-from groundstation.vehicle.preflight import Mend, OnBoard, PreflightCheck, Verdict, mends
+from groundstation.vehicle.preflight import OnBoard, PreflightCheck, Remedy, Verdict, remedies
 
 # The list before take-off: each check with its state, what was measured, and what to do.
 
@@ -33,10 +33,10 @@ class PreflightList(QWidget):
 
     Signals
     -------
-    mendRequested(Mend, PreflightCheck)
+    remedyRequested(Mend, PreflightCheck)
     """
 
-    mendRequested = Signal(object, object)  # noqa: N815  (Qt's own way of naming)
+    remedyRequested = Signal(object, object)  # noqa: N815  (Qt's own way of naming)
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -76,11 +76,11 @@ class PreflightList(QWidget):
         rows = self._rows[: len(self._checks)]
         return "\n".join(f"{row.mark.text()} {row.words.text()}" for row in rows)
 
-    def button(self, code: str, mend: Mend) -> QPushButton | None:
+    def button(self, code: str, remedy: Remedy) -> QPushButton | None:
         """The button with which something can be done about a check; None where there is none."""
         for check, row in zip(self._checks, self._rows, strict=False):
             if check.code == code:
-                return row.buttons.get(mend)
+                return row.buttons.get(remedy)
         return None
 
     def _fill(self) -> None:
@@ -106,7 +106,7 @@ class PreflightList(QWidget):
 
     def _offer(self, row: _Row, check: PreflightCheck) -> None:
         """Buttons for what can be done about a check; those that stay are not made anew under the pointer."""
-        ways = mends(check, self._on_board)
+        ways = remedies(check, self._on_board)
         row.check = check
         if tuple(row.buttons) == ways:
             return
@@ -114,19 +114,21 @@ class PreflightList(QWidget):
             row.line.removeWidget(button)
             button.deleteLater()
         row.buttons = {}
-        texts = self._mend_texts()
-        for number, mend in enumerate(ways):
-            button = QPushButton(texts[mend])
-            button.clicked.connect(lambda _checked=False, mend=mend, row=row: self.mendRequested.emit(mend, row.check))
+        texts = self._remedy_texts()
+        for number, remedy in enumerate(ways):
+            button = QPushButton(texts[remedy])
+            button.clicked.connect(
+                lambda _checked=False, remedy=remedy, row=row: self.remedyRequested.emit(remedy, row.check)
+            )
             row.line.insertWidget(number, button)
-            row.buttons[mend] = button
+            row.buttons[remedy] = button
 
-    def _mend_texts(self) -> dict[Mend, str]:
+    def _remedy_texts(self) -> dict[Remedy, str]:
         return {
-            Mend.SET_PARAMETERS: self.tr("Set parameters ..."),
-            Mend.RAISE: self.tr("Fly from this height ..."),
-            Mend.PLAN_FROM_HERE: self.tr("Home here ..."),
-            Mend.OVERRULE: self.tr("Overrule ..."),
+            Remedy.SET_PARAMETERS: self.tr("Set parameters ..."),
+            Remedy.RAISE: self.tr("Fly from this height ..."),
+            Remedy.PLAN_FROM_HERE: self.tr("Home here ..."),
+            Remedy.OVERRULE: self.tr("Overrule ..."),
         }
 
     def _add_row(self) -> None:
@@ -170,7 +172,7 @@ class _Row:
         self.mark.setFixedWidth(16)
         self.words.setWordWrap(True)
         self.side.setObjectName(f"check-{number}")
-        self.buttons: dict[Mend, QPushButton] = {}
+        self.buttons: dict[Remedy, QPushButton] = {}
         self.line = QVBoxLayout()
         self.line.setAlignment(Qt.AlignmentFlag.AlignLeft)
         layout = QVBoxLayout(self.side)

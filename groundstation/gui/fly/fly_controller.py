@@ -47,7 +47,7 @@ from groundstation.services.fly.readouts import BEFORE_TAKE_OFF
 from groundstation.services.fly.signing import link_signer
 from groundstation.services.fly.sortie import LiveSortie, is_same_place, prepare_sortie
 from groundstation.services.jobs.runner import JobContext
-from groundstation.services.mission.readiness import TooLong, shared_out, too_long
+from groundstation.services.mission.readiness import TooLong, split_to_fit, too_long
 from groundstation.services.plan.top_up import flown_plan, resume_flight, top_up_flight
 from groundstation.services.project.document import Document, PlanEntry
 from groundstation.services.settings import write_preferences
@@ -292,7 +292,7 @@ class ItemLimit(QObject):
             return 0
 
         def work(context: JobContext) -> Plan:
-            return shared_out(entry.plan, site_model, found, context)
+            return split_to_fit(entry.plan, site_model, found, context)
 
         def done(anew: Plan) -> None:
             document = self._context.document
@@ -505,7 +505,7 @@ class FlyController(QObject):
         active = self.active
         is_free = active is not None and active.view is not None and active.view.phase in BEFORE_TAKE_OFF
         if self._flight is not None and is_free and not self.is_in_flight and self.is_for_shown_plan:
-            self._flight.take_on(sortie)
+            self._flight.set_next_sortie(sortie)
             self.active = ActiveFlight(sortie)
 
     def _connect(self, sortie: LiveSortie) -> None:

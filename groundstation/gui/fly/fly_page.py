@@ -36,7 +36,7 @@ from groundstation.services.fly.sortie import is_same_place, take_off_of
 from groundstation.services.plan.places import item_of_place
 from groundstation.services.project.document import Document, Item, ItemKind
 from groundstation.services.units import UnitSystem, minutes_text
-from groundstation.vehicle.preflight import Mend, PreflightCheck
+from groundstation.vehicle.preflight import PreflightCheck, Remedy
 from groundstation.vehicle.sortie.run_records import Phase
 from groundstation.vehicle.watch import FlightWarning
 from planning.base.findings import Severity
@@ -45,7 +45,7 @@ from planning.revision.top_up import TopUp
 # Where a flight stands, in the window's language.
 
 
-class FlightWords(QObject):
+class FlightTexts(QObject):
     """Says what a controller is doing."""
 
     def __init__(self, context: ApplicationContext, controller: FlyController, parent: QObject) -> None:
@@ -281,7 +281,7 @@ class FlyPage(QObject):
         super().__init__(shared_view)
         self._context, self._shared_view = context, shared_view
         self.controller, self.questions = FlyController.of(context), FlightQuestions()
-        self._words = FlightWords(context, self.controller, self)
+        self._words = FlightTexts(context, self.controller, self)
         self.connection, self.sortie = ConnectionBox(), ChoiceBox()
         self.buttons, self.checks = FlightButtons(), PreflightList()
         self.readouts, self.warnings = ReadoutsView(), WarningsView()
@@ -378,7 +378,7 @@ class FlyPage(QObject):
         self.connection.disconnectRequested.connect(self._disconnect)
         self.sortie.activated.connect(lambda index: controller.set_sortie(index + 1))
         self.buttons.requested.connect(self._request)
-        self.checks.mendRequested.connect(self._mend)
+        self.checks.remedyRequested.connect(self._mend)
         self.simulation.valueChanged.connect(self._simulation_chosen)
         self.settings.valueChanged.connect(controller.set_settings)
         self.findings.placePicked.connect(self._go_to_place)
@@ -402,29 +402,29 @@ class FlyPage(QObject):
     # What the user does
 
     def _rest_found(self, found: TopUp) -> None:
-        if self.questions.close_rest(self._shared_view.window(), found):
+        if self.questions.confirm_closing_flight(self._shared_view.window(), found):
             self.controller.after.take(found)
 
     def _request(self, request: Request) -> None:
         if request is not Request.START or self._may_start():
             self.controller.request(request)
 
-    def _mend(self, mend: Mend, check: PreflightCheck) -> None:
+    def _mend(self, remedy: Remedy, check: PreflightCheck) -> None:
         """Do something about a check before take-off, once the pilot agrees."""
         controller, ask, window = self.controller, self.questions, self._shared_view.window()
-        match mend:
-            case Mend.SET_PARAMETERS:
+        match remedy:
+            case Remedy.SET_PARAMETERS:
                 changes = controller.parameter_changes()
                 if changes and ask.set_parameters(window, changes):
                     controller.set_parameters(changes)
-            case Mend.RAISE:
+            case Remedy.RAISE:
                 by_m = -round(check.value or 0.0, 1)
                 if ask.raise_flight(window, by_m, self._context.units):
                     controller.raise_flight(by_m)
-            case Mend.PLAN_FROM_HERE:
+            case Remedy.PLAN_FROM_HERE:
                 if ask.plan_from_here(window):
                     controller.plan_from_here()
-            case Mend.OVERRULE:
+            case Remedy.OVERRULE:
                 if ask.overrule(window, self._context.words(check.text), check.code.upper()):
                     controller.overrule(check.code)
 

@@ -114,7 +114,7 @@ class FlightQuestions(QObject):
         typed = ask_text(parent, self.tr("Overrule"), text, "")
         return typed is not None and typed.strip().casefold() == word.casefold()
 
-    def close_rest(self, parent: QWidget, found: TopUp) -> bool:
+    def confirm_closing_flight(self, parent: QWidget, found: TopUp) -> bool:
         """Whether to plan a flight for the little that is missing."""
         plan = found.plan
         if plan is None:

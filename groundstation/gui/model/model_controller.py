@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from PySide6.QtCore import QObject, Signal
 
 from groundstation.gui.application.context import ApplicationContext
-from groundstation.services.jobs.channel import Lost
+from groundstation.services.jobs.channel import ProcessEnded
 from groundstation.services.jobs.runner import JobContext
 from groundstation.services.jobs.worker import Worker
 from groundstation.services.model.export import ModelExport, WrittenModel, export_apart
@@ -31,14 +31,14 @@ from groundstation.services.model.scene_card import (
     scenes_beside,
 )
 from groundstation.services.reconstruct.messages import (
-    Look,
     ModelProcess,
     Organise,
     Probe,
     Probed,
     SceneMade,
-    Seen,
     Tints,
+    ViewAnswer,
+    ViewRequest,
 )
 from planning.base.errors import GroundStationError
 from planning.base.findings import Severity
@@ -136,7 +136,7 @@ class ModelController(QObject):
         self.is_reading = False
         self.sceneChanged.emit()
 
-    def stand_beside(self, folder: Path | None) -> None:
+    def set_comparison_scene(self, folder: Path | None) -> None:
         """Read what is known of another scene, whose picture stands beside: its panels have numbers of its own."""
         self._wanted_beside = folder
         if self.beside is not None and self.beside.folder == folder:
@@ -152,7 +152,7 @@ class ModelController(QObject):
 
     # Pictures
 
-    def look(self, look: Look) -> None:
+    def look(self, look: ViewRequest) -> None:
         """Ask for a picture."""
         self._process.send(look)
 
@@ -224,7 +224,7 @@ class ModelController(QObject):
         return self._tints_of(self.card)
 
     @property
-    def tints_beside(self) -> Tints:
+    def comparison_tints(self) -> Tints:
         """The same colours by the numbers that the panels have in what stands beside."""
         return self._tints_of(self.beside)
 
@@ -375,13 +375,13 @@ class ModelController(QObject):
 
     def _take(self, message: Any) -> None:
         match message:
-            case Seen():
+            case ViewAnswer():
                 self.seen.emit(message)
             case Probed():
                 self.probed.emit(message)
             case SceneMade():
                 self._take_scene(message)
-            case Lost(status):
+            case ProcessEnded(status):
                 if self.is_reading:
                     self._not_opened(None)
                 self._context.say(

@@ -33,7 +33,7 @@ from groundstation.services.model.scene_card import Level, Subject
 from groundstation.services.units import UnitSystem, area_unit, length_unit
 from planning.base.errors import GroundStationError
 from reconstruction.records.entries import STANDARD, TYPES, Attribute, Defect, Document, Entry, Inspection, Maintenance
-from reconstruction.records.stored_files import shown_place
+from reconstruction.records.stored_files import display_place
 
 # What kinds of records, their fields and choices are called.
 
@@ -305,16 +305,16 @@ class RecordSide(QWidget):
 
     Signals
     -------
-    putAsked(Entry, Path or None), removeAsked(Entry)
-    undoAsked(), reportAsked()
+    changeRequested(Entry, Path or None), removeRequested(Entry)
+    undoRequested(), reportRequested()
     levelChanged(str)
         Records of a panel, a facade or the building are wanted.
     """
 
-    putAsked = Signal(object, object)  # noqa: N815  (Qt's own way of naming)
-    removeAsked = Signal(object)  # noqa: N815
-    undoAsked = Signal()  # noqa: N815
-    reportAsked = Signal()  # noqa: N815
+    changeRequested = Signal(object, object)  # noqa: N815  (Qt's own way of naming)
+    removeRequested = Signal(object)  # noqa: N815
+    undoRequested = Signal()  # noqa: N815
+    reportRequested = Signal()  # noqa: N815
     levelChanged = Signal(str)  # noqa: N815
 
     def __init__(self, words: Callable[[str], str], parent: QWidget | None = None) -> None:
@@ -377,7 +377,7 @@ class RecordSide(QWidget):
             return
         dialog = RecordDialog(kind, self._subject.global_id, entry, self._words, self)
         if dialog.exec() == QDialog.DialogCode.Accepted:
-            self.putAsked.emit(dialog.found, dialog.file)
+            self.changeRequested.emit(dialog.found, dialog.file)
         dialog.deleteLater()
 
     def _make(self) -> None:
@@ -428,8 +428,8 @@ class RecordSide(QWidget):
         self.kinds.triggered.connect(self._add)
         self.change.clicked.connect(self._change)
         self.remove.clicked.connect(self._remove)
-        self.undo.clicked.connect(self.undoAsked)
-        self.report.clicked.connect(self.reportAsked)
+        self.undo.clicked.connect(self.undoRequested)
+        self.report.clicked.connect(self.reportRequested)
         self.level.currentIndexChanged.connect(self._level_chosen)
 
     def _enable(self) -> None:
@@ -453,7 +453,7 @@ class RecordSide(QWidget):
     def _remove(self) -> None:
         entry = self.entry()
         if entry is not None:
-            self.removeAsked.emit(entry)
+            self.removeRequested.emit(entry)
 
 
 def line_of(entry: Entry) -> str:
@@ -471,7 +471,7 @@ def line_of(entry: Entry) -> str:
         cost = "" if entry.cost is None else f"{QLocale().toString(entry.cost, 'f', 2)} {entry.currency}"
         due = "" if entry.next_due is None else f"{field_words('next_due')} {entry.next_due}"
         return f"{entry.date}: {_joined([entry.work, entry.done_by, cost, due, entry.note])}"
-    return _joined([entry.title, entry.kind, shown_place(entry.place)])
+    return _joined([entry.title, entry.kind, display_place(entry.place)])
 
 
 def _joined(parts: list[str]) -> str:

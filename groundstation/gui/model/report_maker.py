@@ -18,11 +18,11 @@ from groundstation.gui.mission.brief_printer import BriefDocument, write_pdf
 from groundstation.gui.model.model_controller import ModelController
 from groundstation.gui.model.picture_places import places_in
 from groundstation.gui.model.record_side import KIND_TITLES, line_of
-from groundstation.gui.reconstruct.looks import NUMBERS, image_of
+from groundstation.gui.reconstruct.view_pictures import NUMBERS, image_of
 from groundstation.services.model.facility_records import Attachment
 from groundstation.services.model.scene_card import PanelRow, SceneCard, view_of
 from groundstation.services.reconstruct.guided_camera import sized
-from groundstation.services.reconstruct.messages import Look, Seen, Subject
+from groundstation.services.reconstruct.messages import Subject, ViewAnswer, ViewRequest
 from groundstation.services.units import UnitSystem, area_unit, length_unit
 from planning.base.errors import InputError
 from reconstruction.records.entries import Defect, Document, Entry
@@ -123,7 +123,7 @@ class ReportMaker(QObject):
             return
         self._number = next(NUMBERS)
         camera = sized(view_of(self._left[0][1]), WIDTH_PX, HEIGHT_PX)
-        self._controller.look(Look(REPORT, self._number, Subject("model", card.folder), camera))
+        self._controller.look(ViewRequest(REPORT, self._number, Subject("model", card.folder), camera))
 
     def _read(self) -> None:
         """Read the files that records name."""
@@ -140,7 +140,7 @@ class ReportMaker(QObject):
     def _not_read(self, _error: BaseException | None) -> None:
         self._reading = 0
 
-    def _take(self, seen: Seen | None) -> None:
+    def _take(self, seen: ViewAnswer | None) -> None:
         if not self._number:
             return
         if seen is None:
@@ -238,7 +238,7 @@ def _fitted(picture: bytes) -> str:
     return f"width='{size.width()}' height='{size.height()}'"
 
 
-def marked(picture: QImage, seen: Seen, defects: Mapping[PanelRow, Sequence[Defect]]) -> QImage:
+def marked(picture: QImage, seen: ViewAnswer, defects: Mapping[PanelRow, Sequence[Defect]]) -> QImage:
     """A picture with panels outlined, and their open defects where they are.
 
     Those of one panel have their numbers. Of several, what has no place on its panel is in the panel's middle.

@@ -14,13 +14,13 @@ from PySide6.QtWidgets import QCheckBox, QComboBox, QHBoxLayout, QLabel, QPushBu
 from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.model.model_controller import ModelController
 from groundstation.gui.model.picture_places import places_in
-from groundstation.gui.reconstruct.looks import Looks, View, layer_names
-from groundstation.gui.reconstruct.model_view import USUAL_DISTANCE_M, LedCamera, Mark, ModelView
+from groundstation.gui.reconstruct.model_view import USUAL_DISTANCE_M, GuidedCamera, Mark, ModelView
+from groundstation.gui.reconstruct.view_pictures import View, ViewPictures, layer_names
 from groundstation.gui.widgets.inputs import ChoiceBox, calm
 from groundstation.gui.widgets.scrolling import WrappingRow, labelled
 from groundstation.gui.widgets.theme import colours
 from groundstation.services.model.scene_card import PanelRow, view_of
-from groundstation.services.reconstruct.messages import Probe, Probed, Section, Seen, Subject
+from groundstation.services.reconstruct.messages import Probe, Probed, Section, Subject, ViewAnswer
 from groundstation.services.units import UnitSystem, length_unit
 from planning.geo.frames import Vec3
 from reconstruction.base.cameras import PosedPhoto
@@ -43,11 +43,11 @@ class ScenePane(QWidget):
 
     Signals
     -------
-    saveAsked()
+    saveRequested()
         The picture is to be kept.
     """
 
-    saveAsked = Signal()  # noqa: N815  (Qt's own way of naming)
+    saveRequested = Signal()  # noqa: N815  (Qt's own way of naming)
 
     def __init__(self, context: ApplicationContext, controller: ModelController, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -58,8 +58,8 @@ class ScenePane(QWidget):
         self.axis, self.cut, self.turn_over = ChoiceBox(), QSlider(Qt.Orientation.Horizontal), QCheckBox()
         calm(self.cut)
         self.cut_at = QLabel()
-        self.looks = Looks(controller.look, self._size_px, self)
-        self.led = LedCamera(self.view, self)
+        self.looks = ViewPictures(controller.look, self._size_px, self)
+        self.led = GuidedCamera(self.view, self)
         self._images: dict[str, QImage | None] = {"left": None, "right": None}
         self._problem = ""
         self._pointed = -1
@@ -110,7 +110,9 @@ class ScenePane(QWidget):
         if right is None:
             self._images["right"] = None
         layer = str(self.layer.currentData() or PICTURE)
-        tints, right_tints = (self._controller.tints, self._controller.tints_beside) if layer == PICTURE else ((), ())
+        tints, right_tints = (
+            (self._controller.tints, self._controller.comparison_tints) if layer == PICTURE else ((), ())
+        )
         self.looks.show(View(self.led.camera, left, right, layer, "", tints, self.section(), right_tints))
         self._say()
 
@@ -173,9 +175,9 @@ class ScenePane(QWidget):
         self.measure.toggled.connect(self._measuring)
         self.home.clicked.connect(self.go_home)
         self.front.clicked.connect(self.face_panel)
-        self.save.clicked.connect(self.saveAsked)
+        self.save.clicked.connect(self.saveRequested)
         self.led.led.connect(self._led)
-        view.homeAsked.connect(self.go_home)
+        view.homeRequested.connect(self.go_home)
         view.resized.connect(self.show_view)
         view.clicked.connect(self._clicked)
         view.pointed.connect(self._point_at)
@@ -207,7 +209,7 @@ class ScenePane(QWidget):
 
     def _set_beside(self) -> None:
         other = str(self.compare.currentData() or "")
-        self._controller.stand_beside(Path(other) if other else None)
+        self._controller.set_comparison_scene(Path(other) if other else None)
         self.show_view()
 
     def _clicked(self, x: float, y: float) -> None:
@@ -249,7 +251,7 @@ class ScenePane(QWidget):
         other = str(self.compare.currentData() or "")
         return Subject("model", card.folder), Subject("model", Path(other)) if other else None
 
-    def _take(self, seen: Seen | None) -> None:
+    def _take(self, seen: ViewAnswer | None) -> None:
         if seen is None:
             self.looks.forget()
         else:
@@ -268,7 +270,7 @@ class ScenePane(QWidget):
             self._measured = [*(self._measured if len(self._measured) < 2 else []), found.point_enu_m]
         self._say()
 
-    def _show_picture(self, place: str, image: QImage | None, seen: Seen) -> None:
+    def _show_picture(self, place: str, image: QImage | None, seen: ViewAnswer) -> None:
         left, right = self._subjects()
         if seen.look.subject != (left if place == "left" else right):
             return

@@ -10,7 +10,7 @@ from PySide6.QtCore import QRect, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QImage, QPainter
 from PySide6.QtWidgets import QButtonGroup, QHBoxLayout, QLabel, QPushButton, QStackedWidget, QVBoxLayout, QWidget
 
-from groundstation.gui.photos.coverage_shown import CoverageScene
+from groundstation.gui.photos.coverage_display import CoverageScene
 from groundstation.gui.photos.grid_view import GridView
 from groundstation.gui.photos.photo_store import LargePicture, PhotoStore
 from groundstation.gui.widgets.inputs import ChoiceBox

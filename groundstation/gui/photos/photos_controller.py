@@ -13,9 +13,9 @@ from groundstation.gui.application.context import ApplicationContext
 from groundstation.services.jobs.runner import JobContext
 from groundstation.services.photos.coarse import SPARSE, CoarseFiles, CoarseRequest, coarse_apart
 from groundstation.services.photos.found_panels import (
+    AppliedPoses,
     PanelDraft,
-    Reposed,
-    repose,
+    apply_poses,
     search_panels,
     solved_draft,
     with_found_panels,
@@ -24,12 +24,12 @@ from groundstation.services.photos.intake import (
     PhotoCard,
     PhotoCoverage,
     PhotoIntake,
-    counted_again,
     photo_cards,
     photo_coverage,
-    take_in_photos,
+    photo_intake,
+    recounted,
 )
-from groundstation.services.photos.poses import BetterPoses
+from groundstation.services.photos.poses import ChosenPoses
 from groundstation.services.photos.tradeoff import Trial, facade_trials
 from groundstation.services.project.document import Document
 from groundstation.services.project.input_files import read_input_site
@@ -178,7 +178,7 @@ class PhotosController(QObject):
         self.folder = folder
 
         def work(context: JobContext) -> PhotoIntake:
-            return take_in_photos(folder, model, flown, colmap=poses, monitor=context)
+            return photo_intake(folder, model, flown, colmap=poses, monitor=context)
 
         def done(intake: PhotoIntake) -> None:
             if _is_same_place(model, self._context.document.site):
@@ -215,7 +215,7 @@ class PhotosController(QObject):
         self._counting = basis
 
         def work(context: JobContext) -> PhotoIntake:
-            return counted_again(intake, model, basis[1], context)
+            return recounted(intake, model, basis[1], context)
 
         def done(counted: PhotoIntake) -> None:
             if self.intake is intake:
@@ -224,16 +224,16 @@ class PhotosController(QObject):
 
         self._start(self.tr("Count coverage"), work, done)
 
-    def change_poses(self, label: str, poses: Callable[[JobContext], BetterPoses]) -> None:
+    def change_poses(self, label: str, poses: Callable[[JobContext], ChosenPoses]) -> None:
         """Go on with other poses of the same photos; panels that were found stay, and are solved with them."""
         model, intake, draft, basis = self._context.document.site, self.intake, self.draft, self._basis()
         if model is None or intake is None:
             return
 
-        def work(context: JobContext) -> Reposed:
-            return repose(intake, draft, poses(context), model, basis[1], context)
+        def work(context: JobContext) -> AppliedPoses:
+            return apply_poses(intake, draft, poses(context), model, basis[1], context)
 
-        def done(reposed: Reposed) -> None:
+        def done(reposed: AppliedPoses) -> None:
             if self.intake is intake and self.draft is draft:
                 self._taken_in(reposed.intake, basis)
                 if reposed.draft is not None:

@@ -27,7 +27,7 @@ from PySide6.QtWidgets import (
 from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.charts.quality_chart import TrialChart
 from groundstation.gui.map.place_map import PlaceMap
-from groundstation.gui.photos.coverage_shown import CoverageShown, PanelSightings
+from groundstation.gui.photos.coverage_display import CoverageDisplay, PanelSightings
 from groundstation.gui.photos.grid_view import Tool, ToolBox
 from groundstation.gui.photos.photo_pane import PhotoPane, ThumbnailStrip
 from groundstation.gui.photos.photo_store import PhotoStore
@@ -47,7 +47,7 @@ from groundstation.services.photos.grid_edits import (
     set_panel,
 )
 from groundstation.services.photos.intake import card_of_place
-from groundstation.services.photos.poses import BetterPoses, RefinedOutcome, RefineRequest, refined_poses
+from groundstation.services.photos.poses import ChosenPoses, RefinedOutcome, RefineRequest, refined_poses
 from groundstation.services.photos.tradeoff import corner_sigma_m
 from groundstation.services.project.document import Document, Item, ItemKind
 from groundstation.services.units import UnitSystem, length_unit, sampling_unit
@@ -199,7 +199,7 @@ class PoseBox(QWidget):
         if intake is None:
             return
 
-        def poses(context: JobContext) -> BetterPoses:
+        def poses(context: JobContext) -> ChosenPoses:
             return refined_poses(intake.posed.photos, intake.folder, RefineRequest(), context)
 
         self._controller.change_poses(self.tr("Refine poses"), poses)
@@ -207,7 +207,7 @@ class PoseBox(QWidget):
     def _back(self) -> None:
         intake = self._controller.intake
         if intake is not None:
-            own = BetterPoses(intake.posed.photos)
+            own = ChosenPoses(intake.posed.photos)
             self._controller.change_poses(self.tr("Own poses"), lambda _context: own)
 
     def _show(self) -> None:
@@ -251,7 +251,7 @@ class PhotosPage(QObject):
         self.find, self.use = QPushButton(self.tr("Find panels")), QPushButton(self.tr("Use these panels"))
         self.data_set = QPushButton(self.tr("Make data set ..."))
         self.folder, self.coverage, self.state = QLabel(), QLabel(), QLabel()
-        self.coverage_shown = CoverageShown(context, self.controller, self.pane.scene, self.sightings, self)
+        self.coverage_shown = CoverageDisplay(context, self.controller, self.pane.scene, self.sightings, self)
         self.left = self._make_page()
         self.right: QWidget | None = None
         self.bottom: QWidget | None = None

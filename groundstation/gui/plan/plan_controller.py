@@ -14,7 +14,7 @@ from groundstation.services.plan.editing import KEEPING_METHODS, edit_effect, ha
 from groundstation.services.plan.effects import EffectChoice, SceneEffects, plan_effects, scene_effects
 from groundstation.services.plan.places import item_of_place
 from groundstation.services.plan.plan_cache import ActivePlan, PlanCache, PreparedSite, activate
-from groundstation.services.plan.planning import plan_document_site, reunited
+from groundstation.services.plan.planning import plan_document_site, with_local_site
 from groundstation.services.project.document import Document, Item, ItemKind, PlanEntry
 from groundstation.services.project.input_files import read_input_plan
 from planning import revision as edits
@@ -129,7 +129,7 @@ class PlanController(QObject):
     -------
     planningStarted(Job, float), planningEnded()
         With the time budget in seconds.
-    inHandChanged(ActivePlan or None)
+    activePlanChanged(ActivePlan or None)
         The current plan can be looked at and edited; None while it is not active, or there is none.
     refused(str)
         Why an edit was not carried out.
@@ -137,7 +137,7 @@ class PlanController(QObject):
 
     planningStarted = Signal(object, float)  # noqa: N815  (Qt's own way of naming)
     planningEnded = Signal()  # noqa: N815
-    inHandChanged = Signal(object)  # noqa: N815
+    activePlanChanged = Signal(object)  # noqa: N815
     refused = Signal(str)
 
     def __init__(self, context: ApplicationContext, parent: QObject | None = None) -> None:
@@ -193,7 +193,7 @@ class PlanController(QObject):
         prepared = self._plan_cache.prepared_for(request, site)
 
         def work(context: JobContext) -> Planned:
-            return reunited(context.apart(plan_document_site, site, request, prepared), site, prepared)
+            return with_local_site(context.apart(plan_document_site, site, request, prepared), site, prepared)
 
         def done(planned: Planned) -> None:
             self._planned(planned, request, site)
@@ -405,9 +405,9 @@ class PlanController(QObject):
 
     def _give_up(self, why: str) -> None:
         self._activation, self._not_taken = None, why
-        self.inHandChanged.emit(None)
+        self.activePlanChanged.emit(None)
 
     def _set_active(self, active: ActivePlan | None) -> None:
         if active is not self._active:
             self._active = active
-            self.inHandChanged.emit(active)
+            self.activePlanChanged.emit(active)

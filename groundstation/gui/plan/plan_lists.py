@@ -36,7 +36,7 @@ from groundstation.gui.widgets.theme import colours
 from groundstation.gui.widgets.waypoint_table import WaypointTable
 from groundstation.services.jobs.runner import Job
 from groundstation.services.mission.waypoints import waypoint_rows
-from groundstation.services.plan.comparison import compare, marked_as_best, told_apart
+from groundstation.services.plan.comparison import compare, distinct_titles, marked_as_best
 from groundstation.services.plan.plan_cache import ActivePlan
 from groundstation.services.plan.reach_summary import ReachGroup, reach_groups
 from groundstation.services.project.document import Document, Item, ItemKind, PlanEntry
@@ -45,9 +45,9 @@ from planning.base.findings import Severity
 from planning.geo.frames import Origin
 from planning.insight.clearance import RouteClearance, route_clearance
 from planning.insight.comparison import Comparison, Row
+from planning.insight.obstructions import obstructions_of
 from planning.insight.reasons import Rule
 from planning.insight.sections import PlanInsight, SectionState
-from planning.insight.things import things_of
 from planning.plan import Plan
 from planning.site.records import SiteModel
 
@@ -78,7 +78,7 @@ class CompareWindow(QDialog):
         self._words.setWordWrap(True)
         self._table = QTableWidget()
         self._lay_out()
-        names = told_apart(entries)
+        names = distinct_titles(entries)
         for number, (choice, scene) in enumerate(zip(self._choices, self._scenes, strict=True)):
             choice.addItems(names)
             choice.setCurrentIndex(number)
@@ -262,15 +262,15 @@ class PlansList(QWidget):
 
     Signals
     -------
-    chosen(str), renamed(str, str), removed(str), compareWanted(tuple of str), openWanted()
+    chosen(str), renamed(str, str), removed(str), compareRequested(tuple of str), openRequested()
         Identifiers of plans.
     """
 
     chosen = Signal(str)
     renamed = Signal(str, str)
     removed = Signal(str)
-    compareWanted = Signal(object)  # noqa: N815  (Qt's own way of naming)
-    openWanted = Signal()  # noqa: N815
+    compareRequested = Signal(object)  # noqa: N815  (Qt's own way of naming)
+    openRequested = Signal()  # noqa: N815
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -296,10 +296,10 @@ class PlansList(QWidget):
         layout.addWidget(self._view, 1)
         layout.addLayout(buttons)
         self._use.clicked.connect(lambda: self.chosen.emit(self.selected()[0]))
-        self._compare.clicked.connect(lambda: self.compareWanted.emit(self.selected()))
+        self._compare.clicked.connect(lambda: self.compareRequested.emit(self.selected()))
         self._rename.clicked.connect(self._ask_name)
         self._remove.clicked.connect(lambda: self.removed.emit(self.selected()[0]))
-        self._open.clicked.connect(lambda: self.openWanted.emit())
+        self._open.clicked.connect(lambda: self.openRequested.emit())
         self._view.selectionModel().selectionChanged.connect(lambda *_: self._update())
         for signal in (self._view.activated, self._view.doubleClicked):
             signal.connect(lambda index: self.chosen.emit(self._model.row(index).id))
@@ -483,9 +483,9 @@ class PlanLists(QTabWidget):
         plans.chosen.connect(controller.choose)
         plans.renamed.connect(controller.rename)
         plans.removed.connect(controller.remove)
-        plans.openWanted.connect(self._ask_plan)
-        plans.compareWanted.connect(self.compare)
-        controller.inHandChanged.connect(lambda _active: self._fill_page())
+        plans.openRequested.connect(self._ask_plan)
+        plans.compareRequested.connect(self.compare)
+        controller.activePlanChanged.connect(lambda _active: self._fill_page())
         context.documentChanged.connect(self._document_changed)
         context.selectionChanged.connect(self._show_selection)
 
@@ -609,7 +609,7 @@ class PlanLists(QTabWidget):
 
         self._measuring = self._context.start(
             self.tr("Measure clearance"),
-            lambda _context: route_clearance(sortie, space, things_of(site_model, space)),
+            lambda _context: route_clearance(sortie, space, obstructions_of(site_model, space)),
             done,
         )
 

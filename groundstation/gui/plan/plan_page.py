@@ -27,7 +27,7 @@ from groundstation.gui.widgets.effects_panel import EffectsPanel
 from groundstation.gui.widgets.inputs import ChoiceBox
 from groundstation.gui.widgets.scrolling import WrappingRow, labelled, scrolled
 from groundstation.services.jobs.runner import Job, JobBounded, JobImproved
-from groundstation.services.mission.readiness import findings_beside
+from groundstation.services.mission.readiness import additional_findings
 from groundstation.services.plan.plan_cache import ActivePlan
 from groundstation.services.project.document import Document, Item, ItemKind
 from groundstation.services.units import UnitSystem, distance_unit, length_unit, minutes_text, per_cent, sampling_unit
@@ -241,7 +241,7 @@ class PlanPage(QObject):
         self.paint.valueChanged.connect(lambda *_: self._paint())
         controller.planningStarted.connect(self._planning_started)
         controller.planningEnded.connect(self._planning_ended)
-        controller.inHandChanged.connect(self._show_active)
+        controller.activePlanChanged.connect(self._show_active)
         self.effects.lookedAt.connect(self.effects_controller.look)
         self.effects_controller.effectsChanged.connect(self.effects.set_effects)
         controller.refused.connect(lambda text: context.say(Severity.ERROR, text))
@@ -321,7 +321,7 @@ class PlanPage(QObject):
     def _show_result(self, active: ActivePlan) -> None:
         # As many as the Mission tab counts, where nothing is said there of the day.
         revision, plan = active.revision, active.plan
-        findings = (*revision.findings, *findings_beside(revision.case))
+        findings = (*revision.findings, *additional_findings(revision.case))
         wrong = [finding for finding in findings if finding.severity is Severity.ERROR]
         warned = sum(finding.severity is Severity.WARNING for finding in findings)
         if is_flyable(findings):

@@ -208,14 +208,14 @@ class ViewpointEditor(QWidget):
     Signals
     -------
     valueChanged(Viewpoint)
-    addWanted(), deleteWanted(), aimWanted()
+    addRequested(), deleteRequested(), aimRequested()
         A new viewpoint beside this one; this one away; this one turned towards the selected panel.
     """
 
     valueChanged = Signal(object)  # noqa: N815  (Qt's own way of naming)
-    addWanted = Signal()  # noqa: N815
-    deleteWanted = Signal()  # noqa: N815
-    aimWanted = Signal()  # noqa: N815
+    addRequested = Signal()  # noqa: N815
+    deleteRequested = Signal()  # noqa: N815
+    aimRequested = Signal()  # noqa: N815
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -241,9 +241,9 @@ class ViewpointEditor(QWidget):
             angle.valueChanged.connect(self._edited)
         self._locked.toggled.connect(self._edited)
         for button, signal in (
-            (self._add, self.addWanted),
-            (self._delete, self.deleteWanted),
-            (self._aim, self.aimWanted),
+            (self._add, self.addRequested),
+            (self._delete, self.deleteRequested),
+            (self._aim, self.aimRequested),
         ):
             button.clicked.connect(lambda _checked=False, signal=signal: signal.emit())
         self.setValue(None)
@@ -346,11 +346,11 @@ class ViewpointPage(QWidget):
     def _connect(self) -> None:
         controller, context = self._controller, self._context
         self.editor.valueChanged.connect(controller.set_viewpoint)
-        self.editor.addWanted.connect(self.add_viewpoint)
-        self.editor.deleteWanted.connect(self.delete_viewpoint)
-        self.editor.aimWanted.connect(self._aim)
+        self.editor.addRequested.connect(self.add_viewpoint)
+        self.editor.deleteRequested.connect(self.delete_viewpoint)
+        self.editor.aimRequested.connect(self._aim)
         self._move.toggled.connect(self._move_toggled)
-        controller.inHandChanged.connect(lambda _active: self._say_of_viewpoint())
+        controller.activePlanChanged.connect(lambda _active: self._say_of_viewpoint())
         controller.refused.connect(self._refused)
         context.documentChanged.connect(self._document_changed)
         context.selectionChanged.connect(self._show_selection)

@@ -29,11 +29,11 @@ from reconstruction.training.parameters import PRESETS, TrainRequest
 
 # What this computer has, and what follows for a training, in words.
 
-Told = tuple[str, str]
+StatusLine = tuple[str, str]
 """Role of a label ("", warning, error), and text."""
 
 
-class MachineWords(QObject):
+class MachineTexts(QObject):
     """Says it."""
 
     def told(
@@ -44,15 +44,15 @@ class MachineWords(QObject):
         card: DataSetCard | None,
         forecast: Forecast | None,
         standing: Standing,
-    ) -> list[Told]:
+    ) -> list[StatusLine]:
         """Lines, what is most in the way first."""
         lines = [*self._lacking(machine, forecast, standing), *self._computer(machine, cuda, choice)]
         if card is not None and forecast is not None:
             lines += self._photos(card, forecast)
         return lines
 
-    def _lacking(self, machine: Machine, forecast: Forecast | None, standing: Standing) -> list[Told]:
-        lines: list[Told] = []
+    def _lacking(self, machine: Machine, forecast: Forecast | None, standing: Standing) -> list[StatusLine]:
+        lines: list[StatusLine] = []
         if forecast is not None and machine.free_bytes is not None and forecast.needed_bytes > machine.free_bytes:
             lines.append(
                 (
@@ -75,13 +75,13 @@ class MachineWords(QObject):
             )
         return lines
 
-    def _computer(self, machine: Machine, cuda: tuple[str, ...] | None, choice: TrainChoice) -> list[Told]:
+    def _computer(self, machine: Machine, cuda: tuple[str, ...] | None, choice: TrainChoice) -> list[StatusLine]:
         words = self.tr("{0} cores").format(machine.cores)
         if machine.memory_bytes is not None:
             words += self.tr(", {0} of memory").format(size_text(machine.memory_bytes))
         if machine.free_bytes is not None:
             words += self.tr(", {0} of it free").format(size_text(machine.free_bytes))
-        lines: list[Told] = [("", words)]
+        lines: list[StatusLine] = [("", words)]
         if cuda is None:
             lines.append(("", self.tr("Looking for a CUDA device ...")))
         elif not cuda:
@@ -106,9 +106,9 @@ class MachineWords(QObject):
                 lines.append(("", self.tr("It is not used: the processor is chosen.")))
         return lines
 
-    def _photos(self, card: DataSetCard, forecast: Forecast) -> list[Told]:
+    def _photos(self, card: DataSetCard, forecast: Forecast) -> list[StatusLine]:
         lens = card.source.photos[0].intrinsics
-        lines: list[Told] = [
+        lines: list[StatusLine] = [
             (
                 "",
                 self.tr("{0} photos of {1} x {2} pixels take {3} of memory when they are decoded.").format(
@@ -268,13 +268,13 @@ class ChoiceForm(QWidget):
 class ChoiceSide(QWidget):
     """Shows the controller's choices and what can be done."""
 
-    def __init__(self, controller: ReconstructController, words: MachineWords, parent: QWidget | None = None) -> None:
+    def __init__(self, controller: ReconstructController, words: MachineTexts, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._controller, self._words = controller, words
         self.form = ChoiceForm()
         self.choose, self.choose_out = QPushButton(self.tr("Choose ...")), QPushButton(self.tr("Choose ..."))
         self.train, self.pause = QPushButton(self.tr("Train")), QPushButton(self.tr("Pause"))
-        self.stop, self.break_off = QPushButton(self.tr("Stop and keep")), QPushButton(self.tr("Cancel"))
+        self.stop, self.cancel_training = QPushButton(self.tr("Stop and keep")), QPushButton(self.tr("Cancel"))
         self.data_set, self.out, self.there, self.wrong = QLabel(), QLabel(), QLabel(), QLabel()
         self._make()
 
@@ -296,7 +296,7 @@ class ChoiceSide(QWidget):
         self.pause.setEnabled(can_stop)
         self.pause.setText(self.tr("Resume") if controller.is_paused else self.tr("Pause"))
         self.stop.setEnabled(can_stop)
-        self.break_off.setEnabled(controller.phase in (BUSY | {Phase.ASKING}) - {Phase.ENDING})
+        self.cancel_training.setEnabled(controller.phase in (BUSY | {Phase.ASKING}) - {Phase.ENDING})
         told = self._words.told(
             controller.machine,
             controller.cuda,
@@ -347,7 +347,7 @@ class ChoiceSide(QWidget):
                 "is better than it is now"
             )
         )
-        self.break_off.setToolTip(self.tr("End now and keep the state; the training can be gone on with later"))
+        self.cancel_training.setToolTip(self.tr("End now and keep the state; the training can be gone on with later"))
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 6, 0)
         layout.addLayout(_headed(self.tr("Data set"), self.choose))
@@ -359,7 +359,7 @@ class ChoiceSide(QWidget):
         layout.addWidget(self.wrong)
         layout.addWidget(self.train)
         grid = ButtonGrid()
-        for button in (self.pause, self.break_off, self.stop):
+        for button in (self.pause, self.cancel_training, self.stop):
             grid.addWidget(button)
         layout.addLayout(grid)
         layout.addStretch(1)

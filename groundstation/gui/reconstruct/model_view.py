@@ -104,7 +104,7 @@ class ModelView(QWidget):
         Go to the right, up and forward, in shares of the distance to what is looked at.
     flown(float, float, float)
         The same with what is looked at: it stays as far away.
-    homeAsked()
+    homeRequested()
         Back to where the photo was taken.
     valueChanged(float)
         Where the line is, 0 at the left, 1 at the right.
@@ -117,7 +117,7 @@ class ModelView(QWidget):
     turned = Signal(float, float)
     moved = Signal(float, float, float)
     flown = Signal(float, float, float)
-    homeAsked = Signal()  # noqa: N815  (Qt's own way of naming)
+    homeRequested = Signal()  # noqa: N815  (Qt's own way of naming)
     valueChanged = Signal(float)  # noqa: N815
     clicked = Signal(float, float)
     pointed = Signal(float, float)
@@ -339,7 +339,7 @@ class ModelView(QWidget):
 
     def mouseDoubleClickEvent(self, _event: QMouseEvent) -> None:  # noqa: N802
         """Back to the photo's own place."""
-        self.homeAsked.emit()
+        self.homeRequested.emit()
 
     def wheelEvent(self, event: QWheelEvent) -> None:  # noqa: N802
         """Come nearer, go away."""
@@ -385,7 +385,7 @@ class ModelView(QWidget):
         elif key in (Qt.Key.Key_Minus, Qt.Key.Key_PageDown):
             self.moved.emit(0.0, 0.0, -STEP_WHEEL)
         elif key in (Qt.Key.Key_0, Qt.Key.Key_Home):
-            self.homeAsked.emit()
+            self.homeRequested.emit()
         else:
             super().keyPressEvent(event)
 
@@ -431,7 +431,7 @@ MOST_FORWARD = 0.9
 """Of the distance, that one step may go."""
 
 
-class LedCamera(QObject):
+class GuidedCamera(QObject):
     """Keeps a camera and how far away it is from what is in its middle.
 
     Signals

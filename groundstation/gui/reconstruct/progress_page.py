@@ -6,7 +6,7 @@ from PySide6.QtCore import QSignalBlocker, QTimer, Signal
 from PySide6.QtWidgets import QComboBox, QLabel, QProgressBar, QPushButton, QVBoxLayout, QWidget
 
 from groundstation.gui.charts.axes import Line, LinesPlot
-from groundstation.gui.reconstruct.looks import light_name, term_name
+from groundstation.gui.reconstruct.view_pictures import light_name, term_name
 from groundstation.gui.widgets.effects_panel import EffectsPanel
 from groundstation.gui.widgets.inputs import ChoiceBox
 from groundstation.gui.widgets.parameter_form import title_of

@@ -10,7 +10,7 @@ from typing import Any
 from PySide6.QtCore import QObject, Signal
 
 from groundstation.gui.application.context import ApplicationContext
-from groundstation.services.jobs.channel import Lost
+from groundstation.services.jobs.channel import ProcessEnded
 from groundstation.services.jobs.runner import JobContext
 from groundstation.services.reconstruct.choices import Forecast, Machine, TrainChoice, forecast, this_machine
 from groundstation.services.reconstruct.curves import ThinCurve
@@ -27,21 +27,21 @@ from groundstation.services.reconstruct.folders import (
 )
 from groundstation.services.reconstruct.messages import (
     AskScene,
-    BreakOff,
+    CancelTraining,
     Chosen,
     Devices,
     Ended,
-    Look,
     Measured,
     ModelProcess,
     Pause,
     PhotoError,
-    Seen,
     Stage,
     Stepped,
     Stop,
     Subject,
     Train,
+    ViewAnswer,
+    ViewRequest,
     WatchErrors,
 )
 from planning.base.effects import Decision
@@ -359,14 +359,14 @@ class ReconstructController(FolderController):
             self._process.send(Stop())
             self._to(Phase.SETTLING)
 
-    def break_off(self) -> None:
+    def cancel_training(self) -> None:
         """End now; the state is kept."""
         if self.phase in BUSY or self.phase is Phase.ASKING:
             self.is_paused = False
-            self._process.send(BreakOff())
+            self._process.send(CancelTraining())
             self._to(Phase.ENDING if self.phase in BUSY else Phase.ASKING)
 
-    def look(self, look: Look) -> None:
+    def look(self, look: ViewRequest) -> None:
         """Ask for a picture."""
         self._process.send(look)
 
@@ -394,7 +394,7 @@ class ReconstructController(FolderController):
 
     def _take(self, message: Any) -> None:
         match message:
-            case Seen():
+            case ViewAnswer():
                 self.seen.emit(message)
             case Stage():
                 self.training.stage = message
@@ -416,7 +416,7 @@ class ReconstructController(FolderController):
                 self.stateChanged.emit()
             case Ended():
                 self._take_end(message)
-            case Lost():
+            case ProcessEnded():
                 self._take_loss(message)
 
     def _take_step(self, stepped: Stepped) -> None:
@@ -446,7 +446,7 @@ class ReconstructController(FolderController):
         self.stateChanged.emit()
         self.progressed.emit()
 
-    def _take_loss(self, lost: Lost) -> None:
+    def _take_loss(self, lost: ProcessEnded) -> None:
         was, self.phase, self.is_paused = self.phase, Phase.IDLE, False
         self.training.stepped, self.cuda = None, None
         if was in BUSY:

@@ -10,7 +10,7 @@ from PySide6.QtGui import QAction, QCloseEvent
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QSplitter, QTabWidget, QVBoxLayout, QWidget
 
 from groundstation.gui.application.context import ApplicationContext
-from groundstation.gui.reconstruct.choice_side import ChoiceSide, MachineWords
+from groundstation.gui.reconstruct.choice_side import ChoiceSide, MachineTexts
 from groundstation.gui.reconstruct.progress_page import LightPage, ProgressPage
 from groundstation.gui.reconstruct.reconstruct_controller import Phase, ReconstructController
 from groundstation.gui.reconstruct.view_pane import ViewPane
@@ -26,7 +26,7 @@ from groundstation.services.units import UnitSystem, minutes_text
 class ReconstructQuestions(QObject):
     """Asks by dialogs."""
 
-    def break_off(self, parent: QWidget) -> bool:
+    def cancel_training(self, parent: QWidget) -> bool:
         """Whether to break a training off because the window closes."""
         return agrees(
             parent,
@@ -53,7 +53,7 @@ class ReconstructPage(QObject):
             Questions(),
             ReconstructQuestions(),
         )
-        self._words = MachineWords(self)
+        self._words = MachineTexts(self)
         self.side, self.pane = ChoiceSide(self.controller, self._words), ViewPane(context, self.controller)
         self.progress, self.light = ProgressPage(), LightPage()
         self.machine = QWidget()
@@ -124,7 +124,7 @@ class ReconstructPage(QObject):
         side.train.clicked.connect(controller.train)
         side.pause.clicked.connect(self._pause)
         side.stop.clicked.connect(controller.stop)
-        side.break_off.clicked.connect(controller.break_off)
+        side.cancel_training.clicked.connect(controller.cancel_training)
         self.light.valueChanged.connect(self._light_chosen)
         self.light.asked.connect(controller.ask_scene)
         controller.dataSetChanged.connect(self.pane.set_data_set)
@@ -169,7 +169,7 @@ class ReconstructPage(QObject):
     def _window_closing(self, event: QCloseEvent) -> None:
         if not event.isAccepted():
             return
-        if self.controller.is_busy and not self.asks.break_off(self._shared_view.window()):
+        if self.controller.is_busy and not self.asks.cancel_training(self._shared_view.window()):
             event.ignore()
             return
         self.pane.close_pictures()

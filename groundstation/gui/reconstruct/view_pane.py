@@ -9,16 +9,16 @@ from PySide6.QtGui import QColor, QImage, QPainter
 from PySide6.QtWidgets import QComboBox, QHBoxLayout, QPushButton, QSlider, QVBoxLayout, QWidget
 
 from groundstation.gui.application.context import ApplicationContext
-from groundstation.gui.reconstruct.looks import Looks, View, layer_names
-from groundstation.gui.reconstruct.model_view import LedCamera, ModelView
+from groundstation.gui.reconstruct.model_view import GuidedCamera, ModelView
 from groundstation.gui.reconstruct.reconstruct_controller import TRAINING, Phase, ReconstructController
+from groundstation.gui.reconstruct.view_pictures import View, ViewPictures, layer_names
 from groundstation.gui.widgets.inputs import ChoiceBox, calm
-from groundstation.gui.widgets.photo_strip import PhotoStrip, SmallPictures
+from groundstation.gui.widgets.photo_strip import PhotoStrip, Thumbnails
 from groundstation.gui.widgets.scrolling import WrappingRow, labelled
 from groundstation.gui.widgets.theme import Colours, colours
 from groundstation.services.reconstruct.folders import ModelCard
 from groundstation.services.reconstruct.guided_camera import sized
-from groundstation.services.reconstruct.messages import Seen, Subject
+from groundstation.services.reconstruct.messages import Subject, ViewAnswer
 from groundstation.services.units import UnitSystem, length_unit
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.training.layers import PICTURE
@@ -47,7 +47,7 @@ class ErrorStrip(PhotoStrip[PosedPhoto]):
 
     chosen = Signal(str)
 
-    def __init__(self, pictures: SmallPictures, parent: QWidget | None = None) -> None:
+    def __init__(self, pictures: Thumbnails, parent: QWidget | None = None) -> None:
         super().__init__(CELL, BAR_PX + FOOT_PX, lambda photo: photo.path, parent)
         self._pictures = pictures
         self._all: tuple[PosedPhoto, ...] = ()
@@ -181,11 +181,11 @@ class ViewBar(QWidget):
     -------
     valueChanged()
         Another layer, model or comparison was chosen.
-    homeAsked()
+    homeRequested()
     """
 
     valueChanged = Signal()  # noqa: N815  (Qt's own way of naming)
-    homeAsked = Signal()  # noqa: N815
+    homeRequested = Signal()  # noqa: N815
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -251,7 +251,7 @@ class ViewBar(QWidget):
         self.valueChanged.emit()
 
     def _home(self) -> None:
-        self.homeAsked.emit()
+        self.homeRequested.emit()
 
 
 def _title(card: ModelCard) -> str:
@@ -273,13 +273,13 @@ class ViewPane(QWidget):
     ) -> None:
         super().__init__(parent)
         self._context, self._controller = context, controller
-        self.pictures = SmallPictures(self)
+        self.pictures = Thumbnails(self)
         self.bar, self.view, self.strip = ViewBar(), ModelView(), ErrorStrip(self.pictures)
         self.line, self.worst = QSlider(Qt.Orientation.Horizontal), QPushButton(self.tr("Worst first"))
         calm(self.line)
-        self.looks = Looks(controller.look, self._size_px, self)
+        self.looks = ViewPictures(controller.look, self._size_px, self)
         self._photo: PosedPhoto | None = None
-        self.led = LedCamera(self.view, self)
+        self.led = GuidedCamera(self.view, self)
         self._images: dict[str, QImage | None] = {"left": None, "right": None}
         self._scale: tuple[float, float] | None = None
         self._problem = ""
@@ -379,11 +379,11 @@ class ViewPane(QWidget):
     def _connect(self) -> None:
         view, controller = self.view, self._controller
         self.bar.valueChanged.connect(self._bar_changed)
-        self.bar.homeAsked.connect(self._go_home)
+        self.bar.homeRequested.connect(self._go_home)
         self.worst.toggled.connect(self.strip.set_worst_first)
         self.strip.chosen.connect(self._choose_photo)
         self.led.led.connect(self._led)
-        view.homeAsked.connect(self._go_home)
+        view.homeRequested.connect(self._go_home)
         view.resized.connect(self.show_view)
         view.valueChanged.connect(self._line_moved)
         self.line.valueChanged.connect(self._slider_moved)
@@ -445,13 +445,13 @@ class ViewPane(QWidget):
             return left, photo
         return left, None if compare == NOTHING else Subject("model", Path(compare))
 
-    def _take(self, seen: Seen | None) -> None:
+    def _take(self, seen: ViewAnswer | None) -> None:
         if seen is None:
             self.looks.forget()
         else:
             self.looks.take(seen)
 
-    def _show_picture(self, place: str, image: QImage | None, seen: Seen) -> None:
+    def _show_picture(self, place: str, image: QImage | None, seen: ViewAnswer) -> None:
         left, right = self._subjects()
         if seen.look.subject != (left if place == "left" else right):
             return

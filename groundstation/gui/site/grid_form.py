@@ -47,12 +47,12 @@ class GridForm(QWidget):
     Signals
     -------
     valueChanged(GridRequest)
-    pickAsked(), accepted(), cancelled()
+    pickRequested(), accepted(), cancelled()
         The user wants to pick the rectangle in the view, to keep the grid, to give it up.
     """
 
     valueChanged = Signal(object)  # noqa: N815  (Qt's own way of naming)
-    pickAsked = Signal()  # noqa: N815
+    pickRequested = Signal()  # noqa: N815
     accepted = Signal()
     cancelled = Signal()
 
@@ -74,7 +74,7 @@ class GridForm(QWidget):
         boxes = (self._rows, self._columns, self._gap, self._tolerance)
         for changed in (*(box.valueChanged for box in boxes), *(corner.valueChanged for corner in self._corners)):
             changed.connect(self._edited)
-        self._pick.clicked.connect(self.pickAsked)
+        self._pick.clicked.connect(self.pickRequested)
         self._accept.clicked.connect(self.accepted)
         self._cancel.clicked.connect(self.cancelled)
         self.setValue(GridRequest())
@@ -224,7 +224,7 @@ def checked_grid(model: SiteModel, request: GridRequest) -> AddedGrid | InputErr
         return error
 
 
-class GridMaker(QObject):
+class GridController(QObject):
     """Connects the grid form with the rectangle tool, the checks and the document.
 
     Signals
@@ -247,10 +247,10 @@ class GridMaker(QObject):
         self._timer.setSingleShot(True)
         self._timer.setInterval(CHECK_AFTER_MS)
         self._timer.timeout.connect(self._check)
-        tools.gridAsked.connect(self.begin)
+        tools.gridRequested.connect(self.begin)
         tools.gridPicked.connect(self._picked)
         form.valueChanged.connect(self._changed)
-        form.pickAsked.connect(self._pick)
+        form.pickRequested.connect(self._pick)
         form.accepted.connect(self._accept)
         form.cancelled.connect(self.end)
         context.documentChanged.connect(self._document_changed)
@@ -267,7 +267,7 @@ class GridMaker(QObject):
         """Give the grid up, and show the site as it is."""
         self._timer.stop()
         if self._tools.active() is SiteTool.GRID:
-            self._tools.put_away()
+            self._tools.cancel_drawing()
         self._leave()
         self._show_site(self._context.document.site)
 

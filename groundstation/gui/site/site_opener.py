@@ -357,7 +357,7 @@ class ImportDialog(QDialog):
         self._accept.clicked.connect(self.accept)
         self._cancel.clicked.connect(self.reject)
         self.grid.valueChanged.connect(self._check_grid)
-        self.grid.pickAsked.connect(self._pick)
+        self.grid.pickRequested.connect(self._pick)
         self.grid.accepted.connect(self._use_grid)
         self.grid.cancelled.connect(self._clear_grids)
         self.scene.toolFinished.connect(self._picked)

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QLabel, QListWidget, QListWidgetItem, QPushButton,
 from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.application.translate import translated
 from groundstation.gui.shared_view import SharedView
-from groundstation.gui.site.grid_form import GridForm, GridMaker
+from groundstation.gui.site.grid_form import GridController, GridForm
 from groundstation.gui.site.pages import (
     SITE,
     AirspacePage,
@@ -259,7 +259,7 @@ class SiteTab:
     def hidden(self) -> None:
         """Put tools and previews away."""
         self.detail.editor.set_active(False)
-        self.detail.put_away()
+        self.detail.cancel_drawing()
 
     def actions(self) -> tuple[QAction, ...]:
         """Open and import."""
@@ -283,7 +283,7 @@ class SiteSide(QWidget):
         layout.addWidget(self._pages)
         self.actions_of_tab = self._make_actions()
         self.tree.valueChanged.connect(self._select)
-        self.tree.lookAsked.connect(context.jump_to)
+        self.tree.lookRequested.connect(context.jump_to)
         context.selectionChanged.connect(self.tree.setValue)
         context.documentChanged.connect(self._document_changed)
         context.unitsChanged.connect(self._show_units)
@@ -347,7 +347,7 @@ class SiteDetail(QWidget):
         self.editor = SiteEditor(context, self)
         self.tools = SiteTools(context, shared_view, self.editor)
         self.grid_form = GridForm(context.units)
-        self.grid_maker = GridMaker(context, shared_view, self.editor, self.tools, self.grid_form)
+        self.grid_maker = GridController(context, shared_view, self.editor, self.tools, self.grid_form)
         self.properties = PropertyPanel(context, self.editor)
         self.findings = FindingsList()
         self.findings.set_units(context.units)
@@ -368,17 +368,17 @@ class SiteDetail(QWidget):
         self.editor.findingsChanged.connect(self._show_findings)
         self.findings.chosen.connect(context.jump_to)
         self.grid_maker.activeChanged.connect(self.properties.setHidden)
-        side.tree.removeAsked.connect(self.editor.remove)
-        side.tree.flipAsked.connect(self.editor.flip)
-        side.tree.renameAsked.connect(self._rename)
+        side.tree.removeRequested.connect(self.editor.remove)
+        side.tree.flipRequested.connect(self.editor.flip)
+        side.tree.renameRequested.connect(self._rename)
         context.documentChanged.connect(self._document_changed)
         context.unitsChanged.connect(self.grid_form.set_units)
         context.unitsChanged.connect(self.findings.set_units)
         self._show_site()
 
-    def put_away(self) -> None:
+    def cancel_drawing(self) -> None:
         """Put away what the user began to draw."""
-        self.tools.put_away()
+        self.tools.cancel_drawing()
         if not self.grid_form.isHidden():
             self.grid_maker.end()
 
@@ -398,4 +398,4 @@ class SiteDetail(QWidget):
         self._empty.setVisible(not has_site)
         self._filled.setVisible(has_site)
         if not has_site:
-            self.put_away()
+            self.cancel_drawing()

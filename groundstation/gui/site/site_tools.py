@@ -53,12 +53,12 @@ class SiteTools(QWidget):
     -------
     gridPicked(Rectangle)
         The rectangle of a panel grid.
-    gridAsked()
+    gridRequested()
         The user wants to make a panel grid.
     """
 
     gridPicked = Signal(object)  # noqa: N815  (Qt's own way of naming)
-    gridAsked = Signal()  # noqa: N815
+    gridRequested = Signal()  # noqa: N815
 
     def __init__(
         self, context: ApplicationContext, shared_view: SharedView, editor: SiteEditor, parent: QWidget | None = None
@@ -74,7 +74,7 @@ class SiteTools(QWidget):
             button = QPushButton(text)
             button.setCheckable(True)
             button.setToolTip(tip)
-            button.clicked.connect(lambda checked, tool=tool: self.use(tool) if checked else self.put_away())
+            button.clicked.connect(lambda checked, tool=tool: self.use(tool) if checked else self.cancel_drawing())
             self._buttons[tool] = button
             layout.addWidget(button)
         mesh = QPushButton(self.tr("Obstacle mesh..."))
@@ -108,7 +108,7 @@ class SiteTools(QWidget):
     def use(self, tool: SiteTool, n_rows: int = 1, n_columns: int = 1) -> None:
         """Start a tool in the 3-D view; rows and columns are those of a panel grid."""
         if tool is SiteTool.GRID and self._active is not SiteTool.GRID:
-            self.gridAsked.emit()
+            self.gridRequested.emit()
         self._shared_view.show_page(SharedViewPage.SCENE)
 
         def start(scene: SceneView) -> None:
@@ -117,7 +117,7 @@ class SiteTools(QWidget):
 
         self._shared_view.with_scene(start)
 
-    def put_away(self) -> None:
+    def cancel_drawing(self) -> None:
         """Put the tool in use away; nothing comes of it."""
         if self._scene is not None and self._active is not None:
             self._scene.cancel_tool()

@@ -173,15 +173,15 @@ class SiteTree(QTreeView):
     -------
     valueChanged(Item or None)
         The user selected another item.
-    removeAsked(Item), renameAsked(Item), lookAsked(Item), flipAsked(Item)
+    removeRequested(Item), renameRequested(Item), lookRequested(Item), flipRequested(Item)
         The user wants this done.
     """
 
     valueChanged = Signal(object)  # noqa: N815  (Qt's own way of naming)
-    removeAsked = Signal(object)  # noqa: N815
-    renameAsked = Signal(object)  # noqa: N815
-    lookAsked = Signal(object)  # noqa: N815
-    flipAsked = Signal(object)  # noqa: N815
+    removeRequested = Signal(object)  # noqa: N815
+    renameRequested = Signal(object)  # noqa: N815
+    lookRequested = Signal(object)  # noqa: N815
+    flipRequested = Signal(object)  # noqa: N815
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -229,12 +229,12 @@ class SiteTree(QTreeView):
     def menu(self, item: Item) -> QMenu:
         """What can be done with an item."""
         menu = QMenu(self)
-        entries = [(self.tr("Show it"), self.lookAsked)]
+        entries = [(self.tr("Show it"), self.lookRequested)]
         if item.kind in REMOVABLE:
-            entries.append((self.tr("Rename"), self.renameAsked))
+            entries.append((self.tr("Rename"), self.renameRequested))
             if item.kind is ItemKind.FACADE:
-                entries.append((self.tr("Turn to the other side"), self.flipAsked))
-            entries.append((self.tr("Remove"), self.removeAsked))
+                entries.append((self.tr("Turn to the other side"), self.flipRequested))
+            entries.append((self.tr("Remove"), self.removeRequested))
         for text, signal in entries:
             action = QAction(text, menu)
             action.triggered.connect(lambda _checked=False, signal=signal: signal.emit(item))
@@ -254,7 +254,7 @@ class SiteTree(QTreeView):
     def _look(self, index: QModelIndex) -> None:
         item = self._model.item(index)
         if item is not None:
-            self.lookAsked.emit(item)
+            self.lookRequested.emit(item)
 
     def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802
         """Delete removes what is selected."""
@@ -267,7 +267,7 @@ class SiteTree(QTreeView):
         """Ask for what is selected to be removed, where that can be."""
         item = self.value()
         if item is not None and item.kind in REMOVABLE:
-            self.removeAsked.emit(item)
+            self.removeRequested.emit(item)
 
     def _show_menu(self, position: QPoint) -> None:
         item = self._model.item(self.indexAt(position))

@@ -943,18 +943,7 @@ Bild in dieser Entfernung: {4} x {5}</translation>
     </message>
 </context>
 <context>
-    <name>CoverageScene</name>
-    <message>
-        <source>Seen of what the plan promised</source>
-        <translation>Zu sehen von dem, was der Plan versprach</translation>
-    </message>
-    <message>
-        <source>Sections that photos show</source>
-        <translation>Sektoren, die Fotos zeigen</translation>
-    </message>
-</context>
-<context>
-    <name>CoverageShown</name>
+    <name>CoverageDisplay</name>
     <message>
         <source>{0} photos, {1} of them usable.</source>
         <translation>{0} Fotos, davon {1} brauchbar.</translation>
@@ -982,6 +971,17 @@ Bild in dieser Entfernung: {4} x {5}</translation>
     <message>
         <source>The panels or the plan are others now; what the photos show is counted again.</source>
         <translation>Scheiben oder Plan sind jetzt andere; was die Fotos zeigen, wird neu gezählt.</translation>
+    </message>
+</context>
+<context>
+    <name>CoverageScene</name>
+    <message>
+        <source>Seen of what the plan promised</source>
+        <translation>Zu sehen von dem, was der Plan versprach</translation>
+    </message>
+    <message>
+        <source>Sections that photos show</source>
+        <translation>Sektoren, die Fotos zeigen</translation>
     </message>
 </context>
 <context>
@@ -1608,7 +1608,7 @@ Um trotzdem zu fliegen, {1} eintippen:</translation>
     </message>
 </context>
 <context>
-    <name>FlightWords</name>
+    <name>FlightTexts</name>
     <message>
         <source>{0}, signed</source>
         <translation>{0}, signiert</translation>
@@ -1804,6 +1804,25 @@ Um trotzdem zu fliegen, {1} eintippen:</translation>
     </message>
 </context>
 <context>
+    <name>GridController</name>
+    <message>
+        <source>Checking ...</source>
+        <translation>Wird geprüft ...</translation>
+    </message>
+    <message>
+        <source>Check the panel grid</source>
+        <translation>Scheibenraster prüfen</translation>
+    </message>
+    <message>
+        <source>The panels lie on the building and look outwards.</source>
+        <translation>Die Scheiben liegen am Gebäude und zeigen nach außen.</translation>
+    </message>
+    <message>
+        <source>Add panel grid {0}</source>
+        <translation>Scheibenraster {0} hinzufügen</translation>
+    </message>
+</context>
+<context>
     <name>GridForm</name>
     <message>
         <source>How far the panels may lie from the building&apos;s mesh</source>
@@ -1866,25 +1885,6 @@ Um trotzdem zu fliegen, {1} eintippen:</translation>
 Panels: {2}, each {3} × {4}</source>
         <translation>Wand: {0} × {1}
 Scheiben: {2}, je {3} × {4}</translation>
-    </message>
-</context>
-<context>
-    <name>GridMaker</name>
-    <message>
-        <source>Checking ...</source>
-        <translation>Wird geprüft ...</translation>
-    </message>
-    <message>
-        <source>Check the panel grid</source>
-        <translation>Scheibenraster prüfen</translation>
-    </message>
-    <message>
-        <source>The panels lie on the building and look outwards.</source>
-        <translation>Die Scheiben liegen am Gebäude und zeigen nach außen.</translation>
-    </message>
-    <message>
-        <source>Add panel grid {0}</source>
-        <translation>Scheibenraster {0} hinzufügen</translation>
     </message>
 </context>
 <context>
@@ -2408,7 +2408,7 @@ Scheiben: {2}, je {3} × {4}</translation>
     </message>
 </context>
 <context>
-    <name>MachineWords</name>
+    <name>MachineTexts</name>
     <message>
         <source>Memory is short: up to {0} are needed, and {1} are free. The system may end the training; its last state is kept. Close other programs, or prepare the data set with smaller photos.</source>
         <translation>Der Speicher ist knapp: bis zu {0} werden gebraucht, {1} sind frei. Das System kann das Training beenden; sein letzter Stand bleibt erhalten. Schließen Sie andere Programme, oder bereiten Sie den Datensatz mit kleineren Fotos auf.</translation>

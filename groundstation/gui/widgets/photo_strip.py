@@ -40,7 +40,7 @@ FLAGS = {1: cv2.IMREAD_COLOR, 2: cv2.IMREAD_REDUCED_COLOR_2, 4: cv2.IMREAD_REDUC
 FLAGS |= {8: cv2.IMREAD_REDUCED_COLOR_8}
 
 
-class SmallPictures(QObject):
+class Thumbnails(QObject):
     """Keeps small pictures of files.
 
     Signals

@@ -86,8 +86,8 @@ class MessageArea(QWidget):
         self._jump.clicked.connect(self._jump_to_shown)
         self.sheet.closed.connect(lambda: self._all.setChecked(False))
         self.sheet.dismissed.connect(self._dismiss)
-        self.sheet.placeWanted.connect(self._show_place)
-        self.sheet.copyWanted.connect(self.copy_all)
+        self.sheet.placeRequested.connect(self._show_place)
+        self.sheet.copyRequested.connect(self.copy_all)
         self._timer = QTimer(self, interval=LOOK_MS)
         self._timer.timeout.connect(self.look)
         context.messageShown.connect(self.add)
@@ -214,13 +214,13 @@ class MessageSheet(QFrame):
     Signals
     -------
     closed()
-    dismissed(Message), placeWanted(Message), copyWanted()
+    dismissed(Message), placeRequested(Message), copyRequested()
     """
 
     closed = Signal()
     dismissed = Signal(object)
-    placeWanted = Signal(object)  # noqa: N815
-    copyWanted = Signal()  # noqa: N815
+    placeRequested = Signal(object)  # noqa: N815
+    copyRequested = Signal()  # noqa: N815
 
     def __init__(self, line: QWidget) -> None:
         super().__init__(line)
@@ -243,10 +243,10 @@ class MessageSheet(QFrame):
         layout.addWidget(self._list, 1)
         layout.addLayout(buttons)
         self._list.currentRowChanged.connect(lambda _row: self._enable())
-        self._list.itemActivated.connect(lambda _item: self._ask(self.placeWanted))
-        self._place.clicked.connect(lambda: self._ask(self.placeWanted))
+        self._list.itemActivated.connect(lambda _item: self._ask(self.placeRequested))
+        self._place.clicked.connect(lambda: self._ask(self.placeRequested))
         self._dismiss_button.clicked.connect(lambda: self._ask(self.dismissed))
-        copy.clicked.connect(self.copyWanted)
+        copy.clicked.connect(self.copyRequested)
         close.clicked.connect(self.closed)
         escape = QShortcut(QKeySequence(Qt.Key.Key_Escape), self)
         escape.setContext(Qt.ShortcutContext.WidgetWithChildrenShortcut)

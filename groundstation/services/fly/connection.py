@@ -112,7 +112,7 @@ def _rows(origin: Origin, home_enu_m: Vec3, points: list[Vec3]) -> list[tuple[fl
 # A simulated aircraft whose battery was flown before.
 
 
-class FlownBefore:
+class PartlyDischarged:
     """An `Airframe` that starts with part of its charge gone; all else is the airframe's own.
 
     Parameters
@@ -137,9 +137,9 @@ class FlownBefore:
         return self._airframe.truth
 
     @property
-    def believed(self) -> Pose:
+    def estimate(self) -> Pose:
         """Where the autopilot's estimator says it is."""
-        return self._airframe.believed
+        return self._airframe.estimate
 
     @property
     def fix(self) -> Fix:
@@ -176,7 +176,7 @@ def with_charge(airframe: Airframe, charge: float, decisions: tuple[Decision, ..
     if charge >= 1.0:
         return airframe
     sags = any(decision.effect == BatterySag.name and decision.on for decision in decisions)
-    return FlownBefore(airframe, charge, sags=sags)
+    return PartlyDischarged(airframe, charge, sags=sags)
 
 
 SAMPLE_S = 0.1
@@ -430,11 +430,11 @@ class FlightRecordings:
         autopilot = run.state.autopilot or Autopilot.ARDUPILOT
         self._expected_s[orders.number] = items_duration_s(orders, autopilot)
         path = self._folder / f"{name}.json"
-        report, kept, problem = keep_flight(self._case, self._records, self._expected_s, path)
+        report, kept, problem = store_flight(self._case, self._records, self._expected_s, path)
         return FlightEnded(orders.number, error, record, report, kept, problem)
 
 
-def keep_flight(
+def store_flight(
     case: Case, records: tuple[FlightRecord, ...], expected_s: Mapping[int, float], path: Path
 ) -> tuple[FlightReport, Path | None, str]:
     """Report on what was flown, and write both; returns where, and why not where it could not be.

@@ -47,7 +47,7 @@ from groundstation.vehicle.setup import ParameterChange, message_requests
 from groundstation.vehicle.sortie.flight_run import FlightRun
 from groundstation.vehicle.sortie.run_records import ORDER_MODES, Phase, PilotOrder, RunOptions
 from groundstation.vehicle.state import VehicleState
-from groundstation.vehicle.telemetry import LocalFrame, folded
+from groundstation.vehicle.telemetry import LocalFrame, updated_state
 from groundstation.vehicle.watch import PHOTO_LATE_S, FlightWarning, Watch
 from missions.flight.matching import DEFAULT_GATES, Gates, pose_of_photo
 from missions.flight.record import FlightRecord, TakenPhoto
@@ -67,7 +67,7 @@ from planning.plan import Viewpoint
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Counted:
+class CountedPhoto:
     """A photo, the view that it is of (None for none), and what it added."""
 
     photo: TakenPhoto
@@ -92,7 +92,7 @@ class LiveCoverage:
         self._by_id = {view.id: view for view in case.plan.viewpoints}
         self._planned = np.zeros(case.model.n_elements, np.bool_)
         self._counts = np.zeros(case.model.n_elements, np.int64)
-        self.photo_of: dict[str, Counted] = {}
+        self.photo_of: dict[str, CountedPhoto] = {}
 
     @property
     def covered(self) -> int:
@@ -117,7 +117,7 @@ class LiveCoverage:
         for viewpoint_id in viewpoint_ids:
             self._planned[self._case.measures.seen[pose_of(self._by_id[viewpoint_id])].elements] = True
 
-    def add(self, photo: TakenPhoto, viewpoint_ids: Sequence[str], gates: Gates = DEFAULT_GATES) -> Counted:
+    def add(self, photo: TakenPhoto, viewpoint_ids: Sequence[str], gates: Gates = DEFAULT_GATES) -> CountedPhoto:
         """Count a photo, as the view of these that it fits best and that has none yet.
 
         A photo whose direction its source does not say is taken to look where its view does; without a view it counts
@@ -131,7 +131,7 @@ class LiveCoverage:
             (sight,) = sights(self._case.model, (pose,))
             n_new = int(np.count_nonzero(self._counts[sight.elements] == 0))
             self._counts[sight.elements] += 1
-        counted = Counted(photo, view, n_new, *_errors(photo, view))
+        counted = CountedPhoto(photo, view, n_new, *_errors(photo, view))
         if view is not None:
             self.photo_of[view.id] = counted
         return counted
@@ -212,7 +212,7 @@ class Listener:
 
     def receive(self, received: Received) -> list[Message]:
         """Take a message."""
-        self.state = folded(self.state, received, self._frame)
+        self.state = updated_state(self.state, received, self._frame)
         sent = [] if self._call is None else self._call.receive(received)
         return [*sent, *self._advance(received.time_s)]
 
@@ -421,7 +421,7 @@ class LiveFlight:
         """Ask for something; `Answered` says what became of it."""
         self._asked.put(request)
 
-    def take_on(self, sortie: LiveSortie) -> None:
+    def set_next_sortie(self, sortie: LiveSortie) -> None:
         """Fly another sortie of the same plan next; passed over while one is under way."""
         self._asked.put(sortie)
 

@@ -24,7 +24,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import IO, Any, Protocol
 
-from planning.base.plugins import blamed
+from planning.base.plugins import with_plugin_named
 
 NICENESS = 10
 """Half of the way to the least urgent: the window's own threads run first when both want a processor."""
@@ -36,7 +36,7 @@ Listener = Callable[[Any], None]
 
 
 @dataclass(frozen=True, slots=True)
-class Lost:
+class ProcessEnded:
     """The last message of a process: it has ended; `status` as the system has it."""
 
     status: int
@@ -55,7 +55,7 @@ class Process:
     module
         By its name only, as it may load what this side must not. It has `service`, as `Service` says.
     listener
-        Called with every message that comes, on a thread that reads them; with `Lost` as the last one.
+        Called with every message that comes, on a thread that reads them; with `ProcessEnded` as the last one.
     niceness
         By which it leaves the processor to others; not on Windows.
     """
@@ -88,21 +88,21 @@ class Process:
             return False
         return True
 
-    def let_go(self) -> None:
+    def close_input(self) -> None:
         """Send nothing more: the process hears that this side has gone, and ends by itself."""
         assert self._child.stdin is not None
         with suppress(OSError):
             self._child.stdin.close()
 
     def end(self) -> None:
-        """End it, whatever it does, and wait for that. `Lost` has been told then."""
+        """End it, whatever it does, and wait for that. `ProcessEnded` has been told then."""
         if not self._reader.is_alive():
             with suppress(subprocess.TimeoutExpired):  # it is about to end by itself, with a status of its own
                 self._child.wait(1.0)
         self._child.kill()
         self._child.wait()
         self._reader.join()
-        self.let_go()
+        self.close_input()
 
     def _read(self) -> None:
         assert self._child.stdout is not None
@@ -111,7 +111,7 @@ class Process:
                 self._listener(pickle.load(self._child.stdout))
         status = self._child.wait()
         self._child.stdout.close()
-        self._listener(Lost(status))
+        self._listener(ProcessEnded(status))
 
 
 class Service(Protocol):
@@ -132,7 +132,7 @@ Send = Callable[[Any], None]
 
 def sendable(error: BaseException) -> BaseException:
     """An error as it comes through a pipe; one that does not is told in words."""
-    error = blamed(error)
+    error = with_plugin_named(error)
     try:
         pickle.loads(pickle.dumps(error))
     except Exception:

@@ -24,7 +24,7 @@ from typing import Any, Generic, TypeVar
 from groundstation.services.jobs.worker import Worker
 from planning.base.errors import OperationCancelled
 from planning.base.messages import say
-from planning.base.plugins import blamed
+from planning.base.plugins import with_plugin_named
 from planning.base.progress import Clock, QualityPoint, StopRequest, Trace
 
 Result = TypeVar("Result")
@@ -233,7 +233,7 @@ class JobRunner:
         except OperationCancelled as error:
             self._finish(job, JobState.CANCELLED, error=error)
         except BaseException as error:
-            self._finish(job, JobState.FAILED, error=blamed(error))
+            self._finish(job, JobState.FAILED, error=with_plugin_named(error))
         else:
             self._finish(job, JobState.SUCCEEDED, result=result)
 

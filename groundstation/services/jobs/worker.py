@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from enum import Enum, auto
 from typing import Any, TypeVar
 
-from groundstation.services.jobs.channel import Lost, Process, Send, sendable
+from groundstation.services.jobs.channel import Process, ProcessEnded, Send, sendable
 from planning.base.errors import GroundStationError, OperationCancelled
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor, Stop, Trace, never
@@ -71,7 +71,7 @@ class _Order(Enum):
 class _LostError(Exception):
     """The process has ended; `lost` is its last message."""
 
-    def __init__(self, lost: Lost) -> None:
+    def __init__(self, lost: ProcessEnded) -> None:
         self.lost = lost
 
 
@@ -88,7 +88,7 @@ class _Child:
             message = self._heard.get(timeout=POLL_S)
         except queue.Empty:
             return None
-        if isinstance(message, Lost):
+        if isinstance(message, ProcessEnded):
             raise _LostError(message)
         return message
 
@@ -188,7 +188,7 @@ class Worker:
                     return
         self._forget()
 
-    def _lost(self, lost: Lost) -> GroundStationError:
+    def _lost(self, lost: ProcessEnded) -> GroundStationError:
         self._forget()
         if self._is_closed:
             return OperationCancelled(say("the window is closing"))

@@ -107,8 +107,8 @@ def export_plan(
     elif home is None and plan.sorties and plan.sorties[0].path_enu_m:
         home = plan.sorties[0].path_enu_m[0]
     if file_format in MAVLINK_FORMATS and site_model is not None:
-        plan, shared_out = within_item_limit(plan, site_model, options)
-        findings += shared_out
+        plan, split_to_fit = within_item_limit(plan, site_model, options)
+        findings += split_to_fit
     encoded = encode(plan, origin, home, file_format, replace(options, site=site_model))
     for number in range(2, len(encoded.contents) + 1):
         check_output(sortie_path(out, number), sources)

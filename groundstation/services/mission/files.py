@@ -28,7 +28,7 @@ from planning.geo.geoid import undulation_m
 from planning.geo.mesh import empty_mesh
 from planning.parameters import DEFAULT_PROFILE, Constraints, FlightRules
 from planning.plan import Coverage, Plan
-from planning.planner import share_out_anew
+from planning.planner import resplit_sorties
 from planning.site.file import is_planned_on, site_sha256
 from planning.site.records import MAX_DISTANCE_M, Airspace, Site, SiteModel
 from planning.viewpoints.prepare import prepare
@@ -81,8 +81,8 @@ def prepare_export(
     try:
         findings = list(readiness(plan, site_model))
         if file_format in MAVLINK_FORMATS:
-            plan, shared_out = within_item_limit(plan, site_model, options)
-            findings += shared_out
+            plan, split_to_fit = within_item_limit(plan, site_model, options)
+            findings += split_to_fit
         site = site_model.site
         encoded = encode(plan, site.origin, site.home_enu_m, file_format, replace(options, site=site_model))
     except GroundStationError as error:
@@ -166,7 +166,7 @@ def within_item_limit(plan: Plan, site_model: SiteModel, options: ExportOptions)
 @lru_cache(maxsize=2)
 def _shared_out(plan: Plan, site_model: SiteModel, max_views: int) -> Plan:
     """Sharing out takes seconds and ends by the clock: kept, so that all files of one plan fly the same sorties."""
-    return share_out_anew(plan, site_model, max_views)
+    return resplit_sorties(plan, site_model, max_views)
 
 
 def read_mission_files(paths: Sequence[Path], *, strict: bool = False) -> tuple[ReadMission, ...]:

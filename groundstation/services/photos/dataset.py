@@ -7,7 +7,13 @@ from pathlib import Path
 from typing import Any
 
 from groundstation.services.photos.intake import PhotoIntake
-from groundstation.services.photos.poses import RefinedOutcome, RefineRequest, better_poses, refined_summary, still_true
+from groundstation.services.photos.poses import (
+    RefinedOutcome,
+    RefineRequest,
+    choose_poses,
+    findings_that_hold,
+    refined_summary,
+)
 from groundstation.services.project.input_files import read_input_site
 from planning.base.findings import Finding
 from planning.base.progress import QUIET, Monitor
@@ -56,9 +62,9 @@ def prepare_files(
     model = read_input_site(site)
     read = read_photos(folder, monitor)
     posed = pose_photos(read.photos, model.site, folder, heights=heights, posed_elsewhere=colmap is not None)
-    better = better_poses(posed, folder, colmap, refine, monitor)
+    better = choose_poses(posed, folder, colmap, refine, monitor)
     prepared = prepare(better.photos, model, out, parameters, monitor, better.points_enu_m)
-    findings = (*read.findings, *still_true(posed.findings, better), *better.findings, *prepared.findings)
+    findings = (*read.findings, *findings_that_hold(posed.findings, better), *better.findings, *prepared.findings)
     return PreparedFiles(prepared, findings, better.refined)
 
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from groundstation.services.photos.intake import PhotoIntake, with_poses
 from groundstation.services.photos.panels import site_facade
-from groundstation.services.photos.poses import BetterPoses
+from groundstation.services.photos.poses import ChosenPoses
 from groundstation.services.site.edits import with_site
 from planning.base.errors import InputError
 from planning.base.messages import say
@@ -137,21 +137,21 @@ def with_found_panels(model: SiteModel, draft: PanelDraft) -> SiteModel:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Reposed:
+class AppliedPoses:
     """Photos and panels with other poses; without panels where none had been found."""
 
     intake: PhotoIntake
     draft: PanelDraft | None
 
 
-def repose(
+def apply_poses(
     intake: PhotoIntake,
     draft: PanelDraft | None,
-    better: BetterPoses,
+    better: ChosenPoses,
     model: SiteModel,
     flown: Plan | None,
     monitor: Monitor = QUIET,
-) -> Reposed:
+) -> AppliedPoses:
     """Count coverage and solve panels again with other poses of the same photos; corrections of grids stay.
 
     Raises
@@ -161,8 +161,8 @@ def repose(
     """
     counted = with_poses(intake, better, model, flown, monitor)
     if draft is None:
-        return Reposed(counted, None)
+        return AppliedPoses(counted, None)
     posed = {photo.name: photo for photo in better.photos}
     facades = frozenset(facade.id for facade in draft.found.facades)
     moved = replace(draft, photos=tuple(posed[photo.name] for photo in draft.photos), unsolved=facades)
-    return Reposed(counted, solved_draft(moved, monitor))
+    return AppliedPoses(counted, solved_draft(moved, monitor))

@@ -12,7 +12,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from groundstation.services.photos.poses import BetterPoses, RefineRequest, better_poses, refined_summary, still_true
+from groundstation.services.photos.poses import (
+    ChosenPoses,
+    RefineRequest,
+    choose_poses,
+    findings_that_hold,
+    refined_summary,
+)
 from groundstation.services.project.input_files import read_input_plan, read_input_site
 from planning.aircraft.catalogue import profile
 from planning.base.effects import Decision
@@ -70,11 +76,11 @@ class PhotoIntake:
     findings: tuple[Finding, ...]
     counted: CoverageModel | None
     posed: PhotoSet
-    better: BetterPoses
+    better: ChosenPoses
     folder: Path
 
 
-def take_in(
+def read_photo_intake(
     folder: Path,
     site: Path,
     plan: Path | None = None,
@@ -85,21 +91,21 @@ def take_in(
     refine: RefineRequest | None = None,
     monitor: Monitor = QUIET,
 ) -> PhotoIntake:
-    """Read a folder of photos over a site file, and a plan file where one was flown; see `take_in_photos`.
+    """Read a folder of photos over a site file, and a plan file where one was flown; see `photo_intake`.
 
     Raises
     ------
     InputError
-        As `take_in_photos`, or a plan is given for a site without panels.
+        As `photo_intake`, or a plan is given for a site without panels.
     """
     model = read_input_site(site)
     flown = None if plan is None else read_input_plan(plan)
     if flown is not None:
         require_panels(model.site)
-    return take_in_photos(folder, model, flown, limits, heights=heights, colmap=colmap, refine=refine, monitor=monitor)
+    return photo_intake(folder, model, flown, limits, heights=heights, colmap=colmap, refine=refine, monitor=monitor)
 
 
-def take_in_photos(
+def photo_intake(
     folder: Path,
     model: SiteModel,
     flown: Plan | None = None,
@@ -127,7 +133,7 @@ def take_in_photos(
     """
     read = read_photos(folder, monitor)
     posed = pose_photos(read.photos, model.site, folder, heights=heights, posed_elsewhere=colmap is not None)
-    better = better_poses(posed, folder, colmap, refine, monitor)
+    better = choose_poses(posed, folder, colmap, refine, monitor)
     photos = better.photos
     metadata = {name_in(folder, photo): photo for photo in read.photos}
     counted, occlusion = _coverage_model(model, flown) if model.site.n_panels else (None, None)
@@ -139,13 +145,19 @@ def take_in_photos(
     coverage = None if counted is None else _achieved(counted, photos, usable, model, flown, monitor)
     text = say("the site has no panels yet, so nothing is said of what the photos show of them")
     shown = (Finding(Severity.NOTE, NO_PANELS, text),) if coverage is None else coverage.findings
-    everything = (*read.findings, *still_true(posed.findings, better), *better.findings, *quality.findings, *shown)
+    everything = (
+        *read.findings,
+        *findings_that_hold(posed.findings, better),
+        *better.findings,
+        *quality.findings,
+        *shown,
+    )
     return PhotoIntake(
         photos, quality, coverage, occlusion, usable, read.photos, everything, counted, posed, better, folder
     )
 
 
-def counted_again(intake: PhotoIntake, model: SiteModel, flown: Plan | None, monitor: Monitor = QUIET) -> PhotoIntake:
+def recounted(intake: PhotoIntake, model: SiteModel, flown: Plan | None, monitor: Monitor = QUIET) -> PhotoIntake:
     """The same photos, their coverage counted over other panels or against another plan.
 
     Raises
@@ -163,7 +175,7 @@ def counted_again(intake: PhotoIntake, model: SiteModel, flown: Plan | None, mon
 
 
 def with_poses(
-    intake: PhotoIntake, better: BetterPoses, model: SiteModel, flown: Plan | None, monitor: Monitor = QUIET
+    intake: PhotoIntake, better: ChosenPoses, model: SiteModel, flown: Plan | None, monitor: Monitor = QUIET
 ) -> PhotoIntake:
     """The same photos with other poses, and what they show counted again; pictures are not looked at again.
 
@@ -173,9 +185,9 @@ def with_poses(
         raise ValueError("expected poses of the same photos in the same order")
     about_poses = (*intake.posed.findings, *intake.better.findings)
     others = tuple(found for found in intake.findings if found not in about_poses)
-    findings = (*others, *still_true(intake.posed.findings, better), *better.findings)
+    findings = (*others, *findings_that_hold(intake.posed.findings, better), *better.findings)
     changed = replace(intake, photos=better.photos, better=better, findings=findings)
-    return changed if intake.coverage is None else counted_again(changed, model, flown, monitor)
+    return changed if intake.coverage is None else recounted(changed, model, flown, monitor)
 
 
 def _achieved(

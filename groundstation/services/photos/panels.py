@@ -12,7 +12,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from groundstation.services.photos.poses import RefinedOutcome, RefineRequest, better_poses, refined_summary, still_true
+from groundstation.services.photos.poses import (
+    RefinedOutcome,
+    RefineRequest,
+    choose_poses,
+    findings_that_hold,
+    refined_summary,
+)
 from groundstation.services.project.input_files import FileKind, kind_of, read_input_site
 from groundstation.services.project.project_file import check_not_index
 from planning.base.errors import InputError
@@ -129,7 +135,7 @@ def find_panel_files(
     source = None if site_model is not None else read_source(model, without_panels, monitor)
     place, mesh = _place(model, site_model, source, options)
     posed = pose_photos(read.photos, place, folder, heights=heights, posed_elsewhere=colmap is not None)
-    better = better_poses(posed, folder, colmap, refine, monitor)
+    better = choose_poses(posed, folder, colmap, refine, monitor)
     photos = better.photos
     metadata = {name_in(folder, photo): photo for photo in read.photos}
 
@@ -151,7 +157,7 @@ def find_panel_files(
         found,
         photos,
         notes,
-        (*read.findings, *still_true(posed.findings, better), *better.findings, *found.findings),
+        (*read.findings, *findings_that_hold(posed.findings, better), *better.findings, *found.findings),
         better.refined,
     )
 

@@ -29,7 +29,7 @@ from reconstruction.colmap.pycolmap_run import RefineParameters, load_colmap
 from reconstruction.colmap.record import ColmapModel
 from reconstruction.colmap.refine import refine_poses
 from reconstruction.colmap.refined_folder import (
-    KeptRefinement,
+    StoredRefinement,
     check_refined_folder,
     fingerprint,
     is_refined_folder,
@@ -117,7 +117,7 @@ class RefinedOutcome:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class BetterPoses:
+class ChosenPoses:
     """Photos to go on with.
 
     Parameters
@@ -134,13 +134,13 @@ class BetterPoses:
     points_enu_m: NDArray[np.float64] | None = None
 
 
-def better_poses(
+def choose_poses(
     posed: PhotoSet,
     folder: Path,
     colmap: Path | None = None,
     refine: RefineRequest | None = None,
     monitor: Monitor = QUIET,
-) -> BetterPoses:
+) -> ChosenPoses:
     """The photos' own poses, or better ones where they are asked for.
 
     A COLMAP model is brought into the site's frame by the photos' own poses; photos that are not in it are left out.
@@ -163,7 +163,7 @@ def better_poses(
     if refine is not None:
         return refined_poses(posed.photos, folder, refine, monitor)
     if colmap is None:
-        return BetterPoses(posed.photos)
+        return ChosenPoses(posed.photos)
     if is_refined_folder(colmap):
         kept = read_refined(colmap, posed.photos)
         if kept.photos_sha256 == fingerprint(posed.photos):
@@ -184,10 +184,10 @@ def better_poses(
     known = (photo for photo in better if photo.name in times)
     photos = tuple(replace(photo, pose=replace(photo.pose, covariance=reference.usual_covariance)) for photo in known)
     points = reference.enu_from_model(model.points.xyz) if len(model.points) else None
-    return BetterPoses(photos, reference.findings, points_enu_m=points)
+    return ChosenPoses(photos, reference.findings, points_enu_m=points)
 
 
-def _in_frame(model: ColmapModel, frame: Frame, folder: Path, times: dict[str, datetime | None]) -> BetterPoses:
+def _in_frame(model: ColmapModel, frame: Frame, folder: Path, times: dict[str, datetime | None]) -> ChosenPoses:
     """Photos of a model that is in the frame of the site already, as far as their files are there."""
     covariance = np.diag([frame.position_sigma_m**2] * 3 + [math.radians(frame.angle_sigma_deg) ** 2] * 3)
     found = posed_photos(model, Similarity.identity(), folder, times)
@@ -203,12 +203,12 @@ def _in_frame(model: ColmapModel, frame: Frame, folder: Path, times: dict[str, d
                 folder,
             )
         )
-    return BetterPoses(photos, points_enu_m=model.points.xyz if len(model.points) else None)
+    return ChosenPoses(photos, points_enu_m=model.points.xyz if len(model.points) else None)
 
 
 def refined_poses(
     photos: Sequence[PosedPhoto], folder: Path, request: RefineRequest, monitor: Monitor = QUIET
-) -> BetterPoses:
+) -> ChosenPoses:
     """Poses refined with COLMAP, or those that were kept of the same photos.
 
     Parameters
@@ -239,7 +239,7 @@ def refined_poses(
     return _judged(photos, read_refined(where, photos), where, was_kept=False)
 
 
-def still_true(findings: Sequence[Finding], better: BetterPoses) -> tuple[Finding, ...]:
+def findings_that_hold(findings: Sequence[Finding], better: ChosenPoses) -> tuple[Finding, ...]:
     """Findings about the photos' own cameras that hold for these poses: refined lenses are known."""
     if better.refined is None or better.refined.n_refined < better.refined.n_photos:
         return tuple(findings)
@@ -262,7 +262,7 @@ def refined_summary(outcome: RefinedOutcome) -> dict[str, Any]:
     }
 
 
-def _kept(where: Path, photos: Sequence[PosedPhoto], request: RefineRequest) -> KeptRefinement | None:
+def _kept(where: Path, photos: Sequence[PosedPhoto], request: RefineRequest) -> StoredRefinement | None:
     """What was computed before of the same photos, and in the size that is wished for."""
     if not is_refined_folder(where):
         return None
@@ -275,7 +275,7 @@ def _kept(where: Path, photos: Sequence[PosedPhoto], request: RefineRequest) -> 
     return kept if is_same and size in (None, kept.parameters.max_image_size_px) else None
 
 
-def _judged(photos: Sequence[PosedPhoto], kept: KeptRefinement, where: Path, *, was_kept: bool) -> BetterPoses:
+def _judged(photos: Sequence[PosedPhoto], kept: StoredRefinement, where: Path, *, was_kept: bool) -> ChosenPoses:
     judged = judge_poses(photos, kept.photos)
     outcome = RefinedOutcome(
         where,
@@ -287,7 +287,7 @@ def _judged(photos: Sequence[PosedPhoto], kept: KeptRefinement, where: Path, *, 
         kept.left_out,
         was_kept,
     )
-    return BetterPoses(judged.photos, (_outcome_finding(outcome), *kept.findings, *judged.findings), outcome)
+    return ChosenPoses(judged.photos, (_outcome_finding(outcome), *kept.findings, *judged.findings), outcome)
 
 
 def _outcome_finding(outcome: RefinedOutcome) -> Finding:

@@ -12,18 +12,18 @@ from planning.base.errors import InputError
 from planning.base.json_file import check_output
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
-from planning.tradeoff.runner import Compared, Subject, compare, output_folder
+from planning.tradeoff.runner import ComparisonFiles, Subject, compare, output_folder
 from reconstruction.metrics.metrics import SetScores
 from reconstruction.metrics.pictures import read_picture, write_picture
 from reconstruction.metrics.run import masks_method, own_method, score_set, write_pictures, write_table
 from reconstruction.metrics.sets import (
     EXTENT_MARGIN_M,
-    MADE_SETS,
     READERS,
+    SYNTHETIC_SETS,
     PhotoSet,
     annotated_set,
     folder_set,
-    made_set,
+    synthetic_set,
     whole_view,
 )
 from reconstruction.panels.panels_file import panels_record, write_panels
@@ -196,10 +196,10 @@ def photo_set(request: ScoreRequest, n_beside: int = 0) -> PhotoSet:
         A folder that the set needs was not named, or holds no such photos.
     """
     name = request.set_name
-    if name in MADE_SETS:
+    if name in SYNTHETIC_SETS:
         camera = wide_camera(request.width_px, round(0.75 * request.width_px))
         margin_m = EXTENT_MARGIN_M if request.is_extent_known else None
-        return made_set(name, request.n_seeds, camera, margin_m, n_beside, request.first_seed)
+        return synthetic_set(name, request.n_seeds, camera, margin_m, n_beside, request.first_seed)
     if name in READERS:
         if request.data is None:
             raise InputError(
@@ -215,7 +215,7 @@ def photo_set(request: ScoreRequest, n_beside: int = 0) -> PhotoSet:
 
 def segment_tradeoff(
     request: ScoreRequest, variants: SegmentVariants, out: Path, monitor: Monitor = QUIET
-) -> Compared[tuple[SettingScores, ...]]:
+) -> ComparisonFiles[tuple[SettingScores, ...]]:
     """Turn the knobs of the search for panels one at a time; write `tradeoff-segment.csv` and `.png` into `out`.
 
     Raises
@@ -223,12 +223,12 @@ def segment_tradeoff(
     InputError
         As `photo_set`, or the folder cannot be written into.
     """
-    if request.set_name not in MADE_SETS and (variants.n_views or variants.view_kinds):
+    if request.set_name not in SYNTHETIC_SETS and (variants.n_views or variants.view_kinds):
         raise InputError(
             say(
                 "--views, --rectified-by: the photos of '{}' have no poses, which both need; take a made set: {}",
                 request.set_name,
-                ", ".join(MADE_SETS),
+                ", ".join(SYNTHETIC_SETS),
             )
         )
     photos = photo_set(request, max(variants.n_views, default=1) - 1)

@@ -12,8 +12,8 @@ from planning.geo.mesh import box_mesh, write_mesh
 from planning.site.file import write_site
 from planning.site.records import Airspace, Facade, Panel, Site
 from reconstruction.scenes.facades.cases import photo_of, wide_camera
-from reconstruction.scenes.facades.record import Case, Disturbances, Layout, MadeFacade, TruePanel, Wall
-from reconstruction.scenes.facades.render import make_facade, write_photos
+from reconstruction.scenes.facades.record import Case, Disturbances, Layout, SyntheticFacade, TruePanel, Wall
+from reconstruction.scenes.facades.render import render_facade, write_photos
 
 ORIGIN = Origin(22.3372, 114.2636, 62.0)
 WALL = Wall((0.0, 0.0, 0.5))
@@ -32,7 +32,7 @@ PHOTO_PX = (1280, 960)
 BUILDING_DEPTH_M, BORDER_M = 9.0, 0.4
 
 
-def write_made_flight(folder: Path, monitor: Monitor = QUIET) -> tuple[Path, Path]:
+def write_synthetic_flight(folder: Path, monitor: Monitor = QUIET) -> tuple[Path, Path]:
     """Write a site file and a folder of photos; returns both paths.
 
     The site has the building and its rectangular panels, as somebody may have drawn them before the flight.
@@ -46,14 +46,14 @@ def write_made_flight(folder: Path, monitor: Monitor = QUIET) -> tuple[Path, Pat
     for number, (aside_deg, up_deg) in enumerate(DIRECTIONS_DEG):
         monitor.report("rendering", number, len(DIRECTIONS_DEG))
         photo = photo_of(WALL, LAYOUT, wide_camera(*PHOTO_PX), seed=SEED, oblique_deg=aside_deg, from_below_deg=up_deg)
-        made.append(make_facade(Case("made", LAYOUT, WALL, photo, DISTURBED, seed=SEED)))
+        made.append(render_facade(Case("made", LAYOUT, WALL, photo, DISTURBED, seed=SEED)))
     write_photos(folder / "photos", [(one.photo, one.image) for one in made], ORIGIN)
     site = folder / "made.site.json"
     write_site(site, _site(folder, made[0]))
     return site, folder / "photos"
 
 
-def _site(folder: Path, made: MadeFacade) -> Site:
+def _site(folder: Path, made: SyntheticFacade) -> Site:
     """The site, with its building mesh written beside it."""
     corners = np.concatenate([panel.corners_enu_m for panel in made.panels])
     low, high = corners.min(axis=0), corners.max(axis=0)

@@ -122,7 +122,7 @@ def _plan_of_mission(
     return missions_as_plan((path,), site_model, first.profile, first.constraints, monitor)
 
 
-def told_apart(entries: Sequence[PlanEntry]) -> tuple[str, ...]:
+def distinct_titles(entries: Sequence[PlanEntry]) -> tuple[str, ...]:
     """Titles of plans; alike ones with their method behind, and with a number where that is alike too."""
     names = [entry.title for entry in entries]
     names = [

@@ -21,11 +21,11 @@ from planning.insight.reasons import SectionReasons, section_reasons
 from planning.insight.sections import PanelSampling, PlanInsight, assembled, panel_sampling
 from planning.parameters import Constraints
 from planning.plan import Camera, Plan, viewpoint_arrays
-from planning.planner import serving
+from planning.planner import first_reusable
 from planning.request import PlanRequest
 from planning.revision import Revision, revise
 from planning.site.records import SiteModel
-from planning.viewpoints.prepare import Prepared, is_same_place, prepare, settled
+from planning.viewpoints.prepare import Prepared, is_same_place, prepare, with_site_limits
 
 MAX_ACTIVE = 40
 """Plans kept: undo goes back through so many edits without computing anything; each shares most with the others."""
@@ -100,7 +100,7 @@ class PlanCache:
 
     def prepared_for(self, request: PlanRequest, site_model: SiteModel) -> Prepared | None:
         """A prepared site with which a request can be planned."""
-        return serving((one.prepared for one in self._prepared_sites), site_model, request)
+        return first_reusable((one.prepared for one in self._prepared_sites), site_model, request)
 
 
 def activate(
@@ -179,7 +179,7 @@ def _measured_since(revision: Revision, before: ActivePlan) -> tuple[NDArray[np.
 
 def _fits(prepared: Prepared, plan: Plan, site_model: SiteModel) -> bool:
     camera: Camera = prepared.problem.model.camera
-    wanted: Constraints = settled(
+    wanted: Constraints = with_site_limits(
         replace(plan.constraints, occlusion=prepared.constraints.occlusion), site_model, camera
     )
     occlusion = plan.constraints.occlusion

@@ -20,7 +20,7 @@ from planning.base.progress import QUIET, Monitor, Stop, Trace, never
 from planning.checks.rules import low_flight_allowed, sharpness
 from planning.insight.flight_profile import lowest_flight
 from planning.plan import Plan, Viewpoint, write_plan
-from planning.planner import Planned, WhyOpen, plan_flight
+from planning.planner import OpenReason, Planned, plan_flight
 from planning.request import PlanRequest
 from planning.routing.tour import kick
 from planning.site.records import MIN_HEIGHT_ABOVE_GROUND_M, SiteModel
@@ -110,7 +110,7 @@ def _compile_once(monitor: Monitor) -> float:
     return time.perf_counter() - started_s
 
 
-def reunited(planned: Planned, site_model: SiteModel, prepared: Prepared | None) -> Planned:
+def with_local_site(planned: Planned, site_model: SiteModel, prepared: Prepared | None) -> Planned:
     """What another process planned, with the site and the preparation of this one in place of their copies.
 
     The window tells sites and preparations apart by being one object, which spares it comparing them.
@@ -191,23 +191,23 @@ def why_open(planned: Planned) -> Iterator[Finding]:
     plan, panels = planned.plan, planned.prepared.site_model.site.panels
     time_helps = say("allow it more time") if planned.prepared.is_cut_short else say("more time does not help")
     texts = {
-        WhyOpen.UNDECIDED: say(
+        OpenReason.UNDECIDED: say(
             "have no place from which they are known to be seen, and no proof that there is none, so that "
             "they count as possible; {}",
             time_helps,
         ),
-        WhyOpen.CUT_OFF: say(
+        OpenReason.CUT_OFF: say(
             "are only seen from places to which no way from home was found that keeps {:g} m from "
             "everything; move home, or lower the minimum distance",
             plan.constraints.min_distance_m,
         ),
-        WhyOpen.SPACING: say(
+        OpenReason.SPACING: say(
             "are only seen from places less than {:g} m from other viewpoints, which {} refuses; more time "
             "does not help",
             plan.aircraft.min_waypoint_spacing_m,
             plan.aircraft.name,
         ),
-        WhyOpen.SEARCH: say("can be covered; allow it more time"),
+        OpenReason.SEARCH: say("can be covered; allow it more time"),
     }
     for why, text in texts.items():
         on = [panels[each.panel].id for each in planned.open_sections if each.why is why]

@@ -40,7 +40,7 @@ from planning.tradeoff.plans import (
     run_plan,
     settings,
 )
-from planning.tradeoff.runner import COVERAGE_AXIS, TOUR_AXIS, Compared, NumberedRuns, Subject, compare
+from planning.tradeoff.runner import COVERAGE_AXIS, TOUR_AXIS, ComparisonFiles, NumberedRuns, Subject, compare
 from planning.tradeoff.tours import (
     TOUR_METHODS,
     TourCase,
@@ -90,7 +90,7 @@ def plan_tradeoff(
     n_processes: int = 1,
     address: str | None = None,
     monitor: Monitor = QUIET,
-) -> Compared[PlanRuns]:
+) -> ComparisonFiles[PlanRuns]:
     """Plan every site with the base request and every variant; write `tradeoff-plan.csv` and `.png` into `out`.
 
     Without any goal in `base` every run gets the same number of views, `DEFAULT_VIEWS`. With one process and no cluster
@@ -141,7 +141,7 @@ def route_tradeoff(
     methods: Sequence[TourMethod] = TOUR_METHODS,
     seed: int = 0,
     monitor: Monitor = QUIET,
-) -> Compared[tuple[TourReport, ...]]:
+) -> ComparisonFiles[tuple[TourReport, ...]]:
     """Run the routing methods on TSPLIB files and plans; write `tradeoff-route.csv` and `.png` into `out`.
 
     `paths` are TSPLIB files, plan files and site files in any order. A plan's site is the one given that it was made

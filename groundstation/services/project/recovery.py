@@ -68,7 +68,7 @@ def utc_now() -> datetime:
     return datetime.now(UTC)
 
 
-def unsaved_place() -> ProjectLock:
+def lock_unsaved_folder() -> ProjectLock:
     """A folder in the user's data folder for work that has no project yet, locked as long as its window is open.
 
     Raises
@@ -82,8 +82,8 @@ def unsaved_place() -> ProjectLock:
     return lock_project(folder)
 
 
-def give_up_place(place: ProjectLock) -> None:
-    """Remove what `unsaved_place` made, after a save as a project or an orderly close."""
+def remove_unsaved_folder(place: ProjectLock) -> None:
+    """Remove what `lock_unsaved_folder` made, after a save as a project or an orderly close."""
     clear_copy(place.folder / AUTOSAVE_FOLDER)
     place.release()
     shutil.rmtree(place.folder, ignore_errors=True)
@@ -106,7 +106,7 @@ class Autosave:
     Parameters
     ----------
     folder
-        Of the project, or the folder of an `unsaved_place`.
+        Of the project, or the folder of an `lock_unsaved_folder`.
     report
         Called with a message for the user when a copy cannot be written, on the executor's thread; not again until a
         copy could be written in between. The work itself is not touched by that.

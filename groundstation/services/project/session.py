@@ -15,7 +15,7 @@ from typing import Generic, TypeVar
 from groundstation.services.project.document import Document
 from groundstation.services.project.folder import OpenedProject, open_project
 from groundstation.services.project.lock import ProjectLock, lock_project
-from groundstation.services.project.recovery import Autosave, give_up_place, unsaved_place
+from groundstation.services.project.recovery import Autosave, lock_unsaved_folder, remove_unsaved_folder
 from planning.base.errors import GroundStationError
 
 # Undo and redo over frozen values: a list of labelled states and the place in it.
@@ -261,7 +261,7 @@ class ProjectSession:
         if self._autosave is None:
             if session.folder is not None:
                 return
-            self._place = unsaved_place()
+            self._place = lock_unsaved_folder()
             self._autosave = self._copies(self._place.folder)
         self._autosave.keep(session.document)
 
@@ -275,7 +275,7 @@ class ProjectSession:
         self.drop_copy()
         self._autosave = None
         if self._place is not None:
-            give_up_place(self._place)
+            remove_unsaved_folder(self._place)
         if self._lock is not None:
             self._lock.release()
         self._place = self._lock = None

@@ -31,7 +31,7 @@ class ModelProcess:
     Parameters
     ----------
     listener
-        Called with every message that comes, on a thread that reads them; where the process ends, with `Lost`.
+        Called with every message that comes, on a thread that reads them; where the process ends, with `ProcessEnded`.
     niceness
         By which it leaves the processor to others, the window first of all; not on Windows.
     """
@@ -49,7 +49,7 @@ class ModelProcess:
         return self._process is not None and self._process.is_running
 
     def send(self, message: Any) -> None:
-        """Send a message; where the process has ended, a new one is started. It is told by `Lost` that it has."""
+        """Send a message; where the process has ended, which `ProcessEnded` says, a new one is started."""
         if self._is_closed:
             return
         with self._lock:
@@ -73,7 +73,7 @@ class ModelProcess:
     def _let_go(self) -> None:
         process, self._process = self._process, None
         if process is not None:
-            process.let_go()
+            process.close_input()
 
     def _tell(self, message: Any) -> None:
         if not self._is_closed:
@@ -165,12 +165,12 @@ class Stop:
 
 
 @dataclass(frozen=True, slots=True)
-class BreakOff:
+class CancelTraining:
     """End now; what was reached can be gone on with."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Look:
+class ViewRequest:
     """Show something from somewhere. Of two with one `place`, only the newer is answered where neither was yet.
 
     Parameters
@@ -285,7 +285,7 @@ class Chosen:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Seen:
+class ViewAnswer:
     """The answer to a look.
 
     Parameters
@@ -300,7 +300,7 @@ class Seen:
         That it took.
     """
 
-    look: Look
+    look: ViewRequest
     picture: NDArray[np.uint8] | None
     scale: tuple[float, float] | None = None
     depth_m: float | None = None

@@ -18,13 +18,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from groundstation.services.reconstruct.messages import (
-    Look,
     PhotoError,
     Probe,
     Probed,
     Section,
-    Seen,
     Subject,
+    ViewAnswer,
+    ViewRequest,
     WatchErrors,
 )
 from planning.base.errors import GroundStationError
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from reconstruction.splats.rasterising.raster_types import RasterSettings
     from reconstruction.splats.rasterising.views import View
     from reconstruction.splats.splats import Splats
-    from reconstruction.training.callbacks import Visit
+    from reconstruction.training.callbacks import TrainingSnapshot
     from reconstruction.training.model.joint_model import SceneModel
     from reconstruction.training.model.render import PhotoErrors
     from reconstruction.training.model.saved import TrainedModel
@@ -188,7 +188,9 @@ def shown_of(trained: TrainedModel) -> ShownModel:
     return ShownModel(trained.model, gains, settings, trained, record.learned, record.moves, quads)
 
 
-def tinted(picture: NDArray[np.uint8], quads: Quads, look: Look, depth_m: NDArray[np.float32]) -> NDArray[np.uint8]:
+def tinted(
+    picture: NDArray[np.uint8], quads: Quads, look: ViewRequest, depth_m: NDArray[np.float32]
+) -> NDArray[np.uint8]:
     """A picture with panels in colours that say something about them.
 
     Parameters
@@ -365,7 +367,7 @@ class RenderQueue:
         self._sources.clear()
         self._photos.clear()
 
-    def keep_visit(self, visit: Visit) -> None:
+    def keep_visit(self, visit: TrainingSnapshot) -> None:
         """The model in training, as it is now."""
         learned, moves = visit.record.get("learned", ()), visit.record.get("moves", ())
         gains = {name: visit.exposures(number) for number, name in enumerate(learned)}
@@ -375,7 +377,7 @@ class RenderQueue:
         """The model that a training ended with."""
         self._training = shown_of(trained)
 
-    def chosen(self, visit: Visit) -> tuple[str, tuple[Decision, ...]]:
+    def chosen(self, visit: TrainingSnapshot) -> tuple[str, tuple[Decision, ...]]:
         """The model of mirrored light of a training, and the decisions about it."""
         from planning.base.effects import Decision
 
@@ -393,21 +395,21 @@ class RenderQueue:
 
     # Pictures
 
-    def seen(self, look: Look) -> Seen:
+    def seen(self, look: ViewRequest) -> ViewAnswer:
         """Answer a look."""
         begun_s = time.perf_counter()
         try:
             if look.subject.kind == "photo":
-                return Seen(look, self._photo(look), seconds=time.perf_counter() - begun_s)
+                return ViewAnswer(look, self._photo(look), seconds=time.perf_counter() - begun_s)
             return self._rendered(look, self._subject(look.subject), begun_s)
         except GroundStationError as error:
-            return Seen(look, None, problem=str(error))
+            return ViewAnswer(look, None, problem=str(error))
         except (MemoryError, RuntimeError) as error:
-            return Seen(
+            return ViewAnswer(
                 look, None, problem=say("the picture could not be rendered ({}); make the window smaller", error)
             )
 
-    def _rendered(self, look: Look, shown: ShownModel, begun_s: float) -> Seen:
+    def _rendered(self, look: ViewRequest, shown: ShownModel, begun_s: float) -> ViewAnswer:
         from reconstruction.splats.rasterising.views import View
         from reconstruction.training.model.render import render_view
 
@@ -424,7 +426,7 @@ class RenderQueue:
             picture = tinted(picture, shown.quads, look, depth)
         middle = float(depth[depth.shape[0] // 2, depth.shape[1] // 2])
         seconds = time.perf_counter() - begun_s
-        return Seen(look, picture, scale, middle if np.isfinite(middle) and middle > 0.0 else None, seconds)
+        return ViewAnswer(look, picture, scale, middle if np.isfinite(middle) and middle > 0.0 else None, seconds)
 
     def prepare(self) -> bool:
         """Something that later pictures come sooner by, when nobody waits; whether there was anything."""
@@ -440,7 +442,7 @@ class RenderQueue:
         except (MemoryError, RuntimeError) as error:
             return Probed(probe, None, None, say("the place could not be looked at ({})", error))
 
-    def _photo(self, look: Look) -> NDArray[np.uint8]:
+    def _photo(self, look: ViewRequest) -> NDArray[np.uint8]:
         import cv2
 
         folder, name = look.subject.folder, look.subject.name
@@ -465,7 +467,7 @@ class RenderQueue:
 
     # Photos, one by one
 
-    def judge(self, wanted: WatchErrors | None, visit: Visit | None) -> bool:
+    def judge(self, wanted: WatchErrors | None, visit: TrainingSnapshot | None) -> bool:
         """Tell how well one photo is shown, where somebody wants to know; whether there is another one to tell of.
 
         Beside a training it takes a small share of the time, round and round; of a model that stays as it is, or whose

@@ -17,11 +17,10 @@ from groundstation.services.jobs.channel import Send, sendable
 from groundstation.services.reconstruct.folders import note_training
 from groundstation.services.reconstruct.messages import (
     AskScene,
-    BreakOff,
+    CancelTraining,
     Chosen,
     Devices,
     Ended,
-    Look,
     Measured,
     Organise,
     Pause,
@@ -32,6 +31,7 @@ from groundstation.services.reconstruct.messages import (
     Stepped,
     Stop,
     Train,
+    ViewRequest,
     WatchErrors,
 )
 from groundstation.services.reconstruct.render_queue import RenderQueue
@@ -39,7 +39,7 @@ from planning.base.errors import GroundStationError, OperationCancelled
 from planning.base.progress import Trace
 
 if TYPE_CHECKING:
-    from reconstruction.training.callbacks import Visit
+    from reconstruction.training.callbacks import TrainingSnapshot
 
 REPORT_S = 0.1
 """Shortest time between two reports of one stage, and of two steps."""
@@ -56,10 +56,10 @@ class _Requests:
         """None: there is something to look at, or the window has gone."""
         self.pause, self.stop, self.cancel, self.gone = (threading.Event() for _ in range(4))
         self.errors: WatchErrors | None = None
-        self._looks: dict[tuple[type, str], Look | Probe] = {}
+        self._looks: dict[tuple[type, str], ViewRequest | Probe] = {}
         self._lock = threading.Lock()
 
-    def next_look(self) -> Look | Probe | None:
+    def next_look(self) -> ViewRequest | Probe | None:
         """The look or probe that was asked for first, of those that no newer one has replaced."""
         with self._lock:
             place = next(iter(self._looks), None)
@@ -68,7 +68,7 @@ class _Requests:
     def take(self, message: Any) -> None:
         """Take a message of the window."""
         match message:
-            case Look() | Probe():
+            case ViewRequest() | Probe():
                 with self._lock:
                     self._looks[type(message), message.place] = message
                 self.orders.put(None)
@@ -86,7 +86,7 @@ class _Requests:
             case Stop():
                 self.stop.set()
                 self.pause.clear()
-            case BreakOff():
+            case CancelTraining():
                 self.cancel.set()
                 self.pause.clear()
 
@@ -97,7 +97,7 @@ class _Server:
     def __init__(self, send: Send) -> None:
         self._tell, self._requests = send, _Requests()
         self.take = self._requests.take
-        self._darkroom = RenderQueue(self._tell)
+        self._render_queue = RenderQueue(self._tell)
         self._stage, self._reported_s, self._stepped_s = "", 0.0, 0.0
         self._is_joint, self._n_measured = False, 0
 
@@ -117,7 +117,9 @@ class _Server:
         self._tell(Devices(cuda_devices()))
         while not self._requests.gone.is_set():
             use_threads(max(1, (os.cpu_count() or 1) - 1))
-            has_more = self._look() or self._darkroom.prepare() or self._darkroom.judge(self._requests.errors, None)
+            has_more = (
+                self._look() or self._render_queue.prepare() or self._render_queue.judge(self._requests.errors, None)
+            )
             try:
                 order = self._requests.orders.get(block=not has_more)
             except queue.Empty:
@@ -137,7 +139,7 @@ class _Server:
 
         requests = self._requests
         self._is_joint, self._n_measured = False, 0
-        self._darkroom.forget_training()
+        self._render_queue.forget_training()
         try:
             if not order.resume:
                 note_training(order.out, order.dataset, order.request)
@@ -158,7 +160,7 @@ class _Server:
             self._tell(Ended("failed", sendable(error)))
         else:
             self._is_joint = False
-            self._darkroom.keep_trained(made.trained)
+            self._render_queue.keep_trained(made.trained)
             for point in made.trained.history[self._n_measured :]:
                 self._tell(Measured(point.t_s, point.value))
             self._tell(Ended("done", None, train_summary(made)))
@@ -195,11 +197,11 @@ class _Server:
         if not self._is_joint:
             self._look()
 
-    def _visit(self, visit: Visit) -> None:
-        self._darkroom.keep_visit(visit)
+    def _visit(self, visit: TrainingSnapshot) -> None:
+        self._render_queue.keep_visit(visit)
         if not self._is_joint:
             self._is_joint = True
-            self._tell(Chosen(*self._darkroom.chosen(visit)))
+            self._tell(Chosen(*self._render_queue.chosen(visit)))
         now = time.monotonic()
         if now - self._stepped_s >= REPORT_S:
             self._stepped_s = now
@@ -210,16 +212,16 @@ class _Server:
         self._n_measured = max(self._n_measured, len(visit.history))
         while self._look():
             pass
-        self._darkroom.judge(self._requests.errors, visit)
+        self._render_queue.judge(self._requests.errors, visit)
 
     def _look(self) -> bool:
         """Answer one look; whether there was one."""
         look = self._requests.next_look()
         match look:
-            case Look():
-                self._tell(self._darkroom.seen(look))
+            case ViewRequest():
+                self._tell(self._render_queue.seen(look))
             case Probe():
-                self._tell(self._darkroom.probed(look))
+                self._tell(self._render_queue.probed(look))
         return look is not None
 
 

@@ -13,13 +13,13 @@ from planning.base.files import check_ending, make_folder
 from planning.base.json_file import check_output, read_toml, write_atomically
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor, Stop, Trace, never
-from planning.tradeoff.runner import Compared, Subject, compare
+from planning.tradeoff.runner import ComparisonFiles, Subject, compare
 from reconstruction.training.parameters import DEFAULT_PRESET, TrainRequest
 
 if TYPE_CHECKING:
     from planning.base.effects import Decision
     from reconstruction.tradeoff.train_tradeoff import Trial
-    from reconstruction.training.callbacks import Callbacks, Preview, Visit
+    from reconstruction.training.callbacks import Callbacks, Preview, TrainingSnapshot
     from reconstruction.training.config import TrainConfig
     from reconstruction.training.model.saved import TrainedModel
     from reconstruction.training.ranks import Ranks
@@ -59,14 +59,14 @@ def config_of_request(request: TrainRequest) -> TrainConfig:
         There is no such preset, the file cannot be used, or a value is out of range.
     """
     from reconstruction.training.config import config_of
-    from reconstruction.training.presets import as_asked, preset
+    from reconstruction.training.presets import preset, with_request
 
     config = preset(request.preset)
     if request.method is not None:
         config = config_of({"method": request.method}, config, Path("--method"))
     if request.settings is not None:
         config = config_of(read_toml(request.settings, dict[str, Any]), config, request.settings)
-    return as_asked(config, request)
+    return with_request(config, request)
 
 
 def train_files(
@@ -81,7 +81,7 @@ def train_files(
     trace: Trace | None = None,
     monitor: Monitor = QUIET,
     begun_s: float | None = None,
-    visit: Callable[[Visit], None] | None = None,
+    visit: Callable[[TrainingSnapshot], None] | None = None,
 ) -> TrainedFiles:
     """Train a model of a data set folder into a folder; or go on with the training that was interrupted there.
 
@@ -278,7 +278,7 @@ POINTS = 12
 
 def train_tradeoff(
     dataset: Path, request: TrainRequest, knobs: Mapping[str, Sequence[Any]], out: Path, monitor: Monitor = QUIET
-) -> Compared[tuple[Trial, ...]]:
+) -> ComparisonFiles[tuple[Trial, ...]]:
     """Turn settings of a training one at a time; write `tradeoff-train.csv` and `.png` into `out`.
 
     Parameters

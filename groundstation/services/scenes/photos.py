@@ -32,7 +32,7 @@ from planning.geo.mesh import join
 from planning.geo.solids import Solids
 from planning.plan import Camera
 from planning.site.records import SiteModel
-from planning.tradeoff.runner import Compared, Subject, compare
+from planning.tradeoff.runner import ComparisonFiles, Subject, compare
 from reconstruction.base.cameras import Intrinsics, PosedPhoto
 from reconstruction.scenes.effects.registry import decide_effects
 from reconstruction.scenes.mitsuba.plugins import mitsuba
@@ -40,7 +40,7 @@ from reconstruction.scenes.parameters import SceneRequest
 from reconstruction.scenes.photos.camera_model import USUAL_CAMERA_MODEL, CameraModel, read_camera_model
 from reconstruction.scenes.photos.flight_views import lens_of, moments, planned_shots, posed_photos, square_photos
 from reconstruction.scenes.record import Scene
-from reconstruction.scenes.runs.photo_folder import ScenePhotos, photograph
+from reconstruction.scenes.runs.photo_folder import ScenePhotos, render_photo_folder
 from reconstruction.scenes.runs.photo_job import PhotoJob
 from reconstruction.scenes.runs.run_record import check_folder
 from reconstruction.tradeoff.scene_tradeoff import (
@@ -117,7 +117,7 @@ def scene_tradeoff(
     *,
     n_reflection_views: int = 0,
     config: ReflectionConfig | None = None,
-) -> Compared[SceneTrials]:
+) -> ComparisonFiles[SceneTrials]:
     """Turn the knobs of rendering one at a time; write `tradeoff-scene.csv` and `.png` into `out`.
 
     Photos are a plan's, or such as a first flight takes before each facade, where panels can be looked for.
@@ -203,7 +203,7 @@ class RenderedScene:
     seconds: float
 
 
-def photograph_files(
+def render_photos(
     request: SceneRequest,
     folder: Path,
     n_processes: int | None = None,
@@ -222,7 +222,7 @@ def photograph_files(
     ------
     InputError
         A file cannot be read or belongs to another site, there is no such scene, no cluster answers, Mitsuba is
-        wished for and not installed, or as `photograph` says.
+        wished for and not installed, or as `render_photo_folder` says.
     InfeasibleError
         Views were to be planned, and none is possible.
     """
@@ -260,7 +260,7 @@ def _photographed(
         camera_model,
         moments(views.shots, camera_model),
     )
-    written = photograph(job, folder, n_processes, monitor, cluster=cluster)
+    written = render_photo_folder(job, folder, n_processes, monitor, cluster=cluster)
     return RenderedScene(scene.name, written, findings, time.perf_counter() - started_s)
 
 

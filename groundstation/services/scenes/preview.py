@@ -1,7 +1,7 @@
 """Use case of planning: the photo that a viewpoint will take, rendered, with all that panes will mirror there.
 
 A scene takes a second to build, so the process that renders keeps the one it rendered last: it is asked by the key of
-the site alone first (`kept_photo`), and gets the site itself where it has another scene, or none (`site_photo`).
+the site alone first (`cached_photo`), and gets the site itself where it has another scene, or none (`site_photo`).
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from reconstruction.scenes.world.look import Look
 
 if TYPE_CHECKING:
     from reconstruction.base.cameras import PosedPhoto
-    from reconstruction.scenes.photos.renderer import Photograph, Renderer
+    from reconstruction.scenes.photos.renderer import RenderedPhoto, Renderer
 
 QUICK_S = 0.35
 """What a quick picture may take; half a second passes until it is seen."""
@@ -92,7 +92,7 @@ class PhotoRequest:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class SeenPhoto:
+class PreviewPhoto:
     """A rendered photo.
 
     Parameters
@@ -134,9 +134,9 @@ def quick_width_px(fine_width_px: int, seconds_per_px: float | None) -> int:
     return min(int(min(max(width, low), high)), fine_width_px)
 
 
-def kept_photo(
+def cached_photo(
     request: PhotoRequest, *, stop: Stop = never, trace: Trace | None = None, monitor: Monitor = QUIET
-) -> SeenPhoto | None:
+) -> PreviewPhoto | None:
     """The photo, if this process still has its scene; None if not."""
     studio = next((kept for kept in _KEPT if kept.key == request.scene_key), None)
     return None if studio is None else studio.photo(request, monitor)
@@ -144,7 +144,7 @@ def kept_photo(
 
 def site_photo(
     model: SiteModel, request: PhotoRequest, *, stop: Stop = never, trace: Trace | None = None, monitor: Monitor = QUIET
-) -> SeenPhoto:
+) -> PreviewPhoto:
     """The photo; its scene is kept in place of the last one.
 
     Raises
@@ -173,7 +173,7 @@ class _Studio:
         self._fine: tuple[frozenset[str], Renderer] | None = None
         """With the effects that it simulates."""
 
-    def photo(self, request: PhotoRequest, monitor: Monitor) -> SeenPhoto:
+    def photo(self, request: PhotoRequest, monitor: Monitor) -> PreviewPhoto:
         from reconstruction.base.cameras import Pose, PosedPhoto
         from reconstruction.scenes.photos.flight_views import lens_of
         from reconstruction.scenes.photos.lens_effects import developed
@@ -187,7 +187,7 @@ class _Studio:
         seconds = time.perf_counter() - started_s
         seen = np.unique(taken.panel).astype(np.int64)
         clearance_m = self._solids.clearance_m(np.asarray(photo.pose.position_enu_m)[None])[0]
-        return SeenPhoto(request, picture, seen[seen > 0] - 1, decisions, bool(clearance_m < 0.0), seconds)
+        return PreviewPhoto(request, picture, seen[seen > 0] - 1, decisions, bool(clearance_m < 0.0), seconds)
 
     def _decided(self, photo: PosedPhoto, monitor: Monitor) -> tuple[Renderer, tuple[Decision, ...]]:
         """A renderer of what the scene calls for in this photo, and why."""
@@ -213,7 +213,7 @@ _KEPT: list[_Studio] = []
 """The studio of the last photo, at most one."""
 
 
-def _taken(renderer: Renderer, photo: PosedPhoto, monitor: Monitor) -> Photograph:
+def _taken(renderer: Renderer, photo: PosedPhoto, monitor: Monitor) -> RenderedPhoto:
     """A photograph, rendered strip by strip so that it can be cancelled; the same as in one piece."""
     height, width = photo.intrinsics.height_px, photo.intrinsics.width_px
     rows = max(1, STRIP_PX // width)
@@ -225,7 +225,7 @@ def _taken(renderer: Renderer, photo: PosedPhoto, monitor: Monitor) -> Photograp
     return replace(strips[0], **layers)
 
 
-def _strip(renderer: Renderer, photo: PosedPhoto, top: int, bottom: int) -> Photograph:
+def _strip(renderer: Renderer, photo: PosedPhoto, top: int, bottom: int) -> RenderedPhoto:
     """Rows of a photograph."""
     lens = photo.intrinsics
     first, last = max(top - EXTRA_ROWS, 0), min(bottom + EXTRA_ROWS, lens.height_px)
@@ -236,6 +236,6 @@ def _strip(renderer: Renderer, photo: PosedPhoto, top: int, bottom: int) -> Phot
     return replace(taken, **layers)
 
 
-def _layers(taken: Photograph) -> tuple[str, ...]:
+def _layers(taken: RenderedPhoto) -> tuple[str, ...]:
     """Names of what has a value for each pixel."""
     return tuple(field.name for field in fields(taken) if isinstance(getattr(taken, field.name), np.ndarray))

@@ -1,7 +1,8 @@
 """What a sortie has on board: geofence, rally points, mission; put there, read back, and doubted.
 
     not uploaded -> equal       uploaded and read back (`upload`)
-    equal -> not known          something may have changed it (`doubt`): a restart, silence, another ground station
+    equal -> not known          something may have changed it (`reason_to_reread`): a restart, silence,
+                                another ground station
     not known -> equal, other   read again (`BoardReread`): before take-off as soon as the vehicle is heard, at Start in
                                 any case, in flight beside the mission
 
@@ -134,7 +135,7 @@ def _compared(board_list: BoardList, read: DownloadOutcome, autopilot: Autopilot
 # What may have changed it
 
 
-def doubt(before: VehicleState, after: VehicleState, received: Received, *, is_transferring: bool) -> str:
+def reason_to_reread(before: VehicleState, after: VehicleState, received: Received, *, is_transferring: bool) -> str:
     """Why what is on board may be something else after a message than before it; empty where nothing says so.
 
     Parameters
@@ -168,9 +169,9 @@ def doubt(before: VehicleState, after: VehicleState, received: Received, *, is_t
     return ""
 
 
-def doubted(on_board: OnBoard, reason: str) -> OnBoard:
+def with_lists_unknown(on_board: OnBoard, reason: str) -> OnBoard:
     """Nothing of what was equal is known any more."""
     equal = [kind for kind in MissionType if on_board.of(kind)]
     for kind in equal:
         on_board = on_board.known(kind, None)
-    return replace(on_board, doubt=reason) if equal or on_board.doubt else on_board
+    return replace(on_board, reason_to_reread=reason) if equal or on_board.reason_to_reread else on_board

@@ -253,7 +253,7 @@ def _keep_up(run: SortieRun) -> Steps:
 
     A vehicle that was restarted has forgotten what it was asked to send, and its parameters may be others.
     """
-    motion, reason = run.state.motion, run.on_board.doubt
+    motion, reason = run.state.motion, run.on_board.reason_to_reread
     if not run.state.is_link_alive(run.now_s):
         return
     if (motion is None or motion.age_s(run.now_s) > STALE_S) and run.now_s > run.asked_s + ASK_EVERY_S:
@@ -386,11 +386,11 @@ def _refuse_what_is_not_ours(run: SortieRun, *, is_armed: bool = False) -> None:
                 abs(off_m),
             )
         )
-    if run.on_board.doubt:
+    if run.on_board.reason_to_reread:
         raise _NotKnownError(
             say(
                 "what is on the vehicle is not known ({}); it was not started: wait until it is read",
-                run.on_board.doubt,
+                run.on_board.reason_to_reread,
             )
         )
 
@@ -559,9 +559,9 @@ def _put(run: SortieRun, ours: BoardList) -> Steps:
 def read_again(run: SortieRun) -> Steps:
     """Read every list of ours again; what could not be read stays not known."""
     autopilot, _ = vehicle_of(run)
-    run.on_board = replace(run.on_board, doubt="")
+    run.on_board = replace(run.on_board, reason_to_reread="")
     reads: tuple[ListRead, ...] = yield BoardReread(run.lists, autopilot)
-    run.take_reads(reads)
+    run.note_reads(reads)
 
 
 class FlightRun(SortieRun):

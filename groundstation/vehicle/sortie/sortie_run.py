@@ -23,12 +23,12 @@ from groundstation.vehicle.sortie.board import (
     BoardList,
     BoardReread,
     ListRead,
-    doubt,
-    doubted,
+    reason_to_reread,
+    with_lists_unknown,
 )
 from groundstation.vehicle.sortie.run_records import ORDER_MODES, Phase, PilotOrder, RunOptions, RunOutcome, RunView
 from groundstation.vehicle.state import VehicleState
-from groundstation.vehicle.telemetry import LocalFrame, folded
+from groundstation.vehicle.telemetry import LocalFrame, updated_state
 from groundstation.vehicle.watch import Watch, WatchRules, watched
 from missions.flight.record import FlightEvent
 from missions.mavlink.link import GROUND_HEARTBEAT, GROUND_STATION, HEARTBEAT_EVERY_S
@@ -234,10 +234,10 @@ class SortieRun:
         """Take a message."""
         self.now_s = received.time_s
         before = self.state
-        self.state = folded(before, received, self._frame)
+        self.state = updated_state(before, received, self._frame)
         if self.state is not before and self.recorder is not None:
             self.recorder.take(received)
-        self._doubt(doubt(before, self.state, received, is_transferring=self._is_transferring))
+        self._doubt(reason_to_reread(before, self.state, received, is_transferring=self._is_transferring))
         for machine in (self._machine, self._order_call, self._aside):
             if machine is not None and machine.outcome is None:
                 self._outbox += machine.receive(received)
@@ -378,30 +378,34 @@ class SortieRun:
 
     def _doubt(self, reason: str) -> None:
         """Something may have changed what is on board."""
-        on_board = doubted(self.on_board, reason) if reason else self.on_board
-        if on_board is not self.on_board and on_board.doubt != self.on_board.doubt:
+        on_board = with_lists_unknown(self.on_board, reason) if reason else self.on_board
+        if on_board is not self.on_board and on_board.reason_to_reread != self.on_board.reason_to_reread:
             self.note("board-doubted", say("what is on board is not known any more: {}", reason))
         self.on_board = on_board
 
-    def take_reads(self, reads: tuple[ListRead, ...]) -> None:
+    def note_reads(self, reads: tuple[ListRead, ...]) -> None:
         """Note what was read again; the next change of the vehicle's own numbers is one from now on."""
         for read in reads:
             kind = read.board_list.route.mission_type
             self.note("mission-reread" if kind is MissionType.MISSION else "list-reread", read.text)
             self.on_board = self.on_board.known(kind, read.is_equal)
-        if any(read.is_equal is None for read in reads) and not self.on_board.doubt:
-            self.on_board = replace(self.on_board, doubt=UNREAD)
+        if any(read.is_equal is None for read in reads) and not self.on_board.reason_to_reread:
+            self.on_board = replace(self.on_board, reason_to_reread=UNREAD)
         self.forget_progress()
 
     def _watch_board(self) -> None:
         """In flight, read again beside the mission; before take-off the steps do."""
         if self._aside is not None and self._aside.outcome is not None:
             reads, self._aside = self._aside.outcome, None
-            self.take_reads(reads)
-        is_due = self.phase is Phase.FLYING and self.on_board.doubt and self.now_s >= self._reread_s + READ_PAUSE_S
+            self.note_reads(reads)
+        is_due = (
+            self.phase is Phase.FLYING
+            and self.on_board.reason_to_reread
+            and self.now_s >= self._reread_s + READ_PAUSE_S
+        )
         if self._aside is None and is_due and self._had_link and self.state.autopilot is not None:
             self._reread_s = self.now_s
-            self.on_board = replace(self.on_board, doubt="")
+            self.on_board = replace(self.on_board, reason_to_reread="")
             self._aside = BoardReread(self.lists, self.state.autopilot)
             self._outbox += self._aside.start(self.now_s)
 

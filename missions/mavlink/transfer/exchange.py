@@ -157,7 +157,7 @@ DELAYS_KEPT = 5
 
 
 @dataclass(slots=True)
-class Patience:
+class RetryTimer:
     """When to repeat a question, and when to give up; learns the link's delay from questions that were not repeated."""
 
     timing: Timing
@@ -300,13 +300,13 @@ class Download:
     timing: Timing = DEFAULT_TIMING
     state: DownloadState = field(init=False, default=DownloadState.READY)
     outcome: DownloadOutcome | None = field(init=False, default=None)
-    _patience: Patience = field(init=False)
+    _patience: RetryTimer = field(init=False)
     _items: list[MissionItemInt] = field(init=False, default_factory=list)
     _count: int | None = field(init=False, default=None)
     _restarts: int = field(init=False, default=0)
 
     def __post_init__(self) -> None:
-        self._patience = Patience(self.timing)
+        self._patience = RetryTimer(self.timing)
 
     @property
     def next_deadline_s(self) -> float:

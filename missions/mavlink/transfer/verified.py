@@ -42,8 +42,8 @@ from missions.mavlink.transfer.exchange import (
     DownloadOutcome,
     Ending,
     MissionType,
-    Patience,
     Result,
+    RetryTimer,
     Route,
     Timing,
 )
@@ -89,10 +89,10 @@ class Clear:
     timing: Timing = DEFAULT_TIMING
     state: ClearState = field(init=False, default=ClearState.READY)
     outcome: ClearOutcome | None = field(init=False, default=None)
-    _patience: Patience = field(init=False)
+    _patience: RetryTimer = field(init=False)
 
     def __post_init__(self) -> None:
-        self._patience = Patience(self.timing)
+        self._patience = RetryTimer(self.timing)
 
     @property
     def next_deadline_s(self) -> float:
@@ -222,7 +222,7 @@ class Upload:
     timing: Timing = DEFAULT_TIMING
     state: UploadState = field(init=False, default=UploadState.READY)
     outcome: UploadOutcome | None = field(init=False, default=None)
-    _patience: Patience = field(init=False)
+    _patience: RetryTimer = field(init=False)
     _seq: int = field(init=False, default=-1)
     _answered_s: dict[int, float] = field(init=False, default_factory=dict)
     _may_guess: bool = field(init=False, default=False)
@@ -238,7 +238,7 @@ class Upload:
             replace(item, seq=seq, target_system=vehicle.system, target_component=vehicle.component, mission_type=kind)
             for seq, item in enumerate(self.items)
         )
-        self._patience = Patience(self.timing)
+        self._patience = RetryTimer(self.timing)
 
     @property
     def next_deadline_s(self) -> float:

@@ -97,7 +97,7 @@ FLOAT32_SLACK = 4.0 * 2.0**-23
 """A step is cut off in 32 bit arithmetic, which may be some last places off."""
 
 
-class Keeps(StrEnum):
+class KeptPart(StrEnum):
     """What a vehicle keeps of a field; the data file explains the words."""
 
     ANYTHING = "anything"
@@ -114,7 +114,7 @@ class Rule:
     """One rule of the table; the data file explains the fields."""
 
     fields: tuple[str, ...]
-    keeps: Keeps
+    keeps: KeptPart
     reason: str
     autopilot: Autopilot | None = None
     lists: tuple[MissionType, ...] = tuple(MissionType)
@@ -132,23 +132,23 @@ class Rule:
             and self.place in (None, has_place(item.command, item.frame))
         )
 
-    def forgives(self, field: str, sent: float, back: float) -> bool:
+    def tolerates(self, field: str, sent: float, back: float) -> bool:
         """Whether a value may come back so."""
         match self.keeps:
-            case Keeps.ANYTHING:
+            case KeptPart.ANYTHING:
                 return True
-            case Keeps.NOTHING:
+            case KeptPart.NOTHING:
                 return back == 0
-            case Keeps.WHOLE:
+            case KeptPart.WHOLE:
                 return math.isfinite(sent) and back == math.trunc(sent)
-            case Keeps.STEP:
+            case KeptPart.STEP:
                 slack = FLOAT32_SLACK * max(abs(sent), 1.0) if field in FLOATS else 0.0
                 return abs(sent - back) <= self.step + slack
-            case Keeps.DEGREES:
+            case KeptPart.DEGREES:
                 return math.isfinite(sent - back) and abs(wrap_heading_deg(sent - back)) <= self.step
-            case Keeps.SIGN:
+            case KeptPart.SIGN:
                 return back == (-1.0 if sent < 0.0 else 1.0)
-            case Keeps.FRAME:
+            case KeptPart.FRAME:
                 return any(sent in same and back in same for same in self.frames)
 
 
@@ -205,7 +205,7 @@ def _differences(
         if ours == theirs or (math.isnan(ours) and math.isnan(theirs)):
             continue
         rule = next((each for each in fitting if field in each.fields), None)
-        if rule is None or not rule.forgives(field, ours, theirs):
+        if rule is None or not rule.tolerates(field, ours, theirs):
             yield Difference(seq, field, ours, theirs)
 
 

@@ -2,7 +2,7 @@
 
 The trajectory (`trajectory.py`) is the motion that the autopilot steers, exact at any step. Parts (`parts.py`) are put
 onto it: wind moves the aircraft off it, position errors part what is believed from what is true. Where no effect is on
-there is nothing to add, and `believed` and `truth` are one object.
+there is nothing to add, and `estimate` and `truth` are one object.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ class Multirotor:
         return self._truth
 
     @property
-    def believed(self) -> Pose:
+    def estimate(self) -> Pose:
         """Where the autopilot's estimator says it is; `truth` itself where nothing errs."""
         if not self._parts.errors:
             return self.truth

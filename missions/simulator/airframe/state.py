@@ -1,6 +1,6 @@
 """What the simulated autopilot wants of its airframe, what it gets to know of it, and the parts of the airframe.
 
-The autopilot (`vehicle.py`) sees the airframe only as `believed`; photos are taken where it truly is (`truth`).
+The autopilot (`vehicle.py`) sees the airframe only as `estimate`; photos are taken where it truly is (`truth`).
 """
 
 from __future__ import annotations
@@ -91,7 +91,7 @@ class Airframe(Protocol):
         """Where it really is."""
 
     @property
-    def believed(self) -> Pose:
+    def estimate(self) -> Pose:
         """Where the autopilot's estimator says it is; the same object as `truth` where no effect errs."""
 
     @property

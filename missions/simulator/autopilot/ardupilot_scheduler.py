@@ -20,8 +20,8 @@ from missions.simulator.autopilot.scheduler import (
     FLOWN_TO,
     MAX_ITEMS_IN_A_TICK,
     TAKEOFFS,
-    Cockpit,
     MissionState,
+    SchedulerContext,
     is_navigation,
 )
 from missions.simulator.autopilot.steps import FlyTo, Step, StepRunner, Wait
@@ -61,8 +61,8 @@ UNSUPPORTED_IN_FLIGHT = frozenset((30, 83, 84, 85, 94))
 class ArduPilotScheduler:
     """Goes through the mission on board as ArduCopter does."""
 
-    def __init__(self, cockpit: Cockpit, profile: VehicleProfile) -> None:
-        self._cockpit, self._profile = cockpit, profile
+    def __init__(self, context: SchedulerContext, profile: VehicleProfile) -> None:
+        self._context, self._profile = context, profile
         self.state = MissionState.READY
         self.current = 0
         self.n_dropped = 0
@@ -81,7 +81,7 @@ class ArduPilotScheduler:
 
     def refusal(self, *, is_landed: bool) -> str | None:
         """Why AUTO is refused."""
-        if len(self._cockpit.store) <= FIRST:
+        if len(self._context.store) <= FIRST:
             return "Auto: No mission"
         if is_landed and not self._starts_with_take_off():
             return "Auto: Missing Takeoff Cmd"
@@ -89,7 +89,7 @@ class ArduPilotScheduler:
 
     def arming_refusal(self) -> str | None:
         """Heights above terrain need data that this vehicle never gets."""
-        above_terrain = any(item.frame == ABOVE_TERRAIN for item in self._cockpit.store.items)
+        above_terrain = any(item.frame == ABOVE_TERRAIN for item in self._context.store.items)
         return "Arm: waiting for terrain data" if above_terrain else None
 
     def start(self) -> None:
@@ -97,7 +97,7 @@ class ArduPilotScheduler:
         if self.state is MissionState.ENDED:
             self.reset()
         self.state = MissionState.RUNNING
-        item = self._cockpit.store.item(self.current) if self.current else None
+        item = self._context.store.item(self.current) if self.current else None
         if item is None:
             self._begin(self._next_start)
         else:
@@ -110,7 +110,7 @@ class ArduPilotScheduler:
 
     def set_current(self, seq: int) -> bool:
         """Go on with an item: what stands before it is not done, a camera's angles among it."""
-        if not FIRST <= seq < len(self._cockpit.store):
+        if not FIRST <= seq < len(self._context.store):
             return False
         self._forget()
         self._next_start = seq
@@ -135,7 +135,7 @@ class ArduPilotScheduler:
             if not self._runner.update():
                 return False
             self.has_landed = self._runner.lands
-            self._cockpit.reached(self.current)
+            self._context.reached(self.current)
             if self.has_landed:
                 self.state = MissionState.ENDED
                 return True
@@ -152,7 +152,7 @@ class ArduPilotScheduler:
 
     def _starts_with_take_off(self) -> bool:
         seq = self._next_start
-        while (item := self._cockpit.store.item(seq)) is not None:
+        while (item := self._context.store.item(seq)) is not None:
             if is_navigation(item):
                 return item.command in TAKEOFFS
             seq += 1
@@ -164,7 +164,7 @@ class ArduPilotScheduler:
         self._waiting.clear()
         self._condition = None
         for _ in range(MAX_ITEMS_IN_A_TICK):
-            item = self._cockpit.store.item(seq)
+            item = self._context.store.item(seq)
             if item is None:
                 break
             if item.command == mavlink.MAV_CMD_DO_JUMP:
@@ -188,7 +188,7 @@ class ArduPilotScheduler:
         done, often = self._jumps.get(seq, 0), int(item.param2)
         is_counted = seq in self._jumps or len(self._jumps) < MAX_JUMPS
         target = int(item.param1)
-        if not is_counted or not FIRST <= target < len(self._cockpit.store) or (often >= 0 and done >= often):
+        if not is_counted or not FIRST <= target < len(self._context.store) or (often >= 0 and done >= often):
             return seq + 1
         self._jumps[seq] = done + 1
         return target
@@ -202,43 +202,43 @@ class ArduPilotScheduler:
             if self._condition is not None:
                 if not self._is_met(*self._condition):
                     return
-                self._cockpit.reached(self._condition[0])
+                self._context.reached(self._condition[0])
                 self._condition = None
             if not self._waiting:
                 return
             self._start_waiting(self._waiting.popleft())
 
     def _start_waiting(self, seq: int) -> None:
-        item = self._cockpit.store.item(seq)
+        item = self._context.store.item(seq)
         if item is None:
             return
         if item.command in CONDITIONS:
-            self._condition = (seq, item, self._cockpit.guidance.now_s)
+            self._condition = (seq, item, self._context.guidance.now_s)
             if item.command == mavlink.MAV_CMD_CONDITION_YAW:
                 self._start_yaw(item)
             return
-        self._cockpit.actions.do(item)
+        self._context.actions.do(item)
         if item.command in self._profile.reports_reached:
-            self._cockpit.reached(seq)
+            self._context.reached(seq)
 
     # Conditions
 
     def _start_yaw(self, item: StoredItem) -> None:
         angle_deg, _, direction, is_relative = item.params
-        nose_rad = self._cockpit.guidance.airframe.believed.heading_rad
+        nose_rad = self._context.guidance.airframe.estimate.heading_rad
         turn_rad = math.copysign(angle_deg * DEG, -1.0 if direction < 0.0 else 1.0)
         if not math.isfinite(turn_rad):
             turn_rad = angle_deg = 0.0
         self._condition_heading_rad = nose_rad + turn_rad if is_relative == 1.0 else angle_deg * DEG
-        self._cockpit.actions.gimbal.look_at(None)
+        self._context.actions.gimbal.look_at(None)
         self._keep_turning(item)
 
     def _keep_turning(self, item: StoredItem) -> None:
         rate_rad_s = item.param2 * DEG if item.param2 > 0.0 else None
-        self._cockpit.guidance.face(self._condition_heading_rad, rate_rad_s)
+        self._context.guidance.face(self._condition_heading_rad, rate_rad_s)
 
     def _is_met(self, seq: int, item: StoredItem, started_s: float) -> bool:
-        guidance = self._cockpit.guidance
+        guidance = self._context.guidance
         if item.command == mavlink.MAV_CMD_CONDITION_DELAY:
             return guidance.now_s - started_s >= item.param1
         if item.command == mavlink.MAV_CMD_CONDITION_DISTANCE:
@@ -252,14 +252,14 @@ class ArduPilotScheduler:
 
     def _begin_navigation(self, seq: int, item: StoredItem) -> None:
         self.has_landed = False
-        self._runner = StepRunner(self._steps(seq, item), self._cockpit.guidance)
+        self._runner = StepRunner(self._steps(seq, item), self._context.guidance)
 
     def _steps(self, seq: int, item: StoredItem) -> list[Step]:
-        guidance, manoeuvres = self._cockpit.guidance, self._cockpit.manoeuvres
+        guidance, manoeuvres = self._context.guidance, self._context.manoeuvres
         if item.command in UNSUPPORTED_IN_FLIGHT:
-            self._cockpit.say(mavlink.MAV_SEVERITY_WARNING, f"Skipping invalid cmd #{item.command}")
+            self._context.say(mavlink.MAV_SEVERITY_WARNING, f"Skipping invalid cmd #{item.command}")
             return []
-        goal_enu_m = self._cockpit.place.item_enu(item, guidance.here_enu_m)
+        goal_enu_m = self._context.place.item_enu(item, guidance.here_enu_m)
         match item.command:
             case mavlink.MAV_CMD_NAV_TAKEOFF:
                 return manoeuvres.take_off(goal_enu_m[2])
@@ -280,27 +280,27 @@ class ArduPilotScheduler:
             stay_s = math.inf
         elif item.command == mavlink.MAV_CMD_NAV_LOITER_TURNS:
             # Circles are flown as a stop of the same length at their centre.
-            stay_s = item.param1 * 2.0 * math.pi * abs(item.param3) / self._cockpit.guidance.horizontal_m_s
+            stay_s = item.param1 * 2.0 * math.pi * abs(item.param3) / self._context.guidance.horizontal_m_s
         elif item.command == mavlink.MAV_CMD_NAV_LOITER_TO_ALT:
             stay_s = 0.0
         next_enu_m = self._next_place(seq, goal_enu_m)
         if stay_s == 0.0 and next_enu_m is not None:
             straight = self._is_straight_on(goal_enu_m, next_enu_m)
-            leave_m = min(self._profile.pass_m, 0.5 * math.dist(self._cockpit.guidance.here_enu_m, goal_enu_m))
+            leave_m = min(self._profile.pass_m, 0.5 * math.dist(self._context.guidance.here_enu_m, goal_enu_m))
             return [FlyTo(goal_enu_m, leave_m=leave_m, passes=straight)]
         return [FlyTo(goal_enu_m), Wait(LATE_S + stay_s)]
 
     def _next_place(self, seq: int, here_enu_m: Vec3) -> Vec3 | None:
         """Where the leg after this one leads, where it follows without a stop."""
-        while (item := self._cockpit.store.item(seq := seq + 1)) is not None:
+        while (item := self._context.store.item(seq := seq + 1)) is not None:
             if item.command == mavlink.MAV_CMD_DO_JUMP:
                 return None
             if is_navigation(item):
-                return self._cockpit.place.item_enu(item, here_enu_m) if item.command in FLOWN_TO else None
+                return self._context.place.item_enu(item, here_enu_m) if item.command in FLOWN_TO else None
         return None
 
     def _is_straight_on(self, goal_enu_m: Vec3, next_enu_m: Vec3) -> bool:
-        here_enu_m = self._cockpit.guidance.here_enu_m
+        here_enu_m = self._context.guidance.here_enu_m
         before = [b - a for a, b in zip(here_enu_m, goal_enu_m, strict=True)]
         after = [b - a for a, b in zip(goal_enu_m, next_enu_m, strict=True)]
         lengths = math.hypot(*before) * math.hypot(*after)
@@ -308,11 +308,11 @@ class ArduPilotScheduler:
         return lengths > 0.0 and along >= lengths * math.cos(STRAIGHT_RAD)
 
     def _turn_into(self, goal_enu_m: Vec3) -> None:
-        guidance = self._cockpit.guidance
+        guidance = self._context.guidance
         if guidance.look_at_enu_m is not None:
             return
         (x, y, _), (gx, gy, _) = guidance.here_enu_m, goal_enu_m
-        if self._cockpit.parameters["WP_YAW_BEHAVIOR"] == 0:
-            guidance.face(guidance.airframe.believed.heading_rad)
+        if self._context.parameters["WP_YAW_BEHAVIOR"] == 0:
+            guidance.face(guidance.airframe.estimate.heading_rad)
         elif math.hypot(gx - x, gy - y) > SHORT_LEG_M:
             guidance.face(math.atan2(gx - x, gy - y))

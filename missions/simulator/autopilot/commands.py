@@ -90,7 +90,7 @@ class Commands:
         if not (math.isfinite(item.param1) and math.isfinite(item.param2)):
             return None
         if int(item.param1) == mavlink.MAVLINK_MSG_ID_CAMERA_IMAGE_CAPTURED:
-            return self.instruments.told_photo(int(item.param2))
+            return self.instruments.repeated_photo_message(int(item.param2))
         return self.instruments.message(int(item.param1))
 
     def receive_set_mode(self, message: SetMode, source: Address) -> list[Message]:

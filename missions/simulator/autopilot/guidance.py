@@ -110,7 +110,7 @@ class Guidance:
     """
 
     def __init__(self, airframe: Airframe) -> None:
-        pose = airframe.believed
+        pose = airframe.estimate
         self.airframe = airframe
         self.now_s = 0.0
         self.horizontal_m_s = self.ascent_m_s = self.descent_m_s = 1.0
@@ -144,7 +144,7 @@ class Guidance:
 
     def stop(self) -> None:
         """Brake, and stay where that ends."""
-        pose = self.airframe.believed
+        pose = self.airframe.estimate
         (x, y, z), (vx, vy, vz) = pose.position_enu_m, pose.velocity_enu_m_s
         ahead_s = 0.5 * math.hypot(vx, vy, vz) / BRAKING_M_S2
         self.fly_to((x + ahead_s * vx, y + ahead_s * vy, z + ahead_s * vz))
@@ -178,12 +178,12 @@ class Guidance:
     @property
     def here_enu_m(self) -> Vec3:
         """Where it believes to be."""
-        return self.airframe.believed.position_enu_m
+        return self.airframe.estimate.position_enu_m
 
     @property
     def speed_m_s(self) -> float:
         """Over the ground and up or down."""
-        return math.hypot(*self.airframe.believed.velocity_enu_m_s)
+        return math.hypot(*self.airframe.estimate.velocity_enu_m_s)
 
     @property
     def distance_m(self) -> float:
@@ -192,7 +192,7 @@ class Guidance:
 
     def turn_left_rad(self, heading_rad: float) -> float:
         """Angle between the nose and a heading, 0 to pi."""
-        return abs(math.remainder(heading_rad - self.airframe.believed.heading_rad, 2.0 * math.pi))
+        return abs(math.remainder(heading_rad - self.airframe.estimate.heading_rad, 2.0 * math.pi))
 
     def step(self, duration_s: float) -> None:
         """Let the airframe fly on for a time."""

@@ -120,7 +120,7 @@ class Instruments:
         return self._place_at[1]
 
     def _pose(self) -> Pose:
-        return self.guidance.airframe.believed
+        return self.guidance.airframe.estimate
 
     def heartbeat(self) -> Message:
         """HEARTBEAT."""
@@ -269,7 +269,7 @@ class Instruments:
         """CAMERA_CAPTURE_STATUS."""
         return CameraCaptureStatus(self.time_boot_ms, image_count=self._n_photos)
 
-    def told_photo(self, index: int) -> Message | None:
+    def repeated_photo_message(self, index: int) -> Message | None:
         """What told of a photo, once more, as a camera that speaks MAVLink does; None where it cannot be had."""
         return self._told.get(index)
 
@@ -282,7 +282,7 @@ class Instruments:
         return told
 
     def _photo(self, number: int) -> Message:
-        believed, place = self._pose(), self.here()
+        estimate, place = self._pose(), self.here()
         if self.autopilot is Autopilot.ARDUPILOT:
             return CameraFeedback(
                 time_usec=self.time_unix_us,
@@ -293,11 +293,11 @@ class Instruments:
                 lng=place.lon_e7,
                 alt_msl=place.altitude_amsl_m,
                 alt_rel=place.above_home_m,
-                roll=believed.roll_rad / DEG,
-                pitch=believed.pitch_rad / DEG,
-                yaw=believed.heading_rad / DEG % 360.0,
+                roll=estimate.roll_rad / DEG,
+                pitch=estimate.pitch_rad / DEG,
+                yaw=estimate.heading_rad / DEG % 360.0,
             )
-        turned = self.gimbal.turned(believed)
+        turned = self.gimbal.turned(estimate)
         return CameraImageCaptured(
             time_boot_ms=self.time_boot_ms,
             time_utc=self.time_unix_us,

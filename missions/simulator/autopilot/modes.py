@@ -36,7 +36,7 @@ ARM_IN_AUTO, TAKE_OFF_IN_AUTO = 1, 2
 
 
 @dataclass(frozen=True, slots=True)
-class FlightDeck:
+class ModeContext:
     """What the modes act upon.
 
     Parameters
@@ -60,7 +60,7 @@ class FlightDeck:
 class FlightModes:
     """The mode, whether it is armed, and whether it stands on the ground. Orders return why not, None where done."""
 
-    def __init__(self, deck: FlightDeck) -> None:
+    def __init__(self, deck: ModeContext) -> None:
         self._deck = deck
         self.mode = deck.profile.boot_mode
         self.is_armed = False

@@ -19,8 +19,8 @@ from missions.simulator.autopilot.scheduler import (
     FLOWN_TO,
     MAX_ITEMS_IN_A_TICK,
     TAKEOFFS,
-    Cockpit,
     MissionState,
+    SchedulerContext,
     is_navigation,
 )
 from missions.simulator.autopilot.steps import Reach, Stay, Step, StepRunner, Wait
@@ -34,8 +34,8 @@ SHORT_LEG_M = 0.5
 class Px4Scheduler:
     """Goes through the mission on board as PX4 does."""
 
-    def __init__(self, cockpit: Cockpit, profile: VehicleProfile) -> None:
-        self._cockpit, self._profile = cockpit, profile
+    def __init__(self, context: SchedulerContext, profile: VehicleProfile) -> None:
+        self._context, self._profile = context, profile
         self.state = MissionState.READY
         self.current = 0
         self.n_dropped = 0
@@ -51,25 +51,25 @@ class Px4Scheduler:
 
     def refusal(self, *, is_landed: bool) -> str | None:
         """Why the mission is not feasible."""
-        items = self._cockpit.store.items
+        items = self._context.store.items
         if not items:
             return "No valid mission available"
         navigation = [item for item in items if is_navigation(item)]
         if not navigation or (is_landed and navigation[0].command not in TAKEOFFS):
             return "Mission rejected: takeoff missing"
-        home = self._cockpit.place.home_enu_m
+        home = self._context.place.home_enu_m
         for seq, item in enumerate(items):
             if item.command not in FLOWN_TO or not item.has_place:
                 continue
-            x, y, z = self._cockpit.place.item_enu(item, home)
+            x, y, z = self._context.place.item_enu(item, home)
             if z < home[2] - 1e-3:
                 return f"Mission rejected: waypoint {seq} below home"
-            if self._cockpit.is_forbidden((x, y, z)):
+            if self._context.is_forbidden((x, y, z)):
                 return f"Geofence violation for waypoint {seq}"
         first = next((item for item in navigation if item.command in FLOWN_TO and item.has_place), None)
         if first is not None:
-            x, y, _ = self._cockpit.place.item_enu(first, home)
-            away_m, most_m = math.hypot(x - home[0], y - home[1]), self._cockpit.parameters["MIS_DIST_1WP"]
+            x, y, _ = self._context.place.item_enu(first, home)
+            away_m, most_m = math.hypot(x - home[0], y - home[1]), self._context.parameters["MIS_DIST_1WP"]
             if away_m > most_m > 0.0:
                 return f"First waypoint too far away: {away_m:.0f}m, {most_m:.0f}m max"
         return None
@@ -83,7 +83,7 @@ class Px4Scheduler:
         if self.state is MissionState.ENDED:
             self.reset()
         self.state = MissionState.RUNNING
-        self._revision = self._cockpit.store.revision
+        self._revision = self._context.store.revision
         self._begin(self.current)
 
     def pause(self) -> None:
@@ -93,7 +93,7 @@ class Px4Scheduler:
 
     def set_current(self, seq: int) -> bool:
         """Go on with an item."""
-        if not 0 <= seq < len(self._cockpit.store):
+        if not 0 <= seq < len(self._context.store):
             return False
         self.current, self._runner, self.has_landed = seq, None, False
         if self.state is MissionState.RUNNING:
@@ -109,7 +109,7 @@ class Px4Scheduler:
 
     def update(self) -> bool:
         """One control step; True once the mission has ended."""
-        if self._cockpit.store.revision != self._revision:
+        if self._context.store.revision != self._revision:
             self._take_up_new_mission()
         for _ in range(MAX_ITEMS_IN_A_TICK):
             if self.state is MissionState.ENDED or self._runner is None:
@@ -117,7 +117,7 @@ class Px4Scheduler:
             if not self._runner.update():
                 return False
             self.has_landed = self._runner.lands
-            self._cockpit.reached(self.current)
+            self._context.reached(self.current)
             if self.has_landed:
                 self.state = MissionState.ENDED
                 return True
@@ -125,46 +125,46 @@ class Px4Scheduler:
         return False
 
     def _take_up_new_mission(self) -> None:
-        self._revision = self._cockpit.store.revision
+        self._revision = self._context.store.revision
         self._jumps = {}
         refusal = self.refusal(is_landed=False)
         if refusal is None:
             self._begin(0)
             return
-        self._cockpit.say(mavlink.MAV_SEVERITY_CRITICAL, refusal)
-        self._cockpit.guidance.stop()
+        self._context.say(mavlink.MAV_SEVERITY_CRITICAL, refusal)
+        self._context.guidance.stop()
         self.state, self.current = MissionState.ENDED, 0
 
     def _begin(self, seq: int) -> None:
-        item = self._cockpit.store.item(seq)
+        item = self._context.store.item(seq)
         for _ in range(MAX_ITEMS_IN_A_TICK):
             if item is None or item.command != mavlink.MAV_CMD_DO_JUMP:
                 break
             seq = self._jump(seq, item)
-            item = self._cockpit.store.item(seq)
+            item = self._context.store.item(seq)
         if item is None:
             self.state, self._runner = MissionState.ENDED, None
             return
         self.current = seq
-        self._runner = StepRunner(self._steps(seq, item), self._cockpit.guidance)
+        self._runner = StepRunner(self._steps(seq, item), self._context.guidance)
 
     def _jump(self, seq: int, item: StoredItem) -> int:
         """Item after a DO_JUMP: param 1 where to, param 2 how often."""
         done = self._jumps.get(seq, 0)
-        if done >= item.param2 or not 0 <= item.param1 < len(self._cockpit.store):
+        if done >= item.param2 or not 0 <= item.param1 < len(self._context.store):
             return seq + 1
         self._jumps[seq] = done + 1
         return int(item.param1)
 
     def _steps(self, seq: int, item: StoredItem) -> list[Step]:
-        guidance, manoeuvres = self._cockpit.guidance, self._cockpit.manoeuvres
+        guidance, manoeuvres = self._context.guidance, self._context.manoeuvres
         if not is_navigation(item):
             if item.command == mavlink.MAV_CMD_CONDITION_DELAY:
                 return [Wait(item.param1)]
-            self._cockpit.actions.do(item)
+            self._context.actions.do(item)
             return []
         here_enu_m = guidance.here_enu_m
-        goal_enu_m = self._cockpit.place.item_enu(item, here_enu_m)
+        goal_enu_m = self._context.place.item_enu(item, here_enu_m)
         match item.command:
             case command if command in TAKEOFFS:
                 # Already in the air it does not sink to the take-off's height.
@@ -180,7 +180,7 @@ class Px4Scheduler:
         return []
 
     def _leg(self, seq: int, item: StoredItem, goal_enu_m: Vec3) -> list[Step]:
-        guidance, values = self._cockpit.guidance, self._cockpit.parameters
+        guidance, values = self._context.guidance, self._context.parameters
         heading_rad = self._heading(item, goal_enu_m)
         if heading_rad is not None:
             guidance.face(heading_rad)
@@ -189,7 +189,7 @@ class Px4Scheduler:
         if item.command == mavlink.MAV_CMD_NAV_LOITER_TO_ALT or not stay_s > 0.0:
             stay_s = 0.0
         radius_m = item.param2 if is_waypoint and item.param2 > 0.0 else values["NAV_ACC_RAD"]
-        following = self._cockpit.store.item(seq + 1)
+        following = self._context.store.item(seq + 1)
         passes = stay_s == 0.0 and following is not None and following.command in FLOWN_TO
         # Only a heading that the item itself asks for is waited for.
         waited_rad = heading_rad if is_waypoint and math.isfinite(item.param4) else None
@@ -199,7 +199,7 @@ class Px4Scheduler:
 
     def _leg_s(self, goal_enu_m: Vec3, radius_m: float) -> float:
         """Time that PX4 takes for a leg from here."""
-        guidance, values = self._cockpit.guidance, self._cockpit.parameters
+        guidance, values = self._context.guidance, self._context.parameters
         limits = MotionLimits(
             guidance.horizontal_m_s,
             guidance.ascent_m_s,
@@ -216,7 +216,7 @@ class Px4Scheduler:
         """Heading on the leg: the item's own, else the course; None leaves it, as looking at a place does."""
         if item.command == mavlink.MAV_CMD_NAV_WAYPOINT and math.isfinite(item.param4):
             return item.param4 * DEG
-        guidance = self._cockpit.guidance
+        guidance = self._context.guidance
         (x, y, _), (gx, gy, _) = guidance.here_enu_m, goal_enu_m
         if guidance.look_at_enu_m is not None or math.hypot(gx - x, gy - y) <= SHORT_LEG_M:
             return None

@@ -49,7 +49,7 @@ class MissionState(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Cockpit:
+class SchedulerContext:
     """What a scheduler flies with, and whom it tells.
 
     Parameters

@@ -166,7 +166,7 @@ class TouchDown:
 
     def is_done(self, guidance: Guidance, since_s: float) -> bool:
         """It sinks no more."""
-        return since_s >= LANDED_AFTER_S and abs(guidance.airframe.believed.velocity_enu_m_s[2]) <= STANDS_M_S
+        return since_s >= LANDED_AFTER_S and abs(guidance.airframe.estimate.velocity_enu_m_s[2]) <= STANDS_M_S
 
 
 class StepRunner:

@@ -15,7 +15,7 @@ from planning.base.progress import Monitor
 from planning.geo.crs import crs_conversion
 from planning.geo.mesh import from_corners, join
 from planning.geo.solids import Solids
-from planning.site.importing.ground import DECK_M, END_QUANTILES, EVEN_M, StatedGround, stand, stated_ground
+from planning.site.importing.ground import DECK_M, END_QUANTILES, EVEN_M, StatedGround, place_on_ground, stated_ground
 from planning.site.importing.options import ImportOptions
 from planning.site.importing.placement import Placement, place
 from planning.site.importing.polygons import area_vector, triangulate
@@ -146,7 +146,7 @@ def city_source(
     corners = wanted.triangles()
     if not len(corners):
         raise InputError.say("building '{}' has no surface with an area", wanted.id, place=path)
-    stands = stand(
+    stands = place_on_ground(
         corners.reshape(-1, 3),
         np.arange(3 * len(corners)).reshape(-1, 3),
         stated_ground(options) or _ground_surface(wanted),

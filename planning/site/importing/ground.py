@@ -179,7 +179,7 @@ class Ground(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Standing:
+class GroundedBuilding:
     """A building on its ground.
 
     Parameters
@@ -222,7 +222,9 @@ Placing = Callable[[Array, float], Placement]
 """Placement from points of the building, file coordinates, shape (n, 3), and the third coordinate of the ground."""
 
 
-def stand(vertices: Array, triangles: NDArray[np.int64], stated: StatedGround | None, placing: Placing) -> Standing:
+def place_on_ground(
+    vertices: Array, triangles: NDArray[np.int64], stated: StatedGround | None, placing: Placing
+) -> GroundedBuilding:
     """Put a building on its ground.
 
     Parameters
@@ -283,7 +285,7 @@ def stand(vertices: Array, triangles: NDArray[np.int64], stated: StatedGround | 
             )
         )
     terrain = None if ground is None or ground.terrain is None else _moved(ground.terrain, shift)
-    return Standing(placement, moved, is_kept, terrain, question, tuple(notes))
+    return GroundedBuilding(placement, moved, is_kept, terrain, question, tuple(notes))
 
 
 def _named(triangles: NDArray[np.int64], n_vertices: int) -> NDArray[np.int64]:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from planning.base.errors import InputError
 from planning.base.messages import say
-from planning.base.step_physical_file import mended, real_name
+from planning.base.step_physical_file import real_name, repaired_file
 from planning.site.importing.polygons import area_vector
 from planning.site.importing.source import left_out_notes
 from planning.site.importing.window_faces import MIN_GLASS_SHARE, Pane, covered_area, facing_axis, pane_of
@@ -401,7 +401,7 @@ def extract(
     """
     import ifcopenshell
 
-    better = mended(path)
+    better = repaired_file(path)
     try:
         model = ifcopenshell.open(str(path)) if better is None else _model_of(better.content)
     except Exception as error:  # the parser raises whatever goes wrong in it

@@ -29,7 +29,7 @@ from planning.geo.enu import Geodetic
 from planning.geo.frames import Origin
 from planning.geo.geoid import ellipsoid_from_amsl_m, undulation_m
 from planning.geo.mesh import empty_mesh, from_corners
-from planning.site.importing.ground import StatedGround, stand, stated_ground
+from planning.site.importing.ground import StatedGround, place_on_ground, stated_ground
 from planning.site.importing.ifc_content import IfcContent, MapParameters, SitePlace, extract
 from planning.site.importing.options import ImportOptions
 from planning.site.importing.placement import Georeference, LocalFrame, place
@@ -354,7 +354,7 @@ def ifc_source(path: Path, content: IfcContent, triangles: Array, options: Impor
         stated = StatedGround(
             ground_z, say("ground: z = {:.2f} of the model, the zero of IfcSite (--ground names another)", ground_z)
         )
-    stands = stand(
+    stands = place_on_ground(
         points,
         np.arange(len(points)).reshape(-1, 3),
         stated,

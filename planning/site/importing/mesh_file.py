@@ -18,7 +18,7 @@ from planning.base.json_file import parse_json
 from planning.base.messages import say
 from planning.base.progress import Monitor
 from planning.geo.mesh import TriangleMesh, check_mesh_size, empty_mesh, load_triangles, mesh_content
-from planning.site.importing.ground import stand, stated_ground
+from planning.site.importing.ground import place_on_ground, stated_ground
 from planning.site.importing.options import UNITS_M, ImportOptions
 from planning.site.importing.placement import place
 from planning.site.importing.source import SourceModel, left_out_notes
@@ -397,7 +397,9 @@ def read_mesh_source(path: Path, options: ImportOptions, monitor: Monitor) -> So
                 step_m,
             )
         )
-    stands = stand(vertices, triangles, stated_ground(options), lambda points, z: place(None, points, z, options))
+    stands = place_on_ground(
+        vertices, triangles, stated_ground(options), lambda points, z: place(None, points, z, options)
+    )
     return SourceModel(
         "",
         (),

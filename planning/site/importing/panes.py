@@ -51,7 +51,7 @@ buildings 12 were turned so, and each saw nothing at all. Everything more is bel
 leave inside as open as outside, and courts less so."""
 
 
-class Sides(NamedTuple):
+class TurnedPanes(NamedTuple):
     """Corners turned so that their normal points outdoors, shape (m, 4, 3), and how open it is there.
 
     Parameters
@@ -114,7 +114,7 @@ def turn_outwards(
     middle: Array,
     sight: LineOfSight,
     is_oriented: NDArray[np.bool_] | None = None,
-) -> Sides:
+) -> TurnedPanes:
     """Find the outer side of every quad.
 
     Parameters
@@ -142,7 +142,7 @@ def turn_outwards(
     is_front = np.where(oriented, ~is_inside, np.where(is_decided, front > back, faces_away))
     turned = np.where(is_front[:, None, None], corners + face[:, None], (corners - face[:, None])[:, ::-1])
     outer, inner = np.where(is_front, front, back), np.where(is_front, back, front)
-    return Sides(turned, outer, inner, oriented & ~is_inside, oriented & is_inside)
+    return TurnedPanes(turned, outer, inner, oriented & ~is_inside, oriented & is_inside)
 
 
 # Panels that show the same pane twice: a window inside a curtain wall panel, two skins of glass, a drawing doubled.
@@ -274,7 +274,7 @@ def panes_outdoors(source: SourceModel, monitor: Monitor) -> Panes:
     return Panes(corners, tuple(windows[i].source_id for i in kept), tuple(notes))
 
 
-def _sides(windows: list[SourceWindow], corners: Array, building: TriangleMesh, monitor: Monitor) -> Sides:
+def _sides(windows: list[SourceWindow], corners: Array, building: TriangleMesh, monitor: Monitor) -> TurnedPanes:
     triangles = np.concatenate([building.corners_enu_m, panel_triangles(corners)])
     middle = 0.5 * (triangles.min(axis=(0, 1)) + triangles.max(axis=(0, 1)))
     monitor.report(say("looking outdoors"), 0, 1)

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.json_file import write_atomically
-from reconstruction.panels.network.belief import (
+from reconstruction.panels.network.confidence import (
     FIRST,
     SECOND,
     Candidates,
@@ -23,8 +23,8 @@ from reconstruction.panels.network.belief import (
     first_features,
     second_features,
 )
-from reconstruction.panels.network.looks import LONG_SIDES_PX, look_at
 from reconstruction.panels.network.network import PaneNetwork, network
+from reconstruction.panels.network.predictions import LONG_SIDES_PX, predict_photo
 from reconstruction.panels.network.votes import Picture
 
 Array = NDArray[np.float64]
@@ -91,7 +91,7 @@ def calibrated(sources: Sequence[Source], tell: Callable[[str], None]) -> tuple[
 
 
 def _seen(image: Picture, index: Index, by: PaneNetwork) -> _Seen:
-    candidates = candidates_of(look_at(image, LONG_SIDES_PX[-1], by=by))
+    candidates = candidates_of(predict_photo(image, LONG_SIDES_PX[-1], by=by))
     return _Seen(candidates, first_features(candidates), index, are_there(list(candidates.quads), index))
 
 

@@ -18,7 +18,7 @@ from torch import Tensor
 from torch.nn import functional
 
 from reconstruction.panels.network.network import OFFSET_PX
-from reconstruction.panels.network.random_pictures import MadePicture
+from reconstruction.panels.network.random_pictures import SyntheticPicture
 from reconstruction.panels.network.votes import STRIDE, signed_areas
 
 Array = NDArray[np.float64]
@@ -51,7 +51,7 @@ STRENGTH = (0.4, 0.6, 1.0)
 """How much pictures made by chance, traced facades and photos are changed."""
 
 
-class Bank:
+class CropSampler:
     """Pictures on a device, and their panes. `add` them, then take crops.
 
     Parameters
@@ -77,12 +77,12 @@ class Bank:
     def __len__(self) -> int:
         return len(self._pictures)
 
-    def add(self, pictures: Sequence[MadePicture], source: int) -> None:
+    def add(self, pictures: Sequence[SyntheticPicture], source: int) -> None:
         """Put pictures of any size on the device, those left out whose panes are too large for any crop."""
         for _, same in groupby(filter(_fits, pictures), key=lambda picture: picture.index.shape):
             self._add(list(same), source)
 
-    def _add(self, pictures: Sequence[MadePicture], source: int) -> None:
+    def _add(self, pictures: Sequence[SyntheticPicture], source: int) -> None:
         height, width = pictures[0].index.shape
         rows = np.zeros((len(pictures), 8 + LEVELS))
         each = np.arange(len(pictures))
@@ -228,7 +228,7 @@ def _least_scale(side_px: Array) -> Array:
     return np.minimum(LEAST_SHOWN * CROP_PX / side_px, MOST_SCALE)
 
 
-def _fits(picture: MadePicture) -> bool:
+def _fits(picture: SyntheticPicture) -> bool:
     """Whether at the least scale its usual pane is of a size that is learned."""
     sizes = np.sqrt(np.maximum(signed_areas(picture.corners_px.astype(float)), 1.0))
     known = sizes[np.isfinite(sizes)]

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from planning.base.errors import InfeasibleError
 from planning.site.importing.facades import facade_name
-from reconstruction.panels.network.looks import FoundPanes
+from reconstruction.panels.network.predictions import FoundPanes
 from reconstruction.panels.network.votes import Pane, inside, weighted_median
 from reconstruction.panels.rectify.surface import Rectification
 from reconstruction.panels.rectify.view import vanishing_view
@@ -330,7 +330,7 @@ def _fill(
             shown = np.isfinite(points).all(axis=1) & (points >= 0).all(axis=1) & (points < size_px).all(axis=1)
             if shown.mean() < 0.6 or not np.isfinite(corners).all() or _is_covered(points, panels.values()):
                 continue
-            sure = float(found.looks.probability_at(points[shown]).mean())
+            sure = float(found.predictions.probability_at(points[shown]).mean())
             if sure >= FILLED:
                 panels[place] = FoundPanel("", *place, corners, 0.7 * sure)
 

@@ -14,7 +14,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from reconstruction.panels.network.random_pictures import MadePicture, made_picture
+from reconstruction.panels.network.random_pictures import SyntheticPicture, synthetic_picture
 
 PER_FILE = 50
 """Made pictures in a file of the pool."""
@@ -37,7 +37,7 @@ class Pool:
     def __init__(self, folder: Path, n_pictures: int, n_processes: int) -> None:
         folder.mkdir(parents=True, exist_ok=True)
         self.n_pictures = n_pictures
-        self._arrived: queue.SimpleQueue[Path | list[MadePicture] | BaseException] = queue.SimpleQueue()
+        self._arrived: queue.SimpleQueue[Path | list[SyntheticPicture] | BaseException] = queue.SimpleQueue()
         paths = [folder / f"made-{number:04d}.npz" for number in range(-(-n_pictures // PER_FILE))]
         wanted = [(number, path) for number, path in enumerate(paths) if not path.exists()]
         for path in paths:
@@ -69,7 +69,7 @@ class Pool:
     ) -> None:
         self._processes.shutdown(wait=True, cancel_futures=True)
 
-    def arrived(self, least: int = 0, most_files: int = 4) -> list[MadePicture]:
+    def arrived(self, least: int = 0, most_files: int = 4) -> list[SyntheticPicture]:
         """Pictures made since the last call, of a few files at most; waits for `least`, or until all are made.
 
         Raises
@@ -77,7 +77,7 @@ class Pool:
         Exception
             What a process that makes pictures has raised.
         """
-        pictures: list[MadePicture] = []
+        pictures: list[SyntheticPicture] = []
         n_files = 0
         while self._n_left and (n_files < most_files or len(pictures) < least):
             try:
@@ -94,7 +94,7 @@ class Pool:
 
 def _write_file(number: int, path: Path, per_file: int) -> None:
     cv2.setNumThreads(1)
-    made = [made_picture(seed, MADE_PX) for seed in range(number * per_file, (number + 1) * per_file)]
+    made = [synthetic_picture(seed, MADE_PX) for seed in range(number * per_file, (number + 1) * per_file)]
     corners = [picture.corners_px for picture in made]
     unfinished = path.with_suffix(".part.npz")
     np.savez(
@@ -107,12 +107,12 @@ def _write_file(number: int, path: Path, per_file: int) -> None:
     unfinished.replace(path)
 
 
-def read_pictures(path: Path) -> list[MadePicture]:
+def read_pictures(path: Path) -> list[SyntheticPicture]:
     """Pictures of a file of the pool."""
     with np.load(path) as file:
         images, indices, corners, counts = (file[name] for name in ("images", "indices", "corners", "counts"))
     parts = np.split(corners, np.cumsum(counts)[:-1])
-    return [MadePicture(*each) for each in zip(images, indices, parts, strict=True)]
+    return [SyntheticPicture(*each) for each in zip(images, indices, parts, strict=True)]
 
 
 # Photos and traced facades, gathered in one file.
@@ -121,7 +121,7 @@ QUALITY = 95
 """Of the JPEG that a photo is kept as."""
 
 
-def write_gathered(sources: Sequence[Sequence[MadePicture]], path: Path) -> None:
+def write_gathered(sources: Sequence[Sequence[SyntheticPicture]], path: Path) -> None:
     """Write several lists of pictures of any size to one file, images as JPEG and numbers of panes as PNG."""
     stored: dict[str, NDArray[np.generic]] = {"counts": np.array([len(pictures) for pictures in sources])}
     number = 0
@@ -139,9 +139,9 @@ def write_gathered(sources: Sequence[Sequence[MadePicture]], path: Path) -> None
     unfinished.replace(path)
 
 
-def read_gathered(path: Path) -> list[list[MadePicture]]:
+def read_gathered(path: Path) -> list[list[SyntheticPicture]]:
     """Lists of pictures from a file by `write_gathered`."""
-    sources: list[list[MadePicture]] = []
+    sources: list[list[SyntheticPicture]] = []
     number = 0
     with np.load(path) as file:
         for count in file["counts"]:
@@ -149,7 +149,7 @@ def read_gathered(path: Path) -> list[list[MadePicture]]:
             for _ in range(count):
                 image = cv2.imdecode(file[f"image-{number}"], cv2.IMREAD_COLOR)
                 index = cv2.imdecode(file[f"index-{number}"], cv2.IMREAD_UNCHANGED)
-                pictures.append(MadePicture(np.asarray(image), np.asarray(index), file[f"corners-{number}"]))
+                pictures.append(SyntheticPicture(np.asarray(image), np.asarray(index), file[f"corners-{number}"]))
                 number += 1
             sources.append(pictures)
     return sources

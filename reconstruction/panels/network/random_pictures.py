@@ -33,7 +33,7 @@ LEAST_PANE_PX = 4.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class MadePicture:
+class SyntheticPicture:
     """A picture and its panes.
 
     Parameters
@@ -52,7 +52,7 @@ class MadePicture:
     corners_px: NDArray[np.float32]
 
 
-def made_picture(seed: int, size_px: int = 384) -> MadePicture:
+def synthetic_picture(seed: int, size_px: int = 384) -> SyntheticPicture:
     """A square picture with one to three facades; the same seed gives the same picture."""
     rng = np.random.default_rng([seed, 20_261])
     picture = _backdrop(rng, size_px)
@@ -69,7 +69,7 @@ def made_picture(seed: int, size_px: int = 384) -> MadePicture:
         _place(rng, picture, index, corners, facade, homography)
     _before(rng, picture)
     image = _developed(rng, picture)
-    return MadePicture(image, index, np.asarray(corners, np.float32).reshape(-1, 4, 2))
+    return SyntheticPicture(image, index, np.asarray(corners, np.float32).reshape(-1, 4, 2))
 
 
 # What lies behind: sky, ground, other houses.

@@ -16,9 +16,9 @@ from safetensors.torch import load_file, save_file
 from torch import Tensor
 from torch.nn import functional
 
-from reconstruction.panels.network.crops import Bank, Truth
+from reconstruction.panels.network.crops import CropSampler, Truth
 from reconstruction.panels.network.network import SMALL, PaneNetwork, Shape
-from reconstruction.panels.network.random_pictures import MadePicture
+from reconstruction.panels.network.random_pictures import SyntheticPicture
 
 BATCH = {"cpu": 16, "cuda": 192}
 """Crops of a step, by where it learns."""
@@ -45,7 +45,7 @@ def loss_of(told: Tensor, is_pane: Tensor, counts: Tensor, offsets: Tensor, weig
 
 
 @dataclass(frozen=True, slots=True)
-class Wanted:
+class NetworkToTrain:
     """A network to train: the file of its weights, its shape, and weights of that shape to go on from."""
 
     out: Path
@@ -57,14 +57,14 @@ class Wanted:
 class _Learner:
     """A network that learns, and its weights averaged over the last thousand steps."""
 
-    wanted: Wanted
+    wanted: NetworkToTrain
     net: PaneNetwork
     optimiser: torch.optim.Optimizer
     average: dict[str, Tensor] = field(default_factory=dict)
     losses: list[Tensor] = field(default_factory=list)
 
     @classmethod
-    def of(cls, wanted: Wanted, device: str) -> _Learner:
+    def of(cls, wanted: NetworkToTrain, device: str) -> _Learner:
         net = PaneNetwork(wanted.shape)
         if wanted.start is not None:
             net.load_state_dict({name: value.float() for name, value in load_file(wanted.start).items()}, strict=False)
@@ -92,11 +92,11 @@ class _Learner:
 
 
 def train(
-    bank: Bank,
+    bank: CropSampler,
     minutes: float,
-    networks: Sequence[Wanted],
+    networks: Sequence[NetworkToTrain],
     seed: int = 0,
-    more: Callable[[], Sequence[MadePicture]] = lambda: (),
+    more: Callable[[], Sequence[SyntheticPicture]] = lambda: (),
     tell: Callable[[str], None] = lambda text: None,
 ) -> None:
     """Learn for so many minutes where the bank is, and write the weights, every 500 steps and at the end.

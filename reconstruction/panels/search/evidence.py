@@ -91,7 +91,7 @@ def crossed_by(
     return np.asarray(seen / usual) if usual > 0.0 else None
 
 
-def kept_cells(support: Array) -> slice:
+def supported_cells(support: Array) -> slice:
     """Cells between crossing lines that lie on the facade: the stretch of cells with most support.
 
     Parameters

@@ -30,9 +30,9 @@ from reconstruction.panels.search.evidence import (
     best_stretch,
     crossed_by,
     crossing_support,
-    kept_cells,
     spread_in_bands,
     support_of,
+    supported_cells,
 )
 from reconstruction.panels.search.parameters import SegmentationParameters
 from reconstruction.panels.search.record import GridLine
@@ -590,8 +590,8 @@ def trimmed(
 ) -> tuple[tuple[GridLine, ...], tuple[GridLine, ...]]:
     """Rows and columns without the border cells that inner lines of the other direction do not enter."""
     while True:
-        keep_columns = kept_cells(crossing_support(across.edges.is_edge, _inner(rows), columns))
-        keep_rows = kept_cells(crossing_support(down.edges.is_edge, _inner(columns), rows))
+        keep_columns = supported_cells(crossing_support(across.edges.is_edge, _inner(rows), columns))
+        keep_rows = supported_cells(crossing_support(down.edges.is_edge, _inner(columns), rows))
         fewer_columns = columns[keep_columns.start : keep_columns.stop + 1]
         fewer_rows = rows[keep_rows.start : keep_rows.stop + 1]
         if (len(fewer_rows), len(fewer_columns)) == (len(rows), len(columns)):

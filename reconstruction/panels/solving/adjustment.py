@@ -20,7 +20,7 @@ from reconstruction.base.cameras import Pose, PosedPhoto
 from reconstruction.panels.rectify.fit import SurfaceFit, changed
 from reconstruction.panels.rectify.surface import FacadeSurface
 from reconstruction.panels.solving.association import LineGroup, coordinates
-from reconstruction.panels.solving.record import SeenLine
+from reconstruction.panels.solving.record import ObservedLine
 
 Array = NDArray[np.float64]
 
@@ -143,7 +143,7 @@ class _State:
 class _Problem:
     """The observations by photo, and the priors."""
 
-    lines: dict[int, list[SeenLine]]
+    lines: dict[int, list[ObservedLine]]
     groups: dict[int, NDArray[np.int64]]
     sigmas: dict[int, Array]
     pose_information: dict[int, Array]
@@ -155,7 +155,7 @@ class _Problem:
     def of(
         cls, photos: Sequence[PosedPhoto], fit: SurfaceFit, groups: Sequence[LineGroup], numbers: list[int]
     ) -> _Problem:
-        lines: dict[int, list[SeenLine]] = {number: [] for number in numbers}
+        lines: dict[int, list[ObservedLine]] = {number: [] for number in numbers}
         index: dict[int, list[int]] = {number: [] for number in numbers}
         for i, group in enumerate(groups):
             for line in group.members:

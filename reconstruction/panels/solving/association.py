@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.panels.rectify.surface import FacadeSurface
 from reconstruction.panels.search.record import FacadeGrid, GridLine
-from reconstruction.panels.solving.record import Axis, SeenLine
+from reconstruction.panels.solving.record import Axis, ObservedLine
 
 Array = NDArray[np.float64]
 
@@ -26,7 +26,9 @@ POINTS = 3
 """Along each line: its ends and its middle, enough for any pose and a cylinder; they share one line's information."""
 
 
-def seen_lines(photo: PosedPhoto, number: int, grid: FacadeGrid, surface: FacadeSurface) -> tuple[SeenLine, ...]:
+def observed_lines(
+    photo: PosedPhoto, number: int, grid: FacadeGrid, surface: FacadeSurface
+) -> tuple[ObservedLine, ...]:
     """Lines of one facade's grid in one photo; lines that miss the surface are left out.
 
     Parameters
@@ -54,7 +56,7 @@ def seen_lines(photo: PosedPhoto, number: int, grid: FacadeGrid, surface: Facade
 
 def _seen(
     photo: PosedPhoto, number: int, grid: FacadeGrid, surface: FacadeSurface, axis: Axis, line: GridLine, points: Array
-) -> SeenLine | None:
+) -> ObservedLine | None:
     across, along = (0, 1) if axis == "column" else (1, 0)
     step = np.zeros(2)
     step[across] = 1.0
@@ -64,7 +66,7 @@ def _seen(
     m_per_px = float(np.abs(beside - here)[:, across].mean())
     if not (np.isfinite(here).all() and np.isfinite(m_per_px)):
         return None
-    return SeenLine(
+    return ObservedLine(
         photo=number,
         axis=axis,
         points_px=pixels,
@@ -77,7 +79,7 @@ def _seen(
     )
 
 
-def coordinates(photo: PosedPhoto, surface: FacadeSurface, lines: Sequence[SeenLine]) -> Array:
+def coordinates(photo: PosedPhoto, surface: FacadeSurface, lines: Sequence[ObservedLine]) -> Array:
     """Coordinate across each line, of each of its points, as the photo's pose and the surface put it, shape (n, k)."""
     if not lines:
         return np.zeros((0, POINTS))
@@ -106,11 +108,11 @@ class LineGroup:
     """
 
     axis: Axis
-    members: tuple[SeenLine, ...]
+    members: tuple[ObservedLine, ...]
     confidence: float
 
 
-def associate(lines: Sequence[SeenLine], reach_m: float) -> tuple[LineGroup, ...]:
+def associate(lines: Sequence[ObservedLine], reach_m: float) -> tuple[LineGroup, ...]:
     """Groups of lines with a confidence of one half at least, columns from left to right, then rows upwards.
 
     Parameters
@@ -126,10 +128,10 @@ def associate(lines: Sequence[SeenLine], reach_m: float) -> tuple[LineGroup, ...
     return tuple(groups)
 
 
-def _of_axis(lines: list[SeenLine], reach_m: float) -> list[LineGroup]:
+def _of_axis(lines: list[ObservedLine], reach_m: float) -> list[LineGroup]:
     photos = sorted({line.photo for line in lines}, key=lambda photo: -_weight(lines, photo))
     tolerance = TOGETHER * _narrowest(lines)
-    placed: list[tuple[float, SeenLine]] = []
+    placed: list[tuple[float, ObservedLine]] = []
     spans: list[tuple[float, float]] = []
     for photo in photos:
         own = sorted((line for line in lines if line.photo == photo), key=lambda line: line.position_m)
@@ -142,11 +144,11 @@ def _of_axis(lines: list[SeenLine], reach_m: float) -> list[LineGroup]:
     return [group for group in groups if group.confidence >= 0.5]
 
 
-def _weight(lines: list[SeenLine], photo: int) -> float:
+def _weight(lines: list[ObservedLine], photo: int) -> float:
     return sum(line.confidence for line in lines if line.photo == photo)
 
 
-def _narrowest(lines: list[SeenLine]) -> float:
+def _narrowest(lines: list[ObservedLine]) -> float:
     """Usual narrowest distance of neighbouring lines within one photo."""
     gaps: list[float] = []
     for photo in {line.photo for line in lines}:
@@ -186,9 +188,9 @@ def _alignment(positions: Array, known: Array, reach_m: float, tolerance: float)
     return scale, shift
 
 
-def _clusters(placed: list[tuple[float, SeenLine]], tolerance: float) -> list[list[tuple[float, SeenLine]]]:
+def _clusters(placed: list[tuple[float, ObservedLine]], tolerance: float) -> list[list[tuple[float, ObservedLine]]]:
     """Neighbours no further apart than the tolerance, one line of each photo in each cluster."""
-    clusters: list[list[tuple[float, SeenLine]]] = []
+    clusters: list[list[tuple[float, ObservedLine]]] = []
     for position, line in sorted(placed, key=lambda item: item[0]):
         last = clusters[-1] if clusters else None
         middle = np.median([other for other, _ in last]) if last else 0.0
@@ -199,7 +201,7 @@ def _clusters(placed: list[tuple[float, SeenLine]], tolerance: float) -> list[li
     return clusters
 
 
-def _confidence(cluster: list[tuple[float, SeenLine]], spans: list[tuple[float, float]], tolerance: float) -> float:
+def _confidence(cluster: list[tuple[float, ObservedLine]], spans: list[tuple[float, float]], tolerance: float) -> float:
     """Posterior of independent photos (log odds).
 
     Those that show the line speak for it, those that cover its place and do not show it against it.
@@ -215,6 +217,6 @@ def _inside(confidence: float) -> float:
     return min(0.99, max(0.01, confidence))
 
 
-def _group(cluster: list[tuple[float, SeenLine]], spans: list[tuple[float, float]], tolerance: float) -> LineGroup:
+def _group(cluster: list[tuple[float, ObservedLine]], spans: list[tuple[float, float]], tolerance: float) -> LineGroup:
     members = tuple(line for _, line in cluster)
     return LineGroup(members[0].axis, members, _confidence(cluster, spans, tolerance))

@@ -33,9 +33,9 @@ from reconstruction.panels.search.parameters import SegmentationParameters
 from reconstruction.panels.search.record import FacadeGrid, GridLine
 from reconstruction.panels.search.segment import segment_views
 from reconstruction.panels.segment import segment_view
-from reconstruction.panels.solving.association import TOGETHER, associate, seen_lines
+from reconstruction.panels.solving.association import TOGETHER, associate, observed_lines
 from reconstruction.panels.solving.facades import Facade, building_facades, files_by_photo, grid_from_file
-from reconstruction.panels.solving.record import SeenLine, SolvedFacade, SurfaceLine
+from reconstruction.panels.solving.record import ObservedLine, SolvedFacade, SurfaceLine
 from reconstruction.panels.solving.register import registered
 from reconstruction.panels.solving.solve import REACH_SIGMAS, reach_m, solve_facade
 
@@ -69,7 +69,7 @@ LEAST_LEFT = 0.5
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class FoundSingly:
+class SeparateSearch:
     """What was found in the photos of a facade one by one: `grids` by the number of the photo."""
 
     photos: Sequence[PosedPhoto]
@@ -85,7 +85,7 @@ class Fusion:
     unit: str = "of the sightings"
     tolerance: float = DOUBTFUL
 
-    def assess(self, scene: FoundSingly) -> Assessment:
+    def assess(self, scene: SeparateSearch) -> Assessment:
         """The share of sightings that is missing: of each line in each photo that shows its place."""
         n = len(scene.grids)
         if n < 2:
@@ -93,11 +93,11 @@ class Fusion:
         n_bare = sum(len(grid.rows) < 2 or len(grid.columns) < 2 for grid in scene.grids.values())
         bare = say(", {} of them without a grid", n_bare) if n_bare else ""
         return Assessment(
-            doubt(scene), say("how far {} photos disagree on their lines{}", n, bare), COST_S_PER_PHOTO * n
+            missing_share(scene), say("how far {} photos disagree on their lines{}", n, bare), COST_S_PER_PHOTO * n
         )
 
 
-def doubt(found: FoundSingly) -> float:
+def missing_share(found: SeparateSearch) -> float:
     """Share of sightings that is missing, 0 to 1, each counted by its confidence.
 
     Every photo that shows the place of a line should show the line; a line that the others outvote counts as one that
@@ -106,7 +106,7 @@ def doubt(found: FoundSingly) -> float:
     lines = [
         line
         for number, grid in found.grids.items()
-        for line in seen_lines(found.photos[number], number, grid, found.surface)
+        for line in observed_lines(found.photos[number], number, grid, found.surface)
     ]
     reach = max((reach_m(found.photos[number], found.surface) for number in found.grids), default=0.0)
     groups = associate(lines, 2.0 * reach)
@@ -120,7 +120,7 @@ def doubt(found: FoundSingly) -> float:
     return 1.0 - shown / n_looks if n_looks else 1.0
 
 
-def _along(members: Sequence[SeenLine]) -> Array:
+def _along(members: Sequence[ObservedLine]) -> Array:
     """Ends and middle of a line on the surface, metres, shape (3, 2)."""
     across = np.full(3, np.median([line.position_m for line in members]))
     along = np.linspace(min(line.from_m for line in members), max(line.to_m for line in members), 3)
@@ -143,7 +143,7 @@ class FusedSearch:
     moved_px: float
 
 
-def search_together(
+def fused_search(
     photos: Sequence[PosedPhoto],
     facade: Facade,
     numbers: Sequence[int],
@@ -332,10 +332,10 @@ def search_facade(
             grids[number] = segment_view(load(photos[number]), drawn, parameters.segmentation, monitor, name)
     if by_hand:
         return SearchedFacade(grids, (unrolling,))
-    fusion = decide(Fusion(), FoundSingly(photos, grids, facade.fit.surface), parameters.fuse)
+    fusion = decide(Fusion(), SeparateSearch(photos, grids, facade.fit.surface), parameters.fuse)
     if not fusion.on or len(grids) < 2:
         return SearchedFacade(grids, (unrolling, fusion))
-    together = search_together(photos, facade, numbers, load, parameters.segmentation, monitor, name)
+    together = fused_search(photos, facade, numbers, load, parameters.segmentation, monitor, name)
     if together is None or not holds_enough(together, grids):
         text = say("{} photos searched together showed no more than each by itself", len(grids))
         return SearchedFacade(

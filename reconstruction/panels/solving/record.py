@@ -18,7 +18,7 @@ Axis = Literal["column", "row"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class SeenLine:
+class ObservedLine:
     """One line of the grid as one photo shows it.
 
     Parameters

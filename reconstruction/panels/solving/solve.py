@@ -19,7 +19,7 @@ from reconstruction.panels.search.cells import PARTS, from_lower_left
 from reconstruction.panels.search.cutting import Cut, cut_pieces, four_corners
 from reconstruction.panels.search.record import FacadeGrid, InclinedLine
 from reconstruction.panels.solving.adjustment import LEAST_SIGMA_M, UNKNOWN_POSE, Adjusted, adjust
-from reconstruction.panels.solving.association import FALSE_LINE, MISSED, LineGroup, associate, seen_lines
+from reconstruction.panels.solving.association import FALSE_LINE, MISSED, LineGroup, associate, observed_lines
 from reconstruction.panels.solving.record import SolvedFacade, SolvedPanel, SurfaceInclined, SurfaceLine
 
 Array = NDArray[np.float64]
@@ -286,7 +286,9 @@ def solve_facade(
     InfeasibleError
         No photo shows a grid of at least one panel on this surface.
     """
-    seen = [line for number, grid in grids.items() for line in seen_lines(photos[number], number, grid, fit.surface)]
+    seen = [
+        line for number, grid in grids.items() for line in observed_lines(photos[number], number, grid, fit.surface)
+    ]
     groups = associate(seen, 2.0 * max((reach_m(photos[number], fit.surface) for number in grids), default=0.0))
     n_columns = sum(group.axis == "column" for group in groups)
     if min(n_columns, len(groups) - n_columns) < 2:

@@ -262,7 +262,7 @@ MAX_NOTES = 20
 
 
 @dataclass(frozen=True, slots=True)
-class IfcTaken:
+class ImportedIfc:
     """What came of an IFC file: objects found in it, records added or changed, and what was left out."""
 
     n_objects: int
@@ -270,7 +270,7 @@ class IfcTaken:
     notes: tuple[str, ...]
 
 
-def read_ifc_records(book: RecordBook, path: Path, all_sets: bool = False, monitor: Monitor = QUIET) -> IfcTaken:
+def read_ifc_records(book: RecordBook, path: Path, all_sets: bool = False, monitor: Monitor = QUIET) -> ImportedIfc:
     """Take over what an IFC file says about the objects of a book; single values that do not fit are left out.
 
     Parameters
@@ -298,7 +298,7 @@ def read_ifc_records(book: RecordBook, path: Path, all_sets: bool = False, monit
         notes.append(say("none of the {} objects has its GlobalId in this file", len(names)))
     more = len(notes) - MAX_NOTES
     shown = (*notes[:MAX_NOTES], say("{} more values were left out", more)) if more > 0 else tuple(notes)
-    return IfcTaken(len(read.elements), n_changed, shown)
+    return ImportedIfc(len(read.elements), n_changed, shown)
 
 
 def entries_of_element(element: Element, name: str, all_sets: bool, notes: list[str]) -> Iterator[Entry]:

@@ -26,7 +26,7 @@ from reconstruction.scenes.parameters import EXPOSURE, GIMBAL_ERROR, MOTION_BLUR
 from reconstruction.scenes.photos.camera_model import in_stops
 from reconstruction.scenes.photos.lens_effects import DARKEST, MIDDLE_GREY, grey_levels
 from reconstruction.scenes.photos.motion_blur import MOST_TIMES, NEAREST_M, PX_PER_TIME
-from reconstruction.scenes.photos.pose_errors import told_poses
+from reconstruction.scenes.photos.pose_errors import reported_poses
 from reconstruction.scenes.photos.renderer import FINE
 from reconstruction.scenes.record import Layer
 
@@ -165,7 +165,7 @@ def _length(metres: float) -> str:
 
 def _told_px(probe: Probe, *, positions: bool) -> float:
     """How far poses that are told wrong, in their positions or in their angles, move what photos show of buildings."""
-    told = told_poses(
+    told = reported_poses(
         probe.photos, probe.moments, probe.camera_model, probe.scene.seed, positions=positions, angles=not positions
     )
     is_building = np.array([*(body.layer is Layer.BUILDING for body in probe.scene.bodies), False])

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from planning.base.messages import say
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.scenes.light.geometry import Geometry, Meeting
+from reconstruction.scenes.light.geometry import Geometry, RayHits
 from reconstruction.scenes.light.pane_surfaces import PaneSurfaces, mirrored
 from reconstruction.scenes.light.shading import SkyLight, facade_middle_enu_m
 from reconstruction.scenes.light.tracing import Switches, Tracer, layer_mask
@@ -56,8 +56,8 @@ class Mirrored:
 
     focal_px: Array
     directions_enu: Array
-    met: Meeting
-    after: Meeting
+    met: RayHits
+    after: RayHits
     sight_m: Array
     path_m: Array
     cosines: Array

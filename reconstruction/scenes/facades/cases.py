@@ -107,7 +107,7 @@ def clip(polygon: Array, signed: Array) -> Array:
     return np.array(kept).reshape(-1, 2)
 
 
-def draw_up(layout: Layout, rng: np.random.Generator) -> Grid:
+def grid_of_layout(layout: Layout, rng: np.random.Generator) -> Grid:
     """Draw up a layout; `rng` decides random widths and what is missing."""
     n_columns = layout.n_columns
     widths = np.full(n_columns, layout.panel_width_m)
@@ -249,7 +249,7 @@ def photo_of(
 
 
 def _outline_enu_m(wall: Wall, layout: Layout, seed: int) -> Array:
-    grid = draw_up(layout, np.random.default_rng(seed))
+    grid = grid_of_layout(layout, np.random.default_rng(seed))
     s = np.linspace(grid.columns_m[0], grid.columns_m[-1], 33)
     return np.concatenate([wall.points_enu_m(s, np.full_like(s, h)) for h in (grid.rows_m[0], grid.rows_m[-1])])
 

@@ -270,7 +270,7 @@ class TruePanel:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class MadeFacade:
+class SyntheticFacade:
     """A made photo and the truth about it.
 
     Parameters

@@ -24,8 +24,8 @@ from planning.base.progress import QUIET, Monitor
 from planning.geo.frames import Origin
 from reconstruction.base.cameras import Pose, PosedPhoto
 from reconstruction.photos.write import photo_jpeg, photo_name
-from reconstruction.scenes.facades.cases import Grid, draw_up
-from reconstruction.scenes.facades.record import Case, Disturbances, MadeFacade, TruePanel
+from reconstruction.scenes.facades.cases import Grid, grid_of_layout
+from reconstruction.scenes.facades.record import Case, Disturbances, SyntheticFacade, TruePanel
 from reconstruction.scenes.facades.scene import FACADE_KINDS, Scene, build_scene, kinds, panel_numbers
 
 # Made photos as files, with where and how they were taken written into them as DJI's cameras do.
@@ -71,10 +71,10 @@ BLUR_REACH = 4.0
 """Half size of the blur's kernel, standard deviations."""
 
 
-def make_facade(case: Case, monitor: Monitor = QUIET) -> MadeFacade:
+def render_facade(case: Case, monitor: Monitor = QUIET) -> SyntheticFacade:
     """Render a case; the same case gives the same photo, bit for bit."""
     rng = np.random.default_rng(case.seed)
-    grid = draw_up(case.layout, rng)
+    grid = grid_of_layout(case.layout, rng)
     scene = build_scene(case, grid, rng)
     intrinsics = case.truth.intrinsics
     height, width = intrinsics.height_px, intrinsics.width_px
@@ -85,7 +85,7 @@ def make_facade(case: Case, monitor: Monitor = QUIET) -> MadeFacade:
     key_image = keys.reshape(height, width)
     monitor.report("rendering", 1, 2)
     _refine(scene, picture, _on_edges(key_image))
-    return MadeFacade(
+    return SyntheticFacade(
         case=case,
         image=_developed(picture, case.disturbances, rng),
         index=panel_numbers(key_image).astype(np.uint16),

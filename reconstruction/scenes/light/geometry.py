@@ -36,7 +36,7 @@ MOST_PASSED = 64
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Meeting:
+class RayHits:
     """What n rays met first.
 
     Parameters
@@ -56,16 +56,16 @@ class Meeting:
     panes: Index
     triangles: Index
 
-    def at(self, rows: Index | Mask) -> Meeting:
+    def at(self, rows: Index | Mask) -> RayHits:
         """Of some of the rays."""
-        return Meeting(*(getattr(self, field.name)[rows] for field in fields(self)))
+        return RayHits(*(getattr(self, field.name)[rows] for field in fields(self)))
 
-    def with_rows(self, rows: Index, others: Meeting) -> Meeting:
+    def with_rows(self, rows: Index, others: RayHits) -> RayHits:
         """With other meetings of some of the rays."""
         whole = [getattr(self, field.name).copy() for field in fields(self)]
         for values, field in zip(whole, fields(self), strict=True):
             values[rows] = getattr(others, field.name)
-        return Meeting(*whole)
+        return RayHits(*whole)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -119,7 +119,7 @@ class Geometry:
         """Where rays start that leave points on surfaces in any direction, shape (n, 3)."""
         return points_enu_m + 2.0 * self._lift_m * normals_enu
 
-    def meet(self, origins_enu_m: Array, directions_enu: Array) -> Meeting:
+    def meet(self, origins_enu_m: Array, directions_enu: Array) -> RayHits:
         """First meetings of rays, both shape (n, 3), unit directions."""
         # From far away rays start at the sphere around everything: float32 is coarse there.
         away = origins_enu_m - self._middle
@@ -131,9 +131,9 @@ class Geometry:
             starts, directions_enu, hits.distance_m, which, self.normals_enu, self._on_plane, self._lift_m
         )
         bodies, panes = self._body[which], self._pane[which]
-        return Meeting(distance + skipped, points, normals, bodies, panes, which)
+        return RayHits(distance + skipped, points, normals, bodies, panes, which)
 
-    def beyond(self, met: Meeting, directions_enu: Array, is_passed: Mask, is_wanted: Mask) -> Meeting:
+    def beyond(self, met: RayHits, directions_enu: Array, is_passed: Mask, is_wanted: Mask) -> RayHits:
         """What rays meet behind bodies that they pass through, where that is something wanted; else what they met.
 
         Parameters

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.jit import inline, kernel
-from reconstruction.scenes.light.geometry import Meeting, PaneFrames
+from reconstruction.scenes.light.geometry import PaneFrames, RayHits
 from reconstruction.scenes.record import Glass, Panes
 
 Array = NDArray[np.float64]
@@ -163,7 +163,7 @@ class PaneSurfaces:
         self.sharpest_per_m = np.abs(bows).max(axis=1, initial=0.0)
         """The larger curvature of each pane, shape (m,)."""
 
-    def meet(self, met: Meeting, directions_enu: Array) -> tuple[Meeting, Array]:
+    def meet(self, met: RayHits, directions_enu: Array) -> tuple[RayHits, Array]:
         """Meetings of rays with the real panes in place of those with the flat ones; and the real unit normals.
 
         Both are shape (n, 3) for all rays; the normals of the meetings stay those of the flat panes. A ray that passes

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.jit import kernel
-from reconstruction.scenes.light.geometry import Geometry, Meeting
+from reconstruction.scenes.light.geometry import Geometry, RayHits
 from reconstruction.scenes.light.interiors import RoomLight
 from reconstruction.scenes.light.pane_surfaces import PaneSurfaces, mirrored, pane_light
 from reconstruction.scenes.light.shading import (
@@ -199,7 +199,7 @@ class Light:
         Linear light without mirror images, and that of mirror images alone, each shape (n, 3).
     """
 
-    met: Meeting
+    met: RayHits
     normals_enu: Array
     diffuse: Array
     reflection: Array
@@ -300,7 +300,7 @@ class Tracer:
 
     def _of_panes(
         self,
-        met: Meeting,
+        met: RayHits,
         rows: NDArray[np.bool_],
         directions_enu: Array,
         normals_enu: Array,
@@ -391,7 +391,7 @@ def layer_mask(scene: Scene, layer: Layer) -> NDArray[np.bool_]:
     return np.array([*(body.layer is layer for body in scene.bodies), layer is Layer.BUILDING])
 
 
-def _of_bodies(matt: MattLight, met: Meeting, rows: NDArray[np.bool_], directions_enu: Array, width_m: Array) -> Array:
+def _of_bodies(matt: MattLight, met: RayHits, rows: NDArray[np.bool_], directions_enu: Array, width_m: Array) -> Array:
     normals = met.normals_enu[rows]
     cosines = np.abs(np.einsum("nk,nk->n", normals, directions_enu[rows]))
     return matt.light(met.bodies[rows], met.triangles[rows], met.points_enu_m[rows], normals, cosines, width_m[rows])

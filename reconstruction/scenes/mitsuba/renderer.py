@@ -17,7 +17,7 @@ from reconstruction.scenes.light.shading import SkyLight, facade_middle_enu_m
 from reconstruction.scenes.light.tracing import DUST_ALBEDO, Switches
 from reconstruction.scenes.mitsuba.plugins import SheetRole, lens, mitsuba
 from reconstruction.scenes.parameters import DISTORTION, INTERIOR, MOTION_BLUR, SUN_GLARE, RenderSettings
-from reconstruction.scenes.photos.renderer import Photograph, Renderer, switches_of
+from reconstruction.scenes.photos.renderer import RenderedPhoto, Renderer, switches_of
 from reconstruction.scenes.record import Body, Glass, Panes, Scene, Sky
 
 Array = NDArray[np.float64]
@@ -316,7 +316,7 @@ class MitsubaRenderer:
         self._middle = middle_enu_m(scene)
         self._scene = mitsuba_scene(mi, scene, switches_of(settings))
 
-    def render(self, photo: PosedPhoto, seed: int = 0, moved_enu_m: Array | None = None) -> Photograph:
+    def render(self, photo: PosedPhoto, seed: int = 0, moved_enu_m: Array | None = None) -> RenderedPhoto:
         """Take a photograph, as `Renderer` does; `seed` is that of Mitsuba's rays, too."""
         taken = self._embedded.render(photo, seed, moved_enu_m)
         lacking = 0.0 if self._without is None else taken.linear - self._without.render(photo, seed, moved_enu_m).linear

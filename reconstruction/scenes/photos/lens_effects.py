@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from planning.base.jit import chunks
 from reconstruction.scenes.parameters import NOISE, SUN_GLARE, VIGNETTING
-from reconstruction.scenes.photos.renderer import Photograph
+from reconstruction.scenes.photos.renderer import RenderedPhoto
 
 Array = NDArray[np.float64]
 
@@ -138,7 +138,7 @@ class Sensor:
 USUAL_SENSOR = Sensor()
 
 
-def metered_exposure(photograph: Photograph) -> float:
+def metered_exposure(photograph: RenderedPhoto) -> float:
     """Factor that brings the mean light of a photograph to middle grey.
 
     A meter is a sensor, too: what is brighter than white counts as white, so that the sun makes no picture black.
@@ -169,7 +169,7 @@ def grey_levels(light: Array) -> Array:
 
 
 def developed(
-    photograph: Photograph, exposure: float | None = None, sensor: Sensor = USUAL_SENSOR
+    photograph: RenderedPhoto, exposure: float | None = None, sensor: Sensor = USUAL_SENSOR
 ) -> NDArray[np.uint8]:
     """The photograph as a camera writes it: blue, green, red, shape (h, w, 3).
 

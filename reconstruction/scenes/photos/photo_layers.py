@@ -16,7 +16,7 @@ from reconstruction.base.cameras import PosedPhoto
 from reconstruction.base.ray_casting import RayCaster
 from reconstruction.dataset.layers import draw_panels, facing, normals_to_16_bit, unit_normals
 from reconstruction.dataset.prepare import layer_path
-from reconstruction.scenes.photos.renderer import Photograph
+from reconstruction.scenes.photos.renderer import RenderedPhoto
 
 Array = NDArray[np.float64]
 Image = NDArray[np.uint8] | NDArray[np.uint16]
@@ -43,7 +43,7 @@ def layer_file(folder: Path, layer: str, name: str) -> Path:
     return folder / layer / f"{name}.npy" if layer in ARRAYS else layer_path(folder, layer, name)
 
 
-def layer_contents(taken: Photograph, facade: NDArray[np.bool_]) -> dict[str, bytes]:
+def layer_contents(taken: RenderedPhoto, facade: NDArray[np.bool_]) -> dict[str, bytes]:
     """Content of each layer's file; docs/reference/file-formats.md says how they are coded.
 
     Parameters

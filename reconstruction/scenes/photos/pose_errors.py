@@ -18,7 +18,7 @@ OF_SORTIE, OF_PHOTO = 1, 2
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Told:
+class ReportedPose:
     """What metadata say of a camera.
 
     Parameters
@@ -31,7 +31,7 @@ class Told:
     higher_m: float = 0.0
 
 
-def told_poses(
+def reported_poses(
     photos: Sequence[PosedPhoto],
     moments: Sequence[Moment],
     camera_model: CameraModel,
@@ -39,7 +39,7 @@ def told_poses(
     *,
     positions: bool = True,
     angles: bool = True,
-) -> tuple[Told, ...]:
+) -> tuple[ReportedPose, ...]:
     """What photos tell of their poses, with errors of positions and of angles, or without.
 
     Errors are normal, a part of each sortie and a part of each photo. Leaving one kind out, or other photos, does not
@@ -64,7 +64,7 @@ def told_poses(
             turn = bias_deg * of_sortie[3:] + deviation_deg * of_photo[3:]
             heading, pitch, roll = (np.array(pose.angles_deg) + turn).tolist()
             pose = Pose.looking(pose.position_enu_m, heading, pitch, roll)
-        told.append(Told(pose, higher_m))
+        told.append(ReportedPose(pose, higher_m))
     return tuple(told)
 
 

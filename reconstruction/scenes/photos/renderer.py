@@ -60,7 +60,7 @@ def switches_of(settings: RenderSettings) -> Switches:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Photograph:
+class RenderedPhoto:
     """Light that reaches the lens, and what is true of each pixel's middle. Sizes (h, w) and (h, w, 3).
 
     Parameters
@@ -110,7 +110,7 @@ class Renderer:
         self._settings = settings
         self._tracer = Tracer(scene, switches_of(settings), environment_rows=settings.environment_rows)
 
-    def render(self, photo: PosedPhoto, seed: int = 0, moved_enu_m: Array | None = None) -> Photograph:
+    def render(self, photo: PosedPhoto, seed: int = 0, moved_enu_m: Array | None = None) -> RenderedPhoto:
         """Take a photograph; the same for any number of threads.
 
         Parameters
@@ -135,7 +135,7 @@ class Renderer:
         in_camera = frozenset(filter(self._settings.is_on, (SUN_GLARE, VIGNETTING, NOISE)))
         return replace(middles, in_camera=in_camera, seed=seed)
 
-    def _middles(self, photo: PosedPhoto) -> Photograph:
+    def _middles(self, photo: PosedPhoto) -> RenderedPhoto:
         """With one ray through the middle of each pixel."""
         height, width = photo.intrinsics.height_px, photo.intrinsics.width_px
         taken = _blank(height, width)
@@ -157,7 +157,7 @@ class Renderer:
         run_chunks(work, chunks(height * width, RAYS_AT_ONCE))
         return taken
 
-    def _blur(self, photo: PosedPhoto, taken: Photograph, moved_enu_m: Array) -> None:
+    def _blur(self, photo: PosedPhoto, taken: RenderedPhoto, moved_enu_m: Array) -> None:
         """Put the mean over area and exposure into all pixels over which detail passes."""
         way = moved_px(photo, moved_enu_m, taken.depth_m)
         window = windows(*way)
@@ -170,7 +170,7 @@ class Renderer:
     def _refine(
         self,
         photo: PosedPhoto,
-        taken: Photograph,
+        taken: RenderedPhoto,
         pixels: NDArray[np.int64],
         side: int,
         moved_enu_m: Array | None = None,
@@ -215,11 +215,11 @@ class Renderer:
         return self._tracer.trace(origins, directions, beam_rad), directions @ photo.pose.forward_enu
 
 
-def _blank(height: int, width: int) -> Photograph:
+def _blank(height: int, width: int) -> RenderedPhoto:
     colour = [np.zeros((height, width, 3), np.float32) for _ in range(4)]
     depth = np.full((height, width), np.inf, np.float32)
     panel, glass = np.zeros((height, width), np.uint16), np.zeros((height, width), np.bool_)
-    return Photograph(colour[0], colour[1], colour[2], depth, colour[3], panel, glass)
+    return RenderedPhoto(colour[0], colour[1], colour[2], depth, colour[3], panel, glass)
 
 
 def _needs_detail(linear: Picture, panel: NDArray[np.uint16]) -> NDArray[np.bool_]:

@@ -28,7 +28,7 @@ from planning.base.errors import GroundStationError, InputError, ReconstructionE
 from planning.base.json_file import write_atomically
 from planning.base.messages import about, say
 from planning.base.progress import Monitor
-from reconstruction.scenes.runs.photo_job import PATIENCE_S, PhotoJob, RenderWorker, written
+from reconstruction.scenes.runs.photo_job import PATIENCE_S, PhotoJob, RenderWorker, checksums_of
 
 TOKEN_FILE = ".reflight-cluster"
 """In the folder while a cluster works for it: a worker that reads the same content there sees the same folder."""
@@ -36,7 +36,7 @@ TOKEN_FILE = ".reflight-cluster"
 LIBRARIES = ("numpy", "numba", "open3d", "opencv-contrib-python-headless")
 """Whose version may change a photo's last bit."""
 
-Taken = tuple[dict[str, str], Mapping[str, bytes]]
+RenderedFiles = tuple[dict[str, str], Mapping[str, bytes]]
 """Checksums of the files that were written, and content of those that are still to be."""
 
 
@@ -54,7 +54,7 @@ def program_sha256() -> str:
     return digest.hexdigest()
 
 
-class Studio(WorkerPlugin):  # type: ignore[misc]  # Dask is not typed
+class RenderPlugin(WorkerPlugin):  # type: ignore[misc]  # Dask is not typed
     """What a worker has of a run: how its photographer is made, and, from the first photo on, the photographer."""
 
     def __init__(self, photographer: Callable[[], RenderWorker], folder: Path, token: bytes, program: str) -> None:
@@ -63,14 +63,14 @@ class Studio(WorkerPlugin):  # type: ignore[misc]  # Dask is not typed
     def setup(self, worker: Any) -> None:
         """Begin; called by Dask in the worker."""
         self._place = worker.address
-        self._photographer: RenderWorker | None = None
+        self._worker: RenderWorker | None = None
         self._one_at_a_time, self._is_over = threading.Lock(), threading.Event()
 
     def teardown(self, worker: Any) -> None:
         """End: what is rendered from now on is for nobody."""
         self._is_over.set()
 
-    def take(self, number: int) -> Taken:
+    def render(self, number: int) -> RenderedFiles:
         """Render a photo, and write its files where the folder is seen."""
         if program_sha256() != self._program:
             raise _another_program(self._place, None)
@@ -78,11 +78,11 @@ class Studio(WorkerPlugin):  # type: ignore[misc]  # Dask is not typed
         with self._one_at_a_time:
             if self._is_over.is_set():
                 return {}, {}
-            self._photographer = self._photographer or self._make()
-            contents = self._photographer.take(number)
+            self._worker = self._worker or self._make()
+            contents = self._worker.render(number)
             if self._is_over.is_set() or not self._has_folder():
                 return {}, contents
-            return written(self._folder, contents), {}
+            return checksums_of(self._folder, contents), {}
 
     def _has_folder(self) -> bool:
         """Whether it is the same folder here, and may be written into."""
@@ -93,16 +93,16 @@ class Studio(WorkerPlugin):  # type: ignore[misc]  # Dask is not typed
             return False
 
 
-def _take(run: str, number: int) -> Taken:
+def _take(run: str, number: int) -> RenderedFiles:
     """In a worker."""
     worker = get_worker()
-    studio = worker.plugins.get(run)
-    if not isinstance(studio, Studio):
+    plugin = worker.plugins.get(run)
+    if not isinstance(plugin, RenderPlugin):
         raise ReconstructionError(say("the worker {} could not take the scene; see its own log", worker.address))
-    return studio.take(number)
+    return plugin.render(number)
 
 
-def photographed_by(
+def render_on_cluster(
     client: Any,
     photographer: Callable[[], RenderWorker],
     job: PhotoJob,
@@ -110,7 +110,7 @@ def photographed_by(
     numbers: Sequence[int],
     monitor: Monitor,
 ) -> Iterator[tuple[int, dict[str, str]]]:
-    """Numbers of photos as they are done, with their files; arguments as `photographed` has them.
+    """Numbers of photos as they are done, with their files; arguments as `render_on_cores` has them.
 
     Raises
     ------
@@ -146,7 +146,7 @@ def _files(future: Any, name: str, folder: Path) -> dict[str, str]:
     """Checksums of a photo's files, which are written now where they are not yet."""
     if future.status != "error":
         sums, contents = future.result()
-        return sums or written(folder, contents)
+        return sums or checksums_of(folder, contents)
     error = future.exception()
     text: str = say("a worker could not render it: {}", repr(error))
     if isinstance(error, KilledWorker):
@@ -166,7 +166,7 @@ def _studios(client: Any, photographer: Callable[[], RenderWorker], folder: Path
     write_atomically(folder / TOKEN_FILE, token)
     try:
         monitor.report("giving the scene to the cluster", 0, 1)
-        client.register_plugin(Studio(photographer, folder, token, program_sha256()), run)
+        client.register_plugin(RenderPlugin(photographer, folder, token, program_sha256()), run)
         yield run
     finally:
         (folder / TOKEN_FILE).unlink(missing_ok=True)

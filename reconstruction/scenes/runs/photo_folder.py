@@ -36,12 +36,12 @@ from reconstruction.scenes.parameters import DISTORTION, EXPOSURE, GIMBAL_ERROR,
 from reconstruction.scenes.photos.camera_model import SHUTTERS_S, Capture, Moment, in_stops
 from reconstruction.scenes.photos.lens_effects import metered_exposure
 from reconstruction.scenes.photos.photo_layers import ARRAYS, BYTES_PER_PIXEL, PICTURES, layer_file
-from reconstruction.scenes.photos.pose_errors import told_poses
+from reconstruction.scenes.photos.pose_errors import reported_poses
 from reconstruction.scenes.photos.renderer import Renderer
 from reconstruction.scenes.record import Layer, Scene
 from reconstruction.scenes.runs.photo_job import PhotoJob
-from reconstruction.scenes.runs.render_workers import photographed
-from reconstruction.scenes.runs.run_record import captures_record, kept_photos, run_record, write_run
+from reconstruction.scenes.runs.render_workers import render_on_cores
+from reconstruction.scenes.runs.run_record import captures_record, finished_photos, run_record, write_run
 
 # How each photo of a flight is exposed, how its camera moves meanwhile, and what is told of its pose.
 
@@ -67,7 +67,7 @@ def captures_of(job: PhotoJob, common: float, monitor: Monitor = QUIET) -> tuple
         As `common_exposure` gives it.
     """
     is_on, seed = job.settings.is_on, job.scene.seed
-    told = told_poses(
+    told = reported_poses(
         job.photos, job.moments, job.camera_model, seed, positions=is_on(POSITION_ERROR), angles=is_on(GIMBAL_ERROR)
     )
     factors = _own_exposures(job, common, monitor)
@@ -114,7 +114,7 @@ class ScenePhotos:
     n_kept: int
 
 
-def photograph(
+def render_photo_folder(
     job: PhotoJob, folder: Path, n_processes: int | None = None, monitor: Monitor = QUIET, *, cluster: Any = None
 ) -> ScenePhotos:
     """Render the photos that the folder lacks, and write what belongs to all of them.
@@ -146,7 +146,7 @@ def photograph(
         job = replace(job, photos=straight)
     decided = replace(job, settings=job.settings.decided(decisions))
     run = run_record(job, decisions)
-    files = kept_photos(folder, run)
+    files = finished_photos(folder, run)
     missing = [number for number, photo in enumerate(job.photos) if photo.name not in files]
     _check_room(folder, job.photos, len(missing))
     _make_folders(folder)
@@ -158,7 +158,7 @@ def photograph(
         write_atomically(folder / name, content)
     n_kept = len(files)
     # Closed at once where the user cancels, so that no process goes on.
-    with closing(photographed(decided, folder, exposure, missing, n_processes, monitor, cluster)) as rendered:
+    with closing(render_on_cores(decided, folder, exposure, missing, n_processes, monitor, cluster)) as rendered:
         for number, written in rendered:
             files[job.photos[number].name] = written
             write_run(folder, run, files)

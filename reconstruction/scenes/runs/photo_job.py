@@ -40,7 +40,7 @@ class PhotoJob:
         Content of other files that belong into the folder, by their names.
     n_points
         On the building and what is near, that reconstruction starts from.
-    taking, moments
+    camera_model, moments
         How photos are taken, and how each came about; without moments, all are taken hovering, in one sortie.
     captures
         Of each photo, once effects are decided; without, it is taken hovering and tells its true pose.
@@ -73,7 +73,7 @@ class RenderWorker:
         self._moments = job.moments or (Moment(),) * len(job.photos)
         self._captures = job.captures or tuple(map(Capture.still, job.photos))
 
-    def take(self, number: int) -> dict[str, bytes]:
+    def render(self, number: int) -> dict[str, bytes]:
         """Render a photo; returns the content of its files by path in the folder."""
         job, photo, capture = self._job, self._job.photos[number], self._captures[number]
         seed = int(np.random.SeedSequence([job.scene.seed, number]).generate_state(1)[0])
@@ -94,7 +94,7 @@ class RenderWorker:
         return {path.relative_to(self._folder).as_posix(): content for path, content in contents.items()}
 
 
-def written(folder: Path, contents: Mapping[str, bytes]) -> dict[str, str]:
+def checksums_of(folder: Path, contents: Mapping[str, bytes]) -> dict[str, str]:
     """Checksums of a photo's files by path in the folder, where they are now."""
     for path, content in contents.items():
         write_atomically(folder / path, content)

@@ -16,7 +16,7 @@ from planning.base.errors import ReconstructionError
 from planning.base.jit import n_threads
 from planning.base.messages import say
 from planning.base.progress import Monitor
-from reconstruction.scenes.runs.photo_job import PATIENCE_S, PhotoJob, RenderWorker, written
+from reconstruction.scenes.runs.photo_job import PATIENCE_S, PhotoJob, RenderWorker, checksums_of
 
 CORES_EACH = 4
 """The threads of a renderer share each photo: on 2 cores a second process took 27 % longer (12 photos of 1024 px)."""
@@ -33,10 +33,10 @@ def _begin_process(photographer: Callable[[], RenderWorker]) -> None:
 
 
 def _take(number: int, folder: Path) -> dict[str, str]:
-    return written(folder, _IN_THIS_PROCESS[-1].take(number))
+    return checksums_of(folder, _IN_THIS_PROCESS[-1].render(number))
 
 
-def photographed(
+def render_on_cores(
     job: PhotoJob,
     folder: Path,
     exposure: float,
@@ -58,14 +58,14 @@ def photographed(
     n_processes = min(max(1, n_threads() // CORES_EACH) if n_processes is None else n_processes, len(numbers))
     if cluster is not None:
         # It needs Dask, which nobody else does.
-        from reconstruction.scenes.runs.cluster_workers import photographed_by
+        from reconstruction.scenes.runs.cluster_workers import render_on_cluster
 
-        yield from photographed_by(cluster, photographer, job, folder, numbers, monitor)
+        yield from render_on_cluster(cluster, photographer, job, folder, numbers, monitor)
     elif n_processes <= 1:
         alone = photographer()
         for done, number in enumerate(numbers, len(job.photos) - len(numbers)):
             monitor.report("rendering photos", done, len(job.photos))
-            yield number, written(folder, alone.take(number))
+            yield number, checksums_of(folder, alone.render(number))
     else:
         yield from _side_by_side(photographer, job, folder, numbers, n_processes, monitor)
 

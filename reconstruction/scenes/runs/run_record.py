@@ -121,7 +121,7 @@ def check_folder(folder: Path) -> None:
         )
 
 
-def kept_photos(folder: Path, run: RunRecord) -> Files:
+def finished_photos(folder: Path, run: RunRecord) -> Files:
     """Photos of the same run that are complete in the folder, with their files.
 
     Raises

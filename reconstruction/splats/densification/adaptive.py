@@ -22,7 +22,7 @@ from reconstruction.splats.densification.strategy import (
     NOTHING,
     Change,
     Limits,
-    SeenSplats,
+    SplatStatistics,
     forget,
     keep_within,
     n_dead,
@@ -94,7 +94,7 @@ class AdaptiveControl:
         self.parameters = parameters
         self.limits = limits or Limits()
         self._since_reset = parameters.grace
-        self._seen = SeenSplats.nothing(0, torch.device("cpu"))
+        self._seen = SplatStatistics.nothing(0, torch.device("cpu"))
 
     def before_step(self, step: int, splats: Splats, optimiser: Optimizer) -> None:
         """Nothing to add."""
@@ -110,12 +110,12 @@ class AdaptiveControl:
         keep_within(splats, self.limits)
         self._since_reset += 1
         if not chosen.start <= step < chosen.stop:
-            self._seen = SeenSplats.nothing(0, splats.means.device)
+            self._seen = SplatStatistics.nothing(0, splats.means.device)
             return NOTHING
         change = NOTHING
         if (step + 1) % chosen.every == 0 and len(self._seen) == len(splats):
             change = self._changed(splats, optimiser, generator)
-            self._seen = SeenSplats.nothing(len(splats), splats.means.device)
+            self._seen = SplatStatistics.nothing(len(splats), splats.means.device)
         if chosen.reset_every and (step + 1) % chosen.reset_every == 0:
             splats.opacity_logits.data.clamp_(max=math.log(chosen.reset_opacity / (1.0 - chosen.reset_opacity)))
             forget(splats, optimiser, ("opacity_logits",))
@@ -160,7 +160,7 @@ class AdaptiveControl:
     def load_state_dict(self, state: dict[str, Tensor]) -> None:
         """Go on from there."""
         self._since_reset = int(state["since_reset"])
-        self._seen = SeenSplats.of(state)
+        self._seen = SplatStatistics.of(state)
 
 
 def _split(splats: Splats, optimiser: Optimizer, first: Tensor, second: Tensor) -> None:

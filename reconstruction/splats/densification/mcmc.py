@@ -21,7 +21,7 @@ from reconstruction.splats.densification.strategy import (
     NOTHING,
     Change,
     Limits,
-    SeenSplats,
+    SplatStatistics,
     forget,
     keep_within,
     n_dead,
@@ -87,7 +87,7 @@ class MarkovChain:
     def __init__(self, parameters: McmcParameters = McmcParameters(), limits: Limits | None = None) -> None:
         self.parameters = parameters
         self.limits = limits or Limits()
-        self._seen = SeenSplats.nothing(0, torch.device("cpu"))
+        self._seen = SplatStatistics.nothing(0, torch.device("cpu"))
 
     def before_step(self, step: int, splats: Splats, optimiser: Optimizer) -> None:
         """Add the gradients of mean opacity and mean size."""
@@ -111,7 +111,7 @@ class MarkovChain:
         change = NOTHING
         if chosen.start <= step < chosen.stop and (step + 1) % chosen.every == 0 and len(self._seen) == len(splats):
             change = self._changed(splats, optimiser, generator)
-            self._seen = SeenSplats.nothing(len(splats), splats.means.device)
+            self._seen = SplatStatistics.nothing(len(splats), splats.means.device)
         if step < chosen.stop and chosen.noise > 0.0:
             self._jitter(splats, generator)
         return change
@@ -160,7 +160,7 @@ class MarkovChain:
 
     def load_state_dict(self, state: dict[str, Tensor]) -> None:
         """Go on from there."""
-        self._seen = SeenSplats.of(state)
+        self._seen = SplatStatistics.of(state)
 
 
 def shared_out(opacities: Tensor, sizes: Tensor, copies: Tensor) -> tuple[Tensor, Tensor]:

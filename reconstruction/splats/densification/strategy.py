@@ -35,7 +35,7 @@ HIDDEN_PIXELS = 0.01
 SUMS = ("pulls", "views", "weights", "sigmas_px")
 
 
-class SeenSplats:
+class SplatStatistics:
     """Sums over pictures, for n splats.
 
     Attributes
@@ -60,7 +60,7 @@ class SeenSplats:
         self.eyes_m = eyes_m
 
     @classmethod
-    def nothing(cls, n: int, device: torch.device) -> SeenSplats:
+    def nothing(cls, n: int, device: torch.device) -> SplatStatistics:
         """Before the first picture."""
         pulls, views, weights, sigmas_px = torch.zeros(len(SUMS), n, device=device)
         return cls(pulls, views, weights, sigmas_px, torch.zeros(0, 3, device=device))
@@ -68,14 +68,14 @@ class SeenSplats:
     def __len__(self) -> int:
         return len(self.pulls)
 
-    def before(self, raster: Raster) -> SeenSplats:
+    def before(self, raster: Raster) -> SplatStatistics:
         """What a picture is added to: these sums, or none yet where the number of splats has changed."""
         device = raster.weights.device
         if len(self) != len(raster.weights):
-            return SeenSplats.nothing(len(raster.weights), device)
+            return SplatStatistics.nothing(len(raster.weights), device)
         if self.pulls.device == device:
             return self
-        return SeenSplats(*(value.to(device) for value in self.tensors().values()))
+        return SplatStatistics(*(value.to(device) for value in self.tensors().values()))
 
     def add(self, raster: Raster, screen_gradients: Tensor | None, view: View) -> None:
         """Take in a picture.
@@ -111,7 +111,7 @@ class SeenSplats:
         return {name: getattr(self, name) for name in (*SUMS, "eyes_m")}
 
     @classmethod
-    def of(cls, tensors: dict[str, Tensor]) -> SeenSplats:
+    def of(cls, tensors: dict[str, Tensor]) -> SplatStatistics:
         """What `tensors` gave."""
         return cls(*(tensors[name].clone() for name in (*SUMS, "eyes_m")))
 

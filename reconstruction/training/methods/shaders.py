@@ -63,7 +63,7 @@ def empty_shader(config: TrainConfig, tensors: Mapping[str, Tensor]) -> Shader:
     return shader_of(config, Surroundings(np.zeros((0, 3, 3), np.float32) if triangles is None else triangles.numpy()))
 
 
-def as_method_has_them(splats: Splats, config: TrainConfig, shader: Shader) -> Splats:
+def converted_for_method(splats: Splats, config: TrainConfig, shader: Shader) -> Splats:
     """Splats on surfaces as those that a method which knows no panels begins with."""
     plain = with_primitive(splats, config.trained_by.primitive)
     values = {name: plain.get_parameter(name).detach() for name in SHAPES}

@@ -27,7 +27,7 @@ from reconstruction.base.cameras import Pose, PosedPhoto
 from reconstruction.base.ray_casting import RayCaster
 from reconstruction.light.glass_light import GlassLight
 from reconstruction.light.photo_set import PhotoSet
-from reconstruction.splats.surfels import SAME_SURFACE_M, beside_panels
+from reconstruction.splats.surfels import SAME_SURFACE_M, panel_proximity
 
 Array = NDArray[np.float64]
 
@@ -162,7 +162,7 @@ BLOCK = 32
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class ToldGains:
+class PointGains:
     """What points tell.
 
     Parameters
@@ -189,7 +189,7 @@ class OwnExposures:
     unit: str = say("spread of the gains' logarithms")
     tolerance: float = 0.1
 
-    def assess(self, scene: ToldGains) -> Assessment:
+    def assess(self, scene: PointGains) -> Assessment:
         """How much gains differ from photo to photo."""
         if scene.n_told < 2:
             return Assessment(0.0, say("too few points are seen in several photos"), 0.0)
@@ -224,25 +224,25 @@ def own_exposures(
     OperationCancelled
         From `monitor`.
     """
-    told = ToldGains(np.ones((len(photos), 3)), 0.0, 0)
+    told = PointGains(np.ones((len(photos), 3)), 0.0, 0)
     some = photos[:: -(-len(photos) // LOOKED_AT)]
     if setting != "off":
-        told = told_gains(source, some, points_enu_m, mesh, monitor)
+        told = gains_from_points(source, some, points_enu_m, mesh, monitor)
     decision = decide(OwnExposures(), told, setting)
     if not decision.on:
         return np.ones((len(photos), 3)), decision
     if len(some) < len(photos):
-        told = told_gains(source, photos, points_enu_m, mesh, monitor)
+        told = gains_from_points(source, photos, points_enu_m, mesh, monitor)
     return told.gains, decision
 
 
-def told_gains(
+def gains_from_points(
     source: PhotoSet,
     photos: Sequence[PosedPhoto],
     points_enu_m: Array,
     mesh: TriangleMesh,
     monitor: Monitor = QUIET,
-) -> ToldGains:
+) -> PointGains:
     """Gains that points tell which are on no panel, for glass shows something else to each photo.
 
     Raises
@@ -252,7 +252,7 @@ def told_gains(
     OperationCancelled
         From `monitor`.
     """
-    on_glass = beside_panels(points_enu_m, source.panels.corners_enu_m, SAME_SURFACE_M, 0.0).panels >= 0
+    on_glass = panel_proximity(points_enu_m, source.panels.corners_enu_m, SAME_SURFACE_M, 0.0).panels >= 0
     points = points_enu_m[~on_glass]
     points = _in_blocks(points[:: max(1, len(points) // TOLD_BY)])
     caster = RayCaster(mesh) if len(mesh.triangles) else None
@@ -264,14 +264,14 @@ def told_gains(
     is_told = (~np.isnan(seen[..., 0])).sum(axis=1) >= 2 * LEAST_POINTS
     gains, n_told = np.zeros((len(photos), 3)), int(is_told.sum())
     if n_told < 2:
-        return ToldGains(np.ones((len(photos), 3)), 0.0, 0)
+        return PointGains(np.ones((len(photos), 3)), 0.0, 0)
     is_first = np.arange(seen.shape[1]) // BLOCK % 2 == 0
     one, other = (_gains(seen[is_told][:, half]) for half in (is_first, ~is_first))
     agreed = float((one * other).mean())
     off = float(np.square(one - other).mean()) / 4.0
     if agreed > 0.0:
         gains[is_told] = 0.5 * (one + other) * agreed / (agreed + off)
-    return ToldGains(np.exp(gains), math.sqrt(max(agreed, 0.0)), n_told)
+    return PointGains(np.exp(gains), math.sqrt(max(agreed, 0.0)), n_told)
 
 
 def _in_blocks(points_enu_m: Array) -> Array:

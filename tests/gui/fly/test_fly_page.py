@@ -17,7 +17,7 @@ from groundstation.services.fly.options import ConnectionChoice, LinkKind, choic
 from groundstation.services.project.document import Document, ItemKind, PlanEntry
 from groundstation.services.settings import Language
 from groundstation.services.units import UnitSystem
-from groundstation.vehicle.preflight import Mend
+from groundstation.vehicle.preflight import Remedy
 from groundstation.vehicle.sortie.run_records import Phase
 from missions.mavlink.autopilots import Autopilot
 from planning.base.findings import Severity
@@ -589,7 +589,7 @@ def upload(application, page):
     turn_until(application, lambda: page.controller.active.view.phase in (Phase.CHECKING, Phase.READY))
 
 
-def mend(application, page, code, way):
+def remedy(application, page, code, way):
     """Press the button beside a check."""
     turn_until(application, lambda: (found := page.checks.button(code, way)) is not None and found.isVisible())
     button = page.checks.button(code, way)
@@ -607,11 +607,11 @@ def test_parameters_of_a_real_vehicle_are_set_only_after_a_question(application,
     assert before["MNT1_PITCH_MIN"] == -45.0, "an upload sets nothing"
     for no in ("Cancel", escape):
         with clicked(no) as asked:
-            mend(application, page, "parameters", Mend.SET_PARAMETERS)
+            remedy(application, page, "parameters", Remedy.SET_PARAMETERS)
         assert "MNT1_PITCH_MIN: -45 \u2192 -90" in asked[-1]
     assert radio._opened.simulated.parameters.values() == before
     with clicked("Yes"):
-        mend(application, page, "parameters", Mend.SET_PARAMETERS)
+        remedy(application, page, "parameters", Remedy.SET_PARAMETERS)
     turn_until(application, lambda: "they are as the plan needs them" in page.checks.text())
     assert radio._opened.simulated.parameters.values()["MNT1_PITCH_MIN"] == -90.0
     turn_until(application, lambda: page.buttons.button(Request.START).isEnabled())
@@ -627,10 +627,10 @@ def test_an_aircraft_at_another_height_flies_once_the_pilot_has_agreed(
     turn_until(application, lambda: "stands 3.0 m lower than the planned home" in page.checks.text())
     assert not page.buttons.button(Request.START).isEnabled()
     with clicked("Cancel") as asked:
-        mend(application, page, "home-height", Mend.RAISE)
+        remedy(application, page, "home-height", Remedy.RAISE)
     assert "stands 3.0 m lower than planned" in asked[-1]
     with clicked("Yes"):
-        mend(application, page, "home-height", Mend.RAISE)
+        remedy(application, page, "home-height", Remedy.RAISE)
     turn_until(application, lambda: page.controller.active.sortie.orders.raised_m == pytest.approx(3.0, abs=0.1))
     upload(application, page)
     turn_until(application, lambda: page.buttons.button(Request.START).isEnabled())
@@ -643,7 +643,7 @@ def test_home_can_be_where_the_aircraft_stands(application, radio, controller, p
     connect_radio(application, radio, page, monkeypatch)
     turn_until(application, lambda: "8.0 m from the planned home" in page.checks.text())
     with clicked("Yes"):
-        mend(application, page, "home", Mend.PLAN_FROM_HERE)
+        remedy(application, page, "home", Remedy.PLAN_FROM_HERE)
     assert controller.context.document.site.site.home_enu_m == pytest.approx((x + 8.0, y, z + 2.0), abs=0.05)
     assert "plan again" in controller.window.messages.texts()
 
@@ -667,11 +667,11 @@ def test_a_return_through_the_building_needs_a_typed_word(application, radio, co
     turn_until(application, lambda: "it returns above the airspace" in page.checks.text())
     for typed in (answer("go on"), escape):
         with clicked(typed) as asked:
-            mend(application, page, "return", Mend.OVERRULE)
+            remedy(application, page, "return", Remedy.OVERRULE)
         assert "type RETURN" in asked[-1]
         assert not page.buttons.button(Request.START).isEnabled()
     with clicked(answer("return")):
-        mend(application, page, "return", Mend.OVERRULE)
+        remedy(application, page, "return", Remedy.OVERRULE)
     turn_until(application, lambda: page.buttons.button(Request.START).isEnabled())
     assert "(overruled)" in page.checks.text()
 

@@ -4,7 +4,7 @@ import pytest
 
 from reconstruction.objects.store import write_scene
 from tests.gui.driving import close_controller, turn_until
-from tests.gui.reconstruct.conftest import Told
+from tests.gui.reconstruct.conftest import RecordedProcess
 from tests.reconstruction.objects.made_scene import made_scene
 
 
@@ -26,7 +26,7 @@ def page(application, controller, monkeypatch):
     from groundstation.gui.model import model_controller
     from groundstation.gui.model.model_page import ModelPage
 
-    monkeypatch.setattr(model_controller, "ModelProcess", lambda _listener: Told())
+    monkeypatch.setattr(model_controller, "ModelProcess", lambda _listener: RecordedProcess())
     page = ModelPage(controller.context, controller.window.shared_view)
     page.told = page.controller._process
     page.messages = []

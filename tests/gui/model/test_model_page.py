@@ -11,9 +11,17 @@ from PySide6.QtGui import QMouseEvent
 
 from groundstation.gui.model.record_side import KIND_TITLES, RecordDialog
 from groundstation.gui.reconstruct.model_view import Mark
-from groundstation.services.jobs.channel import Lost
+from groundstation.services.jobs.channel import ProcessEnded
 from groundstation.services.model.panel_colours import Computed
-from groundstation.services.reconstruct.messages import Look, Organise, Probe, Probed, SceneMade, Section, Seen
+from groundstation.services.reconstruct.messages import (
+    Organise,
+    Probe,
+    Probed,
+    SceneMade,
+    Section,
+    ViewAnswer,
+    ViewRequest,
+)
 from groundstation.services.units import UnitSystem
 from reconstruction.objects.store import write_scene
 from reconstruction.records.book import FILE
@@ -23,14 +31,14 @@ from tests.reconstruction.objects.made_scene import made_scene
 
 
 def looks(page):
-    return page.told.of(Look)
+    return page.told.of(ViewRequest)
 
 
 def answer(page, look, value=90):
     """The process's answer to a look."""
     lens = look.camera.intrinsics
     picture = np.full((lens.height_px, lens.width_px, 3), value, np.uint8)
-    page.controller._take(Seen(look, picture, depth_m=12.0))
+    page.controller._take(ViewAnswer(look, picture, depth_m=12.0))
 
 
 def probe(page, x=0.5, y=0.5):
@@ -134,8 +142,8 @@ def test_records_are_kept_found_and_taken_back(opened):
     opened.controller.select(opened.controller.card.panels[0].global_id)
     global_id = opened.controller.selected
     assert not opened.controller.has_records
-    opened.records.putAsked.emit(Defect(global_id, "crack", 4, "2026-05-04", 0.2, 0.7, note="lower left"), None)
-    opened.records.putAsked.emit(Inspection(global_id, "2026-05-04", "M. Weber", "drone photos"), None)
+    opened.records.changeRequested.emit(Defect(global_id, "crack", 4, "2026-05-04", 0.2, 0.7, note="lower left"), None)
+    opened.records.changeRequested.emit(Inspection(global_id, "2026-05-04", "M. Weber", "drone photos"), None)
     assert (opened.controller.card.folder / FILE).is_file()
     texts = tree_texts(opened)
     assert "2026-05-04: crack, severity 4, open, lower left" in texts
@@ -149,7 +157,7 @@ def test_records_are_kept_found_and_taken_back(opened):
     opened.records.undo.click()
     assert "2026-05-04: drone photos, M. Weber" not in tree_texts(opened)
     entry = opened.controller.entries(Defect)[0]
-    opened.records.removeAsked.emit(entry)
+    opened.records.removeRequested.emit(entry)
     assert opened.controller.entries(Defect) == ()
 
 
@@ -163,7 +171,7 @@ def test_facades_and_the_building_have_records_too(opened):
     assert records.title.text() == card.name
     assert records.add.isEnabled()
     assert records.report.isEnabled()
-    records.putAsked.emit(Inspection(card.global_id, "2026-02-01", "K. Roth", "all of it"), None)
+    records.changeRequested.emit(Inspection(card.global_id, "2026-02-01", "K. Roth", "all of it"), None)
     assert "2026-02-01: all of it, K. Roth" in tree_texts(opened)
     choose_level(opened, "facade")
     assert not records.add.isEnabled()
@@ -172,7 +180,7 @@ def test_facades_and_the_building_have_records_too(opened):
     opened.controller.select(panel.global_id)
     assert (records.title.text(), records.global_id.text()) == (panel.facade, panel.facade_id)
     assert not records.extent.isVisibleTo(opened.left)
-    records.putAsked.emit(Document(panel.facade_id, "drawings of the posts", "plan", "posts.pdf"), None)
+    records.changeRequested.emit(Document(panel.facade_id, "drawings of the posts", "plan", "posts.pdf"), None)
     assert any("drawings of the posts" in text for text in tree_texts(opened))
     # Another panel of the facade has the same; the panel itself has none of them.
     opened.controller.select(card.panels[3].global_id)
@@ -259,15 +267,15 @@ def test_panels_have_their_colours_beside_too_where_they_have_other_numbers(appl
     opened.pane.compare.setCurrentIndex(1)
     turn_until(application, lambda: opened.controller.beside is not None)
     assert dict(opened.controller.tints) == {2: (128, 0, 38)}
-    assert dict(opened.controller.tints_beside) == {3: (128, 0, 38)}
+    assert dict(opened.controller.comparison_tints) == {3: (128, 0, 38)}
     opened.pane.looks.forget()
     opened.pane.show_view()
     left, right = looks(opened)[-2:]
     assert (left.place, right.place) == ("left", "right")
-    assert (left.tints, right.tints) == (opened.controller.tints, opened.controller.tints_beside)
+    assert (left.tints, right.tints) == (opened.controller.tints, opened.controller.comparison_tints)
     assert left.section == right.section is not None
     opened.pane.compare.setCurrentIndex(0)
-    assert opened.controller.tints_beside == ()
+    assert opened.controller.comparison_tints == ()
 
 
 def test_the_picture_is_saved_with_its_marks(opened, tmp_path):
@@ -395,7 +403,7 @@ def test_a_report_holds_what_is_attached_and_what_is_known_of_facade_and_buildin
 
 def test_a_lost_process_is_told_and_asked_anew(opened):
     opened.make_report(opened.controller.card.folder / "r.pdf")
-    opened.controller._take(Lost(-9))
+    opened.controller._take(ProcessEnded(-9))
     assert "has ended" in opened.messages[-1].text
     before = len(looks(opened))
     opened.pane.show_view()

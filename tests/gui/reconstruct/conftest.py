@@ -25,7 +25,7 @@ def controller(application, worker, tmp_path_factory):
         close_controller(controller)
 
 
-class Told:
+class RecordedProcess:
     """What a process was told; it answers nothing by itself."""
 
     is_running = True
@@ -49,7 +49,7 @@ def page(application, controller, monkeypatch):
     from groundstation.gui.reconstruct import reconstruct_controller
     from groundstation.gui.reconstruct.reconstruct_page import ReconstructPage
 
-    monkeypatch.setattr(reconstruct_controller, "ModelProcess", lambda _listener: Told())
+    monkeypatch.setattr(reconstruct_controller, "ModelProcess", lambda _listener: RecordedProcess())
     page = ReconstructPage(controller.context, controller.window.shared_view)
     page.told = page.controller._process
     page.messages = []

@@ -8,23 +8,23 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from groundstation.services.jobs.channel import Lost
+from groundstation.services.jobs.channel import ProcessEnded
 from groundstation.services.reconstruct.messages import (
     AskScene,
-    BreakOff,
+    CancelTraining,
     Chosen,
     Devices,
     Ended,
-    Look,
     Measured,
     Pause,
     PhotoError,
-    Seen,
     Stage,
     Stepped,
     Stop,
     Subject,
     Train,
+    ViewAnswer,
+    ViewRequest,
     WatchErrors,
 )
 from planning.base.effects import Decision
@@ -48,7 +48,7 @@ def begin(page):
 
 def enabled(page):
     side = page.side
-    names = ("train", "pause", "stop", "break_off", "choose", "choose_out")
+    names = ("train", "pause", "stop", "cancel_training", "choose", "choose_out")
     return {name for name in names if getattr(side, name).isEnabled()} | ({"form"} if side.form.isEnabled() else set())
 
 
@@ -73,7 +73,7 @@ def test_a_folder_that_is_no_data_set_is_told_and_can_be_followed_by_one_that_is
 def test_a_chosen_data_set_is_shown_and_its_first_photo_looked_at(chosen):
     assert len(chosen.pane.strip.names()) == 6
     assert chosen.pane.strip.current() == chosen.pane.strip.names()[0]
-    look = chosen.told.of(Look)[-1]
+    look = chosen.told.of(ViewRequest)[-1]
     assert (look.place, look.subject.kind, look.subject.name) == ("right", "photo", chosen.pane.strip.current())
     assert look.camera.intrinsics.is_straight
     assert "The model is shown here once it learns" in chosen.pane.view.note()
@@ -84,13 +84,13 @@ def test_a_training_goes_from_preparing_to_its_end_and_buttons_follow(chosen, tm
     told = begin(chosen)
     assert chosen._context.is_busy, "nothing may hold the window up that can wait"
     assert (told.dataset, told.out, told.resume) == (chosen.controller.card.folder, tmp_path / "model", False)
-    assert enabled(chosen) == {"pause", "stop", "break_off"}
+    assert enabled(chosen) == {"pause", "stop", "cancel_training"}
     assert chosen.details.currentWidget() is chosen.progress
     take(chosen, Stage("learning reflections", 3, 80))
     assert chosen.progress.text() == "Learning reflections"
     assert "The model is shown here once it learns" in chosen.pane.view.note()
     take(chosen, STEP)
-    assert chosen.told.of(Look)[-1].subject == TRAINING
+    assert chosen.told.of(ViewRequest)[-1].subject == TRAINING
     take(chosen, STEP, Measured(30.0, 21.5))
     assert "12 steps, 970 splats; 21.50 dB" in chosen.progress.text()
     chosen.side.pause.click()
@@ -101,7 +101,7 @@ def test_a_training_goes_from_preparing_to_its_end_and_buttons_follow(chosen, tm
     assert not chosen.told.of(Pause)[-1].is_on
     chosen.side.stop.click()
     assert len(chosen.told.of(Stop)) == 1
-    assert enabled(chosen) == {"break_off"}
+    assert enabled(chosen) == {"cancel_training"}
     assert "rates fall" in chosen.progress.text()
     take(chosen, Ended("done", None, {}))
     assert enabled(chosen) == {"train", "choose", "choose_out", "form"}
@@ -122,8 +122,8 @@ def test_stopped_before_there_is_a_model_it_says_when_it_stops(chosen):
 def test_broken_off_it_offers_to_go_on_with_what_was_begun(chosen, tmp_path):
     begin(chosen)
     take(chosen, STEP)
-    chosen.side.break_off.click()
-    assert len(chosen.told.of(BreakOff)) == 1
+    chosen.side.cancel_training.click()
+    assert len(chosen.told.of(CancelTraining)) == 1
     assert enabled(chosen) == set()
     (tmp_path / "model").mkdir()
     (tmp_path / "model" / "checkpoint.safetensors").write_bytes(b"")
@@ -150,11 +150,11 @@ def test_an_error_is_told_and_the_tab_is_ready_again(chosen):
 
 def test_a_process_that_ends_by_itself_is_an_error_message_and_not_the_end(chosen):
     begin(chosen)
-    take(chosen, STEP, Lost(-signal.SIGKILL))
+    take(chosen, STEP, ProcessEnded(-signal.SIGKILL))
     assert "memory ran out" in chosen.messages[-1].text
     assert "train" in enabled(chosen)
     n_messages = len(chosen.messages)
-    take(chosen, Lost(0))
+    take(chosen, ProcessEnded(0))
     assert len(chosen.messages) == n_messages
 
 
@@ -264,43 +264,43 @@ def test_when_it_pauses_it_is_looked_at_once_more(application, chosen):
     begin(chosen)
     take(chosen, STEP)
     turn_until(application, lambda: answered(chosen) and chosen.pane.looks.is_at_rest())
-    n_looks = len(chosen.told.of(Look))
+    n_looks = len(chosen.told.of(ViewRequest))
     chosen.side.pause.click()
-    assert len(chosen.told.of(Look)) == n_looks + 1
-    assert chosen.told.of(Look)[-1].subject == TRAINING
+    assert len(chosen.told.of(ViewRequest)) == n_looks + 1
+    assert chosen.told.of(ViewRequest)[-1].subject == TRAINING
 
 
 def answered(page):
     """Answer what was asked; True."""
-    for look in page.told.of(Look):
+    for look in page.told.of(ViewRequest):
         take(page, seen(look))
     return True
 
 
 def seen(look, seconds=0.01, **more):
     lens = look.camera.intrinsics
-    return Seen(look, np.zeros((lens.height_px, lens.width_px, 3), np.uint8), seconds=seconds, **more)
+    return ViewAnswer(look, np.zeros((lens.height_px, lens.width_px, 3), np.uint8), seconds=seconds, **more)
 
 
 def test_while_the_camera_is_led_only_the_newest_wish_is_asked_for(application, chosen):
     begin(chosen)
     take(chosen, STEP)
-    looks = [look for look in chosen.told.of(Look) if look.subject == TRAINING]
+    looks = [look for look in chosen.told.of(ViewRequest) if look.subject == TRAINING]
     before = len(looks)
     for _ in range(20):
         chosen.pane.view.orbited.emit(0.05, 0.0)
-    looks = [look for look in chosen.told.of(Look) if look.subject == TRAINING]
+    looks = [look for look in chosen.told.of(ViewRequest) if look.subject == TRAINING]
     # One was on its way already; none is added until it is back.
     assert len(looks) == before
     take(chosen, seen(looks[-1], seconds=2.0, depth_m=9.0))
-    looks = [look for look in chosen.told.of(Look) if look.subject == TRAINING]
+    looks = [look for look in chosen.told.of(ViewRequest) if look.subject == TRAINING]
     assert len(looks) == before + 1
     newest = looks[-1]
     np.testing.assert_allclose(newest.camera.pose.position_enu_m, chosen.pane.camera().pose.position_enu_m)
     coarse_px = newest.camera.intrinsics.width_px
     take(chosen, seen(newest, seconds=2.0, depth_m=9.0))
-    turn_until(application, lambda: len([x for x in chosen.told.of(Look) if x.subject == TRAINING]) > before + 1)
-    fine = chosen.told.of(Look)[-1]
+    turn_until(application, lambda: len([x for x in chosen.told.of(ViewRequest) if x.subject == TRAINING]) > before + 1)
+    fine = chosen.told.of(ViewRequest)[-1]
     assert fine.camera.intrinsics.width_px > 2 * coarse_px
     np.testing.assert_array_equal(fine.camera.pose.cam_from_enu, newest.camera.pose.cam_from_enu)
 
@@ -308,20 +308,20 @@ def test_while_the_camera_is_led_only_the_newest_wish_is_asked_for(application, 
 def test_a_look_that_another_window_has_replaced_is_asked_for_again(chosen):
     begin(chosen)
     take(chosen, STEP)
-    lost = next(look for look in reversed(chosen.told.of(Look)) if look.place == "left")
-    n_looks = len(chosen.told.of(Look))
+    lost = next(look for look in reversed(chosen.told.of(ViewRequest)) if look.place == "left")
+    n_looks = len(chosen.told.of(ViewRequest))
     take(chosen, seen(replace(lost, number=lost.number - 1)))
-    assert len(chosen.told.of(Look)) == n_looks
+    assert len(chosen.told.of(ViewRequest)) == n_looks
     take(chosen, seen(replace(lost, number=lost.number + 1000)))
-    again = chosen.told.of(Look)[-1]
+    again = chosen.told.of(ViewRequest)[-1]
     assert (again.place, again.subject) == ("left", TRAINING)
-    assert len(chosen.told.of(Look)) == n_looks + 1
+    assert len(chosen.told.of(ViewRequest)) == n_looks + 1
 
 
 def test_an_answer_to_an_older_view_of_something_else_is_not_shown(chosen):
     begin(chosen)
     take(chosen, STEP)
-    old = next(look for look in reversed(chosen.told.of(Look)) if look.subject == TRAINING)
+    old = next(look for look in reversed(chosen.told.of(ViewRequest)) if look.subject == TRAINING)
     chosen.controller.training.stepped = None
     chosen.controller.phase = type(chosen.controller.phase).IDLE
     chosen.pane.offer_models()
@@ -335,7 +335,7 @@ def test_the_photo_is_beside_the_model_from_its_own_place_only(chosen):
     pane = chosen.pane
     pane.bar.setValue("", "picture", "photo")
     for place in ("left", "right"):
-        look = next(each for each in reversed(chosen.told.of(Look)) if each.place == place)
+        look = next(each for each in reversed(chosen.told.of(ViewRequest)) if each.place == place)
         take(chosen, seen(look))
     assert all(picture is not None for picture in pane.view.pictures())
     assert not pane.line.isHidden()
@@ -346,7 +346,7 @@ def test_the_photo_is_beside_the_model_from_its_own_place_only(chosen):
     pane.view.moved.emit(0.1, 0.0, 0.0)
     assert pane.view.pictures()[1] is None
     assert "0 goes back" in pane.view.note()
-    pane.view.homeAsked.emit()
+    pane.view.homeRequested.emit()
     assert "0 goes back" not in pane.view.note()
 
 
@@ -363,8 +363,8 @@ def test_finished_models_of_the_data_set_are_compared(application, chosen, tmp_p
     bar.setValue(str(tmp_path / "one"), "normals", str(tmp_path / "two"))
     for place in ("left", "right"):
         # What was on its way before is for nothing now.
-        take(chosen, seen(next(each for each in reversed(chosen.told.of(Look)) if each.place == place)))
-    looks = chosen.told.of(Look)
+        take(chosen, seen(next(each for each in reversed(chosen.told.of(ViewRequest)) if each.place == place)))
+    looks = chosen.told.of(ViewRequest)
     assert {look.place: look.subject.folder for look in looks[-2:]} == {
         "left": tmp_path / "one",
         "right": tmp_path / "two",
@@ -373,7 +373,7 @@ def test_finished_models_of_the_data_set_are_compared(application, chosen, tmp_p
     assert chosen.pane.view._words == ("one (2DGS)", "two (2DGS)")
     assert chosen.told.of(WatchErrors)[-1].subject == Subject("model", tmp_path / "one")
     look = next(each for each in reversed(looks) if each.place == "left")
-    take(chosen, Seen(look, None, problem=f"{tmp_path / 'one'}: holds no finished model"))
+    take(chosen, ViewAnswer(look, None, problem=f"{tmp_path / 'one'}: holds no finished model"))
     assert "holds no finished model" in chosen.pane.view.note()
 
 

@@ -14,7 +14,6 @@ from PySide6.QtWidgets import QApplication
 
 from groundstation.gui.charts.axes import Line, LinesPlot
 from groundstation.gui.reconstruct.choice_side import ChoiceForm
-from groundstation.gui.reconstruct.looks import image_of, layer_names
 from groundstation.gui.reconstruct.model_view import (
     FASTER,
     FLIGHT_MS,
@@ -25,12 +24,13 @@ from groundstation.gui.reconstruct.model_view import (
     STEP_WHEEL,
     TURN_RAD_KEY,
     TURN_RAD_PX,
-    LedCamera,
+    GuidedCamera,
     ModelView,
     flight,
 )
 from groundstation.gui.reconstruct.progress_page import ProgressPage
-from groundstation.gui.widgets.photo_strip import SIDE_PX, SmallPictures
+from groundstation.gui.reconstruct.view_pictures import image_of, layer_names
+from groundstation.gui.widgets.photo_strip import SIDE_PX, Thumbnails
 from groundstation.services.reconstruct.choices import TrainChoice
 from groundstation.services.reconstruct.curves import ThinCurve
 from reconstruction.base.cameras import Intrinsics, Pose, PosedPhoto
@@ -48,7 +48,7 @@ def view(application):
     view.turned.connect(lambda *way: view.heard.append(("turned", *way)))
     view.moved.connect(lambda *way: view.heard.append(("moved", *way)))
     view.flown.connect(lambda *way: view.heard.append(("flown", *way)))
-    view.homeAsked.connect(lambda: view.heard.append(("home",)))
+    view.homeRequested.connect(lambda: view.heard.append(("home",)))
     yield view
     view.hide()
 
@@ -127,7 +127,7 @@ def test_flight_is_as_fast_in_every_direction_and_never_leaps(held, seconds, is_
 
 
 def test_what_is_flown_to_stays_as_far_away(view):
-    led = LedCamera(view)
+    led = GuidedCamera(view)
     lens = Intrinsics(640, 480, 500.0, 500.0, 320.0, 240.0)
     led.camera, led.distance_m = PosedPhoto("a", Path("a"), lens, Pose(np.zeros(3), np.eye(3))), 10.0
     view.flown.emit(0.1, 0.2, 0.3)
@@ -289,7 +289,7 @@ def test_small_pictures_are_decoded_beside_the_window_and_damaged_ones_are_none(
     good, bad = tmp_path / "good.png", tmp_path / "bad.png"
     cv2.imwrite(str(good), np.full((600, 800, 3), (0, 0, 255), np.uint8))
     bad.write_bytes(b"no picture")
-    store, ready = SmallPictures(), []
+    store, ready = Thumbnails(), []
     store.ready.connect(ready.append)
     assert store.picture(good, 800) is None
     assert store.picture(bad, 800) is None

@@ -245,11 +245,11 @@ def test_names_are_changed_in_one_step_and_taken_ones_refused(opened):
 @pytest.mark.slow
 def test_last_facade_can_be_removed_from_a_building_only(opened):
     hands = opened("single-panel")
-    hands.tab.left.tree.removeAsked.emit(Item(ItemKind.FACADE, "A"))
+    hands.tab.left.tree.removeRequested.emit(Item(ItemKind.FACADE, "A"))
     assert "needs at least one panel" in hands.messages[-1].text
     assert hands.site.n_panels == 1
     hands = opened("roof")
-    hands.tab.left.tree.removeAsked.emit(Item(ItemKind.FACADE, "A"))
+    hands.tab.left.tree.removeRequested.emit(Item(ItemKind.FACADE, "A"))
     assert hands.site.facades == ()
     hands.context.session.undo()
     assert hands.site.n_panels == 32

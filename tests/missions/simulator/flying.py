@@ -116,7 +116,7 @@ def fly(airframe: Multirotor, plan: Plan, sortie: Sortie, step_s: float = 0.1) -
         # The believed place also holds what gusts do: arrived is where the wind alone could keep it off.
         near_m = 0.01 if airframe.wind_enu_m_s == (0.0, 0.0, 0.0) else 1.0
         for _ in range(100_000):
-            if math.dist(airframe.believed.position_enu_m, goal.position_enu_m) <= near_m:
+            if math.dist(airframe.estimate.position_enu_m, goal.position_enu_m) <= near_m:
                 break
             airframe.step(step_s, goal)
             flown_s += step_s

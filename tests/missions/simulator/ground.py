@@ -61,7 +61,7 @@ class PointMass:
             )  # fmt: skip
         return self._pose
 
-    believed = truth
+    estimate = truth
 
     @property
     def battery(self) -> Battery:

@@ -231,7 +231,7 @@ class Swaying(PointMass):
         sway, rate = 0.25 * math.sin(angle), 0.4 * math.cos(angle)
         return replace(pose, position_enu_m=(x + sway, y, z), velocity_enu_m_s=(vx + rate, vy, vz))
 
-    believed = truth
+    estimate = truth
 
 
 @pytest.mark.slow

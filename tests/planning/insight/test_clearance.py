@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from planning.insight.clearance import MAX_SAMPLES, route_clearance
-from planning.insight.things import things_of
+from planning.insight.obstructions import obstructions_of
 from planning.plan import Sortie
 from planning.site.free_space import unchecked_space
 from tests.planning.insight.cases import plan, scene
@@ -14,7 +14,7 @@ from tests.planning.plan_cases import dense_points, distances, kiosk, solid_tria
 
 MODEL = kiosk()
 SPACE = unchecked_space(MODEL, 5.0)
-THINGS = things_of(MODEL, SPACE)
+THINGS = obstructions_of(MODEL, SPACE)
 
 
 def along(*points, spacing_m=0.5):
@@ -91,7 +91,7 @@ def test_legs_into_the_building_and_the_no_fly_volume_have_negative_clearance():
 def test_sites_without_no_fly_volumes_have_no_clearance_from_them():
     bare = scene("single-panel")
     space = unchecked_space(bare, 5.0)
-    found = route_clearance(plan("single-panel").sorties[0], space, things_of(bare, space))
+    found = route_clearance(plan("single-panel").sorties[0], space, obstructions_of(bare, space))
     assert found.no_fly is None
     assert found.solids.smallest_m >= 5.0 - 1e-4
 

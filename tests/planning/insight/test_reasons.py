@@ -12,8 +12,8 @@ from planning.coverage.positions import hemisphere_direction
 from planning.coverage.reach_kernel import REACHABLE, UNREACHABLE
 from planning.coverage.reachability import elevation_range_rad, find_reachable
 from planning.coverage.sections import sections_of
+from planning.insight.obstructions import Obstruction
 from planning.insight.reasons import BrokenRule, Rule, section_reasons
-from planning.insight.things import Thing
 from planning.parameters import Constraints
 from planning.site.bundled import SCENES
 from planning.site.free_space import SAFETY_MARGIN_M
@@ -212,7 +212,7 @@ def test_no_fly_volumes_are_named():
     site = prepare(model, CAMERA, Constraints(4.0))
     found = section_reasons(model, site)
     broken = [b for key in unreachable(site) for r in found.of(*key) for b in r.broken if b.rule is Rule.NO_FLY]
-    assert {(b.thing, b.inside) for b in broken} == {(Thing("no-fly", "east"), True)}
+    assert {(b.thing, b.inside) for b in broken} == {(Obstruction("no-fly", "east"), True)}
     for key in unreachable(site):
         for reason in found.of(*key):
             check_place(model, site, *key, reason)
@@ -231,7 +231,7 @@ def test_a_wall_in_front_of_the_panel_is_named_as_what_hides_it():
     found = section_reasons(model, replace(open_site, problem=problem, constraints=constraints))
     seen = found.of(0, 0)
     assert [str(r) for r in seen if r.broken[0].rule is Rule.HIDDEN] == ["hidden by obstacle 'wall'"]
-    assert Thing("obstacle", "wall") in {b.thing for r in seen for b in r.broken}
+    assert Obstruction("obstacle", "wall") in {b.thing for r in seen for b in r.broken}
 
 
 def test_a_gimbal_that_cannot_look_up_is_named_with_the_angle_that_is_missing():
@@ -334,14 +334,14 @@ def test_reasons_on_a_real_building_are_true_at_their_places(shared_data):
 
 
 def test_texts_say_what_is_wrong_by_how_much_and_with_what():
-    crane = Thing("obstacle", "crane")
+    crane = Obstruction("obstacle", "crane")
     texts = {
         BrokenRule(Rule.FLOOR, 1.234): "1.23 m below the lowest flight allowed",
         BrokenRule(Rule.GIMBAL_UP, 12.04): "12 degrees above what the camera sees with the gimbal at its limit",
         BrokenRule(Rule.DISTANCE, 0.5, crane): "0.5 m too close to obstacle 'crane'",
-        BrokenRule(Rule.DISTANCE, 12.0, Thing("building"), inside=True): "inside the building",
-        BrokenRule(Rule.NO_FLY, 2.0, Thing("no-fly", "road")): "2 m too close to no-fly volume 'road'",
-        BrokenRule(Rule.HIDDEN, 0.0, Thing("panel", "A-1")): "hidden by panel 'A-1'",
+        BrokenRule(Rule.DISTANCE, 12.0, Obstruction("building"), inside=True): "inside the building",
+        BrokenRule(Rule.NO_FLY, 2.0, Obstruction("no-fly", "road")): "2 m too close to no-fly volume 'road'",
+        BrokenRule(Rule.HIDDEN, 0.0, Obstruction("panel", "A-1")): "hidden by panel 'A-1'",
     }
     for broken, text in texts.items():
         assert str(broken) == text

@@ -12,7 +12,7 @@ ANALYSES = """
 from planning.insight import clearance, reason_kernel, things
 from planning.insight.clearance import route_clearance
 from planning.insight.reasons import section_reasons
-from planning.insight.things import things_of
+from planning.insight.obstructions import obstructions_of
 from planning.warm_up import compile_kernels
 from planning.site.free_space import unchecked_space
 from tests.planning.insight.cases import plan, prepared, scene
@@ -24,7 +24,7 @@ for name in ("kiosk", "canyon"):
     section_reasons(scene(name), prepared(name))
     space = unchecked_space(scene(name), 5.0)
     for sortie in plan(name).sorties:
-        route_clearance(sortie, space, things_of(scene(name), space))
+        route_clearance(sortie, space, obstructions_of(scene(name), space))
 print(warm == [1] * 4 == [len(kernel.signatures) for kernel in kernels])
 """
 

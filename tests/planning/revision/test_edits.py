@@ -18,7 +18,7 @@ from planning.motion.timing import sortie_flight_path, stopping_duration_s
 from planning.parameters import FlightRules
 from planning.plan import Plan, Sortie, Viewpoint, plan_to_json, viewpoint_arrays
 from planning.revision import Revision, add, aim_at, delete, lock, move, next_id, revise, unlock
-from planning.revision.edits import redrawn
+from planning.revision.edits import with_other_stops
 from planning.routing.roadmap import build_roadmap
 from planning.site.free_space import free_space
 from planning.viewpoints.prepare import prepare
@@ -238,7 +238,7 @@ def inserted_everywhere_s(start: Revision, new: Viewpoint) -> list[float]:
     for sortie in start.plan.sorties:
         for place in range(len(sortie.viewpoint_ids) + 1):
             ids = (*sortie.viewpoint_ids[:place], new.id, *sortie.viewpoint_ids[place:])
-            drawn = redrawn(sortie, before, ids, after, start.ways)
+            drawn = with_other_stops(sortie, before, ids, after, start.paths)
             timed = sortie_flight_path(drawn, after, start.plan.aircraft, start.plan.rules)
             assert timed is not None
             found.append(stopping_duration_s(timed[0], start.plan.aircraft, start.plan.rules) - sortie.duration_s)
@@ -369,9 +369,9 @@ def test_a_sortie_whose_path_misses_a_viewpoint_is_drawn_anew_when_one_of_its_vi
     broken = replace(plan, sorties=(replace(plan.sorties[0], path_enu_m=(HOME, (0.0, -30.0, 9.0), HOME)),))
     start = revise(broken, planned("kiosk").prepared)
     assert "path" in errors(start)
-    mended = move(start, "outside", (12.0, -20.0, 20.0), 330.0)
-    assert "path" not in errors(mended)
-    assert "leg-distance" not in errors(mended)
+    repaired_file = move(start, "outside", (12.0, -20.0, 20.0), 330.0)
+    assert "path" not in errors(repaired_file)
+    assert "leg-distance" not in errors(repaired_file)
     added = add(start, (0.0, -20.0, 12.0), 0.0, 0.0)
     assert "path" not in errors(added)
     assert_is_as_from_scratch(added)

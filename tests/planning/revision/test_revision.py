@@ -102,7 +102,7 @@ def test_only_what_changed_is_measured_again(monkeypatch: pytest.MonkeyPatch) ->
     moved = move(start, chosen.id, (x, y, z - 0.5))
     assert asked["views"] == 1
     assert 2 <= asked["legs"] <= 8
-    legs = {leg for sortie in moved.plan.sorties for leg in legs_of(sortie)} - set(start.case.measures.ways_home)
+    legs = {leg for sortie in moved.plan.sorties for leg in legs_of(sortie)} - set(start.case.measures.return_routes)
     n_places = sum(1 + max(1, math.ceil(math.dist(*leg) / SAMPLE_M)) for leg in legs)
     assert asked["ways home"] == 3 * n_places
     others = [viewpoint for viewpoint in start.plan.viewpoints if viewpoint is not chosen]

@@ -26,7 +26,7 @@ from planning.plan import Plan, Viewpoint, ViewpointArrays, viewpoint_arrays
 from planning.planner import plan_flight
 from planning.request import PlanRequest
 from planning.revision import closing_flights as closing_candidates
-from planning.revision.closing_flights import Wanted, show_all
+from planning.revision.closing_flights import ClosingTask, shortest_covering_flight
 from planning.revision.top_up import METHOD, Target, TopUp, TopUpRequest, WhyMissing, top_up
 from planning.routing.flights import draw_flights, flight_times
 from planning.site.records import NoFlyZone, SiteModel
@@ -265,8 +265,8 @@ def test_what_is_only_out_of_reach_stays_in_sight_round_after_round(monkeypatch:
     times = flight_times(problem.roadmap, views, plan.aircraft, plan.rules)
     alone_s = times.travel_s[0, 1:] + times.service_s + times.travel_s[1:, 0]
     elements = np.unique(problem.model.elements(views).items).astype(np.int64)
-    wanted = Wanted(problem, plan.aircraft, plan.rules, elements, float(np.median(alone_s)))
-    found = show_all(wanted, views)
+    task = ClosingTask(problem, plan.aircraft, plan.rules, elements, float(np.median(alone_s)))
+    found = shortest_covering_flight(task, views)
     assert len(found.shown) < len(found.in_sight) == len(elements)
 
 
@@ -454,8 +454,8 @@ def test_elements_that_are_covered_all_the_same_do_not_hold_close_views_apart() 
 def test_wanted_sections_are_counted_as_the_model_counts_them() -> None:
     problem, plan = prepared_kiosk().problem, flown_plan()
     elements = np.arange(0, problem.model.n_elements, 3)
-    wanted = Wanted(problem, plan.aircraft, plan.rules, elements, 100.0)
-    pool = wanted.pool(photos(plan))
+    task = ClosingTask(problem, plan.aircraft, plan.rules, elements, 100.0)
+    pool = task.pool(photos(plan))
     whole = problem.model.elements(photos(plan))
     for view in range(25):
         expected = [e for e in whole.of(view).tolist() if e % 3 == 0]

@@ -12,7 +12,7 @@ from planning.base.findings import Severity
 from planning.checks import check_plan
 from planning.planner import plan_flight
 from planning.request import PlanRequest
-from planning.routing.rally import clear_height_z_m, rally_findings, return_height, return_way, ways_home
+from planning.routing.rally import clear_height_z_m, rally_findings, return_height, return_route, return_routes
 from planning.site.file import is_planned_on, read_site, site_sha256, site_to_json, write_site
 from planning.site.free_space import unchecked_space
 from planning.site.records import Airspace, NoFlyZone, RallyPoint
@@ -132,13 +132,13 @@ def test_the_return_is_measured_on_the_whole_way():
     middle, top = points.mean(axis=0), points[:, 2].max()
     behind = np.array([[middle[0], middle[1] + 45.0, 5.0], [middle[0], middle[1] + 44.0, 5.0]])
     home = model.site.home_enu_m
-    through = return_way(space, behind, (home,), min(5.0, top - 0.1))
+    through = return_route(space, behind, (home,), min(5.0, top - 0.1))
     assert through.gap_m == 0.0
-    clear = return_way(space, behind, (home,), clear_height_z_m(space, DISTANCE_M))
+    clear = return_route(space, behind, (home,), clear_height_z_m(space, DISTANCE_M))
     assert clear.gap_m >= DISTANCE_M - 1e-6
     # A place to land on this side makes the way short, whatever stands on the other.
     near = (float(middle[0]), float(middle[1] + 45.0), 0.0)
-    short = return_way(space, behind, (home, near), 5.0)
+    short = return_route(space, behind, (home, near), 5.0)
     assert short.gap_m > DISTANCE_M
     assert short.n_elsewhere == short.n_places == 2
 
@@ -152,14 +152,14 @@ def test_close_to_its_destination_it_climbs_no_higher_than_the_cone():
     ceiling = NoFlyZone("lid", ((home[0] - 5, home[1] - 5), (home[0] + 5, home[1] - 5), (home[0], home[1] + 5)), 10, 20)
     lidded = replace(model, site=replace(model.site, airspace=replace(model.site.airspace, no_fly=(ceiling,))))
     space = unchecked_space(lidded, DISTANCE_M)
-    assert return_way(space, path, (high,), 15.0).crosses_no_fly
-    assert not return_way(space, path, (high,), 15.0, cone_slope=3.0).crosses_no_fly
+    assert return_route(space, path, (high,), 15.0).crosses_no_fly
+    assert not return_route(space, path, (high,), 15.0, cone_slope=3.0).crosses_no_fly
 
 
 def test_a_return_needs_a_destination():
     space = unchecked_space(kiosk(), DISTANCE_M)
     with pytest.raises(ValueError, match="home at least"):
-        return_way(space, np.zeros((2, 3)), (), 10.0)
+        return_route(space, np.zeros((2, 3)), (), 10.0)
 
 
 # The height of a return
@@ -177,7 +177,7 @@ BEHIND = np.array([[0.0, 30.0, 5.0], [4.0, 30.0, 5.0]])
 def test_a_return_stays_in_the_airspace_and_is_as_high_as_wanted_where_there_is_room(ceiling_m, distance_m):
     model = walled_off(ceiling_m)
     space = unchecked_space(model, distance_m)
-    found, (way,) = return_height(space), ways_home(space, [BEHIND])
+    found, (way,) = return_height(space), return_routes(space, [BEHIND])
     assert found.z_m <= ceiling_m + 1e-9
     assert found.above_home_m == pytest.approx(found.z_m - model.site.home_enu_m[2])
     if ceiling_m >= np.ceil(found.wanted_above_home_m):
@@ -215,9 +215,9 @@ def test_ways_home_of_legs_are_those_of_their_path_one_by_one():
     rng = np.random.default_rng(0)
     path = rng.uniform((-40.0, -40.0, 5.0), (40.0, 40.0, 25.0), (9, 3))
     legs = [path[k : k + 2] for k in range(8)]
-    found = ways_home(space, legs)
-    assert found == [ways_home(space, [leg])[0] for leg in legs]
-    (whole,) = ways_home(space, [path])
+    found = return_routes(space, legs)
+    assert found == [return_routes(space, [leg])[0] for leg in legs]
+    (whole,) = return_routes(space, [path])
     assert whole.gap_m == min(way.gap_m for way in found)
     assert whole.n_places == sum(way.n_places for way in found) - 7  # places where two legs meet
-    assert ways_home(space, []) == []
+    assert return_routes(space, []) == []

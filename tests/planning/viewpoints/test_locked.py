@@ -18,16 +18,16 @@ from planning.checks import check_plan
 from planning.coverage.evaluate import coverage_counts
 from planning.parameters import GreedyParameters
 from planning.plan import Plan, Viewpoint, ViewpointArrays, viewpoint_arrays
-from planning.planner import as_written, plan_flight, serving
+from planning.planner import as_written, first_reusable, plan_flight
 from planning.request import PlanRequest
 from planning.routing.flights import Flight
 from planning.routing.orienteering import solve_orienteering
 from planning.viewpoints.budget import best_flights, with_fewer_views
 from planning.viewpoints.candidates import Pool, candidate_pool
-from planning.viewpoints.greedy import choose_greedily, element_weights, needed
+from planning.viewpoints.greedy import choose_greedily, element_weights, necessary_views
 from planning.viewpoints.improve import improve_views, refine_views
 from planning.viewpoints.problem import concatenate, covered_by, locked_views, take
-from planning.viewpoints.spacing import apart_of
+from planning.viewpoints.spacing import spacing_rule
 from tests.planning.plan_cases import kiosk
 from tests.planning.revision.cases import NEAR, QUICK, planned, prepared
 from tests.planning.routing.test_legs import room
@@ -128,7 +128,7 @@ def test_improving_and_refining_return_the_others_only_and_never_lose() -> None:
     refined = refine_views(problem, views, weights, covered=covered)
     assert problem.model.covered_count(concatenate([locked, refined])) >= together
     elements = problem.model.elements(locked)
-    assert not needed(elements, weights, covered).any(), "the locked ones show all of it already"
+    assert not necessary_views(elements, weights, covered).any(), "the locked ones show all of it already"
 
 
 def test_what_is_written_keeps_locked_views_unrounded_and_drops_others_like_them() -> None:
@@ -149,7 +149,7 @@ def test_no_view_is_chosen_too_close_to_a_locked_one() -> None:
     views = ViewpointArrays(near, np.repeat(locked.heading_rad, 40) + 0.3, np.repeat(locked.pitch_rad, 40))
     pool = Pool(views, problem.model.elements(views))
     weights, covered = element_weights(problem.model, False), covered_by(problem.model, locked)
-    apart = apart_of(views, locked, 0.5)
+    apart = spacing_rule(views, locked, 0.5)
     chosen, _ = choose_greedily(pool, weights, 60, np.inf, Trace(), QUIET, covered, apart)
     assert len(chosen) > 0
     away_m = cdist(near[chosen], np.concatenate([locked.positions_enu_m, near[chosen]]))
@@ -245,7 +245,7 @@ def test_a_prepared_site_is_used_where_it_fits_and_refused_where_not() -> None:
     }
     others["occlusion"] = (kiosk(), replace(request, constraints=replace(NEAR, occlusion="on")))
     for what, (site, other) in others.items():
-        assert serving([ready], site, other) is None, what
+        assert first_reusable([ready], site, other) is None, what
     site, other = others["seed"]
     assert plan_flight(site, other, prepared=ready).prepared.seed == 1
 

@@ -34,7 +34,7 @@ from planning.viewpoints.greedy import greedy
 from planning.viewpoints.improve import Exchange, cover_state
 from planning.viewpoints.prepare import prepare
 from planning.viewpoints.problem import Goal, ViewProblem, take
-from planning.viewpoints.spacing import MAX_LOST, MAX_LOST_SHARE, Apart, merge_close_views
+from planning.viewpoints.spacing import MAX_LOST, MAX_LOST_SHARE, SpacingRule, merge_close_views
 from tests.planning.plan_cases import kiosk, turned_site
 
 Floats = NDArray[np.float64]
@@ -120,7 +120,7 @@ def test_the_caller_s_views_stay_as_they_are() -> None:
     np.testing.assert_array_equal(views.positions_enu_m, kept)
 
 
-def crowded(seed: int, n: int = 40, n_elements: int = 60, length: int = 60) -> tuple[Elements, Floats, Apart]:
+def crowded(seed: int, n: int = 40, n_elements: int = 60, length: int = 60) -> tuple[Elements, Floats, SpacingRule]:
     """Candidates that cover random elements, crowded on a short line, some at one place."""
     rng = np.random.default_rng(seed)
     rows = [np.flatnonzero(rng.random(n_elements) < 0.08).astype(np.int32) for _ in range(n)]
@@ -130,13 +130,13 @@ def crowded(seed: int, n: int = 40, n_elements: int = 60, length: int = 60) -> t
     return (
         elements,
         rng.integers(1, 4, n_elements).astype(float),
-        Apart(places, rng.random((2, 3)) * [6.0, 0.0, 0.0], 0.5),
+        SpacingRule(places, rng.random((2, 3)) * [6.0, 0.0, 0.0], 0.5),
     )
 
 
-def are_apart(apart: Apart, chosen: NDArray[np.int64]) -> bool:
+def are_apart(apart: SpacingRule, chosen: NDArray[np.int64]) -> bool:
     positions = apart.positions_enu_m[chosen]
-    away_m = cdist(positions, np.concatenate([positions, apart.taken_enu_m]))
+    away_m = cdist(positions, np.concatenate([positions, apart.present_enu_m]))
     return bool((away_m[away_m > 0.0] >= apart.spacing_m).all())
 
 
@@ -170,7 +170,7 @@ def test_room_is_made_where_greedy_leaves_none() -> None:
     n_greedy, n_room = 0, 0
     for seed in range(40):
         elements, weights, apart = crowded(seed, n=12, n_elements=30, length=24)
-        apart = apart._replace(taken_enu_m=np.zeros((0, 3)))
+        apart = apart._replace(present_enu_m=np.zeros((0, 3)))
         choices = itertools.chain.from_iterable(itertools.combinations(range(12), k) for k in range(1, 13))
         best = max(
             float(weights[np.unique(np.concatenate([elements.of(c) for c in choice]))].sum())

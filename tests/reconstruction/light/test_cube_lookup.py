@@ -5,7 +5,7 @@ import itertools
 import pytest
 import torch
 
-from reconstruction.light.cube_lookup import FACES, Levels, averaged, looked_up_twin, texel_directions
+from reconstruction.light.cube_lookup import FACES, Levels, averaged, looked_up_reference, texel_directions
 
 SIDES = (8, 4, 2)
 
@@ -30,7 +30,7 @@ def test_the_kernel_gives_what_plain_torch_gives_in_double_precision(channels):
     fast = [rays(4000), levels, texels(channels)]
     slow = [each.double() for each in fast]
     fast, slow = ([each.clone().requires_grad_() for each in group] for group in (fast, slow))
-    found, truth = where.look_up(*fast), looked_up_twin(*slow, where)
+    found, truth = where.look_up(*fast), looked_up_reference(*slow, where)
     assert float((found - truth).detach().abs().max()) < 5e-6
     (found * given).sum().backward()
     (truth * given.double()).sum().backward()
@@ -47,7 +47,7 @@ def test_gradients_are_those_of_finite_differences():
     levels = torch.tensor([0.3, 0.2, 0.7, 0.6], dtype=torch.float64).requires_grad_()
     asked = rays(4, seed=6, dtype=torch.float64).requires_grad_()
     table = random(where.n_texels, 2, dtype=torch.float64).requires_grad_()
-    assert torch.autograd.gradcheck(lambda *each: looked_up_twin(*each, where), (asked, levels, table))
+    assert torch.autograd.gradcheck(lambda *each: looked_up_reference(*each, where), (asked, levels, table))
 
 
 def test_there_is_no_seam_across_edges_and_in_corners():
@@ -64,7 +64,7 @@ def test_there_is_no_seam_across_edges_and_in_corners():
         levels = torch.full((len(asked),), level)
         for found in (
             where.look_up(asked.float(), levels, table),
-            looked_up_twin(asked, levels.double(), table.double(), where),
+            looked_up_reference(asked, levels.double(), table.double(), where),
         ):
             spread = found.reshape(len(edges), len(around), 3)
             assert float((spread.amax(dim=1) - spread.amin(dim=1)).max()) < 1e-4
@@ -93,7 +93,7 @@ def test_a_single_level_is_asked_at_any_roughness():
     table = random(where.n_texels, 3)
     asked, levels = rays(5), torch.tensor([0.0, 0.4, 1.0, 7.0, -2.0], requires_grad=True)
     fast = where.look_up(asked, levels, table)
-    assert torch.allclose(fast, looked_up_twin(asked, levels, table, where), atol=1e-6)
+    assert torch.allclose(fast, looked_up_reference(asked, levels, table, where), atol=1e-6)
     assert torch.equal(torch.autograd.grad(fast.sum(), levels)[0], torch.zeros(5))
 
 

@@ -5,7 +5,7 @@ import math
 import pytest
 import torch
 
-from reconstruction.light.environment_map import EnvironmentMap, looked_up_twin, turns_and_rows
+from reconstruction.light.environment_map import EnvironmentMap, looked_up_reference, turns_and_rows
 
 UP_DOWN = torch.tensor([[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]])
 
@@ -85,7 +85,7 @@ def test_the_kernel_gives_what_plain_torch_gives_in_double_precision():
     found, truth = filled(), filled().double()
     fast_rays, slow_rays = rays.clone().requires_grad_(), rays.double().requires_grad_()
     fast = found(fast_rays, fast_rays)
-    slow = torch.sigmoid(truth.mean + looked_up_twin(slow_rays, list(truth.levels)))
+    slow = torch.sigmoid(truth.mean + looked_up_reference(slow_rays, list(truth.levels)))
     (fast * given).sum().backward()
     (slow * given).sum().backward()
     # 2e-6 was measured: of 32 columns, float32 knows a heading to 2e-6.

@@ -12,7 +12,7 @@ from planning.base.progress import QUIET
 from reconstruction.light import light_training
 from reconstruction.light.config import PAPER_STAGES, GlassLearned, GridSettings, ReflectionConfig
 from reconstruction.light.glass_rays import glass_rays
-from reconstruction.light.light_training import LEAST_BATCH, MOST_HALVINGS, Keeping, LightTraining, on_device
+from reconstruction.light.light_training import LEAST_BATCH, MOST_HALVINGS, CheckpointSettings, LightTraining, on_device
 from reconstruction.light.losses import ray_errors, ray_loss
 from reconstruction.light.photo_set import read_photo_set
 from reconstruction.light.radiance_grid import RadianceGrid
@@ -80,12 +80,12 @@ def assert_same(one, other):
 @pytest.mark.parametrize(("model", "n"), [*((model, 6) for model in MODELS), ("radiance-grid", 1), ("mlp", 0)])
 def test_interrupted_it_goes_on_bit_by_bit(photos, tmp_path, model, n):
     whole = learned(photos, model)
-    keeping = Keeping(lambda state: write_checkpoint(tmp_path / "c", state))
+    keeping = CheckpointSettings(lambda state: write_checkpoint(tmp_path / "c", state))
     with pytest.raises(OperationCancelled):
         learned(photos, model, keeping, Cancelling(n))
     state = read_checkpoint(tmp_path / "c")
     assert state["progress"]["step"] == n
-    again = learned(photos, model, Keeping(keeping.write, before=state))
+    again = learned(photos, model, CheckpointSettings(keeping.write, before=state))
     assert_same(whole.panels, again.panels)
     assert again.n_steps == whole.n_steps == 12
     assert [point.value for point in again.history] == [point.value for point in whole.history]
@@ -95,10 +95,12 @@ def test_interrupted_it_goes_on_bit_by_bit(photos, tmp_path, model, n):
 def test_its_seconds_and_its_limit_go_on_too(photos):
     config = replace(CONFIG, time_limit_s=9.0)
     ticks, kept = itertools.count(), []
-    first = training(photos, config=config, keeping=Keeping(kept.append), clock=lambda: next(ticks))
+    first = training(photos, config=config, keeping=CheckpointSettings(kept.append), clock=lambda: next(ticks))
     with pytest.raises(OperationCancelled):
         first.run(None, 1, Cancelling(4))
-    second = training(photos, config=config, keeping=Keeping(kept.append, 2.0, kept[0]), clock=lambda: next(ticks))
+    second = training(
+        photos, config=config, keeping=CheckpointSettings(kept.append, 2.0, kept[0]), clock=lambda: next(ticks)
+    )
     assert second.at.spent_s == 4.0
     second.run(None, 1)
     assert second.at.step == 9
@@ -154,7 +156,7 @@ def test_weights_that_are_no_numbers_are_taken_from_the_last_good_state(photos, 
 
 def test_a_state_that_is_no_good_is_not_kept(photos):
     kept = []
-    one = training(photos, "mlp", keeping=Keeping(kept.append))
+    one = training(photos, "mlp", keeping=CheckpointSettings(kept.append))
     one.step()
     with torch.no_grad():
         one.panels.light.light.last.bias[0] = math.nan

@@ -17,7 +17,7 @@ from reconstruction.panels.search.record import FacadeGrid, FoundPanel, GridLine
 from reconstruction.panels.search.views import WholePicture
 from reconstruction.scenes.facades.cases import wide_camera
 from reconstruction.scenes.facades.record import Layout
-from reconstruction.scenes.facades.render import make_facade
+from reconstruction.scenes.facades.render import render_facade
 from tests.reconstruction.made_photos import simple_case
 
 coordinates = st.floats(-20.0, 60.0, allow_subnormal=False)
@@ -99,7 +99,7 @@ def test_region_runs_through_under_a_brace_and_ends_at_an_inclined_edge() -> Non
 @pytest.mark.few(1)
 @pytest.mark.parametrize("shift_px", [0.0, 0.5, 2.0])
 def test_true_corners_score_nearly_one_and_shifted_ones_less(shift_px: float) -> None:
-    made = make_facade(simple_case(Layout(6, 9), intrinsics=wide_camera(800, 600), oblique_deg=15.0))
+    made = render_facade(simple_case(Layout(6, 9), intrinsics=wide_camera(800, 600), oblique_deg=15.0))
     found = index_image([panel.corners_px + shift_px for panel in made.panels], 800, 600)
     scores = score_overlaps("", pixel_overlaps(made.index, found))
     sides_px = [np.ptp(panel.corners_px, axis=0) for panel in made.panels]

@@ -13,10 +13,10 @@ import pytest
 from planning.base.errors import InfeasibleError, InputError, OperationCancelled
 from planning.base.progress import QUIET
 from reconstruction.metrics.run import Answer, masks_method, own_method, score_answer, score_set
-from reconstruction.metrics.sets import MADE_SETS, PhotoSet, ScoredPhoto, made_set, scored, surface_of
+from reconstruction.metrics.sets import SYNTHETIC_SETS, PhotoSet, ScoredPhoto, scored, surface_of, synthetic_set
 from reconstruction.scenes.facades.cases import random_case, wide_camera
 from reconstruction.scenes.facades.record import Layout, Wall
-from reconstruction.scenes.facades.render import make_facade
+from reconstruction.scenes.facades.render import render_facade
 from tests.reconstruction.made_photos import simple_case
 
 SMALL = wide_camera(400, 300)
@@ -28,7 +28,7 @@ def perfect(photo: ScoredPhoto, _monitor: object) -> Answer:
 
 @pytest.fixture(scope="module")
 def planar() -> PhotoSet:
-    photos = [scored(make_facade(random_case("planar", seed, SMALL))) for seed in range(3)]
+    photos = [scored(render_facade(random_case("planar", seed, SMALL))) for seed in range(3)]
     return PhotoSet("made-planar", tuple(photo.name for photo in photos), lambda: iter(photos))
 
 
@@ -94,7 +94,7 @@ def test_cancelling_ends_scoring(planar: PhotoSet) -> None:
 
 @pytest.mark.slow
 def test_own_method_answers_in_the_size_of_the_photo_and_counts_its_time() -> None:
-    made = make_facade(simple_case(Layout(4, 6), intrinsics=wide_camera(800, 600)))
+    made = render_facade(simple_case(Layout(4, 6), intrinsics=wide_camera(800, 600)))
     ticks: Iterator[float] = iter((10.0, 12.5))
     answer = own_method(clock=lambda: next(ticks))(scored(made), QUIET)
     assert answer.seconds == 2.5
@@ -112,7 +112,7 @@ def test_surface_and_view_of_a_made_facade_fit_its_truth(curvature: float) -> No
     s, h = np.linspace(-6.0, 6.0, 7), np.linspace(0.0, 9.0, 7)
     np.testing.assert_allclose(surface.to_enu(np.column_stack([s, h])), wall.points_enu_m(s, h), atol=1e-9)
     np.testing.assert_allclose(surface.normals_at(np.column_stack([s, h])), wall.outward_enu(s), atol=1e-9)
-    made = make_facade(case)
+    made = render_facade(case)
     (view,) = scored(made).views
     for panel in made.panels:
         rectified = view.to_rectified(panel.corners_px)
@@ -123,7 +123,7 @@ def test_surface_and_view_of_a_made_facade_fit_its_truth(curvature: float) -> No
 
 
 def test_view_holds_the_facade_and_little_else_unless_its_extent_is_unknown() -> None:
-    made = make_facade(random_case("planar", 2, SMALL))
+    made = render_facade(random_case("planar", 2, SMALL))
     corners = np.concatenate([panel.corners_px for panel in made.panels])
     shares = []
     for margin_m in (0.5, 2.0, None):
@@ -138,8 +138,8 @@ def test_view_holds_the_facade_and_little_else_unless_its_extent_is_unknown() ->
 
 @pytest.mark.slow
 def test_made_sets_are_made_when_asked_for() -> None:
-    for name, shape in MADE_SETS.items():
-        photos = made_set(name, 10_000, SMALL)
+    for name, shape in SYNTHETIC_SETS.items():
+        photos = synthetic_set(name, 10_000, SMALL)
         first = next(photos.photos())
         assert first.name == photos.photo_names[0] == f"{shape}-000"
         assert first.image.shape == (300, 400, 3)

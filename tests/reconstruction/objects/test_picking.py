@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from groundstation.services.scenes.photos import photograph_files
+from groundstation.services.scenes.photos import render_photos
 from reconstruction.base.cameras import Intrinsics, Pose, PosedPhoto
 from reconstruction.light.photo_set import read_photo_set
 from reconstruction.objects.picking import Quads, picked, rays_of
@@ -101,7 +101,7 @@ def test_no_panel_and_points_for_panels_are_no_trouble(corners):
 @pytest.mark.slow
 @pytest.mark.parametrize("scene", ["planar", "curved"])
 def test_of_the_glass_of_made_photos_next_to_every_pixel_is_picked_right(tmp_path, scene):
-    photograph_files(SceneRequest(scene, n_square=2, width_px=160, n_points=0), tmp_path / scene, 1)
+    render_photos(SceneRequest(scene, n_square=2, width_px=160, n_points=0), tmp_path / scene, 1)
     source = read_photo_set(tmp_path / scene)
     quads = Quads.of(source.panels.corners_enu_m)
     n_right = n_glass = 0

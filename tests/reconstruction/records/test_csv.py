@@ -11,12 +11,12 @@ from hypothesis import strategies as st
 from planning.base.errors import InputError
 from reconstruction.records.csv import (
     TableError,
-    guarded,
+    escaped_formula,
     kind_of_table,
     number_cell,
     read_number,
     read_tables,
-    unguarded,
+    unescaped_formula,
     write_tables,
 )
 from reconstruction.records.entries import KIND_NAMED, KINDS, Attribute, Defect, Inspection
@@ -82,9 +82,9 @@ def test_no_cell_can_be_taken_for_a_formula(tmp_path_factory, found):
 
 @given(texts)
 def test_guards_come_off_again_and_other_texts_keep_their_apostrophes(text):
-    assert unguarded(guarded(text)) == text
-    assert guarded(guarded(text)) != text or guarded(text) == text
-    assert guarded("'t Hooft") == unguarded("'t Hooft") == "'t Hooft"
+    assert unescaped_formula(escaped_formula(text)) == text
+    assert escaped_formula(escaped_formula(text)) != text or escaped_formula(text) == text
+    assert escaped_formula("'t Hooft") == unescaped_formula("'t Hooft") == "'t Hooft"
 
 
 @given(numbers, st.booleans())

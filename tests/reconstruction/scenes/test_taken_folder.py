@@ -23,7 +23,7 @@ from reconstruction.photos.poses import pose_photos
 from reconstruction.scenes.parameters import DISTORTION, EXPOSURE, GIMBAL_ERROR, MOTION_BLUR, RenderSettings
 from reconstruction.scenes.photos.camera_model import CameraModel, GimbalErrors, Moment, PositionErrors, bent_lens
 from reconstruction.scenes.record import Scene
-from reconstruction.scenes.runs.photo_folder import ScenePhotos, photograph
+from reconstruction.scenes.runs.photo_folder import ScenePhotos, render_photo_folder
 from reconstruction.scenes.runs.photo_job import PhotoJob
 from reconstruction.scenes.world.build import build_scene
 from reconstruction.scenes.world.look import Look
@@ -60,7 +60,7 @@ def taken_job(scene: Scene, folder: Path, lens: Intrinsics = LENS, **changes: An
 def written(scene: Scene, tmp_path_factory: pytest.TempPathFactory) -> ScenePhotos:
     """A finished run; tests must not change it."""
     folder = tmp_path_factory.mktemp("taken") / "photos"
-    return photograph(taken_job(scene, folder), folder, 1)
+    return render_photo_folder(taken_job(scene, folder), folder, 1)
 
 
 def record_of(folder: Path) -> dict[str, Any]:
@@ -138,7 +138,7 @@ def test_each_photo_has_its_own_exposure_in_thirds_of_a_stop(written: ScenePhoto
 def test_what_is_off_leaves_no_trace(scene: Scene, tmp_path: Path) -> None:
     effects = dict.fromkeys((DISTORTION, EXPOSURE, MOTION_BLUR), "off")
     folder = tmp_path / "off"
-    photos = photograph(taken_job(scene, folder, settings=RenderSettings(effects=effects)), folder, 1).photos
+    photos = render_photo_folder(taken_job(scene, folder, settings=RenderSettings(effects=effects)), folder, 1).photos
     record = record_of(folder)
     assert all(photo.intrinsics.is_straight for photo in photos)
     assert record["camera"]["distortion"] == [0.0] * 5
@@ -151,8 +151,8 @@ def test_what_is_off_leaves_no_trace(scene: Scene, tmp_path: Path) -> None:
 def test_another_way_of_taking_is_another_run(scene: Scene, written: ScenePhotos) -> None:
     other = replace(CAMERA_MODEL, sensor=replace(CAMERA_MODEL.sensor, gain=2.0))
     with pytest.raises(InputError, match=r"taking\.sensor\.gain is 1\.0 there, and 2\.0 was asked for"):
-        photograph(taken_job(scene, written.folder, camera_model=other), written.folder, 1)
-    again = photograph(taken_job(scene, written.folder), written.folder, 1)
+        render_photo_folder(taken_job(scene, written.folder, camera_model=other), written.folder, 1)
+    again = render_photo_folder(taken_job(scene, written.folder), written.folder, 1)
     assert again.n_kept == len(again.photos)
 
 

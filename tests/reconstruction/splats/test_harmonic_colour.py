@@ -7,7 +7,7 @@ from reconstruction.light.shading import display_from_linear
 from reconstruction.splats.harmonic_colour import (
     AT_ONCE,
     display_colours,
-    display_colours_twin,
+    display_colours_reference,
     flat_harmonics,
     light_of_display,
     seen_light,
@@ -27,7 +27,7 @@ def random_case(n, dtype=torch.float32):
 def test_the_kernel_gives_what_plain_torch_gives_in_double_precision(degree):
     means, sh, given = random_case(300)
     slow_means, slow_sh = (value.detach().double().requires_grad_() for value in (means, sh))
-    fast, slow = display_colours(means, sh, EYE, degree), display_colours_twin(slow_means, slow_sh, EYE, degree)
+    fast, slow = display_colours(means, sh, EYE, degree), display_colours_reference(slow_means, slow_sh, EYE, degree)
     assert torch.allclose(fast.double(), slow, atol=1e-5)
     of_means, of_sh = torch.autograd.grad(fast, (means, sh), given)
     slow_of_means, slow_of_sh = torch.autograd.grad(slow, (slow_means, slow_sh), given.double())
@@ -62,7 +62,7 @@ def test_light_by_the_kernel_has_no_step_where_its_curve_changes():
 
 def test_gradients_of_the_twin_are_those_of_differences():
     means, sh, _ = random_case(4, torch.float64)
-    assert torch.autograd.gradcheck(lambda a, b: display_colours_twin(a, b, EYE, 3), (means, sh))
+    assert torch.autograd.gradcheck(lambda a, b: display_colours_reference(a, b, EYE, 3), (means, sh))
 
 
 def test_harmonics_that_are_not_used_yet_get_no_gradient():

@@ -2,7 +2,7 @@ import pytest
 import torch
 from torch.nn.functional import normalize
 
-from reconstruction.splats.sky import BRIGHTEST, Sky, behind_twin
+from reconstruction.splats.sky import BRIGHTEST, Sky, behind_reference
 
 
 def directions(*shape, seed=0):
@@ -71,7 +71,7 @@ def test_the_kernel_gives_what_plain_torch_gives_in_double_precision():
     fast_gradients = torch.autograd.grad(fast, [alphas, *sky.parameters()], given)
     slow_sky = textured().double()
     slow_alphas = alphas.detach().double().requires_grad_()
-    slow = behind_twin(slow_sky.picture(), rays.double(), slow_alphas)
+    slow = behind_reference(slow_sky.picture(), rays.double(), slow_alphas)
     slow_gradients = torch.autograd.grad(slow, [slow_alphas, *slow_sky.parameters()], given.double())
     assert torch.allclose(fast.double(), slow, atol=2e-5)
     for one, other in zip(fast_gradients, slow_gradients, strict=True):

@@ -10,7 +10,7 @@ from reconstruction.colmap.record import ColmapModel, ColmapPoints
 from reconstruction.dataset.records import coloured_ply
 from reconstruction.light.photo_set import PanelPlanes, PhotoSet
 from reconstruction.splats.ply import write_blocks
-from reconstruction.splats.surfels import KnownScene, begun_on_points, known_scene, points_alone, read_points
+from reconstruction.splats.surfels import KnownScene, known_scene, points_only, read_points, scene_of_points
 
 XYZ = np.array([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]])
 RGB = np.array([[10, 20, 30], [40, 50, 60]], np.uint8)
@@ -80,7 +80,7 @@ def test_a_start_at_points_leaves_out_what_photogrammetry_does_not_find(knows_pa
     on_glass, on_frame, behind = (0.5, 0.1, 0.5), (1.1, 0.0, 0.5), (0.5, 4.0, 0.5)
     mesh = from_corners(np.ones((1, 3, 3)))
     points, rgb = np.array([on_glass, on_frame, behind]), np.arange(9, dtype=np.uint8).reshape(3, 3)
-    found = points_alone(KnownScene(PANEL, mesh, points, rgb, 0.0), Path("here"), knows_panels=knows_panels)
+    found = points_only(KnownScene(PANEL, mesh, points, rgb, 0.0), Path("here"), knows_panels=knows_panels)
     assert found.points_enu_m.tolist() == [list(on_frame), list(behind)]
     assert np.array_equal(found.rgb, rgb[1:])
     assert (len(found.corners_enu_m), len(found.mesh.triangles), found.ground_z_m) == (int(knows_panels), 0, None)
@@ -90,7 +90,7 @@ def test_a_start_at_points_leaves_out_what_photogrammetry_does_not_find(knows_pa
 def test_a_start_at_points_needs_some_away_from_glass(points):
     scene = KnownScene(PANEL, from_corners(np.ones((1, 3, 3))), points, np.zeros((len(points), 3), np.uint8), 0.0)
     with pytest.raises(InputError, match=f"here: of {len(points)} points of photogrammetry none is away from glass"):
-        points_alone(scene, Path("here"), knows_panels=True)
+        points_only(scene, Path("here"), knows_panels=True)
 
 
 CAMERAS = np.array([[2.0, -10.0, 1.6], [8.0, -10.0, 1.6]])
@@ -109,7 +109,7 @@ def wall_with_niche(share, n=2000, panels=PANEL[:0]):
 
 
 def test_splats_begin_on_points_where_these_do_not_lie_on_the_mesh():
-    scene, decision = begun_on_points(wall_with_niche(0.6), CAMERAS)
+    scene, decision = scene_of_points(wall_with_niche(0.6), CAMERAS)
     assert decision.on
     assert decision.size == pytest.approx(0.6, abs=0.03)
     assert len(scene.mesh.triangles) == 0
@@ -121,10 +121,10 @@ def test_splats_begin_on_points_where_these_do_not_lie_on_the_mesh():
 @pytest.mark.parametrize(("share", "n"), [(0.1, 2000), (0.6, 300)])
 def test_a_mesh_that_points_lie_on_is_kept_and_one_that_few_contradict(share, n):
     given = wall_with_niche(share, n)
-    scene, decision = begun_on_points(given, CAMERAS)
+    scene, decision = scene_of_points(given, CAMERAS)
     assert not decision.on
     assert scene is given
-    asked, decision = begun_on_points(given, CAMERAS, "on")
+    asked, decision = scene_of_points(given, CAMERAS, "on")
     assert decision.on
     assert decision.decided_by == "user"
     assert len(asked.mesh.triangles) == 0
@@ -132,13 +132,13 @@ def test_a_mesh_that_points_lie_on_is_kept_and_one_that_few_contradict(share, n)
 
 def test_where_glass_is_known_its_mesh_hides_mirror_images():
     given = wall_with_niche(0.6, panels=PANEL)
-    assert begun_on_points(given, CAMERAS, "on") == (given, None)
+    assert scene_of_points(given, CAMERAS, "on") == (given, None)
     alone = KnownScene(PANEL[:0], from_corners(np.zeros((0, 3, 3))), given.points_enu_m, given.rgb)
-    assert begun_on_points(alone, CAMERAS) == (alone, None)
+    assert scene_of_points(alone, CAMERAS) == (alone, None)
 
 
 def test_an_asked_for_mesh_is_begun_on_whatever_points_say():
     given = wall_with_niche(0.9)
-    scene, decision = begun_on_points(given, CAMERAS, "off")
+    scene, decision = scene_of_points(given, CAMERAS, "off")
     assert scene is given
     assert not decision.on

@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
 from reconstruction.splats.surfels import (
-    beside_panels,
+    panel_proximity,
     panel_surfels,
     plane_normals,
     spacings_of,
@@ -70,7 +70,7 @@ def test_no_points_are_thinned_to_none():
 
 def test_points_on_glass_are_told_from_those_on_frames():
     points = np.array([[5.5, 0.0, 1.0], [5.5, -0.2, 1.0], [5.5, -0.4, 1.0], [6.05, 0.0, 1.0], [9.0, 0.0, 0.0]])
-    found = beside_panels(points, CORNERS, within_m=0.3, reach_m=1.0)
+    found = panel_proximity(points, CORNERS, within_m=0.3, reach_m=1.0)
     assert found.panels.tolist() == [1, 1, -1, -1, -1]
     assert found.gaps_m[3] == pytest.approx(0.05)
     assert np.allclose(np.abs(found.edges_enu[3]), [0, 0, 1])
@@ -78,14 +78,14 @@ def test_points_on_glass_are_told_from_those_on_frames():
 
 
 def test_without_panels_nothing_is_glass():
-    found = beside_panels(np.zeros((2, 3)), np.zeros((0, 4, 3)), 0.3, 1.0)
+    found = panel_proximity(np.zeros((2, 3)), np.zeros((0, 4, 3)), 0.3, 1.0)
     assert found.panels.tolist() == [-1, -1]
     assert np.isinf(found.gaps_m).all()
 
 
 def test_surfels_of_frames_lie_along_the_glass_and_end_there():
     points, normals = np.array([[6.05, 0.0, 1.0], [8.0, 0.0, 1.0]]), np.array([[0.0, -1.0, 0.0]] * 2)
-    beside = beside_panels(points, CORNERS, 0.3, 1.0)
+    beside = panel_proximity(points, CORNERS, 0.3, 1.0)
     found = surfels_between(points, normals, np.array([0.4, 0.4]), beside.gaps_m, beside.edges_enu)
     assert np.allclose(np.abs(found.tangents_enu[0]), [0, 0, 1])
     assert found.spacings_m[0] == pytest.approx([0.4, 0.1])
@@ -97,7 +97,7 @@ def test_surfels_of_frames_lie_along_the_glass_and_end_there():
 def test_the_side_of_a_frame_has_tangents_too():
     # The normal of the frame's side is across the edge beside it; that of its end is the edge itself.
     points, normals = np.array([[6.05, 0.0, 1.0]] * 2), np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
-    beside = beside_panels(points, CORNERS, 0.3, 1.0)
+    beside = panel_proximity(points, CORNERS, 0.3, 1.0)
     found = surfels_between(points, normals, np.full(2, 0.4), beside.gaps_m, beside.edges_enu)
     assert np.allclose((found.tangents_enu * normals).sum(axis=1), 0.0)
     assert np.allclose(np.linalg.norm(found.tangents_enu, axis=1), 1.0)

@@ -6,19 +6,19 @@ import cv2
 import numpy as np
 import pytest
 
-from reconstruction.metrics.sets import PhotoSet, made_set, scored
+from reconstruction.metrics.sets import PhotoSet, scored, synthetic_set
 from reconstruction.panels.search.grid import Axes, Rows, posterior
 from reconstruction.panels.search.parameters import SegmentationParameters
 from reconstruction.scenes.facades.cases import wide_camera
 from reconstruction.scenes.facades.record import Layout
-from reconstruction.scenes.facades.render import make_facade
+from reconstruction.scenes.facades.render import render_facade
 from reconstruction.tradeoff.search_tradeoff import SegmentVariants, run_variants, variant_rows, variants_panel
 from tests.reconstruction.made_photos import simple_case
 
 
 @pytest.mark.slow
 def test_every_setting_is_scored_on_the_same_photos_and_drawn_a_line_a_knob() -> None:
-    photo = scored(make_facade(simple_case(Layout(4, 6), intrinsics=wide_camera(480, 360))))
+    photo = scored(render_facade(simple_case(Layout(4, 6), intrinsics=wide_camera(480, 360))))
     photos = PhotoSet("one", (photo.name,), lambda: iter([photo]))
     base = SegmentationParameters(long_side_px=480)
     runs = run_variants(photos, base, SegmentVariants((240, 480), (16,), ("lsd",)))
@@ -55,7 +55,7 @@ def test_values_that_no_knob_takes_are_refused() -> None:
 @pytest.mark.slow
 def test_more_samples_of_a_row_take_the_posterior_and_change_what_is_compared() -> None:
     """Without the posterior no rows are compared, and the knob would turn nothing."""
-    photo = scored(make_facade(simple_case(Layout(4, 6), intrinsics=wide_camera(640, 480))))
+    photo = scored(render_facade(simple_case(Layout(4, 6), intrinsics=wide_camera(640, 480))))
     photos = PhotoSet("one", (photo.name,), lambda: iter([photo]))
     base = SegmentationParameters(long_side_px=640)
     runs = run_variants(photos, base, SegmentVariants((), (16, 0)))
@@ -69,7 +69,7 @@ def test_more_samples_of_a_row_take_the_posterior_and_change_what_is_compared() 
 
 @pytest.mark.slow
 def test_photos_searched_together_and_other_rectifications_are_knobs_of_made_sets() -> None:
-    photos = made_set("made-curved", 1, wide_camera(640, 480), n_beside=1)
+    photos = synthetic_set("made-curved", 1, wide_camera(640, 480), n_beside=1)
     base = SegmentationParameters(long_side_px=640)
     variants = SegmentVariants((), (), n_views=(2,), view_kinds=("exact", "polynomial"))
     runs = run_variants(photos, base, variants)

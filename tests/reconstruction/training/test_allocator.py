@@ -4,14 +4,14 @@ import sys
 
 import pytest
 
-from reconstruction.training.train import freed_memory_kept
+from reconstruction.training.train import freed_memory_retained
 
 HAS_GNU_LIBRARY = sys.platform == "linux" and hasattr(ctypes.CDLL(None), "gnu_get_libc_version")
 
 COUNTED = """
 import resource
 import numpy as np
-from reconstruction.training.train import freed_memory_kept
+from reconstruction.training.train import freed_memory_retained
 
 def new_pages():
     before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
@@ -24,7 +24,7 @@ def used_kb():
     return int(next(line for line in open('/proc/self/status') if line.startswith('VmRSS')).split()[1])
 
 print(new_pages())
-with freed_memory_kept():
+with freed_memory_retained():
     new_pages()
     print(new_pages())
     within_kb = used_kb()
@@ -43,11 +43,11 @@ def test_steps_get_no_new_pages_within_and_memory_goes_back_at_the_end():
 
 
 def test_what_goes_wrong_within_comes_out():
-    with pytest.raises(ValueError, match="wrong"), freed_memory_kept():
+    with pytest.raises(ValueError, match="wrong"), freed_memory_retained():
         raise ValueError("wrong")
 
 
 def test_elsewhere_nothing_is_done(monkeypatch):
     monkeypatch.setattr(sys, "platform", "win32")
-    with freed_memory_kept():
+    with freed_memory_retained():
         assert sum([1, 2]) == 3

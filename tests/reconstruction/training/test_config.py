@@ -9,7 +9,7 @@ from planning.base.errors import InputError
 from reconstruction.training.config import LossWeights, Rates, TrainConfig, config_of
 from reconstruction.training.method_registry import METHODS
 from reconstruction.training.parameters import LIGHTS, PRESETS, TrainRequest
-from reconstruction.training.presets import as_asked, preset
+from reconstruction.training.presets import preset, with_request
 
 HERE = Path("settings.toml")
 
@@ -79,10 +79,10 @@ def test_presets_take_longer_one_after_the_other():
 
 
 def test_asking_for_steps_takes_the_time_limit_away_and_shortens_what_goes_before():
-    config = as_asked(preset("10min"), TrainRequest(iterations=100, seed=7))
+    config = with_request(preset("10min"), TrainRequest(iterations=100, seed=7))
     assert (config.iterations, config.time_limit_s, config.seed) == (100, None, 7)
     assert config.reflections.steps < preset("10min").reflections.steps
-    both = as_asked(preset("10min"), TrainRequest(iterations=100, time_limit_s=5.0))
+    both = with_request(preset("10min"), TrainRequest(iterations=100, time_limit_s=5.0))
     assert (both.iterations, both.time_limit_s) == (100, 5.0)
 
 

@@ -335,10 +335,10 @@ def test_looks_and_files_count_for_the_time_limit_and_have_time_in_the_end(make,
 def test_held_out_views_in_full_have_time_in_the_end(make, monkeypatch):
     trainer, _ = timed(make, monkeypatch, 100.0, look_s=2.0)
     shown_px = trainer.shown[0].sample.facade.numel()
-    assert trainer.last_look_s() == 0.0
+    assert trainer.final_scoring_s() == 0.0
     trainer._last_px = 2 * shown_px
     trainer.run(Callbacks())
-    assert trainer.last_look_s() == 4.0
+    assert trainer.final_scoring_s() == 4.0
     assert trainer.at.spent_s == 100.0 - 4.0
     again, _ = timed(make, monkeypatch, 100.0, look_s=2.0)
     again._last_px = 50 * shown_px

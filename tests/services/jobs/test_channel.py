@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from groundstation.services.jobs.channel import Lost, Process
+from groundstation.services.jobs.channel import Process, ProcessEnded
 
 PARENT = f"""
 import sys
@@ -66,7 +66,7 @@ def test_messages_come_back_in_their_order_until_the_process_ends_with_its_statu
     for message in (1, b"x" * 300_000, None):
         assert process.send(message)
     assert process.send(("return", 7))
-    assert [heard.get(timeout=60.0) for _ in range(4)] == [1, b"x" * 300_000, None, Lost(7)]
+    assert [heard.get(timeout=60.0) for _ in range(4)] == [1, b"x" * 300_000, None, ProcessEnded(7)]
     assert not process.is_running
     assert not process.send("nobody reads this")
     process.end()
@@ -87,8 +87,8 @@ def test_a_process_is_as_nice_as_it_is_asked_to_be(heard) -> None:
     process = Process(__name__, heard.put, niceness=5)
     process.send("niceness")
     assert heard.get(timeout=60.0) == min(19, os.nice(0) + 5)
-    process.let_go()
-    assert heard.get(timeout=60.0) == Lost(0), "who is let go ends by itself"
+    process.close_input()
+    assert heard.get(timeout=60.0) == ProcessEnded(0), "who is let go ends by itself"
 
 
 def test_a_process_ends_with_the_one_that_started_it(tmp_path) -> None:

@@ -10,7 +10,7 @@ import pytest
 
 from groundstation.services.jobs.runner import JobProgress, JobRunner, JobState
 from groundstation.services.jobs.worker import Worker
-from groundstation.services.plan.planning import plan_document_site, reunited
+from groundstation.services.plan.planning import plan_document_site, with_local_site
 from planning.base.errors import GroundStationError, InfeasibleError, OperationCancelled
 from planning.base.progress import QUIET, StopRequest, Trace, never
 from planning.parameters import GreedyParameters
@@ -117,11 +117,11 @@ def test_the_work_is_done_in_one_other_process(worker):
 def test_a_plan_is_the_one_that_is_made_here(worker, scene):
     model, request = scene(), PlanRequest(n_views=2, greedy=GreedyParameters(n_candidates=400), time_budget_s=600.0)
     here = plan_document_site(model, request)
-    there = reunited(worker.run(plan_document_site, model, request), model, None)
+    there = with_local_site(worker.run(plan_document_site, model, request), model, None)
     assert there.plan.viewpoints == here.plan.viewpoints
     assert there.plan.sorties == here.plan.sorties
     assert there.prepared.site_model is model
-    again = reunited(worker.run(plan_document_site, model, request, there.prepared), model, there.prepared)
+    again = with_local_site(worker.run(plan_document_site, model, request, there.prepared), model, there.prepared)
     assert again.prepared is there.prepared
     assert again.plan.viewpoints == here.plan.viewpoints
 

@@ -116,8 +116,8 @@ def test_two_exports_of_one_plan_share_it_out_alike(planned, monkeypatch):
     plan, model = planned
     monkeypatch.setattr("missions.mavlink.items.photos_that_fit", lambda _autopilot: 5)
     n_shared = []
-    real = mission_files.share_out_anew
-    monkeypatch.setattr(mission_files, "share_out_anew", lambda *a: n_shared.append(1) or real(*a))
+    real = mission_files.resplit_sorties
+    monkeypatch.setattr(mission_files, "resplit_sorties", lambda *a: n_shared.append(1) or real(*a))
     first = prepare_export(plan, model, FileFormat.MAVLINK_PLAN)
     amsl = ExportOptions(height_reference=HeightReference.AMSL)
     second = prepare_export(plan, model, FileFormat.MAVLINK_PLAN, amsl)

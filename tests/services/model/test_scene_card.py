@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from groundstation.services.model.facility_records import book_of_scene, keep_objects, object_rows
+from groundstation.services.model.facility_records import book_of_scene, object_rows, update_objects
 from groundstation.services.model.scene_card import PanelRow, is_model, is_scene, read_card, scenes_beside, view_of
 from planning.base.errors import InputError
 from reconstruction.objects.gs_scene import GsElement
@@ -141,7 +141,7 @@ def test_records_know_the_objects_of_the_scene_they_lie_beside(folder):
         assert book.origin == read_card(folder).origin
     gone = read_card(folder).panels[-1].global_id
     write_scene(made_scene(((3, 0, 5), ())), folder)
-    keep_objects(folder, "test")
+    update_objects(folder, "test")
     with book_of_scene(folder, "test") as book:
         assert not book.is_present(gone)
         assert gone in {row.global_id for row in book.objects(with_absent=True)}

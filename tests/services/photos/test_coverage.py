@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from groundstation.services.photos.intake import PhotoCoverage, counted_again, panel_ids, photo_coverage, take_in_photos
+from groundstation.services.photos.intake import PhotoCoverage, panel_ids, photo_coverage, photo_intake, recounted
 from planning.aircraft.catalogue import profile
 from planning.coverage.sections import NOT_SEEN
 from planning.insight.sections import SectionState
@@ -116,8 +116,8 @@ def test_coverage_counted_again_is_that_of_reading_again(folder):
     panels = (facade.panels[0], replace(facade.panels[0], id="X-2", corners_enu_m=moved))
     site = replace(one.site, facades=(Facade("X", panels),))
     two = replace(one, site=site, sha256=site_sha256(site))
-    first = take_in_photos(folder, one)
-    again, anew = counted_again(first, two, None), take_in_photos(folder, two)
+    first = photo_intake(folder, one)
+    again, anew = recounted(first, two, None), photo_intake(folder, two)
     assert (again.coverage.counts == anew.coverage.counts).all()
     assert again.findings == anew.findings
     assert photo_coverage(again, two.site).panel_ids == ("X-1", "X-2")
@@ -129,9 +129,9 @@ def test_a_site_without_panels_has_no_coverage_until_it_gets_some(folder):
     one = site_model()
     site = replace(one.site, facades=())
     bare = replace(one, site=site, sha256=site_sha256(site))
-    intake = take_in_photos(folder, bare)
+    intake = photo_intake(folder, bare)
     assert photo_coverage(intake, bare.site) is None
-    again = counted_again(intake, one, None)
-    anew = take_in_photos(folder, one)
+    again = recounted(intake, one, None)
+    anew = photo_intake(folder, one)
     assert again.findings == anew.findings
     assert (again.coverage.counts == anew.coverage.counts).all()

@@ -15,7 +15,7 @@ from groundstation.services.photos.grid_edits import (
     remove_line,
     set_panel,
 )
-from groundstation.services.photos.intake import PhotoMark, card_of_place, photo_cards, take_in_photos
+from groundstation.services.photos.intake import PhotoMark, card_of_place, photo_cards, photo_intake
 from planning.base.errors import InfeasibleError, InputError
 from planning.geo.mesh import empty_mesh
 from tests.reconstruction.panels.solving.test_solve import COLUMNS, ROWS
@@ -171,7 +171,7 @@ def test_cards_tell_what_is_wrong_with_each_photo(tmp_path):
     content = paths[1].read_bytes()
     paths[1].write_bytes(content[: len(content) // 2])
     (tmp_path / "none.jpg").write_bytes(b"no picture")
-    intake = take_in_photos(tmp_path, site_model())
+    intake = photo_intake(tmp_path, site_model())
     cards = photo_cards(intake)
     assert [card.path for card in cards] == paths
     assert {PhotoMark.UNREADABLE, PhotoMark.CUT_OFF} <= set(cards[1].marks)

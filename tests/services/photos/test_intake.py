@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from groundstation.services.photos.intake import NO_PANELS, counted_again, intake_summary, take_in_photos
+from groundstation.services.photos.intake import NO_PANELS, intake_summary, photo_intake, recounted
 from planning.aircraft.catalogue import profile
 from planning.base.errors import InfeasibleError, InputError
 from planning.parameters import Constraints
@@ -39,20 +39,20 @@ def test_photos_count_alike_where_home_suits_no_flight(folder, home_enu_m, why):
     moved = replace(model, site=replace(model.site, home_enu_m=home_enu_m))
     with pytest.raises(InfeasibleError, match=why):
         prepare(moved, profile("m3e").camera, Constraints())
-    there, here = take_in_photos(folder, moved), take_in_photos(folder, model)
+    there, here = photo_intake(folder, moved), photo_intake(folder, model)
     assert here.coverage.covered > 0
     np.testing.assert_array_equal(there.coverage.counts, here.coverage.counts)
 
 
 def test_photos_of_a_site_without_panels_are_read_and_counted_once_it_has_some(folder):
-    intake, direct = take_in_photos(folder, bare()), take_in_photos(folder, site_model())
+    intake, direct = photo_intake(folder, bare()), photo_intake(folder, site_model())
     assert (intake.coverage, intake.occlusion) == (None, None)
     assert len(intake.photos) == sum(intake.usable) == 3
     assert [finding.code for finding in intake.findings if finding.code == NO_PANELS] == [NO_PANELS]
     assert "covered" not in intake_summary(intake)
     with pytest.raises(InputError, match="has no panels yet"):
-        counted_again(intake, bare(), None)
-    counted = counted_again(intake, site_model(), None)
+        recounted(intake, bare(), None)
+    counted = recounted(intake, site_model(), None)
     np.testing.assert_array_equal(counted.coverage.counts, direct.coverage.counts)
     assert NO_PANELS not in {finding.code for finding in counted.findings}
     assert intake_summary(counted)["covered"] == direct.coverage.covered

@@ -9,9 +9,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from groundstation.services.photos.found_panels import repose
-from groundstation.services.photos.intake import take_in_photos, with_poses
-from groundstation.services.photos.poses import LENS_UNKNOWN, BetterPoses, RefineRequest, better_poses, still_true
+from groundstation.services.photos.found_panels import apply_poses
+from groundstation.services.photos.intake import photo_intake, with_poses
+from groundstation.services.photos.poses import (
+    LENS_UNKNOWN,
+    ChosenPoses,
+    RefineRequest,
+    choose_poses,
+    findings_that_hold,
+)
 from planning.base.errors import InputError
 from planning.base.findings import Finding, Severity
 from planning.photos.folder import read_photos
@@ -61,14 +67,14 @@ def kept(flight, tmp_path):
 
 def test_photos_keep_their_own_poses_where_nothing_else_is_wished_for(flight):
     folder, posed = flight
-    found = better_poses(posed, folder)
+    found = choose_poses(posed, folder)
     assert (found.photos, found.findings, found.refined) == (posed.photos, (), None)
 
 
 def test_refined_poses_that_were_kept_are_taken_without_colmap(flight, kept, monkeypatch):
     monkeypatch.setitem(sys.modules, "pycolmap", None)
     folder, posed = flight
-    found = better_poses(posed, folder, refine=RefineRequest(kept))
+    found = choose_poses(posed, folder, refine=RefineRequest(kept))
     assert [photo.name for photo in found.photos] == [photo.name for photo in posed.photos]
     assert found.photos[2] is posed.photos[2]
     np.testing.assert_allclose(found.photos[0].pose.covariance, GOOD)
@@ -85,8 +91,8 @@ def test_refined_poses_that_were_kept_are_taken_without_colmap(flight, kept, mon
 
 def test_a_colmap_model_that_was_kept_counts_as_refined(flight, kept):
     folder, posed = flight
-    by_model = better_poses(posed, folder, kept)
-    by_wish = better_poses(posed, folder, refine=RefineRequest(kept))
+    by_model = choose_poses(posed, folder, kept)
+    by_wish = choose_poses(posed, folder, refine=RefineRequest(kept))
     for one, other in zip(by_model.photos, by_wish.photos, strict=True):
         np.testing.assert_array_equal(one.pose.position_enu_m, other.pose.position_enu_m)
 
@@ -94,7 +100,7 @@ def test_a_colmap_model_that_was_kept_counts_as_refined(flight, kept):
 def test_of_any_other_model_photos_that_are_not_in_it_are_left_out(flight, tmp_path):
     folder, posed = flight
     write_model(tmp_path / "model", model_of(posed.photos))
-    found = better_poses(posed, folder, tmp_path / "model")
+    found = choose_poses(posed, folder, tmp_path / "model")
     assert found.refined is None
     for one, other in zip(found.photos, posed.photos, strict=True):
         np.testing.assert_allclose(one.pose.position_enu_m, other.pose.position_enu_m, atol=1e-6)
@@ -106,24 +112,24 @@ def test_of_any_other_model_photos_that_are_not_in_it_are_left_out(flight, tmp_p
 @pytest.mark.parametrize("size", [None, 1600])
 def test_a_kept_refinement_of_the_size_wished_for_is_taken(flight, kept, size):
     folder, posed = flight
-    assert better_poses(posed, folder, refine=RefineRequest(kept, size)).refined.was_kept
+    assert choose_poses(posed, folder, refine=RefineRequest(kept, size)).refined.was_kept
 
 
 def test_another_size_or_other_photos_are_computed_and_pycolmap_missing_is_said(flight, kept, monkeypatch):
     monkeypatch.setitem(sys.modules, "pycolmap", None)
     folder, posed = flight
     with pytest.raises(InputError, match=r"pip install 'reflight-groundstation\[colmap\]'"):
-        better_poses(posed, folder, refine=RefineRequest(kept, 800))
+        choose_poses(posed, folder, refine=RefineRequest(kept, 800))
     fewer = replace(posed, photos=posed.photos[:2])
     with pytest.raises(InputError, match=r"pip install 'reflight-groundstation\[colmap\]'"):
-        better_poses(fewer, folder, refine=RefineRequest(kept))
+        choose_poses(fewer, folder, refine=RefineRequest(kept))
 
 
 def test_a_damaged_folder_says_what_to_remove(flight, kept):
     folder, posed = flight
     (kept / "images.bin").write_bytes(b"\x01")
     with pytest.raises(InputError, match="remove the folder"):
-        better_poses(posed, folder, refine=RefineRequest(kept))
+        choose_poses(posed, folder, refine=RefineRequest(kept))
 
 
 def test_refined_poses_lie_beside_the_photos_unless_a_folder_is_named(tmp_path):
@@ -138,17 +144,17 @@ def test_refined_poses_lie_beside_the_photos_unless_a_folder_is_named(tmp_path):
 def test_other_poses_change_coverage_and_findings_and_the_way_back_leads_where_it_began(flight, kept):
     folder, posed = flight
     model = site_model()
-    before = take_in_photos(folder, model)
-    refined = with_poses(before, better_poses(posed, folder, refine=RefineRequest(kept)), model, None)
+    before = photo_intake(folder, model)
+    refined = with_poses(before, choose_poses(posed, folder, refine=RefineRequest(kept)), model, None)
     assert refined.photos[0].pose.heading_deg != before.photos[0].pose.heading_deg
     assert "poses-refined" in {finding.code for finding in refined.findings}
     assert refined.quality is before.quality  # no picture is looked at again
-    back = with_poses(refined, BetterPoses(refined.posed.photos), model, None)
+    back = with_poses(refined, ChosenPoses(refined.posed.photos), model, None)
     assert back.photos == before.photos
     assert sorted(back.findings, key=str) == sorted(before.findings, key=str)
     np.testing.assert_array_equal(back.coverage.counts, before.coverage.counts)
     with pytest.raises(ValueError, match="same photos"):
-        with_poses(before, BetterPoses(before.photos[:1]), model, None)
+        with_poses(before, ChosenPoses(before.photos[:1]), model, None)
 
 
 def test_a_model_that_says_its_frame_is_taken_as_it_is(flight, tmp_path):
@@ -156,7 +162,7 @@ def test_a_model_that_says_its_frame_is_taken_as_it_is(flight, tmp_path):
     moved = [turned(photo, np.array([7.0, 0.0, 0.0]), TURN_RAD) for photo in posed.photos]
     write_model(tmp_path / "sparse", model_of(moved), "txt")
     write_frame(tmp_path / "sparse", Frame(0.3, 0.2))
-    found = better_poses(posed, folder, tmp_path / "sparse")
+    found = choose_poses(posed, folder, tmp_path / "sparse")
     for photo, meant in zip(found.photos, moved, strict=True):
         np.testing.assert_allclose(photo.pose.position_enu_m, meant.pose.position_enu_m, atol=1e-9)
         assert photo.pose.covariance[0, 0] == pytest.approx(0.09)
@@ -168,30 +174,30 @@ def test_photos_that_say_nothing_get_the_poses_of_a_model(flight, tmp_path):
     for path in folder.iterdir():
         save(plain / path.name, plain_jpeg((800, 600)))
     write_model(tmp_path / "sparse", model_of(posed.photos))
-    intake = take_in_photos(plain, site_model(), colmap=tmp_path / "sparse")
+    intake = photo_intake(plain, site_model(), colmap=tmp_path / "sparse")
     assert [photo.name for photo in intake.photos] == sorted(photo.name for photo in posed.photos)
     assert {finding.code for finding in intake.findings} >= {"model-as-it-is"}
     other = tmp_path / "other"
     save(other / "else.jpg", plain_jpeg())
     with pytest.raises(InputError, match="is a photo in"):
-        take_in_photos(other, site_model(), colmap=tmp_path / "sparse")
+        photo_intake(other, site_model(), colmap=tmp_path / "sparse")
 
 
 def test_lenses_that_were_refined_are_no_longer_called_unknown(flight, tmp_path):
     folder, posed = flight
     said = (Finding(Severity.NOTE, LENS_UNKNOWN, "bent lines"), Finding(Severity.NOTE, "height-reference", "heights"))
-    assert still_true(said, better_poses(posed, folder)) == said
+    assert findings_that_hold(said, choose_poses(posed, folder)) == said
     for left_out, left in ((0, said[1:]), (1, said)):
         where = tmp_path / f"kept-{left_out}"
         write_refined(where, refinement(posed.photos, left_out), posed.photos, RefineParameters())
-        assert still_true(said, better_poses(posed, folder, refine=RefineRequest(where))) == left
+        assert findings_that_hold(said, choose_poses(posed, folder, refine=RefineRequest(where))) == left
 
 
 @pytest.mark.slow
 def test_panels_that_were_found_are_solved_with_the_new_poses_and_keep_their_corrections(flight):
     folder, _ = flight
     model = site_model()
-    intake = take_in_photos(folder, model)
+    intake = photo_intake(folder, model)
     draft = with_paths(draft_of(), [photo.path for photo in intake.photos])
     named = tuple(replace(photo, name=own.name) for photo, own in zip(draft.photos, intake.photos, strict=True))
     draft = replace(draft, photos=named)
@@ -199,7 +205,7 @@ def test_panels_that_were_found_are_solved_with_the_new_poses_and_keep_their_cor
         replace(photo, name=own.name, path=own.path, pose=replace(photo.pose, covariance=GOOD))
         for photo, own in zip(true_photos(), intake.photos, strict=True)
     )
-    found = repose(intake, draft, BetterPoses(true), model, None)
+    found = apply_poses(intake, draft, ChosenPoses(true), model, None)
     assert found.intake.photos == true
     assert not found.draft.unsolved
     assert found.draft.found.grids is draft.found.grids
@@ -208,4 +214,4 @@ def test_panels_that_were_found_are_solved_with_the_new_poses_and_keep_their_cor
     # Better poses make better corners.
     usual = [np.median([np.trace(p.covariance_m2[0]) for p in d.facade("A").panels]) for d in (draft, found.draft)]
     assert usual[1] < 0.5 * usual[0]
-    assert repose(intake, None, BetterPoses(true), model, None).draft is None
+    assert apply_poses(intake, None, ChosenPoses(true), model, None).draft is None

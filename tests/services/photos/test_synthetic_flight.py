@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from groundstation.services.photos.grid_edits import panel_outlines
-from groundstation.services.photos.intake import photo_coverage, take_in_photos
-from groundstation.services.photos.synthetic_flight import DIRECTIONS_DEG, write_made_flight
+from groundstation.services.photos.intake import photo_coverage, photo_intake
+from groundstation.services.photos.synthetic_flight import DIRECTIONS_DEG, write_synthetic_flight
 from planning.base.findings import Severity
 from planning.site.file import read_site
 from planning.site.records import panel_corners
@@ -13,9 +13,9 @@ from planning.site.records import panel_corners
 
 @pytest.mark.slow
 def test_photos_are_read_and_show_every_panel_from_several_sides(tmp_path):
-    site, photos = write_made_flight(tmp_path)
+    site, photos = write_synthetic_flight(tmp_path)
     model = read_site(site)
-    intake = take_in_photos(photos, model)
+    intake = photo_intake(photos, model)
     assert len(intake.photos) == sum(intake.usable) == len(DIRECTIONS_DEG)
     assert all(finding.severity in (Severity.OK, Severity.NOTE) for finding in intake.findings)
     coverage = photo_coverage(intake, model.site)

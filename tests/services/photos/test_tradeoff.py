@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from groundstation.services.photos.found_panels import PanelDraft, search_panels, solved_draft
-from groundstation.services.photos.intake import take_in_photos
+from groundstation.services.photos.intake import photo_intake
 from groundstation.services.photos.tradeoff import corner_sigma_m, facade_trials
 from tests.reconstruction.made_photos import coarse_model, made_photos, write_flight
 from tests.services.photo_cases import draft_of, site_model
@@ -18,7 +18,7 @@ def test_more_photos_cost_time_and_bring_accuracy(tmp_path):
     made = made_photos()
     write_flight(tmp_path, made)
     model = replace(site_model(), building=coarse_model(made[0].case.wall))
-    intake = take_in_photos(tmp_path, site_model())
+    intake = photo_intake(tmp_path, site_model())
     draft = search_panels(intake.photos, intake.metadata, model)
     assert isinstance(draft, PanelDraft)
     n_truth = len(made[0].panels)

@@ -9,8 +9,8 @@ from groundstation.services.plan.comparison import (
     compare,
     compare_files,
     comparison_summary,
+    distinct_titles,
     marked_as_best,
-    told_apart,
 )
 from groundstation.services.project.document import PlanEntry
 from planning.base.errors import InputError
@@ -105,7 +105,7 @@ def entries(*titles_and_methods):
     ],
 )
 def test_plans_of_the_same_title_are_told_apart(plans, names):
-    assert told_apart(entries(*plans)) == names
+    assert distinct_titles(entries(*plans)) == names
 
 
 @pytest.mark.parametrize(

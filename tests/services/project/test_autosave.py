@@ -27,9 +27,9 @@ from groundstation.services.project.recovery import (
     discard_recovery,
     find_recovery,
     find_unsaved,
-    give_up_place,
+    lock_unsaved_folder,
     recover,
-    unsaved_place,
+    remove_unsaved_folder,
 )
 from planning.base.errors import InputError
 from planning.request import PlanRequest
@@ -227,7 +227,7 @@ def test_work_is_found_although_its_project_is_damaged(project):
 
 
 def test_work_that_never_had_a_project_is_found_when_its_window_is_gone(data):
-    place = unsaved_place()
+    place = lock_unsaved_folder()
     assert data in place.folder.parents
     work = Document(SITES["roof"]).with_plan(PlanEntry("x", "X", plan()))
     keeper = autosave(place.folder)
@@ -241,8 +241,8 @@ def test_work_that_never_had_a_project_is_found_when_its_window_is_gone(data):
     discard_recovery(found)
     assert find_unsaved() == ()
     assert not place.folder.exists()
-    place = unsaved_place()
-    give_up_place(place)
+    place = lock_unsaved_folder()
+    remove_unsaved_folder(place)
     assert not place.folder.exists()
 
 
@@ -250,7 +250,7 @@ def test_a_place_that_cannot_be_made_is_told(data):
     data.parent.mkdir()
     data.write_text("a file")
     with pytest.raises(InputError, match="cannot be written"):
-        unsaved_place()
+        lock_unsaved_folder()
 
 
 def test_of_many_documents_that_wait_only_the_last_is_written(project, monkeypatch):

@@ -10,7 +10,7 @@ import signal
 import numpy as np
 import pytest
 
-from groundstation.services.jobs.channel import Lost
+from groundstation.services.jobs.channel import ProcessEnded
 from groundstation.services.reconstruct.folders import (
     CHECKPOINT,
     MODEL,
@@ -21,19 +21,19 @@ from groundstation.services.reconstruct.folders import (
 )
 from groundstation.services.reconstruct.guided_camera import sized
 from groundstation.services.reconstruct.messages import (
-    BreakOff,
+    CancelTraining,
     Devices,
     Ended,
-    Look,
     Measured,
     ModelProcess,
     Pause,
     PhotoError,
-    Seen,
     Stepped,
     Stop,
     Subject,
     Train,
+    ViewAnswer,
+    ViewRequest,
     WatchErrors,
 )
 from planning.base.errors import InputError
@@ -61,7 +61,7 @@ class Heard:
         while True:
             message = self.messages.get(timeout=PATIENCE_S)
             self.kept.append(message)
-            assert not isinstance(message, Lost) or kind is Lost, message
+            assert not isinstance(message, ProcessEnded) or kind is ProcessEnded, message
             if isinstance(message, Ended) and kind is not Ended:
                 raise AssertionError(message)
             if isinstance(message, kind) and condition(message):
@@ -70,8 +70,8 @@ class Heard:
     def seen(self, subject, photo, layer="picture", width_px=40):
         self.n_looks += 1
         camera = sized(photo, width_px, width_px)
-        self.send(Look("left", self.n_looks, subject, camera, layer, photo.name))
-        return self.until(Seen, lambda seen: seen.look.number == self.n_looks)
+        self.send(ViewRequest("left", self.n_looks, subject, camera, layer, photo.name))
+        return self.until(ViewAnswer, lambda seen: seen.look.number == self.n_looks)
 
 
 @pytest.fixture(scope="module")
@@ -143,7 +143,7 @@ def test_broken_off_it_can_be_gone_on_with(heard, card, asked, tmp_path):
     out = tmp_path / "model"
     heard.send(Train(card.folder, out, asked))
     reached = heard.until(Stepped, lambda stepped: stepped.step > 3)
-    heard.send(BreakOff())
+    heard.send(CancelTraining())
     assert heard.until(Ended).outcome == "kept"
     assert standing(out).is_interrupted
     heard.send(Train(card.folder, out, asked, resume=True))
@@ -178,7 +178,7 @@ def test_a_process_that_is_ended_is_told_and_another_one_takes_its_place(heard, 
     photo = card.source.photos[0]
     heard.seen(Subject("photo", card.folder, photo.name), photo)
     heard.process._process._child.send_signal(signal.SIGKILL)
-    assert heard.until(Lost).status == -signal.SIGKILL
+    assert heard.until(ProcessEnded).status == -signal.SIGKILL
     assert heard.seen(Subject("photo", card.folder, photo.name), photo).picture is not None
 
 
@@ -191,5 +191,5 @@ def test_when_the_window_has_gone_a_training_keeps_its_state_and_the_process_end
     heard.process.close()
     assert process.wait(PATIENCE_S) == 0
     assert standing(out).is_interrupted
-    heard.send(BreakOff())
+    heard.send(CancelTraining())
     assert not heard.process.is_running

@@ -9,7 +9,7 @@ import pytest
 import torch
 
 from groundstation.services.model.objects import organise_files
-from groundstation.services.reconstruct.messages import Look, Probe, Section, Subject
+from groundstation.services.reconstruct.messages import Probe, Section, Subject, ViewRequest
 from groundstation.services.reconstruct.render_queue import TINT_SHARE, RenderQueue, ShownModels
 from reconstruction.light.config import ReflectionConfig
 from reconstruction.light.photo_set import read_photo_set
@@ -49,7 +49,7 @@ def darkroom():
 
 
 def look(folder, camera, **more):
-    return Look("left", 1, Subject("model", folder), camera, **more)
+    return ViewRequest("left", 1, Subject("model", folder), camera, **more)
 
 
 def camera(folders):

@@ -12,7 +12,7 @@ from groundstation.services.scenes.preview import (
     OF_FILES,
     QUICK_S,
     PhotoRequest,
-    kept_photo,
+    cached_photo,
     quick_width_px,
     site_key,
     site_photo,
@@ -83,16 +83,16 @@ def test_a_scene_is_built_once_and_only_the_last_one_is_kept(monkeypatch):
     monkeypatch.setattr(build, "build_scene", lambda *given: built.append(given[1:]) or build_scene(*given))
     model = office()
     request = request_for(model, is_quick=True, width_px=32)
-    assert kept_photo(request) is None
+    assert cached_photo(request) is None
     first = site_photo(model, request)
-    again = kept_photo(replace(request, view=replace(VIEW, heading_deg=5.0)))
+    again = cached_photo(replace(request, view=replace(VIEW, heading_deg=5.0)))
     assert len(built) == 1
     assert (first.picture != again.picture).any()
     for other in (replace(request, look=replace(ALONE, sun_heading_deg=90.0)), replace(request, seed=1)):
-        assert kept_photo(other) is None
+        assert cached_photo(other) is None
     site_photo(model, replace(request, seed=1))
     assert built == [(ALONE, 0), (ALONE, 1)]
-    assert kept_photo(request) is None
+    assert cached_photo(request) is None
 
 
 @pytest.mark.slow
@@ -114,9 +114,9 @@ def test_rendering_ends_soon_after_a_cancel_and_keeps_the_scene(monkeypatch):
     for n in (1, 2, 5):
         cancelling = _Cancelling(n)
         with pytest.raises(OperationCancelled):
-            kept_photo(quick, monitor=cancelling)
+            cached_photo(quick, monitor=cancelling)
         assert cancelling.stages == ["rendering the photo"] * n
-    assert kept_photo(quick) is not None
+    assert cached_photo(quick) is not None
 
 
 @pytest.mark.slow
@@ -126,7 +126,7 @@ def test_a_camera_inside_a_building_opposite_is_told():
     middle = tuple(map(float, np.mean(opposite.box_enu_m, axis=0)))
     request = request_for(model, look=Look(), view=replace(VIEW, position_enu_m=middle), is_quick=True, width_px=32)
     assert site_photo(model, request).is_walled_in
-    assert not kept_photo(replace(request, view=VIEW)).is_walled_in
+    assert not cached_photo(replace(request, view=VIEW)).is_walled_in
 
 
 @pytest.mark.slow

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from groundstation.services.messages import in_window_words
+from groundstation.services.messages import with_window_labels
 from groundstation.services.project.document import Document
 from groundstation.services.site.sources import (
     bundled_site,
@@ -137,7 +137,7 @@ def test_city_model_without_windows_lists_its_buildings_and_a_grid_chooses_its_o
 def test_file_without_a_place_says_which_field_to_fill_in(tower_obj):
     with pytest.raises(InputError) as caught:
         preview_import(tower_obj, ImportOptions())
-    said = in_window_words(str(caught.value), {"--origin": "Zero point", "--crs": "Coordinate system"})
+    said = with_window_labels(str(caught.value), {"--origin": "Zero point", "--crs": "Coordinate system"})
     assert "give “Zero point” (of its zero point) or “Coordinate system” (of its coordinates)" in said
     assert "--" not in said
 
@@ -161,7 +161,7 @@ def test_file_without_a_place_says_which_field_to_fill_in(tower_obj):
 )
 def test_options_become_labels_and_take_their_placeholders_along(text, said):
     options = set(re.findall(r"--[a-z-]+[a-z]", text))
-    assert in_window_words(text, {option: option[2:] for option in options}) == said
+    assert with_window_labels(text, {option: option[2:] for option in options}) == said
 
 
 @pytest.mark.parametrize("n_facades", [0, 2])

@@ -7,12 +7,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from groundstation.vehicle.preflight import OnBoard, Verdict
-from groundstation.vehicle.sortie.board import CHANGED, RESTARTED, WRITTEN, doubt, doubted
+from groundstation.vehicle.sortie.board import CHANGED, RESTARTED, WRITTEN, reason_to_reread, with_lists_unknown
 from groundstation.vehicle.sortie.conduct import conduct
 from groundstation.vehicle.sortie.flight_run import FlightRun
 from groundstation.vehicle.sortie.run_records import Phase
 from groundstation.vehicle.state import LINK_LOST_S, VehicleState
-from groundstation.vehicle.telemetry import LocalFrame, folded
+from groundstation.vehicle.telemetry import LocalFrame, updated_state
 from missions.mavlink.messages import (
     Address,
     Attitude,
@@ -176,7 +176,7 @@ def test_what_may_have_changed_it_makes_it_unknown_until_it_is_read_again(orders
                 change()
             ready_s.append(view.time_s)
         mission = next(check for check in view.checks if check.code == "mission")
-        if view.on_board.mission is None and view.on_board.doubt:
+        if view.on_board.mission is None and view.on_board.reason_to_reread:
             assert mission.verdict is Verdict.WAIT
             assert "is read again" in mission.text
         if ready_s and toy.now_s > ready_s[0] + 20.0 and view.phase is Phase.READY:
@@ -233,7 +233,7 @@ def test_another_mission_in_flight_is_warned_of(orders):
 
 
 def heard(state, message, source=VEHICLE, time_s=1.0):
-    return folded(state, Received(message, source, time_s), FRAME)
+    return updated_state(state, Received(message, source, time_s), FRAME)
 
 
 ALIVE = heard(VehicleState(), Heartbeat(2, 3, 0, 0, 3))
@@ -267,14 +267,14 @@ TOLD = heard(heard(ALIVE, MissionCurrent(0, 12, 0, 0, 5, 6, 7)), Attitude(60_000
 )
 def test_each_sign_is_taken_for_what_it_is(message, source, is_transferring, reason):
     after = heard(TOLD, message, source)
-    assert doubt(TOLD, after, Received(message, source, 1.0), is_transferring=is_transferring) == reason
+    assert reason_to_reread(TOLD, after, Received(message, source, 1.0), is_transferring=is_transferring) == reason
 
 
 @given(st.lists(st.sampled_from([True, False, None]), min_size=3, max_size=3), st.booleans())
 def test_doubt_takes_what_was_equal_and_leaves_what_is_known_to_be_another(flags, was_doubted):
-    board = OnBoard(*flags, doubt=CHANGED if was_doubted else "")
-    after = doubted(board, RESTARTED)
+    board = OnBoard(*flags, reason_to_reread=CHANGED if was_doubted else "")
+    after = with_lists_unknown(board, RESTARTED)
     for name in ("mission", "fence", "rally"):
         former = getattr(board, name)
         assert getattr(after, name) is (None if former else former)
-    assert after.doubt == (RESTARTED if True in flags or was_doubted else "")
+    assert after.reason_to_reread == (RESTARTED if True in flags or was_doubted else "")

@@ -4,19 +4,19 @@ from itertools import pairwise
 
 import pytest
 
-from missions.mavlink.transfer.exchange import Ending, Patience, Timing
+from missions.mavlink.transfer.exchange import Ending, RetryTimer, Timing
 
 TIMING = Timing()
 
 
-def begun() -> Patience:
-    patience = Patience(TIMING)
+def begun() -> RetryTimer:
+    patience = RetryTimer(TIMING)
     patience.begin(0.0)
     patience.ask(0.0)
     return patience
 
 
-def answered(patience: Patience, start_s: float, delay_s: float, n: int) -> float:
+def answered(patience: RetryTimer, start_s: float, delay_s: float, n: int) -> float:
     """Let n questions be asked and answered after a delay each; returns the time."""
     for _ in range(n):
         patience.ask(start_s)

@@ -40,7 +40,7 @@ def flown_to(target: Target, limits: MotionLimits = LIMITS) -> Multirotor:
 def test_it_is_an_airframe_that_stands_at_home() -> None:
     made: Airframe = aircraft()
     assert made.truth.position_enu_m == HOME
-    assert made.believed is made.truth
+    assert made.estimate is made.truth
     assert made.wind_enu_m_s == (0.0, 0.0, 0.0)
     assert (made.battery.remaining, made.battery.current_a) == (1.0, 0.0)
 

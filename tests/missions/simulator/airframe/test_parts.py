@@ -82,12 +82,12 @@ def test_what_is_believed_differs_from_the_truth_by_the_error_and_heights_count_
     for seed in range(60):
         made, _ = make_airframe(plan, model, conditions=conditions, settings=off, seed=seed)  # type: ignore[arg-type]
         x, y, z = made.truth.position_enu_m
-        assert made.believed.position_enu_m[2] == z
-        assert made.believed.position_enu_m[:2] != (x, y)
+        assert made.estimate.position_enu_m[2] == z
+        assert made.estimate.position_enu_m[:2] != (x, y)
         up = Target((x, y, z + 30.0), 15.0, 6.0, 6.0, 0.0, 1.0, 0.0)
         made.step(60.0, up)
-        assert made.believed.position_enu_m == pytest.approx((x, y, z + 30.0), abs=1e-9)
-        errors.append([a - b for a, b in zip(made.truth.position_enu_m, made.believed.position_enu_m, strict=True)])
+        assert made.estimate.position_enu_m == pytest.approx((x, y, z + 30.0), abs=1e-9)
+        errors.append([a - b for a, b in zip(made.truth.position_enu_m, made.estimate.position_enu_m, strict=True)])
         assert (made.fix.fix_type, made.fix.n_satellites) == (3, 18)
     found = np.array(errors).std(axis=0)
     assert found[:2] == pytest.approx([1.06, 1.06], rel=0.3)

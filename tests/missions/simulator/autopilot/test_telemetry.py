@@ -39,7 +39,7 @@ class Leaning(PointMass):
     def truth(self):
         return replace(super().truth, pitch_rad=0.1, roll_rad=-0.05, gimbal_pitch_rad=-0.5)
 
-    believed = truth
+    estimate = truth
 
 
 def quaternion_pitch_yaw_deg(q) -> tuple[float, float]:

@@ -167,7 +167,7 @@ def test_what_is_off_is_not_there() -> None:
     assert type(parts.gimbal) is RateGimbal
     assert type(parts.pack) is SteadyPack
     assert type(parts.receiver) is ExactReceiver
-    assert made.believed is made.truth
+    assert made.estimate is made.truth
 
 
 @pytest.mark.slow

@@ -17,7 +17,7 @@ from groundstation.cli.main import main as run
 from planning.base.errors import InputError
 from planning.geo.frames import Origin
 from planning.geo.mesh import TriangleMesh, box_mesh, from_corners, join
-from planning.site.importing.ground import Ground, find_ground, stand
+from planning.site.importing.ground import Ground, find_ground, place_on_ground
 from planning.site.importing.importer import ImportedSite, import_site
 from planning.site.importing.options import ImportOptions
 from planning.site.importing.placement import place
@@ -184,7 +184,9 @@ def test_strays_anywhere_do_not_move_the_ground(case: str, places: list[tuple[fl
     mesh = join(list(parts))
     mesh = join([mesh, strays(places, mesh.vertices_enu_m)])
     options = ImportOptions(origin=HERE)
-    stands = stand(mesh.vertices_enu_m, mesh.triangles, None, lambda points, z: place(None, points, z, options))
+    stands = place_on_ground(
+        mesh.vertices_enu_m, mesh.triangles, None, lambda points, z: place(None, points, z, options)
+    )
     assert stands.question == ""
     assert stands.placement.ground_z_m == pytest.approx(wanted, abs=0.06)
 

@@ -14,7 +14,7 @@ import pytest
 
 from planning.base.errors import InputError, OperationCancelled
 from planning.base.progress import QUIET
-from planning.base.step_physical_file import mended
+from planning.base.step_physical_file import repaired_file
 from planning.geo.crs import crs_conversion
 from planning.geo.enu import enu_from_geodetic
 from planning.geo.frames import Origin
@@ -732,7 +732,7 @@ def test_a_broken_line_is_left_out_and_told_and_takes_no_other_with_it(tmp_path:
     number = lines[place].split("=")[0]
     lines[place] = DAMAGES[damage](lines[place])
     path.write_text("\n".join(lines))
-    found = mended(path)
+    found = repaired_file(path)
     assert found is not None
     assert found.broken == (number,)
     assert found.content.decode().splitlines() == [line for line in lines if not line.startswith(f"{number}=")]
@@ -745,7 +745,7 @@ def test_a_broken_line_is_left_out_and_told_and_takes_no_other_with_it(tmp_path:
 def test_texts_may_hold_anything(tmp_path: Path, text: str) -> None:
     building = south_window(Building())
     building.building.LongName = text
-    assert mended(building.save(tmp_path)) is None
+    assert repaired_file(building.save(tmp_path)) is None
 
 
 @pytest.mark.parametrize("name", ["Unnamed", "Default", "$", "Project Number"])
@@ -760,7 +760,7 @@ def test_placeholders_do_not_name_the_site(tmp_path: Path, name: str) -> None:
 @pytest.mark.few(1)
 @pytest.mark.parametrize("name", ["office_a", "curtain_wall_small"])
 def test_real_files_are_whole(shared_data: Path, name: str) -> None:
-    assert mended(shared_data / "bim" / f"{name}.ifc") is None
+    assert repaired_file(shared_data / "bim" / f"{name}.ifc") is None
 
 
 def test_references_to_something_else_are_refused(tmp_path: Path) -> None:

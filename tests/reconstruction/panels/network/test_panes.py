@@ -21,7 +21,8 @@ from reconstruction.metrics.overlaps import index_image, pixel_overlaps
 from reconstruction.metrics.run import own_method, score_answer
 from reconstruction.metrics.sets import ScoredPhoto, folder_set, scored
 from reconstruction.panels.network import pool, training
-from reconstruction.panels.network.belief import (
+from reconstruction.panels.network.calibration import Source, are_there, calibrated, write_regressions
+from reconstruction.panels.network.confidence import (
     Candidates,
     Joined,
     candidates_of,
@@ -29,29 +30,30 @@ from reconstruction.panels.network.belief import (
     first_features,
     second_features,
 )
-from reconstruction.panels.network.calibration import Source, are_there, calibrated, write_regressions
-from reconstruction.panels.network.crops import CROP_PX, Bank
+from reconstruction.panels.network.crops import CROP_PX, CropSampler
 from reconstruction.panels.network.grids import network_facades
-from reconstruction.panels.network.looks import FoundPanes, Look, Looks, look_at
 from reconstruction.panels.network.network import LARGE, OFFSET_PX, SMALL, PaneNetwork, Shape, network
 from reconstruction.panels.network.pool import MADE_PX, Pool, read_gathered, write_gathered
-from reconstruction.panels.network.random_pictures import MadePicture, made_picture
+from reconstruction.panels.network.predictions import FoundPanes, PhotoPrediction, SizePrediction, predict_photo
+from reconstruction.panels.network.random_pictures import SyntheticPicture, synthetic_picture
 from reconstruction.panels.network.sides import measured
-from reconstruction.panels.network.training import Wanted, train
+from reconstruction.panels.network.training import NetworkToTrain, train
 from reconstruction.panels.network.votes import STRIDE, Pane, gathered, signed_areas
 from reconstruction.panels.search.parameters import SegmentationParameters
 from reconstruction.panels.segment import segment_image
 from reconstruction.scenes.facades.cases import random_case, wide_camera
-from reconstruction.scenes.facades.render import make_facade
+from reconstruction.scenes.facades.render import render_facade
 
 Array = NDArray[np.float64]
 
-GLASS_EVERYWHERE = Looks({10: Look((10, 8), 0.01, np.ones((2, 3), np.float32), np.zeros((2, 3, 4, 2), np.float32))})
+GLASS_EVERYWHERE = PhotoPrediction(
+    {10: SizePrediction((10, 8), 0.01, np.ones((2, 3), np.float32), np.zeros((2, 3, 4, 2), np.float32))}
+)
 
 
 def true_votes(seed: int, noise: float) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.uint16]]:
     """What a network would say that knows a made picture, with corners off by a share of the pane's size."""
-    made = made_picture(seed, 256)
+    made = synthetic_picture(seed, 256)
     index = made.index[STRIDE // 2 :: STRIDE, STRIDE // 2 :: STRIDE]
     corners = np.concatenate([np.zeros((1, 4, 2), np.float32), made.corners_px])[index]
     size = np.ptp(corners, axis=2).max(axis=2, keepdims=True)[..., None] if len(made.corners_px) else 0.0
@@ -157,8 +159,8 @@ def test_two_facades_of_a_corner_are_two_grids() -> None:
 QUAD = np.array([[0.0, 40.0], [30.0, 40.0], [30.0, 0.0], [0.0, 0.0]])
 
 
-def blank_look(scale: float = 0.5) -> Look:
-    return Look((50, 50), scale, np.ones((13, 13), np.float32), np.zeros((13, 13, 4, 2), np.float32))
+def blank_look(scale: float = 0.5) -> SizePrediction:
+    return SizePrediction((50, 50), scale, np.ones((13, 13), np.float32), np.zeros((13, 13, 4, 2), np.float32))
 
 
 def test_of_panes_that_cover_one_another_the_most_probable_stays_and_equals_measure_it() -> None:
@@ -174,9 +176,9 @@ def test_of_panes_that_cover_one_another_the_most_probable_stays_and_equals_meas
 
 def test_features_of_panes_tell_sizes_that_agree_and_neighbours_that_are_alike() -> None:
     panes = [Pane(QUAD + np.array([40.0 * i, 0.0]), 0.8, 0.0, 0.5) for i in range(3)]
-    looks = [blank_look(), blank_look(), blank_look()]
-    alone = first_features(Candidates(panes, looks))
-    again = first_features(Candidates([*panes, replace(panes[0], share=0.5)], [*looks, blank_look(0.3)]))
+    predictions = [blank_look(), blank_look(), blank_look()]
+    alone = first_features(Candidates(panes, predictions))
+    again = first_features(Candidates([*panes, replace(panes[0], share=0.5)], [*predictions, blank_look(0.3)]))
     assert alone[:, 7].tolist() == [0.0, 0.0, 0.0]
     assert again[:, 7] == pytest.approx([0.5, 0.0, 0.0, 0.8])
     assert again[:3, [0, 1, 3]] == pytest.approx(np.tile([0.8, 0.0, np.log(0.75)], (3, 1)))
@@ -192,7 +194,7 @@ def test_features_of_panes_tell_sizes_that_agree_and_neighbours_that_are_alike()
 @pytest.mark.slow
 def test_confidences_fitted_to_pictures_are_probabilities_of_others(tmp_path: Path) -> None:
     def pictures(first: int) -> list[tuple[NDArray[np.uint8], NDArray[np.uint16]]]:
-        made = [made_picture(7_000_000 + first + seed, 256) for seed in range(60)]
+        made = [synthetic_picture(7_000_000 + first + seed, 256) for seed in range(60)]
         return [(one.image, one.index) for one in made]
 
     told: list[str] = []
@@ -202,7 +204,7 @@ def test_confidences_fitted_to_pictures_are_probabilities_of_others(tmp_path: Pa
     assert {"first", "second"} == set(json.loads((tmp_path / "confidence.json").read_text()))
     sure, there = [], []
     for image, index in pictures(100):
-        candidates = candidates_of(look_at(image, 1600))
+        candidates = candidates_of(predict_photo(image, 1600))
         sure.append(fitted[0].probability(first_features(candidates)))
         there.append(are_there(list(candidates.quads), index))
     probability, is_there = np.concatenate(sure), np.concatenate(there)
@@ -213,7 +215,7 @@ def test_confidences_fitted_to_pictures_are_probabilities_of_others(tmp_path: Pa
 
 def test_each_picture_is_looked_at_by_the_network_that_has_not_learned_from_it() -> None:
     def n_candidates(*networks: PaneNetwork) -> int:
-        made = made_picture(7_000_200, 192)
+        made = synthetic_picture(7_000_200, 192)
         told: list[str] = []
         calibrated([Source([(made.image, made.index)] * 2, 1.0, networks)], told.append)
         return int(told[0].split()[2])
@@ -234,8 +236,8 @@ def test_a_quadrilateral_is_there_where_it_covers_a_pane_by_more_than_half() -> 
 
 def test_nothing_is_found_where_nothing_is() -> None:
     assert network_facades(FoundPanes(()), 100, 100) == ()
-    assert find_panes(Looks()).panes == ()
-    dark = look_at(np.zeros((40, 40, 3), np.uint8), 40)
+    assert find_panes(PhotoPrediction()).panes == ()
+    dark = predict_photo(np.zeros((40, 40, 3), np.uint8), 40)
     assert all(pane.confidence < 0.5 for pane in find_panes(dark).panes)
     assert gathered(np.zeros((8, 8), np.float32), np.zeros((8, 8, 4, 2), np.float32), (32, 32)) == []
 
@@ -299,7 +301,7 @@ def test_the_network_is_on_where_lines_take_a_close_up_for_something_else(glass:
 
 @pytest.mark.slow
 def test_lines_that_the_network_agrees_with_stay() -> None:
-    made = make_facade(random_case("planar", 3, wide_camera(640, 480)))
+    made = render_facade(random_case("planar", 3, wide_camera(640, 480)))
     photo = scored(made)
     views, lines = photo.views, SegmentationParameters(network="off")
     (by_choice,), (by_lines,) = (
@@ -328,12 +330,12 @@ def test_training_learns_from_a_pool_that_is_still_being_made(tmp_path: Path, mo
     monkeypatch.setattr(pool, "PER_FILE", 4)
     monkeypatch.setitem(training.BATCH, "cpu", 2)
     told: list[str] = []
-    wanted = [Wanted(tmp_path / "large", LARGE), Wanted(tmp_path / "small")]
+    wanted = [NetworkToTrain(tmp_path / "large", LARGE), NetworkToTrain(tmp_path / "small")]
     with Pool(tmp_path / "pool", 8, 1) as made:
         first = made.arrived(least=4)
         assert len(first) in (4, 8)
-        assert np.array_equal(first[1].image, made_picture(1, MADE_PX).image)
-        bank = Bank("cpu", (1.0,))
+        assert np.array_equal(first[1].image, synthetic_picture(1, MADE_PX).image)
+        bank = CropSampler("cpu", (1.0,))
         bank.add(first, 0)
         train(bank, 0.05, wanted, more=lambda: made.arrived(least=1), tell=told.append)
     for one in wanted:
@@ -347,7 +349,7 @@ def test_training_learns_from_a_pool_that_is_still_being_made(tmp_path: Path, mo
 
 
 def test_gathered_pictures_come_back_from_their_file(tmp_path: Path) -> None:
-    pictures = [made_picture(seed, 128) for seed in range(3)]
+    pictures = [synthetic_picture(seed, 128) for seed in range(3)]
     write_gathered((pictures[:1], pictures[1:]), tmp_path / "gathered.npz")
     back = read_gathered(tmp_path / "gathered.npz")
     assert [len(source) for source in back] == [1, 2]
@@ -358,12 +360,12 @@ def test_gathered_pictures_come_back_from_their_file(tmp_path: Path) -> None:
         assert np.abs(kept - given_one).mean() < 2.0
 
 
-def fits(picture: MadePicture) -> bool:
+def fits(picture: SyntheticPicture) -> bool:
     return len(picture.corners_px) > 0 and len(bank_of([picture])) == 1
 
 
-def bank_of(pictures: list[MadePicture], source: int = 0) -> Bank:
-    bank = Bank("cpu", (0.0, 0.0, 0.0))
+def bank_of(pictures: list[SyntheticPicture], source: int = 0) -> CropSampler:
+    bank = CropSampler("cpu", (0.0, 0.0, 0.0))
     bank.shares[source] = 1.0
     bank.add(pictures, source)
     return bank
@@ -372,7 +374,7 @@ def bank_of(pictures: list[MadePicture], source: int = 0) -> Bank:
 @pytest.mark.parametrize("seed", range(8))
 def test_crops_show_what_opencv_shows_of_the_same_view(seed: int) -> None:
     made = next(
-        each for each in (made_picture(seed, 384) for seed in range(100 * seed, 100 * seed + 100)) if fits(each)
+        each for each in (synthetic_picture(seed, 384) for seed in range(100 * seed, 100 * seed + 100)) if fits(each)
     )
     bank = bank_of([made], 2)
     views = bank.views(3, np.random.default_rng(seed))
@@ -399,10 +401,10 @@ def test_crops_show_what_opencv_shows_of_the_same_view(seed: int) -> None:
 def test_a_crops_truth_lies_where_its_picture_shows_it(seed: int) -> None:
     """A picture that is its own truth, painted white where there are panes."""
     made = next(
-        each for each in (made_picture(seed, 384) for seed in range(100 * seed, 100 * seed + 100)) if fits(each)
+        each for each in (synthetic_picture(seed, 384) for seed in range(100 * seed, 100 * seed + 100)) if fits(each)
     )
     painted = np.repeat((255 * (made.index > 0)).astype(np.uint8)[..., None], 3, axis=2)
-    bank = bank_of([MadePicture(painted, made.index, made.corners_px)])
+    bank = bank_of([SyntheticPicture(painted, made.index, made.corners_px)])
     views = bank.views(4, np.random.default_rng(seed))
     images, _, truth = bank.plain(views)
     seen, is_pane = images[..., 2::4, 2::4].mean(dim=1), truth.is_pane > 0
@@ -418,7 +420,7 @@ def test_a_crops_truth_lies_where_its_picture_shows_it(seed: int) -> None:
 
 
 def test_changed_crops_are_finite_and_keep_their_truth() -> None:
-    bank = bank_of([made_picture(seed, 384) for seed in range(6)], 2)
+    bank = bank_of([synthetic_picture(seed, 384) for seed in range(6)], 2)
     images, truth = bank.crops(24, np.random.default_rng(4), torch.Generator().manual_seed(4))
     plain, _, same = bank.plain(bank.views(24, np.random.default_rng(4)))
     assert images.shape == (24, 3, CROP_PX, CROP_PX)

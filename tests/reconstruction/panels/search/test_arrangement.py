@@ -17,7 +17,7 @@ from reconstruction.panels.search.record import FacadeGrid
 from reconstruction.panels.segment import segment_image, segment_rectified
 from reconstruction.scenes.facades.cases import random_case, wide_camera
 from reconstruction.scenes.facades.record import Case, Disturbances, Layout
-from reconstruction.scenes.facades.render import make_facade
+from reconstruction.scenes.facades.render import render_facade
 from tests.reconstruction.made_photos import STRONG, simple_case
 from tests.reconstruction.panels.search.pictures import draw, spans
 from tests.slow import slow
@@ -32,7 +32,7 @@ def found_in(layout: Layout, disturbances: Disturbances = STRONG, seed: int = 0)
 
 
 def searched(case: Case) -> tuple[FacadeGrid, PhotoScores]:
-    photo = scored(make_facade(case))
+    photo = scored(render_facade(case))
     found = segment_image(photo.image, photo.views)
     return found.facades[0], score_answer(photo, Answer(found_index(found), found_region(found), 0.0))
 
@@ -114,7 +114,7 @@ def test_mirrored_roofs_and_shadows_cut_nothing(tilt_deg: float) -> None:
 
 @pytest.mark.slow
 def test_without_inclined_lines_nothing_changes_and_the_reason_is_told() -> None:
-    photo = scored(make_facade(random_case("planar", 1, CAMERA)))
+    photo = scored(render_facade(random_case("planar", 1, CAMERA)))
     with_search, without = (
         segment_image(photo.image, photo.views, SegmentationParameters(inclined=setting)).facades[0]
         for setting in ("auto", "off")

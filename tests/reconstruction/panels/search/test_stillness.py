@@ -24,7 +24,7 @@ from reconstruction.panels.search.evidence import (
     spread_in_bands,
 )
 from reconstruction.scenes.facades.cases import random_case
-from reconstruction.scenes.facades.render import make_facade
+from reconstruction.scenes.facades.render import render_facade
 from tests.slow import slow
 
 Array = NDArray[np.float64]
@@ -99,7 +99,7 @@ def test_stillness_makes_up_for_unseen_edges_and_adds_nothing_to_seen_ones() -> 
 
 
 def scores(shape: str, seed: int) -> PhotoScores:
-    photo = scored(make_facade(random_case("curved" if shape == "curved" else "planar", seed)))
+    photo = scored(render_facade(random_case("curved" if shape == "curved" else "planar", seed)))
     return score_answer(photo, own_method()(photo, QUIET))
 
 

@@ -12,7 +12,7 @@ from planning.base.errors import InfeasibleError
 from planning.geo.mesh import box_mesh
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.panels.solving.find import FindParameters, find_panels
-from reconstruction.scenes.facades.record import MadeFacade
+from reconstruction.scenes.facades.record import SyntheticFacade
 from tests.reconstruction.made_photos import coarse_model, made_photos
 from tests.slow import slow
 
@@ -20,11 +20,11 @@ TOLD = np.diag([0.02**2] * 3 + [np.radians(0.1) ** 2] * 3)
 """Covariance that the poses state; they are exact."""
 
 
-def posed(photos: list[MadeFacade]) -> list[PosedPhoto]:
+def posed(photos: list[SyntheticFacade]) -> list[PosedPhoto]:
     return [replace(made.photo, pose=replace(made.photo.pose, covariance=TOLD)) for made in photos]
 
 
-def load_from(photos: list[MadeFacade]):  # type: ignore[no-untyped-def]
+def load_from(photos: list[SyntheticFacade]):  # type: ignore[no-untyped-def]
     places = [made.photo.pose.position_enu_m for made in photos]
 
     def load(photo: PosedPhoto) -> NDArray[np.uint8]:

@@ -13,14 +13,14 @@ from planning.base.findings import Severity
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.panels.solving.find import FoundPanels, find_panels, photos_a_panel_apart, repeated_step_m
 from reconstruction.panels.solving.record import SurfaceLine
-from reconstruction.scenes.facades.record import MadeFacade
+from reconstruction.scenes.facades.record import SyntheticFacade
 from tests.reconstruction.made_photos import coarse_model, made_photos
 from tests.reconstruction.panels.solving.test_find import load_from, posed
 
 
 @cache
 def found() -> tuple[list[PosedPhoto], FoundPanels]:
-    photos: list[MadeFacade] = made_photos()
+    photos: list[SyntheticFacade] = made_photos()
     return posed(photos), find_panels(posed(photos), coarse_model(photos[0].case.wall), load_from(photos))
 
 

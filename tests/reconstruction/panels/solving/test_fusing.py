@@ -17,11 +17,18 @@ from reconstruction.panels.rectify.fit import SurfaceFit, Unrolling, decide_view
 from reconstruction.panels.rectify.view import SurfaceView
 from reconstruction.panels.search.record import FacadeGrid
 from reconstruction.panels.solving.facades import Facade
-from reconstruction.panels.solving.find import FindParameters, FoundSingly, Fusion, SearchedFacade, doubt, search_facade
+from reconstruction.panels.solving.find import (
+    FindParameters,
+    Fusion,
+    SearchedFacade,
+    SeparateSearch,
+    missing_share,
+    search_facade,
+)
 from reconstruction.panels.solving.solve import solve_facade
 from reconstruction.scenes.facades.cases import wide_camera
-from reconstruction.scenes.facades.record import Disturbances, Layout, MadeFacade, Wall
-from reconstruction.scenes.facades.render import make_facade
+from reconstruction.scenes.facades.record import Disturbances, Layout, SyntheticFacade, Wall
+from reconstruction.scenes.facades.render import render_facade
 from tests.reconstruction.made_photos import simple_case
 from tests.reconstruction.panels.solving.test_register import stated
 
@@ -30,10 +37,10 @@ LENS = wide_camera(640, 480)
 
 
 @cache
-def photos() -> tuple[MadeFacade, ...]:
+def photos() -> tuple[SyntheticFacade, ...]:
     plain = Disturbances(reflection=0.3, tilt_deg=0.3, blur_px=0.5, noise_grey=2.0)
     return tuple(
-        make_facade(simple_case(LAYOUT, plain, wall=Wall(), intrinsics=LENS, seed=2, oblique_deg=angle))
+        render_facade(simple_case(LAYOUT, plain, wall=Wall(), intrinsics=LENS, seed=2, oblique_deg=angle))
         for angle in (0.0, 10.0, -10.0)
     )
 
@@ -69,8 +76,8 @@ def size(grid: FacadeGrid) -> tuple[int, int]:
     return len(grid.rows) - 1, len(grid.columns) - 1
 
 
-def singly(grids: dict[int, FacadeGrid]) -> FoundSingly:
-    return FoundSingly(posed(), grids, facade().fit.surface)
+def singly(grids: dict[int, FacadeGrid]) -> SeparateSearch:
+    return SeparateSearch(posed(), grids, facade().fit.surface)
 
 
 def bare(grid: FacadeGrid) -> FacadeGrid:
@@ -90,16 +97,16 @@ def test_photos_that_agree_are_not_searched_together() -> None:
 @pytest.mark.slow
 def test_doubt_grows_with_every_photo_that_shows_no_grid_or_another() -> None:
     grids = searched("auto").grids
-    agreed = doubt(singly(grids))
-    one_bare = doubt(singly({**grids, 0: bare(grids[0])}))
-    two_bare = doubt(singly({**grids, 0: bare(grids[0]), 1: bare(grids[1])}))
+    agreed = missing_share(singly(grids))
+    one_bare = missing_share(singly({**grids, 0: bare(grids[0])}))
+    two_bare = missing_share(singly({**grids, 0: bare(grids[0]), 1: bare(grids[1])}))
     assert agreed < 0.15
     assert one_bare == pytest.approx(agreed + 1 / 3, abs=0.1)
     assert two_bare == pytest.approx(agreed + 2 / 3, abs=0.1)
-    assert doubt(singly({number: bare(grid) for number, grid in grids.items()})) == 1.0
+    assert missing_share(singly({number: bare(grid) for number, grid in grids.items()})) == 1.0
     moved = tuple(replace(line, position_px=line.position_px + 12.0) for line in grids[0].columns)
     inner = replace(grids[0], columns=tuple(sorted((*grids[0].columns, *moved[:-1]), key=lambda one: one.position_px)))
-    assert doubt(singly({**grids, 0: inner})) > agreed + 0.1
+    assert missing_share(singly({**grids, 0: inner})) > agreed + 0.1
     decision = decide(Fusion(), singly({**grids, 0: bare(grids[0])}))
     assert decision.on
     assert "1 of them without a grid" in decision.reason

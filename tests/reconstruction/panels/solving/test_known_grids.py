@@ -20,7 +20,7 @@ from reconstruction.panels.search.cells import facade_grid
 from reconstruction.panels.search.record import FacadeGrid, GridLine, InclinedLine, Segmentation
 from reconstruction.panels.solving.facades import Facade, grid_from_file
 from reconstruction.panels.solving.find import FindParameters, find_panels
-from reconstruction.scenes.facades.record import MadeFacade
+from reconstruction.scenes.facades.record import SyntheticFacade
 from tests.reconstruction.made_photos import coarse_model, made_photos
 from tests.reconstruction.panels.solving.test_find import posed
 from tests.slow import slow
@@ -30,7 +30,7 @@ NAMES = ("a.jpg", "b.jpg")
 
 
 @cache
-def made(curvature: float = 0.0) -> tuple[MadeFacade, ...]:
+def made(curvature: float = 0.0) -> tuple[SyntheticFacade, ...]:
     return tuple(made_photos(curvature, (0.0, 12.0)))
 
 
@@ -67,7 +67,7 @@ def never(photo: PosedPhoto) -> Any:
     raise AssertionError(f"{photo.name} was searched")
 
 
-def errors_m(found: Any, truth: MadeFacade) -> np.ndarray[Any, Any]:
+def errors_m(found: Any, truth: SyntheticFacade) -> np.ndarray[Any, Any]:
     corners = {(panel.row, panel.column): panel.corners_enu_m for panel in truth.panels}
     assert {(panel.row, panel.column) for panel in found.panels} <= set(corners)
     return np.concatenate([panel.corners_enu_m - corners[panel.row, panel.column] for panel in found.panels])

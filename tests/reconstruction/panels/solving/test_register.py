@@ -16,8 +16,8 @@ from reconstruction.panels.rectify.view import SurfaceView, surface_view
 from reconstruction.panels.solving.adjustment import moved_pose
 from reconstruction.panels.solving.register import registered
 from reconstruction.scenes.facades.cases import wide_camera
-from reconstruction.scenes.facades.record import Disturbances, Layout, MadeFacade, Wall
-from reconstruction.scenes.facades.render import make_facade
+from reconstruction.scenes.facades.record import Disturbances, Layout, SyntheticFacade, Wall
+from reconstruction.scenes.facades.render import render_facade
 from tests.reconstruction.made_photos import simple_case
 
 LAYOUT = Layout(5, 9, 1.5, 2.4)
@@ -28,29 +28,29 @@ FRAME_BGR = (54.0, 50.0, 46.0)
 
 
 @cache
-def photos(curvature: float = 0.0) -> tuple[MadeFacade, ...]:
+def photos(curvature: float = 0.0) -> tuple[SyntheticFacade, ...]:
     lens = wide_camera(800, 600)
     cases = [
         simple_case(LAYOUT, MIRRORING, wall=Wall(curvature_per_m=curvature), intrinsics=lens, seed=1, oblique_deg=angle)
         for angle in (0.0, 9.0)
     ]
-    return tuple(make_facade(replace(case, frame_bgr=FRAME_BGR)) for case in cases)
+    return tuple(render_facade(replace(case, frame_bgr=FRAME_BGR)) for case in cases)
 
 
-def stated(made: MadeFacade, position_m: float, turn_deg: float, seed: int) -> PosedPhoto:
+def stated(made: SyntheticFacade, position_m: float, turn_deg: float, seed: int) -> PosedPhoto:
     covariance = np.diag([position_m**2] * 3 + [np.radians(turn_deg) ** 2] * 3)
     off = np.random.default_rng(seed).multivariate_normal(np.zeros(6), covariance)
     return replace(made.photo, pose=replace(moved_pose(made.photo.pose, off), covariance=covariance))
 
 
-def views_of(made: Sequence[MadeFacade], posed: Sequence[PosedPhoto]) -> list[SurfaceView]:
+def views_of(made: Sequence[SyntheticFacade], posed: Sequence[PosedPhoto]) -> list[SurfaceView]:
     low = np.array([made[0].columns_m[0] - 2.0, made[0].rows_m[0] - 2.0])
     high = np.array([made[0].columns_m[-1] + 2.0, made[0].rows_m[-1] + 2.0])
     first = surface_view(posed[0], surface_of(made[0].case), low, high)
     return [replace(first, photo=photo, low_st_m=low, high_st_m=high) for photo in posed]
 
 
-def off_px(made: Sequence[MadeFacade], views: Sequence[Rectification]) -> float:
+def off_px(made: Sequence[SyntheticFacade], views: Sequence[Rectification]) -> float:
     """How far the corners of panels lie apart in two rectified pictures, nine in ten of them at most."""
     corners = [np.concatenate([panel.corners_px for panel in one.panels]) for one in made]
     first, second = (view.to_rectified(points) for view, points in zip(views, corners, strict=True))

@@ -23,14 +23,14 @@ from reconstruction.scenes.parameters import (
     RenderSettings,
 )
 from reconstruction.scenes.photos.lens_effects import developed, grey_levels, metered_exposure
-from reconstruction.scenes.photos.renderer import Photograph, Renderer
+from reconstruction.scenes.photos.renderer import RenderedPhoto, Renderer
 from reconstruction.scenes.record import Body, Glass, Interiors, Layer, Scene, Sky
 from tests.reconstruction.scenes.small_scenes import DULL, board, facing_south, ground, photo, ramp, scene, with_panes
 
 BEHIND = Sky(sun_heading_deg=185.0, sun_elevation_deg=10.0)
 
 
-def both(made: Scene, camera: PosedPhoto, effect: str, samples: int = 1) -> tuple[Photograph, Photograph]:
+def both(made: Scene, camera: PosedPhoto, effect: str, samples: int = 1) -> tuple[RenderedPhoto, RenderedPhoto]:
     """Photos with all effects of light, and without one."""
     photos = []
     for setting in ("on", "off"):
@@ -39,7 +39,7 @@ def both(made: Scene, camera: PosedPhoto, effect: str, samples: int = 1) -> tupl
     return photos[0], photos[1]
 
 
-def change_grey(pair: Sequence[Photograph]) -> float:
+def change_grey(pair: Sequence[RenderedPhoto]) -> float:
     """Root mean square, grey levels, as developed with one exposure."""
     exposure = metered_exposure(pair[0])
     a, b = (grey_levels(exposure * taken.linear) for taken in pair)

@@ -32,7 +32,7 @@ from reconstruction.scenes.parameters import (
 )
 from reconstruction.scenes.photos.camera_model import CameraModel
 from reconstruction.scenes.photos.lens_effects import Sensor, developed, grey_levels, metered_exposure, vignette
-from reconstruction.scenes.photos.renderer import Photograph, Renderer
+from reconstruction.scenes.photos.renderer import RenderedPhoto, Renderer
 from reconstruction.scenes.record import Body, Glass, Layer, Scene, Sky, Texture
 from reconstruction.scenes.world.bundled import bundled_scene
 from tests.reconstruction.scenes.small_scenes import MIRROR, board, facing_south, ground, photo, ramp, scene, with_panes
@@ -49,7 +49,7 @@ def blobs(size_m: float) -> Texture:
     return Texture(np.repeat(smooth[:, :, None], 3, axis=2).astype(np.float32), 256 / size_m)
 
 
-def both(made: Scene, camera: PosedPhoto, effect: str, *off: str) -> tuple[Photograph, Photograph]:
+def both(made: Scene, camera: PosedPhoto, effect: str, *off: str) -> tuple[RenderedPhoto, RenderedPhoto]:
     """Photos with all effects but those that are off, and without one more."""
     with_it = RenderSettings(samples=1, effects=dict.fromkeys(off, "off"), environment_rows=400)
     without = replace(with_it, effects=dict.fromkeys((*off, effect), "off"))
@@ -67,12 +67,12 @@ def moved_px(a: NDArray[np.float32], b: NDArray[np.float32]) -> float:
     return float(np.hypot(*shift[:, 2]))
 
 
-def mirror_image(taken: Photograph) -> NDArray[np.float32]:
+def mirror_image(taken: RenderedPhoto) -> NDArray[np.float32]:
     """The middle of what is mirrored, shape (96, 128)."""
     return np.ascontiguousarray(taken.reflection[48:144, 64:192, 1])
 
 
-def change_grey(a: Photograph, b: Photograph) -> float:
+def change_grey(a: RenderedPhoto, b: RenderedPhoto) -> float:
     """Root mean square, grey levels, as developed with one exposure."""
     exposure = metered_exposure(a)
     return float(np.sqrt(((grey_levels(exposure * a.linear) - grey_levels(exposure * b.linear)) ** 2).mean()))

@@ -11,9 +11,9 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from reconstruction.scenes.facades.cases import area, clip, draw_up, photo_of, random_case, wide_camera
+from reconstruction.scenes.facades.cases import area, clip, grid_of_layout, photo_of, random_case, wide_camera
 from reconstruction.scenes.facades.record import Case, Disturbances, Layout, Wall, first_hits
-from reconstruction.scenes.facades.render import make_facade
+from reconstruction.scenes.facades.render import render_facade
 from tests.reconstruction.made_photos import STRONG, simple_case
 
 SMALL = wide_camera(400, 300)
@@ -69,7 +69,7 @@ def test_index_image_shows_the_polygons_of_the_panels(layout: Layout, curvature:
     case = simple_case(
         layout, wall=Wall(curvature_per_m=curvature), intrinsics=SMALL, oblique_deg=12.0, from_below_deg=8.0
     )
-    made = make_facade(case)
+    made = render_facade(case)
     x, y = np.meshgrid(np.arange(400) + 0.5, np.arange(300) + 0.5)
     expected = np.zeros((300, 400), int)
     doubtful = np.zeros((300, 400), bool)
@@ -90,25 +90,25 @@ def test_picture_is_the_mean_of_what_a_finer_one_shows() -> None:
     layout = Layout(5, 9, frame_depth_m=0.05)
     case = simple_case(layout, SOFTLY, intrinsics=SMALL, oblique_deg=20.0)
     fine_camera = wide_camera(1200, 900)
-    fine = make_facade(replace(case, truth=replace(case.truth, intrinsics=fine_camera)))
+    fine = render_facade(replace(case, truth=replace(case.truth, intrinsics=fine_camera)))
     expected = cv2.resize(fine.image, (400, 300), interpolation=cv2.INTER_AREA).astype(float)
-    made = make_facade(case)
+    made = render_facade(case)
     on_facade = made.facade
     difference = np.abs(made.image - expected).mean(axis=2)
     assert difference[on_facade].mean() < 4.0
     plain = replace(case, disturbances=Disturbances())
-    fine_plain = make_facade(replace(plain, truth=replace(case.truth, intrinsics=fine_camera))).image
+    fine_plain = render_facade(replace(plain, truth=replace(case.truth, intrinsics=fine_camera))).image
     expected = cv2.resize(fine_plain, (400, 300), interpolation=cv2.INTER_AREA).astype(float)
-    difference = np.abs(make_facade(plain).image - expected).mean(axis=2)
+    difference = np.abs(render_facade(plain).image - expected).mean(axis=2)
     assert difference[on_facade].mean() < 0.7
 
 
 @pytest.mark.slow
 def test_same_case_gives_the_same_photo_and_another_seed_another() -> None:
-    first, again = (make_facade(random_case("curved", 4, SMALL)) for _ in range(2))
+    first, again = (render_facade(random_case("curved", 4, SMALL)) for _ in range(2))
     np.testing.assert_array_equal(first.image, again.image)
     np.testing.assert_array_equal(first.index, again.index)
-    assert (make_facade(random_case("curved", 5, SMALL)).image != first.image).mean() > 0.5
+    assert (render_facade(random_case("curved", 5, SMALL)).image != first.image).mean() > 0.5
 
 
 @pytest.mark.few(1)
@@ -129,8 +129,8 @@ def test_a_disturbance_changes_what_it_should_and_never_the_truth(
     name: str, value: float, changes_glass: bool, changes_frames: bool
 ) -> None:
     case = simple_case(Layout(4, 6, mullion_width_m=0.2, transom_width_m=0.2), intrinsics=SMALL)
-    before = make_facade(case)
-    after = make_facade(replace(case, disturbances=replace(case.disturbances, **{name: value})))
+    before = render_facade(case)
+    after = render_facade(replace(case, disturbances=replace(case.disturbances, **{name: value})))
     np.testing.assert_array_equal(before.index, after.index)
     np.testing.assert_array_equal(before.facade, after.facade)
     # Well inside a surface: the picture's pixels on edges are mixed.
@@ -145,9 +145,9 @@ def test_a_disturbance_changes_what_it_should_and_never_the_truth(
 @pytest.mark.slow
 def test_tilt_pillow_and_glare_show_in_what_is_mirrored() -> None:
     case = simple_case(Layout(4, 6), Disturbances(reflection=0.5), intrinsics=SMALL)
-    before = make_facade(case)
+    before = render_facade(case)
     for name, value in (("tilt_deg", 0.5), ("pillow_deg", 0.5), ("glare", 1.0), ("opposite", "grid")):
-        after = make_facade(replace(case, disturbances=replace(case.disturbances, **{name: value})))
+        after = render_facade(replace(case, disturbances=replace(case.disturbances, **{name: value})))
         changed = (before.image != after.image).any(axis=2)
         assert changed[before.index > 0].mean() > 0.1, name
         assert not changed[~before.facade].any()
@@ -155,14 +155,14 @@ def test_tilt_pillow_and_glare_show_in_what_is_mirrored() -> None:
 
 def test_glare_saturates_glass() -> None:
     case = simple_case(Layout(4, 6), Disturbances(reflection=0.4, glare=1.0), intrinsics=SMALL)
-    made = make_facade(case)
+    made = render_facade(case)
     assert (made.image.min(axis=2) == 255)[made.index > 0].any()
 
 
 def colours_at(case: Case, places_m: list[tuple[float, float]]) -> np.ndarray:
     s_m, h_m = np.array(places_m).T
     columns, rows = case.truth.pixels(case.wall.points_enu_m(s_m, h_m)).astype(int).T
-    return make_facade(case).image[rows, columns].astype(float)
+    return render_facade(case).image[rows, columns].astype(float)
 
 
 @pytest.mark.slow
@@ -180,14 +180,14 @@ def test_glass_looks_different_from_another_side_only_because_it_mirrors() -> No
 
 def test_stated_heading_is_wrong_by_the_yaw_error() -> None:
     case = simple_case(disturbances=Disturbances(yaw_error_deg=2.0), intrinsics=SMALL, from_below_deg=10.0)
-    stated = make_facade(case).photo
+    stated = render_facade(case).photo
     assert stated.pose.heading_deg - case.truth.pose.heading_deg == pytest.approx(2.0)
     assert stated.pose.pitch_deg == pytest.approx(case.truth.pose.pitch_deg)
 
 
 def test_corners_go_round_as_those_of_a_site_do() -> None:
     wall = Wall(outward_heading_deg=70.0, curvature_per_m=0.04)
-    for panel in make_facade(simple_case(wall=wall, intrinsics=SMALL)).panels:
+    for panel in render_facade(simple_case(wall=wall, intrinsics=SMALL)).panels:
         a, b, c, d = panel.corners_enu_m
         normal = np.cross(c - a, d - b)
         middle = panel.corners_enu_m.mean(axis=0)
@@ -197,7 +197,7 @@ def test_corners_go_round_as_those_of_a_site_do() -> None:
 
 
 def test_rows_and_columns_count_from_the_lower_left() -> None:
-    panels = make_facade(simple_case(Layout(3, 4), intrinsics=SMALL)).panels
+    panels = render_facade(simple_case(Layout(3, 4), intrinsics=SMALL)).panels
     assert [(panel.row, panel.column) for panel in panels] == [(row, column) for row in range(3) for column in range(4)]
     middles = {(panel.row, panel.column): panel.corners_px.mean(axis=0) for panel in panels}
     assert middles[0, 1][0] > middles[0, 0][0]
@@ -205,15 +205,15 @@ def test_rows_and_columns_count_from_the_lower_left() -> None:
 
 
 def test_teeth_are_triangles_and_a_slope_begins_with_one() -> None:
-    teeth = make_facade(simple_case(Layout(2, 4, top="triangles"), intrinsics=SMALL)).panels
+    teeth = render_facade(simple_case(Layout(2, 4, top="triangles"), intrinsics=SMALL)).panels
     assert [len(panel.corners_px) for panel in teeth] == [4] * 4 + [3] * 4
-    slope = make_facade(simple_case(Layout(2, 4, top="sloped"), intrinsics=SMALL)).panels
+    slope = render_facade(simple_case(Layout(2, 4, top="sloped"), intrinsics=SMALL)).panels
     assert [len(panel.corners_px) for panel in slope] == [4] * 4 + [3] + [4] * 3
 
 
 def test_braces_and_their_pieces_fill_the_cells_that_they_cut() -> None:
     plain, braced = (
-        draw_up(Layout(4, 6, widths="random", braces=braces, brace_width_m=0.1), np.random.default_rng(3))
+        grid_of_layout(Layout(4, 6, widths="random", braces=braces, brace_width_m=0.1), np.random.default_rng(3))
         for braces in ((), ((0, 0, 4, 6), (4, 0, 0, 6)))
     )
     for row, column in np.ndindex(4, 6):
@@ -234,7 +234,7 @@ def test_a_brace_of_no_width_and_a_slope_of_more_rows_than_there_are_cannot_be_m
 
 
 def test_missing_panels_belong_neither_to_the_panels_nor_to_the_facade() -> None:
-    made = make_facade(simple_case(Layout(4, 6, missing_panels=0.4), intrinsics=SMALL))
+    made = render_facade(simple_case(Layout(4, 6, missing_panels=0.4), intrinsics=SMALL))
     assert 0 < len(made.missing) < 24
     assert len(made.panels) == 24 - len(made.missing)
     row, column = made.missing[0]
@@ -248,7 +248,7 @@ def test_profiles_that_stand_out_hide_more_glass_the_more_oblique_the_view() -> 
     shares = []
     for oblique in (0.0, 40.0):
         flat, deep = (
-            make_facade(simple_case(Layout(4, 6, frame_depth_m=depth), intrinsics=SMALL, oblique_deg=oblique))
+            render_facade(simple_case(Layout(4, 6, frame_depth_m=depth), intrinsics=SMALL, oblique_deg=oblique))
             for depth in (0.0, 0.2)
         )
         shares.append((deep.index > 0).sum() / (flat.index > 0).sum())
@@ -258,7 +258,7 @@ def test_profiles_that_stand_out_hide_more_glass_the_more_oblique_the_view() -> 
 
 
 def test_a_mullion_that_is_missing_leaves_two_panels_that_touch() -> None:
-    grid = draw_up(Layout(2, 3, n_missing_mullions=2), np.random.default_rng(0))
+    grid = grid_of_layout(Layout(2, 3, n_missing_mullions=2), np.random.default_rng(0))
     assert grid.panel_numbers.max() == 6
     assert grid.corners(0, 0)[1, 0] == grid.corners(0, 1)[0, 0]
 
@@ -280,7 +280,7 @@ def test_photo_shows_the_whole_facade_at_the_asked_size() -> None:
         layout = Layout(8, 14)
         photo = photo_of(wall, layout, SMALL, oblique_deg=15.0, fill=0.8)
         case = simple_case(layout, wall=wall, intrinsics=SMALL, oblique_deg=15.0, fill=0.8)
-        made = make_facade(replace(case, truth=photo))
+        made = render_facade(replace(case, truth=photo))
         rows, columns = np.nonzero(made.facade)
         reach = max(np.abs(columns + 0.5 - 200).max() / 200, np.abs(rows + 0.5 - 150).max() / 150)
         assert 0.77 < reach < 0.83
@@ -290,10 +290,10 @@ def test_wrong_calls_are_refused() -> None:
     case = simple_case(intrinsics=SMALL)
     behind = replace(case.wall, outward_heading_deg=0.0)
     with pytest.raises(ValueError, match="outside the wall"):
-        make_facade(replace(case, wall=behind))
+        render_facade(replace(case, wall=behind))
     bent = replace(case.truth, intrinsics=replace(SMALL, distortion=(0.1, 0.0, 0.0, 0.0, 0.0)))
     with pytest.raises(ValueError, match="without distortion"):
-        make_facade(replace(case, truth=bent))
+        render_facade(replace(case, truth=bent))
     with pytest.raises(ValueError, match="at least one"):
         Layout(0, 3)
     with pytest.raises(ValueError, match="narrower"):

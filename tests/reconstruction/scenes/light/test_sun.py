@@ -15,7 +15,7 @@ from reconstruction.scenes.light.pane_surfaces import pane_light
 from reconstruction.scenes.light.tracing import RADIUS_RAD, Sun
 from reconstruction.scenes.parameters import SUN_GLARE, RenderSettings
 from reconstruction.scenes.photos.lens_effects import SCATTERED, bloomed, developed, metered_exposure
-from reconstruction.scenes.photos.renderer import Photograph, Renderer
+from reconstruction.scenes.photos.renderer import RenderedPhoto, Renderer
 from reconstruction.scenes.record import Body, Glass, Layer, Sky
 from tests.reconstruction.scenes.small_scenes import MIRROR, facing_south, ground, photo, scene, with_panes
 
@@ -26,7 +26,7 @@ BEHIND = Sky(sun_heading_deg=185.0, sun_elevation_deg=10.0, sun=(0.8, 0.7, 0.6),
 """A sun behind the usual camera, which the pane mirrors into it."""
 
 
-def arrived(taken: Photograph, camera: PosedPhoto) -> Array:
+def arrived(taken: RenderedPhoto, camera: PosedPhoto) -> Array:
     """Light of all pixels on a surface that faces it, as `Sky.sun` counts it, shape (3,)."""
     height, width = taken.panel.shape
     columns, rows = np.meshgrid(np.arange(width) + 0.5, np.arange(height) + 0.5)
@@ -36,7 +36,7 @@ def arrived(taken: Photograph, camera: PosedPhoto) -> Array:
     return np.asarray((solid_sr[:, None] * taken.linear.reshape(-1, 3)).sum(axis=0) / math.pi)
 
 
-def middle_px(taken: Photograph) -> Array:
+def middle_px(taken: RenderedPhoto) -> Array:
     """Where the light's middle is, shape (2,)."""
     rows, columns = np.indices(taken.panel.shape) + 0.5
     light = taken.linear[..., 0]

@@ -13,7 +13,7 @@ from reconstruction.scenes.effects.registry import decide_effects
 from reconstruction.scenes.parameters import MOTION_BLUR, RenderSettings
 from reconstruction.scenes.photos.camera_model import CameraModel, Moment
 from reconstruction.scenes.photos.motion_blur import MOST_TIMES, moved_px, n_times, times, windows
-from reconstruction.scenes.photos.renderer import Photograph, Renderer
+from reconstruction.scenes.photos.renderer import RenderedPhoto, Renderer
 from reconstruction.scenes.record import Layer, Scene, Sky
 from tests.reconstruction.scenes.small_scenes import facing_south, photo, quad, scene
 
@@ -34,7 +34,7 @@ def half_board() -> Scene:
     return scene(board, sky=FROM_NORTH, room=0.0, corners=facing_south(60.0, 20.0))
 
 
-def taken(heading_deg: float, moved_m: float, settings: RenderSettings = PLAIN) -> Photograph:
+def taken(heading_deg: float, moved_m: float, settings: RenderSettings = PLAIN) -> RenderedPhoto:
     """From between pane and board, moving to the east."""
     return Renderer(half_board(), settings).render(
         photo(heading_deg=heading_deg, **SMALL), moved_enu_m=np.array([moved_m, 0.0, 0.0])

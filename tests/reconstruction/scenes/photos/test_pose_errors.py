@@ -11,7 +11,7 @@ from reconstruction.base.cameras import PosedPhoto
 from reconstruction.scenes.effects.registry import decide_effects
 from reconstruction.scenes.parameters import GIMBAL_ERROR, POSITION_ERROR, RenderSettings
 from reconstruction.scenes.photos.camera_model import CameraModel, GimbalErrors, Moment, PositionErrors
-from reconstruction.scenes.photos.pose_errors import told_poses
+from reconstruction.scenes.photos.pose_errors import reported_poses
 from tests.reconstruction.scenes.small_scenes import photo, scene
 
 N = 400
@@ -24,7 +24,7 @@ CAMERA_MODEL = CameraModel(
 
 def errors(camera_model: CameraModel, seed: int = 0, **which: bool) -> np.ndarray:
     """East, north, up in metres and heading, pitch, roll in degrees, shape (N, 6)."""
-    told = told_poses(PHOTOS, MOMENTS, camera_model, seed, **which)
+    told = reported_poses(PHOTOS, MOMENTS, camera_model, seed, **which)
     return np.array(
         [
             [
@@ -57,15 +57,15 @@ def test_leaving_one_kind_out_does_not_change_the_other() -> None:
 
 def test_heights_above_take_off_share_the_sorties_error() -> None:
     deviation_m = replace(CAMERA_MODEL, position=replace(CAMERA_MODEL.position, vertical_m=0.0))
-    told = told_poses(PHOTOS, MOMENTS, deviation_m, 0)
+    told = reported_poses(PHOTOS, MOMENTS, deviation_m, 0)
     for one, true in zip(told, PHOTOS, strict=True):
         assert one.pose.position_enu_m[2] - one.higher_m == pytest.approx(true.pose.position_enu_m[2])
-    assert {one.higher_m for one in told_poses(PHOTOS, MOMENTS, CAMERA_MODEL, 0, positions=False)} == {0.0}
+    assert {one.higher_m for one in reported_poses(PHOTOS, MOMENTS, CAMERA_MODEL, 0, positions=False)} == {0.0}
 
 
 def test_a_camera_that_looks_straight_down_gets_its_errors_too() -> None:
     down = [photo((0.0, 0.0, 30.0), 0.0, -90.0)]
-    (told,) = told_poses(down, [Moment()], CAMERA_MODEL, 0)
+    (told,) = reported_poses(down, [Moment()], CAMERA_MODEL, 0)
     assert np.isfinite(told.pose.cam_from_enu).all()
     assert not np.allclose(told.pose.cam_from_enu, down[0].pose.cam_from_enu)
 
@@ -73,7 +73,7 @@ def test_a_camera_that_looks_straight_down_gets_its_errors_too() -> None:
 def moved_px(camera: PosedPhoto, camera_model: CameraModel, *, positions: bool) -> float:
     """How far the pane's corners are from where the told pose has them, on the whole."""
     made = scene()
-    (told,) = told_poses([camera], [Moment()], camera_model, made.seed, positions=positions, angles=not positions)
+    (told,) = reported_poses([camera], [Moment()], camera_model, made.seed, positions=positions, angles=not positions)
     corners = made.panes.corners_enu_m.reshape(-1, 3)
     return float(np.linalg.norm(replace(camera, pose=told.pose).pixels(corners) - camera.pixels(corners), axis=1).max())
 

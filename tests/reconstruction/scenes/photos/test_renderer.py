@@ -15,7 +15,7 @@ from planning.geo.mesh import box_mesh
 from reconstruction.base.cameras import Intrinsics
 from reconstruction.scenes.light.pane_surfaces import pane_light
 from reconstruction.scenes.parameters import RenderSettings
-from reconstruction.scenes.photos.renderer import Photograph, Renderer
+from reconstruction.scenes.photos.renderer import RenderedPhoto, Renderer
 from reconstruction.scenes.record import Body, Glass, Layer, Scene, Sky
 from reconstruction.scenes.world.bundled import bundled_scene
 from tests.reconstruction.scenes.small_scenes import (
@@ -35,12 +35,12 @@ from tests.reconstruction.scenes.small_scenes import (
 RAMP_M = 24.0
 
 
-def take(made: Scene, *args: object, samples: int = 1, **kwargs: object) -> Photograph:
+def take(made: Scene, *args: object, samples: int = 1, **kwargs: object) -> RenderedPhoto:
     """A photo of the usual camera, or of another one."""
     return Renderer(made, RenderSettings(samples=samples)).render(photo(*args, **kwargs))  # type: ignore[arg-type]
 
 
-def is_finite(taken: Photograph) -> bool:
+def is_finite(taken: RenderedPhoto) -> bool:
     """All light and normals; depth may be infinite, but is never NaN."""
     numbers = (taken.linear, taken.diffuse, taken.reflection, taken.normal_enu)
     return all(np.isfinite(a).all() for a in numbers) and not np.isnan(taken.depth_m).any()

@@ -13,8 +13,8 @@ import pytest
 
 from planning.base.errors import InputError, OperationCancelled, ReconstructionError
 from planning.site.bundled import single_panel
-from reconstruction.scenes.runs.cluster_workers import TOKEN_FILE, Studio, program_sha256
-from reconstruction.scenes.runs.photo_folder import photograph
+from reconstruction.scenes.runs.cluster_workers import TOKEN_FILE, RenderPlugin, program_sha256
+from reconstruction.scenes.runs.photo_folder import render_photo_folder
 from reconstruction.scenes.runs.photo_job import RenderWorker
 from reconstruction.scenes.world.build import build_scene
 from reconstruction.scenes.world.look import Look
@@ -40,7 +40,7 @@ def client():
 def alone(scene, tmp_path_factory):
     """A finished run of one process; tests must not change it."""
     folder = tmp_path_factory.mktemp("alone") / "photos"
-    photograph(job_for(scene, folder), folder, 1)
+    render_photo_folder(job_for(scene, folder), folder, 1)
     return folder
 
 
@@ -67,7 +67,7 @@ class OnStage:
 
 @pytest.mark.slow
 def test_a_clusters_photos_are_those_of_one_process(scene, client, alone, tmp_path):
-    photograph(job_for(scene, tmp_path), tmp_path, cluster=client)
+    render_photo_folder(job_for(scene, tmp_path), tmp_path, cluster=client)
     assert files_of(tmp_path) == files_of(alone)
     assert runs_known(client) == []
 
@@ -75,7 +75,7 @@ def test_a_clusters_photos_are_those_of_one_process(scene, client, alone, tmp_pa
 @pytest.mark.slow
 def test_workers_that_do_not_see_the_folder_send_what_belongs_there(scene, client, alone, tmp_path):
     hide = OnStage("giving the scene to the cluster", lambda: (tmp_path / TOKEN_FILE).unlink())
-    photograph(job_for(scene, tmp_path), tmp_path, None, hide, cluster=client)
+    render_photo_folder(job_for(scene, tmp_path), tmp_path, None, hide, cluster=client)
     assert files_of(tmp_path) == files_of(alone)
 
 
@@ -86,9 +86,9 @@ def test_only_a_worker_that_reads_the_token_writes_by_itself(scene, alone, tmp_p
     if found is not None:
         (tmp_path / TOKEN_FILE).write_bytes(found)
     job = job_for(scene, tmp_path)
-    studio = Studio(partial(RenderWorker, job, tmp_path, 1.0), tmp_path, b"mine", program_sha256())
-    studio.setup(type("Worker", (), {"address": "here"}))
-    sums, contents = studio.take(0)
+    plugin = RenderPlugin(partial(RenderWorker, job, tmp_path, 1.0), tmp_path, b"mine", program_sha256())
+    plugin.setup(type("Worker", (), {"address": "here"}))
+    sums, contents = plugin.render(0)
     assert (len(sums), len(contents)) == ((8, 0) if found == b"mine" else (0, 8))
     assert job.photos[0].path.exists() == (found == b"mine")
 
@@ -97,11 +97,11 @@ def test_only_a_worker_that_reads_the_token_writes_by_itself(scene, alone, tmp_p
 def test_a_cancelled_run_leaves_nothing_behind_and_goes_on_without_the_cluster(scene, client, alone, tmp_path):
     job = job_for(scene, tmp_path)
     with pytest.raises(OperationCancelled):
-        photograph(job, tmp_path, None, StopsAfter(1), cluster=client)
+        render_photo_folder(job, tmp_path, None, StopsAfter(1), cluster=client)
     assert 1 <= len(record_of(tmp_path)["files"]) < 3
     assert not (tmp_path / TOKEN_FILE).exists()
     assert runs_known(client) == []
-    assert photograph(job, tmp_path, 1).n_kept >= 1
+    assert render_photo_folder(job, tmp_path, 1).n_kept >= 1
     assert files_of(tmp_path) == files_of(alone)
 
 
@@ -111,16 +111,16 @@ def test_a_photo_that_fails_by_itself_is_named(scene, client, tmp_path):
     elsewhere = replace(job.photos[1], path=Path("elsewhere.jpg"))
     job = replace(job, photos=(job.photos[0], elsewhere, job.photos[2]))
     with pytest.raises(ReconstructionError, match=f"^{elsewhere.name}: a worker could not render it: ValueError"):
-        photograph(job, tmp_path, cluster=client)
+        render_photo_folder(job, tmp_path, cluster=client)
     assert runs_known(client) == []
 
 
 def test_a_worker_with_another_program_takes_no_photos(scene, tmp_path):
     job = job_for(scene, tmp_path)
-    studio = Studio(partial(RenderWorker, job, tmp_path, 1.0), tmp_path, b"", "another")
-    studio.setup(type("Worker", (), {"address": "tcp://10.0.0.7:4000"}))
+    plugin = RenderPlugin(partial(RenderWorker, job, tmp_path, 1.0), tmp_path, b"", "another")
+    plugin.setup(type("Worker", (), {"address": "tcp://10.0.0.7:4000"}))
     with pytest.raises(InputError, match=r"tcp://10\.0\.0\.7:4000 runs another version of it"):
-        studio.take(0)
+        plugin.render(0)
 
 
 @pytest.mark.slow
@@ -134,7 +134,7 @@ def test_a_cluster_without_workers_is_waited_for_and_can_be_cancelled(scene, tmp
         distributed.Client(cluster) as client,
         pytest.raises(OperationCancelled),
     ):
-        photograph(job_for(scene, tmp_path), tmp_path, None, waiting, cluster=client)
+        render_photo_folder(job_for(scene, tmp_path), tmp_path, None, waiting, cluster=client)
 
 
 @pytest.mark.slow
@@ -150,7 +150,7 @@ def test_a_photo_whose_worker_dies_is_handed_out_again(scene, alone, tmp_path):
             while victims:
                 os.kill(victims.pop(), signal.SIGKILL)
 
-        photograph(job_for(scene, tmp_path), tmp_path, None, OnStage("rendering photos", kill), cluster=client)
+        render_photo_folder(job_for(scene, tmp_path), tmp_path, None, OnStage("rendering photos", kill), cluster=client)
         assert victims == []
     assert files_of(tmp_path) == files_of(alone)
 
@@ -168,7 +168,7 @@ def test_a_photo_that_kills_every_worker_is_named(scene, tmp_path):
                 os.kill(process, signal.SIGKILL)
 
         with pytest.raises(ReconstructionError, match=f"^{job.photos[0].name}: 4 workers ended while they rendered"):
-            photograph(job, tmp_path, None, OnStage("rendering photos", kill), cluster=client)
+            render_photo_folder(job, tmp_path, None, OnStage("rendering photos", kill), cluster=client)
 
 
 @pytest.mark.slow

@@ -21,7 +21,7 @@ from reconstruction.scenes.parameters import RenderSettings
 from reconstruction.scenes.photos.flight_views import Shot, posed_photos
 from reconstruction.scenes.photos.photo_layers import BYTES_PER_PIXEL
 from reconstruction.scenes.runs import photo_folder
-from reconstruction.scenes.runs.photo_folder import photograph
+from reconstruction.scenes.runs.photo_folder import render_photo_folder
 from reconstruction.scenes.runs.photo_job import PhotoJob
 from reconstruction.scenes.world.build import build_scene
 from reconstruction.scenes.world.look import Look
@@ -56,7 +56,7 @@ def job_for(scene, folder, **changes):
 def written(scene, tmp_path_factory):
     """A finished run; tests must not change it."""
     folder = tmp_path_factory.mktemp("run") / "photos"
-    return photograph(job_for(scene, folder), folder, 1)
+    return render_photo_folder(job_for(scene, folder), folder, 1)
 
 
 def record_of(folder):
@@ -156,11 +156,11 @@ def test_all_files_of_a_photo_take_no_more_than_is_reckoned_with(written):
 def test_an_interrupted_run_goes_on_and_ends_as_if_it_had_not_been(scene, written, tmp_path):
     job = job_for(scene, tmp_path / "again")
     with pytest.raises(OperationCancelled):
-        photograph(job, tmp_path / "again", 1, StopsAfter(1))
+        render_photo_folder(job, tmp_path / "again", 1, StopsAfter(1))
     begun = record_of(tmp_path / "again")
     assert (begun["complete"], len(begun["files"])) == (False, 1)
     assert not (tmp_path / "again" / "transforms.json").exists()
-    done = photograph(job, tmp_path / "again", 1)
+    done = render_photo_folder(job, tmp_path / "again", 1)
     assert done.n_kept == 1
     assert record_of(tmp_path / "again") == record_of(written.folder)
 
@@ -168,11 +168,11 @@ def test_an_interrupted_run_goes_on_and_ends_as_if_it_had_not_been(scene, writte
 @pytest.mark.slow
 def test_photos_whose_files_are_damaged_or_gone_are_made_again(scene, tmp_path):
     job = job_for(scene, tmp_path)
-    photograph(job, tmp_path, 1)
+    render_photo_folder(job, tmp_path, 1)
     before = record_of(tmp_path)
     (tmp_path / "depth" / f"{job.photos[0].name}.npy").unlink()
     job.photos[1].path.write_bytes(b"torn")
-    assert photograph(job, tmp_path, 1).n_kept == 1
+    assert render_photo_folder(job, tmp_path, 1).n_kept == 1
     assert record_of(tmp_path) == before
 
 
@@ -187,7 +187,7 @@ def test_photos_whose_files_are_damaged_or_gone_are_made_again(scene, tmp_path):
 def test_photos_made_in_another_way_are_not_mixed_with_these(scene, written, changes, place):
     before = record_of(written.folder)
     with pytest.raises(InputError, match=f"another run: {place} is .* new folder"):
-        photograph(job_for(scene, written.folder, **changes), written.folder, 1)
+        render_photo_folder(job_for(scene, written.folder, **changes), written.folder, 1)
     assert record_of(written.folder) == before
 
 
@@ -199,22 +199,22 @@ def test_photos_made_in_another_way_are_not_mixed_with_these(scene, written, cha
 def test_photos_of_another_scene_are_not_mixed_with_these(written, seed, look, place):
     other = build_scene(single_panel(), look, seed)
     with pytest.raises(InputError, match=f"another run: {place} is .* new folder"):
-        photograph(job_for(other, written.folder), written.folder, 1)
+        render_photo_folder(job_for(other, written.folder), written.folder, 1)
 
 
 def test_fewer_views_are_another_run(scene, written):
     job = job_for(scene, written.folder)
     with pytest.raises(InputError, match="number of photos is 3 there, and 2 was asked for"):
-        photograph(replace(job, photos=job.photos[:2]), written.folder, 1)
+        render_photo_folder(replace(job, photos=job.photos[:2]), written.folder, 1)
 
 
 @pytest.mark.slow
 def test_a_folder_of_something_else_is_left_alone(scene, tmp_path):
     (tmp_path / "letter.txt").write_text("Dear")
     with pytest.raises(InputError, match=r"is not empty, and has no scene\.json"):
-        photograph(job_for(scene, tmp_path), tmp_path, 1)
+        render_photo_folder(job_for(scene, tmp_path), tmp_path, 1)
     with pytest.raises(InputError, match="expected a folder, found a file"):
-        photograph(job_for(scene, tmp_path), tmp_path / "letter.txt", 1)
+        render_photo_folder(job_for(scene, tmp_path), tmp_path / "letter.txt", 1)
     assert [path.name for path in tmp_path.iterdir()] == ["letter.txt"]
 
 
@@ -222,16 +222,16 @@ def test_a_disk_that_is_too_small_is_noticed_before(scene, tmp_path, monkeypatch
     usage = photo_folder.shutil.disk_usage(tmp_path)._replace(free=1000)
     monkeypatch.setattr(photo_folder.shutil, "disk_usage", lambda _: usage)
     with pytest.raises(InputError, match=r"take about \d+\.\d kB, and 1\.0 kB are free there; make room"):
-        photograph(job_for(scene, tmp_path / "new"), tmp_path / "new", 1)
+        render_photo_folder(job_for(scene, tmp_path / "new"), tmp_path / "new", 1)
     assert not (tmp_path / "new").exists()
 
 
 def test_a_run_without_views_is_refused(scene, tmp_path):
     with pytest.raises(InputError, match="no views to photograph"):
-        photograph(job_for(scene, tmp_path, photos=()), tmp_path)
+        render_photo_folder(job_for(scene, tmp_path, photos=()), tmp_path)
 
 
 @pytest.mark.slow
 def test_processes_side_by_side_write_the_same(scene, written, tmp_path):
-    photograph(job_for(scene, tmp_path / "two"), tmp_path / "two", 2)
+    render_photo_folder(job_for(scene, tmp_path / "two"), tmp_path / "two", 2)
     assert record_of(tmp_path / "two") == record_of(written.folder)

@@ -8,7 +8,7 @@ from reconstruction.splats.densification.strategy import (
     HIDDEN_VIEWS,
     FixedNumber,
     Limits,
-    SeenSplats,
+    SplatStatistics,
     forget,
     keep_within,
     n_dead,
@@ -124,7 +124,7 @@ def test_pulls_are_those_of_the_whole_picture_when_a_window_is_seen():
         x, y = (12, 10) if window is view else (8, 8)
         region = inner[y : y + 16, x : x + 24]
         (region.square().sum() / (inner.shape[0] * inner.shape[1])).backward()
-        sums = SeenSplats.nothing(20, torch.device("cpu"))
+        sums = SplatStatistics.nothing(20, torch.device("cpu"))
         sums.add(raster, offsets.grad, window)
         seen.append(sums.mean_pulls())
     assert seen[0].max() > 0.0
@@ -132,7 +132,7 @@ def test_pulls_are_those_of_the_whole_picture_when_a_window_is_seen():
 
 
 def test_splats_behind_others_are_hidden_after_enough_pictures_and_those_outside_are_not():
-    sums = SeenSplats.nothing(3, torch.device("cpu"))
+    sums = SplatStatistics.nothing(3, torch.device("cpu"))
     picture = torch.zeros(4, 4)
     raster = Raster(
         picture[..., None], picture, picture, None, torch.tensor([5.0, 0.0, 0.0]), torch.tensor([3.0, 3.0, 0.0])
@@ -147,7 +147,7 @@ def test_splats_at_a_lens_are_found():
     splats, view = random_splats(3), views_around(3)[1]
     with torch.no_grad():
         splats.means[1] = view.position_m + 0.3
-    sums = SeenSplats.nothing(3, torch.device("cpu"))
+    sums = SplatStatistics.nothing(3, torch.device("cpu"))
     assert not sums.is_at_lens(splats, 1.0).any()
     sums.add(picture_of(splats, view), None, view)
     assert sums.is_at_lens(splats, 1.0).tolist() == [False, True, False]

@@ -37,8 +37,8 @@ def shaded(settings=SMALL, n=40, dtype=torch.float64, seed=1, **changed):
         "normals": normals,
         "omega_o": omega_o,
     } | changed
-    as_asked = {k: v.to(dtype) if v.is_floating_point() else v for k, v in pixels.items()}
-    return made.to(dtype), as_asked
+    with_request = {k: v.to(dtype) if v.is_floating_point() else v for k, v in pixels.items()}
+    return made.to(dtype), with_request
 
 
 def test_light_is_diffuse_and_split_sum_specular():

@@ -22,7 +22,7 @@ from reconstruction.training.layers import LAYERS
 from reconstruction.training.model.joint_model import LEAST_REFLECTIVITY, SceneModel
 from reconstruction.training.model.render import OF_PICTURE, render_view
 from reconstruction.training.photos.photo_stream import PhotoStream, StreamSettings
-from reconstruction.training.start import hand_over
+from reconstruction.training.start import warm_start_splats
 from tests.reconstruction.light.made_folder import DIFFUSE, F0, REFLECTIVITY, far
 
 
@@ -266,7 +266,7 @@ def test_panes_that_light_was_learned_with_are_handed_over(parts, samples):
         panels.base_reflectance.copy_(torch.randn(panels.base_reflectance.shape, generator=generator))
         panels.diffuse.coefficients.copy_(0.3 * torch.randn(panels.diffuse.coefficients.shape, generator=generator))
     cameras = np.array([photo.pose.position_enu_m for photo in source.photos])
-    hand_over(panels, splats, source.panels, origin, cameras)
+    warm_start_splats(panels, splats, source.panels, origin, cameras)
     numbers = splats.panels.long()
     glass = numbers >= 0
     assert glass.sum() > 1000

@@ -14,7 +14,7 @@ from reconstruction.light.photo_set import PanelPlanes, PhotoSet, read_photo_set
 from reconstruction.light.shading import display_from_linear
 from reconstruction.training.config import TrainConfig
 from reconstruction.training.model.saved import read_model, save_model
-from reconstruction.training.photos.exposures import Exposures, fitted_gain, own_exposures, told_gains
+from reconstruction.training.photos.exposures import Exposures, fitted_gain, gains_from_points, own_exposures
 from reconstruction.training.train import train_model
 from tests.reconstruction.light.made_folder import cameras
 from tests.reconstruction.training.made_data_set import write_data_set
@@ -173,14 +173,17 @@ def test_hidden_points_and_clipped_pixels_tell_nothing(tmp_path):
     bright = GAINS.copy()
     bright[0] = 2.6  # half of the photo is white
     source = painted(tmp_path, bright)
-    before, true = told_gains(source, source.photos, POINTS, empty_mesh()), np.log(bright) - np.log(bright).mean(axis=0)
+    before, true = (
+        gains_from_points(source, source.photos, POINTS, empty_mesh()),
+        np.log(bright) - np.log(bright).mean(axis=0),
+    )
     np.testing.assert_allclose(np.log(before.gains), true, atol=0.05)
     # As many points behind the wall, where photos show the wall's other places.
     wall = from_corners(np.array([[(-9, 0, -9), (9, 0, -9), (9, 0, 9)], [(-9, 0, -9), (9, 0, 9), (-9, 0, 9)]], float))
     behind = np.concatenate([POINTS, BEHIND])
-    hidden = told_gains(source, source.photos, behind, wall)
+    hidden = gains_from_points(source, source.photos, behind, wall)
     np.testing.assert_allclose(np.log(hidden.gains), true, atol=0.05)
-    assert told_gains(source, source.photos, BEHIND, wall).n_told == 0
+    assert gains_from_points(source, source.photos, BEHIND, wall).n_told == 0
 
 
 def test_training_begins_with_what_points_tell_and_keeps_it(tmp_path):

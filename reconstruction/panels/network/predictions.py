@@ -25,7 +25,7 @@ LONG_SIDES_PX = (64, 96, 144, 216, 324, 486, 729, 1094)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Look:
+class SizePrediction:
     """What the network says of one size of a photo.
 
     Parameters
@@ -55,10 +55,10 @@ class Look:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Looks:
+class PhotoPrediction:
     """What the network says of a photo, by the longer side in which it was looked at, px."""
 
-    by_size: Mapping[int, Look] = field(default_factory=dict)
+    by_size: Mapping[int, SizePrediction] = field(default_factory=dict)
 
     def probability_at(self, points_px: Array) -> Array:
         """How probably places of the photo, shape (n, 2), lie on a pane, shape (n,): by the size that says it most."""
@@ -75,7 +75,7 @@ class FoundPanes:
     """Panes of a photo, none of which covers another, the most probable first, and what they were found in."""
 
     panes: tuple[Pane, ...]
-    looks: Looks = field(default_factory=Looks)
+    predictions: PhotoPrediction = field(default_factory=PhotoPrediction)
 
     def within(self, view: Rectification) -> FoundPanes:
         """Only the panes whose middle a rectified view shows, from its front."""
@@ -85,16 +85,16 @@ class FoundPanes:
         corners = view.to_rectified(np.concatenate([pane.corners_px for pane in self.panes])).reshape(-1, 4, 2)
         shown = (middles >= 0.0).all(axis=1) & (middles <= [view.width_px, view.height_px]).all(axis=1)
         shown &= np.isfinite(corners).all(axis=(1, 2)) & (signed_areas(corners) > 0.0)
-        return FoundPanes(tuple(pane for pane, is_in in zip(self.panes, shown, strict=True) if is_in), self.looks)
+        return FoundPanes(tuple(pane for pane, is_in in zip(self.panes, shown, strict=True) if is_in), self.predictions)
 
 
-def look_at(
+def predict_photo(
     image: Picture,
     long_side_px: int,
-    seen: Looks | None = None,
+    seen: PhotoPrediction | None = None,
     monitor: Monitor = QUIET,
     by: PaneNetwork | None = None,
-) -> Looks:
+) -> PhotoPrediction:
     """Look at a photo, shape (h, w, 3), blue, green, red, in sizes up to `long_side_px`.
 
     Parameters
@@ -108,12 +108,12 @@ def look_at(
 
     longest = max(image.shape[:2])
     most = min(long_side_px, longest, LONG_SIDES_PX[-1])
-    looks = {} if seen is None else dict(seen.by_size)
-    sizes = sorted({min(size, most) for size in LONG_SIDES_PX} - set(looks))
+    predictions = {} if seen is None else dict(seen.by_size)
+    sizes = sorted({min(size, most) for size in LONG_SIDES_PX} - set(predictions))
     for number, size in enumerate(sizes):
         monitor.report(say("look for panes"), number, len(sizes))
         scale = size / longest
         width, height = max(1, round(image.shape[1] * scale)), max(1, round(image.shape[0] * scale))
         smaller = np.asarray(cv2.resize(image, (width, height), interpolation=cv2.INTER_AREA), np.uint8)
-        looks[size] = Look((width, height), scale, *pane_votes(smaller, by))
-    return Looks(looks)
+        predictions[size] = SizePrediction((width, height), scale, *pane_votes(smaller, by))
+    return PhotoPrediction(predictions)

@@ -17,7 +17,7 @@ from PySide6.QtGui import QImage
 
 from groundstation.gui.widgets.parameter_form import choice_text
 from groundstation.services.reconstruct.guided_camera import PicturePace, sized
-from groundstation.services.reconstruct.messages import Look, Section, Seen, Subject, Tints
+from groundstation.services.reconstruct.messages import Section, Subject, Tints, ViewAnswer, ViewRequest
 from planning.base.parameters import declared
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.training.layers import LAYERS, PICTURE
@@ -96,7 +96,7 @@ class View:
     exposed_as
         Name of a photo; "" for none.
     tints, section
-        See `Look`.
+        See `ViewRequest`.
     right_tints
         Of the panels of what is on the right, whose numbers are its own.
     """
@@ -111,7 +111,7 @@ class View:
     right_tints: Tints = ()
 
 
-class Looks(QObject):
+class ViewPictures(QObject):
     """Keeps the pictures in step with the view.
 
     Parameters
@@ -130,7 +130,7 @@ class Looks(QObject):
     pictureCame = Signal(str, object, object)  # noqa: N815  (Qt's own way of naming)
 
     def __init__(
-        self, send: Callable[[Look], None], size_px: Callable[[], tuple[int, int]], parent: QObject | None = None
+        self, send: Callable[[ViewRequest], None], size_px: Callable[[], tuple[int, int]], parent: QObject | None = None
     ) -> None:
         super().__init__(parent)
         self._send, self._size_px = send, size_px
@@ -168,7 +168,7 @@ class Looks(QObject):
         """Whether nothing is on its way, and everything is as fine as it will be."""
         return not self._on_way and not self._rest.isActive() and not self._missing()
 
-    def take(self, seen: Seen) -> None:
+    def take(self, seen: ViewAnswer) -> None:
         """An answer has come."""
         place, number = seen.look.place, seen.look.number
         waited_for = self._on_way.get(place)
@@ -235,7 +235,9 @@ class Looks(QObject):
         self._shown[place] = (self._version, is_fine)
         layer = "picture" if subject.kind == "photo" else view.layer
         tints = view.tints if place == "left" else view.right_tints
-        self._send(Look(place, number, subject, camera, layer, view.exposed_as, tints, view.section, not is_fine))
+        self._send(
+            ViewRequest(place, number, subject, camera, layer, view.exposed_as, tints, view.section, not is_fine)
+        )
 
     def _fine_px(self) -> float:
         width, height = self._size_px()

@@ -291,7 +291,7 @@ class PanelSightings(QWidget):
         return ShownSection(state, count, self.tr("section {0}: {1}").format(section, said[state]))
 
 
-class CoverageShown(QObject):
+class CoverageDisplay(QObject):
     """Brings coverage to the widgets that show it, and has it counted while the tab is in front."""
 
     def __init__(
@@ -306,21 +306,21 @@ class CoverageShown(QObject):
         self._context, self._controller, self._scene, self._panel = context, controller, scene, panel
         self._is_in_front = False
         scene.picked.connect(context.select)
-        controller.stateChanged.connect(self.show_all)
-        controller.photosChanged.connect(self.show_all)
-        controller.coverageChanged.connect(self.show_all)
+        controller.stateChanged.connect(self.shortest_covering_flight)
+        controller.photosChanged.connect(self.shortest_covering_flight)
+        controller.coverageChanged.connect(self.shortest_covering_flight)
         context.selectionChanged.connect(self._select)
         context.unitsChanged.connect(self._set_units)
         self._set_units(context.units)
         self._select(context.selection)
-        self.show_all()
+        self.shortest_covering_flight()
 
     def set_in_front(self, is_in_front: bool) -> None:
         """Whether the tab is: coverage of other panels is counted when it is looked at."""
         self._is_in_front = is_in_front
-        self.show_all()
+        self.shortest_covering_flight()
 
-    def show_all(self) -> None:
+    def shortest_covering_flight(self) -> None:
         """Bring everything up to date."""
         if self._is_in_front:
             self._controller.count()

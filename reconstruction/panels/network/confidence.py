@@ -23,17 +23,17 @@ from numpy.typing import NDArray
 from planning.base.jit import kernel
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
-from reconstruction.panels.network.looks import FoundPanes, Look, Looks
+from reconstruction.panels.network.predictions import FoundPanes, PhotoPrediction, SizePrediction
 from reconstruction.panels.network.votes import STRIDE, Pane, seen_area, signed_areas, weighted_median
 
 Array = NDArray[np.float64]
 
 COEFFICIENTS = "confidence.json"
 
-BELIEVED = 0.55
+LEAST_BELIEVED = 0.55
 """Confidence from which a pane is reported: on real photos up to a quarter of these are not there."""
 
-WORTH_A_LOOK = 0.12
+LEAST_CANDIDATE = 0.12
 """Probability by the first regression from which a pane is looked at together with its neighbours."""
 
 SAME = 0.45
@@ -95,17 +95,17 @@ def regressions() -> tuple[Regression, Regression]:
     return first, second
 
 
-def find_panes(looks: Looks, monitor: Monitor = QUIET) -> FoundPanes:
+def find_panes(predictions: PhotoPrediction, monitor: Monitor = QUIET) -> FoundPanes:
     """Panes of a photo, the most probable first, whatever little probability they have."""
-    monitor.report(say("look for panes"), len(looks.by_size), len(looks.by_size))
-    candidates = candidates_of(looks)
+    monitor.report(say("look for panes"), len(predictions.by_size), len(predictions.by_size))
+    candidates = candidates_of(predictions)
     first, second = regressions()
     features = first_features(candidates)
     joined = candidates.joined(first.probability(features), features)
     told = second.probability(second_features(joined))
     order = np.argsort(-told)
     panes = tuple(replace(joined.panes[i], confidence=float(told[i])) for i in order)
-    return FoundPanes(panes, looks)
+    return FoundPanes(panes, predictions)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -114,7 +114,7 @@ class Candidates:
 
     Parameters
     ----------
-    looks
+    predictions
         The one that each was found in.
     quads
         Their corners, shape (n, 4, 2).
@@ -125,7 +125,7 @@ class Candidates:
     """
 
     panes: Sequence[Pane]
-    looks: Sequence[Look]
+    predictions: Sequence[SizePrediction]
     quads: Array = field(init=False)
     shared: Array = field(init=False)
     areas: Array = field(init=False)
@@ -147,7 +147,7 @@ class Candidates:
         conflicts = (iou > SAME) | (self.shared > OVERLAP * np.minimum(self.areas[:, None], self.areas[None]))
         chosen: list[int] = []
         for i in np.argsort(-probability):
-            if probability[i] < WORTH_A_LOOK:
+            if probability[i] < LEAST_CANDIDATE:
                 break
             if not conflicts[i, chosen].any():
                 chosen.append(int(i))
@@ -171,9 +171,9 @@ class Joined:
     features: Array
 
 
-def candidates_of(looks: Looks) -> Candidates:
+def candidates_of(predictions: PhotoPrediction) -> Candidates:
     """All panes that places of any size agree on."""
-    every = [(pane, look) for look in looks.by_size.values() for pane in look.panes()]
+    every = [(pane, look) for look in predictions.by_size.values() for pane in look.panes()]
     return Candidates([pane for pane, _ in every], [look for _, look in every])
 
 
@@ -218,14 +218,14 @@ def first_features(candidates: Candidates) -> Array:
         np.array([getattr(pane, name) for pane in candidates.panes]) for name in ("share", "scatter", "sigma_px")
     )
     trust = share * np.exp(-4.0 * scatter)
-    scale = np.array([look.scale for look in candidates.looks])
+    scale = np.array([look.scale for look in candidates.predictions])
     elsewhere = candidates.iou * (scale[:, None] != scale[None])
     covered = shared / areas[None]  # share of j that lies on i
     on_larger = (areas[None] > 2.0 * areas[:, None]) & (shared > 0.6 * areas[:, None])
     smaller = (2.0 * areas[None] < areas[:, None]) & (covered > 0.6)
     seen = [
         seen_area(quad * look.scale, look.size_px) / (area * look.scale**2)
-        for quad, look, area in zip(quads, candidates.looks, areas, strict=True)
+        for quad, look, area in zip(quads, candidates.predictions, areas, strict=True)
     ]
     inside, around = _places(candidates)
     return np.column_stack(
@@ -251,7 +251,7 @@ def _places(candidates: Candidates) -> tuple[Array, Array]:
     """Mean probability of places inside and just outside of each candidate, in its look; 0.5 where none is seen."""
     along = np.linspace(0.0, 1.0, 8)[:-1]
     inside, around = np.full(len(candidates.panes), 0.5), np.full(len(candidates.panes), 0.5)
-    for i, (quad, look) in enumerate(zip(candidates.quads, candidates.looks, strict=True)):
+    for i, (quad, look) in enumerate(zip(candidates.quads, candidates.predictions, strict=True)):
         corners = quad * look.scale / STRIDE
         towards = np.roll(corners, -1, axis=0) - corners
         from_middle = (corners[:, None] + along[:, None] * towards[:, None]).reshape(-1, 2) - corners.mean(axis=0)

@@ -3,14 +3,20 @@
 import numpy as np
 import pytest
 
-from planning.insight.things import Thing, first_things_hit, nearest_things, nearest_triangles, things_of
+from planning.insight.obstructions import (
+    Obstruction,
+    first_obstructions_hit,
+    nearest_obstructions,
+    nearest_triangles,
+    obstructions_of,
+)
 from planning.site.free_space import unchecked_space
 from tests.planning.insight.cases import scene
 from tests.planning.plan_cases import distances, kiosk, lines_free
 
 MODEL = kiosk()
 SPACE = unchecked_space(MODEL, 5.0)
-THINGS = things_of(MODEL, SPACE)
+THINGS = obstructions_of(MODEL, SPACE)
 N_PANELS = 15
 
 
@@ -34,7 +40,7 @@ def test_things_are_panels_building_obstacles_and_no_fly_volumes_in_order():
         "obstacle 'tree'",
         "no-fly volume 'road'",
     ]
-    assert THINGS.all[0] == Thing("panel", "A-0000")
+    assert THINGS.all[0] == Obstruction("panel", "A-0000")
     assert set(THINGS.no_fly_owner) == {N_PANELS + 2}
 
 
@@ -42,7 +48,7 @@ def test_the_nearest_thing_is_the_first_of_those_at_the_least_distance():
     points = np.random.default_rng(0).uniform([-40, -40, 0], [40, 40, 40], (300, 3))
     apart = np.stack([distances(points, triangles_of(number)) for number in range(N_PANELS + 2)])
     expected = np.argmax(apart <= apart.min(axis=0) + 1e-7, axis=0)
-    found = nearest_things(SPACE.solids, THINGS.solid_owner, points)
+    found = nearest_obstructions(SPACE.solids, THINGS.solid_owner, points)
     np.testing.assert_array_equal(found, expected)
     assert {0, N_PANELS, N_PANELS + 1} <= set(found)
 
@@ -63,7 +69,7 @@ def test_the_first_thing_hit_is_the_one_whose_hit_lies_nearest_to_the_start():
     rng = np.random.default_rng(2)
     a = rng.uniform([-20, -20, 0], [20, -2, 20], (200, 3))
     b = rng.uniform([-20, 2, 0], [20, 20, 12], (200, 3))
-    found = first_things_hit(SPACE.solids, THINGS.solid_owner, a, b)
+    found = first_obstructions_hit(SPACE.solids, THINGS.solid_owner, a, b)
     free = lines_free(a, b, np.concatenate([triangles_of(number) for number in range(N_PANELS + 2)]))
     np.testing.assert_array_equal(found == -1, free)
     for i in np.flatnonzero(found >= 0)[::5]:
@@ -77,12 +83,12 @@ def test_the_first_thing_hit_is_the_one_whose_hit_lies_nearest_to_the_start():
 
 def test_space_of_another_site_is_refused():
     with pytest.raises(ValueError, match="expected the space of this site"):
-        things_of(scene("single-panel"), SPACE)
+        obstructions_of(scene("single-panel"), SPACE)
 
 
 def test_without_any_triangle_nothing_is_near():
     bare = scene("single-panel")
     space = unchecked_space(bare, 5.0)
-    things = things_of(bare, space)
-    assert nearest_things(space.no_fly, things.no_fly_owner, np.zeros((2, 3))).tolist() == [-1, -1]
-    assert first_things_hit(space.no_fly, things.no_fly_owner, np.zeros((1, 3)), np.ones((1, 3))).tolist() == [-1]
+    things = obstructions_of(bare, space)
+    assert nearest_obstructions(space.no_fly, things.no_fly_owner, np.zeros((2, 3))).tolist() == [-1, -1]
+    assert first_obstructions_hit(space.no_fly, things.no_fly_owner, np.zeros((1, 3)), np.ones((1, 3))).tolist() == [-1]

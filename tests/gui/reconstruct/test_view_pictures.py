@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from groundstation.services.reconstruct.messages import Seen, Subject
+from groundstation.services.reconstruct.messages import Subject, ViewAnswer
 from reconstruction.base.cameras import Intrinsics, Pose, PosedPhoto
 from tests.gui.driving import turn_until
 
@@ -16,19 +16,19 @@ def camera():
 
 
 def test_pictures_are_quick_while_the_camera_moves_and_the_last_one_is_whole(application):
-    from groundstation.gui.reconstruct.looks import Looks, View
+    from groundstation.gui.reconstruct.view_pictures import View, ViewPictures
 
     sent = []
-    looks = Looks(sent.append, lambda: SIZE)
+    looks = ViewPictures(sent.append, lambda: SIZE)
     view = View(camera(), Subject("model", Path("m")), None, "picture")
     looks.show(view)
     for number in range(2):
         assert [look.is_quick for look in sent] == [True] * (number + 1)
         looks.show(View(camera(), view.left, None, "picture"))
-        looks.take(Seen(sent[-1], np.zeros((4, 4, 3), np.uint8), seconds=1.0))
-    looks.take(Seen(sent[-1], np.zeros((4, 4, 3), np.uint8), seconds=1.0))
+        looks.take(ViewAnswer(sent[-1], np.zeros((4, 4, 3), np.uint8), seconds=1.0))
+    looks.take(ViewAnswer(sent[-1], np.zeros((4, 4, 3), np.uint8), seconds=1.0))
     turn_until(application, lambda: not sent[-1].is_quick)
     assert sent[-1].camera.intrinsics.width_px == SIZE[0]
     assert [look.is_quick for look in sent] == [True] * (len(sent) - 1) + [False]
-    looks.take(Seen(sent[-1], np.zeros((4, 4, 3), np.uint8), seconds=1.0))
+    looks.take(ViewAnswer(sent[-1], np.zeros((4, 4, 3), np.uint8), seconds=1.0))
     turn_until(application, looks.is_at_rest)

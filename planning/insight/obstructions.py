@@ -27,7 +27,7 @@ from planning.site.records import SiteModel
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
-ThingKind = Literal["panel", "building", "obstacle", "no-fly"]
+ObstructionKind = Literal["panel", "building", "obstacle", "no-fly"]
 
 TIE_M = 1e-6
 """Things that are nearer to each other than this at the nearest point share the place; the first in order is named."""
@@ -36,10 +36,10 @@ SEGMENTS_PER_CHUNK = 1024
 
 
 @dataclass(frozen=True, slots=True)
-class Thing:
+class Obstruction:
     """Something to keep away from; the building has no identifier."""
 
-    kind: ThingKind
+    kind: ObstructionKind
     id: str = ""
 
     def __str__(self) -> str:
@@ -54,7 +54,7 @@ class Thing:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Things:
+class Obstructions:
     """All things of a site, and the owner of every triangle of its free space.
 
     Parameters
@@ -68,13 +68,13 @@ class Things:
         `FreeSpace.no_fly`.
     """
 
-    all: tuple[Thing, ...]
+    all: tuple[Obstruction, ...]
     n_panels: int
     solid_owner: Indices
     no_fly_owner: Indices
 
 
-def things_of(site_model: SiteModel, space: FreeSpace) -> Things:
+def obstructions_of(site_model: SiteModel, space: FreeSpace) -> Obstructions:
     """Owners of the triangles of a site's free space.
 
     Raises
@@ -85,10 +85,10 @@ def things_of(site_model: SiteModel, space: FreeSpace) -> Things:
     site = site_model.site
     m, zones = site.n_panels, site.airspace.no_fly
     named = (
-        *(Thing("panel", panel.id) for panel in site.panels),
-        Thing("building"),
-        *(Thing("obstacle", obstacle.id) for obstacle in site.obstacles),
-        *(Thing("no-fly", zone.id) for zone in zones),
+        *(Obstruction("panel", panel.id) for panel in site.panels),
+        Obstruction("building"),
+        *(Obstruction("obstacle", obstacle.id) for obstacle in site.obstacles),
+        *(Obstruction("no-fly", zone.id) for zone in zones),
     )
     # In the order in which `planning.site.free_space.unchecked_space` joins them.
     meshes = (site_model.building, *site_model.obstacles)
@@ -98,7 +98,7 @@ def things_of(site_model: SiteModel, space: FreeSpace) -> Things:
     for owner, solids in ((solid_owner, space.solids), (no_fly_owner, space.no_fly)):
         if len(owner) != len(solids.bvh.source):
             raise ValueError(f"expected the space of this site, {len(owner)} triangles, got {len(solids.bvh.source)}")
-    return Things(
+    return Obstructions(
         named, m, solid_owner[space.solids.bvh.source], no_fly_owner.astype(np.int64)[space.no_fly.bvh.source]
     )
 
@@ -180,13 +180,13 @@ def nearest_triangles(solids: Solids, owner: Indices, a_enu_m: Array, b_enu_m: A
     return result
 
 
-def nearest_things(solids: Solids, owner: Indices, points_enu_m: Array) -> Indices:
+def nearest_obstructions(solids: Solids, owner: Indices, points_enu_m: Array) -> Indices:
     """Number of the thing nearest to each point, shape (n, 3); -1 where there is nothing."""
     triangle = nearest_triangles(solids, owner, points_enu_m, points_enu_m)
     return owner[triangle] if len(owner) else triangle
 
 
-def first_things_hit(solids: Solids, owner: Indices, a_enu_m: Array, b_enu_m: Array) -> Indices:
+def first_obstructions_hit(solids: Solids, owner: Indices, a_enu_m: Array, b_enu_m: Array) -> Indices:
     """Number of the thing that lines from a to b, shape (n, 3), meet first; -1 for none."""
     result = np.full(len(a_enu_m), -1, np.int64)
     _first_hits(solids.bvh, owner, np.ascontiguousarray(a_enu_m), np.ascontiguousarray(b_enu_m), TIE_M, result)
