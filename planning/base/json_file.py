@@ -345,7 +345,7 @@ def settings_over(base: Record, content: Mapping[str, Any], path: Path) -> Recor
     try:
         return to_record(_merged(asdict(base), content), type(base), path)  # type: ignore[call-overload]
     except ValueError as error:
-        raise InputError(f"{path}: {error}") from error
+        raise InputError(about(path, error)) from error
 
 
 def _check_keys(content: Mapping[str, Any], record: type[Any], path: Path, place: str) -> None:

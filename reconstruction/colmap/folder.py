@@ -32,7 +32,7 @@ from reconstruction.colmap.record import (
     ColmapModel,
     ColmapPoints,
     check_camera,
-    refuse,
+    unsupported_camera_model,
 )
 
 # COLMAP's binary files, little-endian (colmap.github.io, "Output Format").
@@ -120,7 +120,7 @@ def read_cameras_binary(content: bytes, place: str) -> list[ColmapCamera]:
         camera_id, number, width, height = map(int, reader.take(CAMERA_HEAD))
         model = NAMES.get(number)
         if model is None:
-            raise refuse(camera_id, OTHERS.get(number, f"number {number}"), place)
+            raise unsupported_camera_model(camera_id, OTHERS.get(number, say("number {}", number)), place)
         parameters = reader.take(struct.Struct(f"<{N_PARAMETERS[model]}d"))
         cameras.append(ColmapCamera(camera_id, model, width, height, parameters))
     return cameras
@@ -246,7 +246,7 @@ def read_cameras_text(content: str, place: str) -> list[ColmapCamera]:
             camera_id, model, width, height = int(parts[0]), parts[1], int(parts[2]), int(parts[3])
             cameras.append(ColmapCamera(camera_id, model, width, height, tuple(map(float, parts[4:]))))
         except (ValueError, IndexError) as error:
-            raise _wrong(place, number, "CAMERA_ID MODEL WIDTH HEIGHT PARAMS", line) from error
+            raise _bad_line(place, number, "CAMERA_ID MODEL WIDTH HEIGHT PARAMS", line) from error
     return cameras
 
 
@@ -262,7 +262,7 @@ def read_images_text(content: str, place: str) -> list[ColmapImage]:
             image_id, camera_id, name = int(parts[0]), int(parts[8]), parts[9].rstrip("\r\n")
             w, x, y, z, *t = map(float, parts[1:8])
         except (ValueError, IndexError) as error:
-            raise _wrong(place, number, "IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME", line) from error
+            raise _bad_line(place, number, "IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME", line) from error
         number, line = next(lines, (number + 1, ""))
         parts = line.replace(UNSIGNED_NO_POINT, str(NO_POINT)).split()
         try:
@@ -271,7 +271,7 @@ def read_images_text(content: str, place: str) -> list[ColmapImage]:
             if 3 * len(point_ids) != len(parts):
                 raise ValueError("not three numbers each")
         except (ValueError, OverflowError) as error:
-            raise _wrong(place, number, "X Y POINT3D_ID of every observation", line) from error
+            raise _bad_line(place, number, "X Y POINT3D_ID ...", line) from error
         images.append(ColmapImage(image_id, (w, x, y, z), (t[0], t[1], t[2]), camera_id, name, points_px, point_ids))
     return images
 
@@ -288,7 +288,7 @@ def read_points_text(content: str, place: str) -> ColmapPoints:
             if not all(0 <= value <= 255 for value in rows[-1][3:6]):
                 raise ValueError("a colour is outside 0 to 255")
         except (ValueError, IndexError, OverflowError) as error:
-            raise _wrong(place, number, "POINT3D_ID X Y Z R G B ERROR IMAGE_ID POINT2D_IDX ...", line) from error
+            raise _bad_line(place, number, "POINT3D_ID X Y Z R G B ERROR IMAGE_ID POINT2D_IDX ...", line) from error
     if not ids:
         return NO_POINTS
     table = np.array(rows, np.float64)
@@ -309,9 +309,15 @@ def _lines(content: str, keep_empty: bool = False) -> Iterator[tuple[int, str]]:
             yield number, line
 
 
-def _wrong(place: str, number: int, expected: str, line: str) -> InputError:
+def _bad_line(place: str, number: int, columns: str, line: str) -> InputError:
+    """The error about a line of a text file that lacks columns of COLMAP's format or has no numbers in them."""
     found = line if len(line) <= 80 else f"{line[:77]}..."
-    return InputError(f"{place}: line {number}: expected {expected}, found '{found.strip()}'")
+    return InputError.say(
+        "expected the columns {}, found '{}'; export the model again with COLMAP",
+        columns,
+        found.strip(),
+        place=say("{}, line {}", place, number),
+    )
 
 
 def cameras_text(cameras: Sequence[ColmapCamera]) -> str:

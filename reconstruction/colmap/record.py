@@ -187,18 +187,21 @@ BEYOND = 4.0 / 3.0
 """Of the picture's corners, how far out: distortion moves straight points inwards by up to a fifth or so."""
 
 
-def refuse(camera_id: int, model: str, place: str) -> InputError:
-    """The error about a camera model that is not understood."""
-    return InputError(
-        f"{place}: camera {camera_id} has the model {model}; expected one of {', '.join(NUMBERS)}; undistort the "
-        "images in COLMAP (image_undistorter), which gives PINHOLE cameras"
+def unsupported_camera_model(camera_id: int, model: str, place: str) -> InputError:
+    """The error about a camera model that is not one of `NUMBERS`."""
+    return InputError.say(
+        "the camera model {} is not supported; expected one of {}; undistort the images with COLMAP "
+        "(image_undistorter), which then writes PINHOLE cameras",
+        model,
+        ", ".join(NUMBERS),
+        place=say("{}, camera {}", place, camera_id),
     )
 
 
 def check_camera(camera: ColmapCamera, place: str) -> None:
     """Raise `InputError` unless a camera is of a known model and whole."""
     if camera.model not in NUMBERS:
-        raise refuse(camera.id, camera.model, place)
+        raise unsupported_camera_model(camera.id, camera.model, place)
     expected = N_PARAMETERS[camera.model]
     if len(camera.parameters) != expected or not np.isfinite(camera.parameters).all():
         raise InputError(
@@ -207,7 +210,7 @@ def check_camera(camera: ColmapCamera, place: str) -> None:
                 expected,
                 camera.model,
                 camera.parameters,
-                place=f"{place}: camera {camera.id}",
+                place=say("{}, camera {}", place, camera.id),
             )
         )
     n_focal = 1 if camera.model.startswith(("SIMPLE", "RADIAL")) else 2
@@ -218,7 +221,7 @@ def check_camera(camera: ColmapCamera, place: str) -> None:
                 camera.width_px,
                 camera.height_px,
                 camera.parameters[:n_focal],
-                place=f"{place}: camera {camera.id}",
+                place=say("{}, camera {}", place, camera.id),
             )
         )
 

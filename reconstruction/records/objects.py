@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 
 from planning.base.errors import InputError
-from planning.base.messages import say
+from planning.base.messages import about, say
 from planning.geo.frames import Vec3
 from planning.site.records import Panel, Site, check_point
 from reconstruction.records.entries import check_global_id, global_id_of, is_global_id
@@ -58,7 +58,7 @@ class ObjectRow:
                 for corner in self.corners_enu_m:
                     check_point(corner, "corners_enu_m")
             except ValueError as error:
-                raise InputError(f"'{self.name}': {error}") from error
+                raise InputError(about(f"'{self.name}'", error)) from error
 
     @property
     def width_m(self) -> float | None:

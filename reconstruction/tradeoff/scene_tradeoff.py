@@ -301,7 +301,10 @@ def make_truth(
             monitor.report("rendering the truth", again * len(photos) + number, passes * len(photos))
             taken[again].append(renderer.render(photo, seed=again * len(photos) + number))
     seconds = (clock() - started) / (passes * len(photos))
-    name = f"embedded, {TRUTH_SAMPLES} x {TRUTH_SAMPLES} rays" if make is None else f"Mitsuba, {make[1]} rays"
+    if make is None:
+        name = say("embedded, {} x {} rays", TRUTH_SAMPLES, TRUTH_SAMPLES)
+    else:
+        name = say("Mitsuba, {} rays", make[1])
     seen = walls(scene.site.site.facades)
     scores = [
         _panel_scores(photo, one, metered_exposure(one), seen) for photo, one in zip(photos, taken[0], strict=True)

@@ -10,6 +10,7 @@ from typing import Any, Literal
 from planning.base.effects import EffectSetting
 from planning.base.errors import InputError
 from planning.base.json_file import settings_over
+from planning.base.messages import about
 from planning.base.parameters import check, like, parameter
 from reconstruction.light.config import PAPER_STAGES, HighFrequencyStage, ReflectionConfig
 from reconstruction.splats.rasterising.raster_types import RasterSettings
@@ -256,5 +257,5 @@ def config_of(content: dict[str, Any], base: TrainConfig, path: Path) -> TrainCo
     try:
         of_method = method_named(content["method"]).settings if isinstance(content.get("method"), str) else {}
     except ValueError as error:
-        raise InputError(f"{path}: {error}") from error
+        raise InputError(about(path, error)) from error
     return settings_over(settings_over(base, of_method, path), content, path)

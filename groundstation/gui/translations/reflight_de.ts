@@ -6024,6 +6024,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Mitsuba ist nicht installiert; installieren (pip install &apos;reflight-groundstation[mitsuba]&apos;) oder den eingebauten Renderer benutzen</translation>
     </message>
     <message>
+        <source>Mitsuba, {0} rays</source>
+        <translation>Mitsuba, {0} Strahlen</translation>
+    </message>
+    <message>
         <source>Panels with pictures of their fronts, for programs that know no splats.</source>
         <translation>Scheiben mit Bildern ihrer Vorderseite, für Programme ohne Splats.</translation>
     </message>
@@ -6248,6 +6252,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>gröbstes Pixel</translation>
     </message>
     <message>
+        <source>compared with the reference: {0}</source>
+        <translation>verglichen mit der Referenz: {0}</translation>
+    </message>
+    <message>
         <source>comparing exposures</source>
         <translation>Belichtungen werden verglichen</translation>
     </message>
@@ -6308,6 +6316,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
 {0}</source>
         <translation>Effekte:
 {0}</translation>
+    </message>
+    <message>
+        <source>embedded, {0} x {1} rays</source>
+        <translation>eingebaut, {0} x {1} Strahlen</translation>
     </message>
     <message>
         <source>ended at once with status {0} ({1})</source>
@@ -6600,6 +6612,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>expected point numbers, found none</source>
         <translation>erwartet: Punktnummern, gefunden: keine</translation>
+    </message>
+    <message>
+        <source>expected the columns {0}, found &apos;{1}&apos;; export the model again with COLMAP</source>
+        <translation>erwartet werden die Spalten {0}, gefunden &apos;{1}&apos;; das Modell noch einmal aus COLMAP exportieren</translation>
     </message>
     <message>
         <source>expected the folder of a model; &apos;records FOLDER make --objects SITE&apos; makes one for records alone</source>
@@ -7206,6 +7222,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Nummer und {0} Koordinaten je Punkt</translation>
     </message>
     <message>
+        <source>number {0}</source>
+        <translation>Nummer {0}</translation>
+    </message>
+    <message>
         <source>of all sections</source>
         <translation>von allen Sektoren</translation>
     </message>
@@ -7558,6 +7578,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>das Gebäude ohne Scheiben</translation>
     </message>
     <message>
+        <source>the camera model {0} is not supported; expected one of {1}; undistort the images with COLMAP (image_undistorter), which then writes PINHOLE cameras</source>
+        <translation>das Kameramodell {0} wird nicht unterstützt; erwartet wird eines von {1}; die Bilder mit COLMAP entzerren (image_undistorter), das dann PINHOLE-Kameras schreibt</translation>
+    </message>
+    <message>
         <source>the camera says that photo {0} failed</source>
         <translation>die Kamera meldet, dass Foto {0} nicht gelang</translation>
     </message>
@@ -7902,6 +7926,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>{0} von {1} Standpunkten liegen in Gebäuden gegenüber oder in Bäumen, die die Szene dem Standort hinzufügt; über {2} neben den Fotos planen, wo sie enthalten sind, oder dem Standort ein Aussehen mit breiterer Straße geben</translation>
     </message>
     <message>
+        <source>{0} photos of {1} x {2} px</source>
+        <translation>{0} Fotos mit {1} x {2} px</translation>
+    </message>
+    <message>
         <source>{0} photos were reported</source>
         <translation>{0} Fotos wurden gemeldet</translation>
     </message>
@@ -7928,6 +7956,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>{0} workers ended while they rendered it, perhaps for want of memory</source>
         <translation>{0} Worker endeten beim Rendern, vielleicht aus Mangel an Speicher</translation>
+    </message>
+    <message>
+        <source>{0}, camera {1}</source>
+        <translation>{0}, Kamera {1}</translation>
     </message>
     <message>
         <source>{0}, telemetry log</source>

@@ -25,7 +25,7 @@ from planning.base.effects import Decision
 from planning.base.errors import InputError
 from planning.base.findings import Finding, Severity
 from planning.base.json_file import plain_values
-from planning.base.messages import about, say
+from planning.base.messages import about, joined, say
 from planning.base.parallel_map import cluster_client
 from planning.base.progress import QUIET, Monitor
 from planning.geo.mesh import join
@@ -148,7 +148,8 @@ def scene_tradeoff(
         truth = make_truth(scene, photos, judge, monitor)
         settings = scene_settings(request.settings, decisions, variants, lens.width_px)
         trials = run_scene_variants(scene, photos, truth, settings, make, monitor)
-        title = f"{scene.name}: {len(photos)} photos of {lens.width_px} x {lens.height_px} px\nagainst {truth.name}"
+        size = say("{} photos of {} x {} px", len(photos), lens.width_px, lens.height_px, place=scene.name)
+        title = joined("\n", (size, say("compared with the reference: {}", truth.name)))
         worths: tuple[EffectWorth, ...] = ()
         if n_reflection_views:
             worths = _worths(replace(request, n_views=n_reflection_views), scene, variants.effects, config, monitor)

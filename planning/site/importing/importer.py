@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from planning.base.errors import InputError
 from planning.base.json_file import write_together
-from planning.base.messages import joined, say
+from planning.base.messages import about, glue, joined, say
 from planning.base.progress import QUIET, Monitor
 from planning.geo.frames import Vec3
 from planning.geo.mesh import MESH_SUFFIXES, closed_parts, join, ply_bytes
@@ -256,7 +256,7 @@ def assemble(path: Path, source: SourceModel, options: ImportOptions, monitor: M
         n = len(source.windows)
         found = say("no window of {} is a pane that faces the open", n) if n else say("there are no windows")
         if options.panels_required:
-            raise InputError(f"{path}: {found}; {HOW_TO_GET_PANELS}")
+            raise InputError(about(path, glue(found, "; ", HOW_TO_GET_PANELS)))
         bare = say(
             "{}, so the site has no panels yet: find them in photos ('panels' or the Photos tab), or draw "
             "them on the building (the Site tab, or --panel-grid)",
@@ -347,7 +347,7 @@ def check_ground(path: Path, source: SourceModel) -> None:
         It does; the message names the answers.
     """
     if source.question:
-        raise InputError(f"{path}: {source.question}")
+        raise InputError(about(path, source.question))
 
 
 def _check_extent(path: Path, source: SourceModel, options: ImportOptions) -> None:

@@ -177,21 +177,25 @@ def test_damaged_bytes_never_do_more_than_be_refused(data):
 @pytest.mark.parametrize(
     ("name", "line", "words"),
     [
-        ("cameras", "1 PINHOLE 4000 3000 a b c d", "expected CAMERA_ID MODEL"),
-        ("cameras", "1 PINHOLE", "expected CAMERA_ID MODEL"),
+        ("cameras", "1 PINHOLE 4000 3000 a b c d", "expected the columns CAMERA_ID MODEL"),
+        ("cameras", "1 PINHOLE", "expected the columns CAMERA_ID MODEL"),
         ("cameras", "1 PINHOLE 4000 3000 3000 3000 2000", "expected 4 numbers for PINHOLE"),
         ("cameras", "1 PINHOLE 4000 3000 -3000 3000 2000 1500", "above 0"),
         ("cameras", "1 PINHOLE 4000 3000 nan 3000 2000 1500", "expected 4 numbers"),
         ("cameras", "1 OPENCV_FISHEYE 4000 3000 1 1 1 1 0 0 0 0", "image_undistorter"),
-        ("images", "1 1 0 0 0 0 0 0", "expected IMAGE_ID"),
+        ("images", "1 1 0 0 0 0 0 0", "expected the columns IMAGE_ID"),
         ("images", "1 1 0 0 0 0 0 0 99 a.jpg\n", "has camera 99"),
         ("images", "1 0 0 0 0 0 0 0 7 a.jpg\n", "no rotation"),
         ("images", "1 1 0 0 0 inf 0 0 7 a.jpg\n", "not finite"),
-        ("images", "1 1 0 0 0 0 0 0 7 a.jpg\n1 2", "expected X Y POINT3D_ID"),
-        ("images", "1 1 0 0 0 0 0 0 7 a.jpg\n1 2 99999999999999999999999", "expected X Y POINT3D_ID"),
+        ("images", "1 1 0 0 0 0 0 0 7 a.jpg\n1 2", "expected the columns X Y POINT3D_ID"),
+        (
+            "images",
+            "1 1 0 0 0 0 0 0 7 a.jpg\n1 2 99999999999999999999999",
+            "expected the columns X Y POINT3D_ID",
+        ),
         ("images", "1 1 0 0 0 0 0 0 7 a.jpg\n\n2 1 0 0 0 0 0 0 7 a.jpg\n", "twice"),
-        ("points3D", "1 0 0 0 1 2 300 0.5", "expected POINT3D_ID"),
-        ("points3D", "1 0 0 0 1 2 3 0.5 1", "expected POINT3D_ID"),
+        ("points3D", "1 0 0 0 1 2 300 0.5", "expected the columns POINT3D_ID"),
+        ("points3D", "1 0 0 0 1 2 3 0.5 1", "expected the columns POINT3D_ID"),
         ("points3D", "1 nan 0 0 1 2 3 0.5", "not finite"),
     ],
 )
@@ -213,7 +217,7 @@ def test_no_point_is_read_in_both_ways_of_writing(tmp_path):
 @pytest.mark.parametrize("number", [5, 77, -1])
 def test_camera_models_that_are_not_understood_are_named(tmp_path, number):
     content = COUNT.pack(1) + struct.pack("<IiQQ8d", 3, number, 10, 10, *[1.0] * 8)
-    with pytest.raises(InputError, match=r"camera 3 has the model (OPENCV_FISHEYE|number)"):
+    with pytest.raises(InputError, match=r"camera 3: the camera model (OPENCV_FISHEYE|number \S+) is not supported"):
         read_model(binary(tmp_path, cameras=content))
 
 
