@@ -106,6 +106,8 @@ class Rates:
         been learned already, and the colours around it settle only now.
     sky, exposures, corner_loss
         Of the sky, the gains of photos, and vignetting.
+    poses
+        Of corrections of photos' poses, pixels.
     last
         Share of all rates but `means` that is left at the end of half a cosine.
     warm_up
@@ -125,6 +127,7 @@ class Rates:
     light: float = parameter(0.25, least=0.0)
     sky: float = parameter(1e-2, least=0.0)
     exposures: float = parameter(1e-3, least=0.0)
+    poses: float = parameter(0.1, least=0.0)
     corner_loss: float = parameter(2e-3, least=0.0)
     last: float = parameter(0.1, least=0.0, most=1.0)
     warm_up: int = parameter(30, least=0)
@@ -163,6 +166,8 @@ class TrainConfig:
     own_exposures
         Whether each photo has a gain and a white balance of its own: `exposures.OwnExposures`. Off, gains stay what the
         folder says.
+    own_poses
+        Whether each photo's pose is corrected while splats are learned: `poses.PoseCorrections`.
     light_apart
         Whether light that is learned apart from the splats is worth it: `start.SeparateLight`. On, rays of glass alone
         decide which; off, nothing is tried.
@@ -205,6 +210,7 @@ class TrainConfig:
     reflections: ReflectionConfig = field(default_factory=ReflectionConfig)
     overexposed: EffectSetting = "auto"
     own_exposures: EffectSetting = "auto"
+    own_poses: EffectSetting = "auto"
     light_apart: EffectSetting = "auto"
     points_for_mesh: EffectSetting = "auto"
     start_from: StartFrom = "surfaces"

@@ -42,8 +42,9 @@ from reconstruction.training.methods.shader import Shader
 from reconstruction.training.methods.shaders import Surroundings, converted_for_method, shader_of, with_primitive
 from reconstruction.training.model.joint_model import SceneModel
 from reconstruction.training.model.record import SiteRecord, site_record
-from reconstruction.training.photos.exposures import Exposures, Move, learned_moves, moved, own_exposures
+from reconstruction.training.photos.exposures import Exposures, own_exposures
 from reconstruction.training.photos.photo_stream import PhotoStream, StreamSettings
+from reconstruction.training.photos.poses import Move, PoseCorrections, learned_moves, moved
 from reconstruction.training.timer import Timer
 from reconstruction.training.trainer import SHOWN_VIEWS, Trainer, strategy_of
 from reconstruction.training.training_state import write_checkpoint
@@ -489,6 +490,7 @@ def _is_worth(
         time_limit_s=limit_s,
         iterations=max(LEAST_ASKED_STEPS, round(ASKED_SHARE * config.iterations)),
         densification="none",
+        own_poses="off",
         score_every_s=NEVER_S,
         checkpoint_every_s=NEVER_S,
     )
@@ -509,6 +511,7 @@ def _is_worth(
             trainer = Trainer(
                 joint,
                 Exposures(exposures),
+                PoseCorrections(seen, origin),
                 photos,
                 strategy_of(short, len(own)),
                 short,

@@ -24,8 +24,8 @@ from reconstruction.training.config import TrainConfig
 from reconstruction.training.model.record import ModelRecord, empty_model, light_record, site_record
 from reconstruction.training.model.saved import TrainedModel
 from reconstruction.training.model.score import quality_of, score_views
-from reconstruction.training.photos.exposures import moved
 from reconstruction.training.photos.photo_stream import PhotoStream, StreamSettings
+from reconstruction.training.photos.poses import PoseCorrections, moved, one_after_other
 from reconstruction.training.ranks import ALONE, Ranks
 from reconstruction.training.start import Start, held_out_views, interrupted_light_stage, start_model
 from reconstruction.training.timer import Timer
@@ -148,6 +148,7 @@ def _started(
         trainer = Trainer(
             start.model,
             start.exposures,
+            _poses(source, record),
             photos,
             strategy_of(config, len(start.model.splats)),
             config,
@@ -241,6 +242,7 @@ def _resumed(
         trainer = Trainer(
             model,
             exposures,
+            _poses(source, record),
             photos,
             strategy_of(record.config, len(model.splats)),
             record.config,
@@ -281,6 +283,11 @@ def _photos(source: PhotoSet, record: ModelRecord, closing: ExitStack) -> tuple[
     return photos, held_out_views(source, names, origin, round(SHOWN_SHARE * config.memory_bytes), closing)
 
 
+def _poses(source: PhotoSet, record: ModelRecord) -> PoseCorrections:
+    """Of the photos that are learned from, to begin with."""
+    return PoseCorrections(_corrected(source, record).named(record.learned), np.array(record.origin_enu_m))
+
+
 def _pixels(source: PhotoSet, names: Sequence[str]) -> int:
     """Of all photos that are named."""
     return sum(photo.intrinsics.width_px * photo.intrinsics.height_px for photo in source.named(names))
@@ -297,6 +304,7 @@ def _corrected(source: PhotoSet, record: ModelRecord) -> PhotoSet:
 def _finished(trainer: Trainer, record: ModelRecord, source: PhotoSet, watching: Callbacks) -> TrainedModel:
     trainer.run(watching)
     at = trainer.at
+    record = _with_poses(record, trainer, source)
     history = tuple(QualityPoint(t_s, value) for t_s, value in at.history)
     trained = TrainedModel(record, trainer.model, trainer.exposures, history, at.step, at.spent_s, tuple(at.notes))
     try:
@@ -307,6 +315,18 @@ def _finished(trainer: Trainer, record: ModelRecord, source: PhotoSet, watching:
     trainer.model.cpu()
     trainer.exposures.cpu()
     return replace(trained, quality=quality)
+
+
+def _with_poses(record: ModelRecord, trainer: Trainer, source: PhotoSet) -> ModelRecord:
+    """The record of a model whose photos' poses were corrected with it, or were not."""
+    setting = record.config.own_poses
+    decision = trainer.poses.decision(setting, trainer.at.spent_s)
+    record = replace(record, decisions=(*record.decisions, decision))
+    if not decision.on:
+        return record
+    moves = one_after_other(record.moves, trainer.poses.moves())
+    cameras = [photo.pose.position_enu_m for photo in moved(source.named(record.learned), moves)]
+    return replace(record, moves=moves, places_enu_m=tuple(tuple(place.tolist()) for place in cameras))
 
 
 def _last_look(trainer: Trainer, trained: TrainedModel, source: PhotoSet, watching: Callbacks) -> Quality | None:

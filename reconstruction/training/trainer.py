@@ -39,6 +39,7 @@ from reconstruction.training.model.joint_model import Picture, SceneModel
 from reconstruction.training.objective import objective, on_device
 from reconstruction.training.photos.exposures import Exposures
 from reconstruction.training.photos.photo_stream import PhotoStream, Sample
+from reconstruction.training.photos.poses import TRIED, PoseCorrections
 from reconstruction.training.ranks import ALONE, Ranks
 from reconstruction.training.timer import Timer
 from reconstruction.training.training_state import TrainingState, set_rates, take_step, write_checkpoint
@@ -144,7 +145,7 @@ class Trainer(TrainingState):
 
     Parameters
     ----------
-    exposures
+    exposures, poses
         Of the photos.
     strategy
         Adds and takes away splats, until `densify_until` of the training.
@@ -170,6 +171,7 @@ class Trainer(TrainingState):
         self,
         model: SceneModel,
         exposures: Exposures,
+        poses: PoseCorrections,
         photos: PhotoStream,
         strategy: Densification,
         config: TrainConfig,
@@ -184,7 +186,7 @@ class Trainer(TrainingState):
         last_px: int = 0,
     ) -> None:
         at = Progress(window_px=photos.window_px or config.window_px, notes=[*notes])
-        super().__init__(model, exposures, photos, strategy, config, extent_m, checkpoint, at)
+        super().__init__(model, exposures, poses, photos, strategy, config, extent_m, checkpoint, at)
         self.shown, self._record, self._watch = tuple(shown), record or {}, watch or Timer()
         self.at.spent_s = self.at.saved_at_s = self.at.began_s = self._watch()
         self._settings = replace(config.raster, threads=config.threads)
@@ -339,7 +341,10 @@ class Trainer(TrainingState):
         falling = self.progress if settling is None else settling.progress_of_rates(at.spent_s)
         set_rates(self.optimiser, config.rates, at.step, max(self.progress, falling), at.factor)
         offsets = torch.zeros(len(splats), 2, device=self.device, requires_grad=True)
-        picture = self.picture(sample, self.exposures(sample.number), offsets)
+        if self.progress >= TRIED:
+            self.poses.settle(config.own_poses)
+        move = self.poses(sample.number) if self.poses.are_learned(config.own_poses) else None
+        picture = self.picture(sample, self.exposures(sample.number), offsets, move)
         loss, terms = objective(picture, sample, config.losses, self.progress, self._with_glass)
         glass = self.model.light
         more = None if glass is None else glass.regulariser(config.reflections, at.step)
@@ -358,6 +363,7 @@ class Trainer(TrainingState):
         strategy.before_step(at.step, splats, self.optimiser)
         take_step(self.optimiser, splats, config.rates)
         self.exposures.project()
+        self.poses.project()
         strategy.after_step(at.step, splats, self.optimiser, self.generator)
         self.optimiser.zero_grad(set_to_none=True)
         if glass is not None:
@@ -367,8 +373,10 @@ class Trainer(TrainingState):
         self._terms = terms
         return terms
 
-    def picture(self, sample: Sample, gain: Tensor | float, offsets: Tensor | None = None) -> Picture:
-        """What the model shows where a photo was taken; with `offsets` as a step looks at it."""
+    def picture(
+        self, sample: Sample, gain: Tensor | float, offsets: Tensor | None = None, move: Tensor | None = None
+    ) -> Picture:
+        """What the model shows where a photo was taken, or is found to be; with `offsets` as a step looks at it."""
         picture: Picture = self.model(
             sample.view,
             gain,
@@ -376,6 +384,7 @@ class Trainer(TrainingState):
             settings=self._settings,
             screen_offsets=offsets,
             generator=None if offsets is None else self._jitter(),
+            move=move,
         )
         return picture
 

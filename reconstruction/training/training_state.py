@@ -35,6 +35,7 @@ from reconstruction.training.config import Rates, TrainConfig
 from reconstruction.training.model.joint_model import SceneModel
 from reconstruction.training.photos.exposures import Exposures
 from reconstruction.training.photos.photo_stream import PhotoStream
+from reconstruction.training.photos.poses import PoseCorrections
 
 # One Adam for all that is learned, and the learning rate that each part has at each step.
 
@@ -44,8 +45,10 @@ EPSILON = 1e-15
 MEANS = "means"
 
 
-def adam_of(model: SceneModel, gains: nn.Module, config: TrainConfig, extent_m: float) -> torch.optim.Adam:
-    """Adam over model and gains of photos, each group with its `name` and its full rate, `full`.
+def adam_of(
+    model: SceneModel, gains: nn.Module, poses: nn.Module, config: TrainConfig, extent_m: float
+) -> torch.optim.Adam:
+    """Adam over model, gains and poses of photos, each group with its `name` and its full rate, `full`.
 
     With decoupled decay (AdamW) where a group asks for it. Fused: a quarter of the time on a processor, the same bits
     for the same input.
@@ -64,6 +67,7 @@ def adam_of(model: SceneModel, gains: nn.Module, config: TrainConfig, extent_m: 
     groups.append({"name": "corner loss", "params": [model.corner_loss], "full": rates.corner_loss})
     of_gains = 0.0 if config.own_exposures == "off" else rates.exposures
     groups.append({"name": "exposures", "params": list(gains.parameters()), "full": of_gains})
+    groups.append({"name": "poses", "params": list(poses.parameters()), "full": rates.poses})
     of_attributes = model.shader.attribute_rates()
     groups += [
         {"name": name, "params": [getattr(model.splats, name)], "full": of_attributes[name]}
@@ -269,6 +273,7 @@ class TrainingState:
         self,
         model: SceneModel,
         exposures: Exposures,
+        poses: PoseCorrections,
         photos: PhotoStream,
         strategy: Densification,
         config: TrainConfig,
@@ -278,10 +283,11 @@ class TrainingState:
     ) -> None:
         self.device = torch.device(config.device)
         self.model, self.exposures = model.to(self.device), exposures.to(self.device)
+        self.poses = poses.to(self.device)
         self.photos, self.strategy, self.config = photos, strategy, config
         self.path, self.at, self._extent_m = path, at, extent_m
         self.generator = torch.Generator().manual_seed(config.seed)
-        self.optimiser = adam_of(model, exposures, config, extent_m)
+        self.optimiser = adam_of(model, exposures, poses, config, extent_m)
         self.n_pixels, self.is_editing = 0, False
 
     def undo(self, reason: str) -> None:
@@ -366,6 +372,7 @@ class TrainingState:
             "model": self.model.state_dict(),
             "empty places": self.model.empty_places(),
             "exposures": self.exposures.state_dict(),
+            "poses": self.poses.state_dict(),
             "adam": self.optimiser.state_dict(),
             "photos": self.photos.state_dict(),
             "strategy": self.strategy.state_dict(),
@@ -384,7 +391,8 @@ class TrainingState:
         try:
             self.model.load(state["model"], state["empty places"])
             self.exposures.load_state_dict(state["exposures"])
-            self.optimiser = adam_of(self.model, self.exposures, self.config, self._extent_m)
+            self.poses.load_state_dict(state["poses"])
+            self.optimiser = adam_of(self.model, self.exposures, self.poses, self.config, self._extent_m)
             self.optimiser.load_state_dict(state["adam"])
             self.photos.load_state_dict(state["photos"])
             self.strategy.load_state_dict(state["strategy"])

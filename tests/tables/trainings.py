@@ -84,14 +84,15 @@ class Case:
         settings = asdict(config)
         if config.start_from == "surfaces":
             del settings["start_from"]  # as all did before there was a choice
-        for effect in ("own_exposures", "light_apart", "points_for_mesh"):
+        for effect in ("own_exposures", "own_poses", "light_apart", "points_for_mesh"):
             if settings[effect] == "auto":
-                del settings[effect]  # these scenes' photos are exposed alike, and their mirror images are clear
+                del settings[effect]  # these scenes' photos are exposed alike and posed right, mirror images are clear
         if settings["overexposed"] in ("auto", "off"):
             del settings["overexposed"]  # next to white is a pixel in ten thousand
         for part in ("losses", "reflections"):
             if settings[part]["white"] == 1.0:
                 del settings[part]["white"]
+        settings["rates"].pop("poses")
         if not config.trained_by.knows_panels:
             settings = {name: value for name, value in settings.items() if name not in OF_PANELS}
             settings["rates"].pop("glass_geometry")

@@ -6922,6 +6922,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>ist nicht für --resume, das in einen Akku passt</translation>
     </message>
     <message>
+        <source>it was not looked for</source>
+        <translation>nicht untersucht</translation>
+    </message>
+    <message>
         <source>its content is no flight log; expected telemetry (.tlog), ArduPilot (.BIN, .log) or PX4 (.ulg)</source>
         <translation>sein Inhalt ist kein Fluglog; erwartet wird Telemetrie (.tlog), ArduPilot (.BIN, .log) oder PX4 (.ulg)</translation>
     </message>
@@ -7310,6 +7314,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Fotos</translation>
     </message>
     <message>
+        <source>photos fit the model better where what they show is {0} px elsewhere</source>
+        <translation>Fotos passen besser zum Modell, wenn alles in ihnen um {0} px verschoben ist</translation>
+    </message>
+    <message>
         <source>photos of {0}</source>
         <translation>Fotos von {0}</translation>
     </message>
@@ -7344,6 +7352,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>point {0} says that {1} observations follow, more than the file holds; it is damaged or cut off: write it again</source>
         <translation>Punkt {0} sagt, dass {1} Beobachtungen folgen, mehr als die Datei enthält; sie ist beschädigt oder abgeschnitten: neu schreiben</translation>
+    </message>
+    <message>
+        <source>pose of each photo</source>
+        <translation>Pose jedes Fotos</translation>
     </message>
     <message>
         <source>position</source>

@@ -83,7 +83,7 @@ class ShownModel:
 
     def photos(self, source: PhotoSet) -> tuple[PosedPhoto, ...]:
         """All of a data set, those that were learned from where learning light found them to be."""
-        from reconstruction.training.photos.exposures import moved
+        from reconstruction.training.photos.poses import moved
 
         if not self.moves:
             return source.photos

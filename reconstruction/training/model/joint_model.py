@@ -43,6 +43,7 @@ from reconstruction.splats.splats import FEATURES, Splats
 from reconstruction.training.config import GeometrySource
 from reconstruction.training.losses import unit
 from reconstruction.training.methods.shader import Shaded, Shader
+from reconstruction.training.photos.poses import moved_view, pulled
 
 Array = NDArray[np.float64]
 
@@ -203,6 +204,7 @@ class SceneModel(nn.Module):
         settings: RasterSettings = USUAL,
         screen_offsets: Tensor | None = None,
         generator: torch.Generator | None = None,
+        move: Tensor | None = None,
     ) -> Picture:
         """Render a view.
 
@@ -216,11 +218,19 @@ class SceneModel(nn.Module):
             See `rasterise`.
         generator
             Of the places within each pixel that mirrored rays go through; evenly spread ones where there is none.
+        move
+            Correction of the view's pose, shape (6,), see `poses`. Its gradient is that of what is rasterised; where
+            mirrored rays go to counts as fixed.
         """
         splats, device = self.splats, self.splats.means.device
+        means: Tensor = splats.means
+        quats: Tensor = splats.quats
+        if move is not None:
+            view = moved_view(view, move)
+            means, quats = pulled(means, quats, view.position_m, move)
         raster = rasterise(
-            splats.means,
-            splats.quats,
+            means,
+            quats,
             splats.scales,
             splats.opacities,
             self._features(view, degree),

@@ -25,7 +25,8 @@ from reconstruction.splats.splats import Splats
 from reconstruction.training.config import TrainConfig
 from reconstruction.training.methods.shaders import empty_shader
 from reconstruction.training.model.joint_model import OF_SPLATS, SceneModel
-from reconstruction.training.photos.exposures import Exposures, Move
+from reconstruction.training.photos.exposures import Exposures
+from reconstruction.training.photos.poses import Move
 
 Vec3 = tuple[float, float, float]
 

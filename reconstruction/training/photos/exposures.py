@@ -9,58 +9,25 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Literal
 
 import cv2
 import numpy as np
 import torch
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 from torch import Tensor, nn
 
 from planning.base.effects import Assessment, Decision, EffectSetting, decide
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.geo.mesh import TriangleMesh
-from reconstruction.base.cameras import Pose, PosedPhoto
+from reconstruction.base.cameras import PosedPhoto
 from reconstruction.base.ray_casting import RayCaster
-from reconstruction.light.glass_light import GlassLight
 from reconstruction.light.photo_set import PhotoSet
 from reconstruction.splats.surfels import SAME_SURFACE_M, panel_proximity
 
 Array = NDArray[np.float64]
-
-# Corrections of photos' poses that were found out while light was learned alone, put into the photos.
-
-Move = tuple[float, float, float, float, float, float]
-"""Metres along ENU, and a rotation vector, radians, ENU."""
-
-
-@torch.no_grad()
-def learned_moves(light: GlassLight | None, n_photos: int) -> tuple[Move, ...]:
-    """Of each photo learned from, as the rays were moved by them; none where poses were not learned.
-
-    What all photos have in common is taken away: surroundings move and turn with it.
-    """
-    if light is None or light.moves is None or len(light.moves) != n_photos:
-        return ()
-    moves = (light.moves - light.moves.mean(dim=0)).double().cpu()
-    return tuple(tuple(row) for row in moves.tolist())
-
-
-def moved(photos: Sequence[PosedPhoto], moves: Sequence[Move]) -> tuple[PosedPhoto, ...]:
-    """Photos where their corrections put them; as they are where there are none."""
-    if not moves:
-        return tuple(photos)
-    return tuple(_moved(photo, move) for photo, move in zip(photos, moves, strict=True))
-
-
-def _moved(photo: PosedPhoto, move: Move) -> PosedPhoto:
-    turn = Rotation.from_rotvec(move[3:]).as_matrix()
-    pose = Pose(photo.pose.position_enu_m + np.array(move[:3]), photo.pose.cam_from_enu @ turn.T)
-    return replace(photo, pose=pose)
-
 
 HeldOutGain = Literal["none", "fitted"]
 """Exposure of a view that was not learned from: what is known of it and nothing else, the fair score and the default;

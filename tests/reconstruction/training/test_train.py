@@ -2,10 +2,14 @@
 
 from dataclasses import replace
 
+import numpy as np
+import pytest
+
 from reconstruction.light.config import ReflectionConfig
 from reconstruction.light.photo_set import read_photo_set
 from reconstruction.training.config import TrainConfig
 from reconstruction.training.model.score import mean_of, score_views
+from reconstruction.training.photos.poses import OwnPoses
 from reconstruction.training.train import train_model
 from tests.reconstruction.training.made_data_set import write_data_set
 
@@ -34,3 +38,19 @@ def test_glass_is_told_better_than_by_splats_alone(tmp_path):
         assert not any(score.is_learned for score in scores)
         found[method] = mean_of(score.facade.psnr_db for score in scores)
     assert LEAST_GAIN_DB < found["refglass-gs"] - found["2dgs"] < MOST_GAIN_DB
+
+
+@pytest.mark.parametrize("setting", ["on", "off"])
+def test_a_model_says_where_its_photos_were_found_to_be(data_set, setting):
+    config = TrainConfig(method="2dgs", iterations=8, n_splats=100, max_splats=100, own_poses=setting)
+    record = train_model(data_set, config).record
+    told = [photo.pose.position_enu_m for photo in read_photo_set(data_set).named(record.learned)]
+    shifts = np.array(record.places_enu_m) - np.array(told)
+    decision = next(each for each in record.decisions if each.effect == OwnPoses().name)
+    assert (decision.on, decision.decided_by) == (setting == "on", "user")
+    if setting == "on":
+        assert np.abs(shifts).max() > 1e-5
+        np.testing.assert_allclose(shifts, np.array(record.moves)[:, :3], atol=1e-12)
+    else:
+        assert record.moves == ()
+        assert not shifts.any()

@@ -17,6 +17,7 @@ from reconstruction.training import training_state
 from reconstruction.training.callbacks import Callbacks, HeldOut
 from reconstruction.training.config import LossWeights, TrainConfig
 from reconstruction.training.photos.photo_stream import PhotoStream, StreamSettings
+from reconstruction.training.photos.poses import OwnPoses, PoseCorrections
 from reconstruction.training.start import start_model
 from reconstruction.training.timer import Timer
 from reconstruction.training.trainer import Trainer, strategy_of
@@ -84,6 +85,7 @@ def make(data_set, tmp_path, request):
         return Trainer(
             start.model,
             start.exposures,
+            PoseCorrections(start.learned, start.model.origin_enu_m),
             photos,
             strategy,
             config,
@@ -97,7 +99,7 @@ def make(data_set, tmp_path, request):
 
 
 def everything(trainer):
-    return {**trainer.model.state_dict(), **trainer.exposures.state_dict()}
+    return {**trainer.model.state_dict(), **trainer.exposures.state_dict(), **trainer.poses.state_dict()}
 
 
 def assert_same(one, other):
@@ -171,6 +173,21 @@ def test_interrupted_training_goes_on_bit_by_bit(make, tmp_path, light):
     second.run(Callbacks())
     assert second.at.step == 12
     assert_same(whole, second)
+
+
+@pytest.mark.few(1)
+@pytest.mark.parametrize("setting", ["on", "auto", "off"])
+def test_poses_are_corrected_where_they_are_to_be_and_go_on_bit_by_bit(make, tmp_path, setting):
+    config = replace(CONFIG, own_poses=setting)
+    whole, first, second = make(config), make(config, checkpoint="c"), make(config, checkpoint="c")
+    whole.run(Callbacks())
+    with pytest.raises(OperationCancelled):
+        first.run(Callbacks(Cancelling(6)))
+    second.restore(read_checkpoint(tmp_path / "c")["training"])
+    second.run(Callbacks())
+    assert all(torch.equal(value, second.poses.state_dict()[name]) for name, value in whole.poses.state_dict().items())
+    is_on = setting == "on" or (setting == "auto" and float(whole.poses.shift_px) > OwnPoses().tolerance)
+    assert bool(whole.poses.pixels.any()) is is_on
 
 
 def test_an_mlp_s_weights_decay_in_the_joint_training_and_nothing_else_does(make):
