@@ -54,8 +54,8 @@ def as_written(problem: ViewProblem, views: ViewpointArrays, n_fixed: int = 0) -
     _, first = np.unique(np.column_stack(written), axis=0, return_index=True)
     kept = is_fixed.copy()
     kept[first] = True
-    asked = np.flatnonzero(kept & ~is_fixed)
-    kept[asked] = problem.flyable(written.positions_enu_m[asked], LEG_MARGIN_M)
+    to_check = np.flatnonzero(kept & ~is_fixed)
+    kept[to_check] = problem.flyable(written.positions_enu_m[to_check], LEG_MARGIN_M)
     both = ViewpointArrays(
         np.where(is_fixed[:, None], views.positions_enu_m, written.positions_enu_m),
         np.where(is_fixed, views.heading_rad, written.heading_rad),
@@ -73,8 +73,8 @@ def plan_records(
     """
     viewpoints: list[Viewpoint] = []
     sorties = []
-    taken = {viewpoint.id for viewpoint in locked}
-    names = (name for number in itertools.count() if (name := f"v{number:04d}") not in taken)
+    used_ids = {viewpoint.id for viewpoint in locked}
+    names = (name for number in itertools.count() if (name := f"v{number:04d}") not in used_ids)
     for flight in flights:
         flown = [
             replace(locked[view], locked=True) if view < len(locked) else _record(next(names), views, int(view))

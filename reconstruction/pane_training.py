@@ -126,12 +126,12 @@ def calibrate(glass: PhotoSet, offices: PhotoSet, without: Sequence[PaneNetwork]
     n_made, n_traced = N_CALIBRATED
     first = FIRST_SEED + N_LEARNED_AT_MOST
     facades = [synthetic_set(name, n_traced, wide_camera(1200, 900), first_seed=first) for name in KINDS]
-    made = (synthetic_picture(PER_FILE * N_LEARNED_AT_MOST + seed, CALIBRATED_PX) for seed in range(n_made))
+    synthetic = (synthetic_picture(PER_FILE * N_LEARNED_AT_MOST + seed, CALIBRATED_PX) for seed in range(n_made))
     pictures = (
         ((photo.image, photo.index) for photo in islice(glass.photos(), 0, None, EVERY_SECOND)),
         ((photo.image, photo.index) for photo in islice(offices.photos(), 0, None, EVERY_SECOND)),
         ((photo.image, photo.index) for photos in facades for photo in photos.photos()),
-        ((picture.image, picture.index) for picture in made),
+        ((picture.image, picture.index) for picture in synthetic),
     )
     looking = without, without, (), ()
     sources = [Source(*each) for each in zip(pictures, WEIGHTS, looking, strict=True)]

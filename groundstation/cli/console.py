@@ -133,12 +133,12 @@ def show_tradeoff(
     tell
         Prints it for people; the files follow.
     """
-    made = run_job(f"tradeoff {name}", work)
+    compared = run_job(f"tradeoff {name}", work)
     if is_json:
-        print_json({"csv": str(made.csv_path), "picture": str(made.picture_path), **summary(made.found)})
+        print_json({"csv": str(compared.csv_path), "picture": str(compared.picture_path), **summary(compared.found)})
         return 0
-    tell(made.found)
-    for path in made.paths:
+    tell(compared.found)
+    for path in compared.paths:
         print(path)
     return 0
 

@@ -136,8 +136,8 @@ def main(arguments: Sequence[str], open_window: OpenWindow) -> int:
         sys.stdout.flush()
     except OSError as error:
         if not isinstance(error, BrokenPipeError):
-            said = say("the output cannot be written ({})", error.strerror or error)
-            print(f"{worded('error')}: {worded(said)}", file=sys.stderr)
+            message = say("the output cannot be written ({})", error.strerror or error)
+            print(f"{worded('error')}: {worded(message)}", file=sys.stderr)
         # The interpreter flushes once more when it ends, and would complain then.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return EXIT_FAILED

@@ -97,8 +97,8 @@ def in_words_of_options(record: type[Any] = PlanParameters) -> Iterator[None]:
         refused = str(error)
         name, colon, _ = refused.partition(": ")
         own = {each.parameter.name or each.path[-1]: each.parameter.option for each in declared(record).values()}
-        said = without_place(refused, name)
-        raise InputError(about(own.get(name) or OPTIONS.get(name, name), said) if colon else refused) from error
+        message = without_place(refused, name)
+        raise InputError(about(own.get(name) or OPTIONS.get(name, name), message) if colon else refused) from error
 
 
 def add_parameter(place: Any, each: Declared, *, unset: str = "") -> argparse.Action:
@@ -116,8 +116,8 @@ def add_parameter(place: Any, each: Declared, *, unset: str = "") -> argparse.Ac
     words = tuple(choice.typed for choice in known.choices)
     if each.kind is str and not words:
         words = known.suggested
-    told = f"{known.help} ({_default_text(each)})" if _default_text(each) else known.help
-    facts: dict[str, Any] = {"help": told.replace("%", "%%"), "default": argparse.SUPPRESS}
+    help_text = f"{known.help} ({_default_text(each)})" if _default_text(each) else known.help
+    facts: dict[str, Any] = {"help": help_text.replace("%", "%%"), "default": argparse.SUPPRESS}
     if each.kind is bool and not words:
         return cast("argparse.Action", place.add_argument(known.option, action="store_true", **facts))
     if known.metavar:
@@ -288,7 +288,7 @@ def effect_settings(texts: Sequence[str], effects: Sequence[str]) -> dict[str, E
     states: dict[str, EffectSetting] = {"auto": "auto", "on": "on", "off": "off"}
     all_at_once: dict[str, EffectSetting] = {"auto": "auto", "none": "off", "all": "on"}
     settings: dict[str, EffectSetting] = {}
-    for text in (part for given in texts for part in given.split(",")):
+    for text in (part for argument in texts for part in argument.split(",")):
         name, equals, state = text.strip().partition("=")
         if not equals and name in all_at_once:
             settings = dict.fromkeys(names.values(), all_at_once[name])
@@ -340,8 +340,8 @@ def flight_day(options: argparse.Namespace) -> FlightDay:
     at = None
     if options.at is not None:
         try:
-            given = datetime.fromisoformat(options.at) if "T" in options.at else None
-            at = given.astimezone() if given is not None and given.tzinfo is None else given
+            moment = datetime.fromisoformat(options.at) if "T" in options.at else None
+            at = moment.astimezone() if moment is not None and moment.tzinfo is None else moment
         except (ValueError, OverflowError, OSError):
             at = None
         if at is None:
@@ -349,8 +349,8 @@ def flight_day(options: argparse.Namespace) -> FlightDay:
     try:
         return FlightDay(at, options.temperature)
     except ValueError as error:
-        said = str(error)
-        raise InputError(about("--temperature", without_place(said, said.partition(": ")[0]))) from error
+        reason = str(error)
+        raise InputError(about("--temperature", without_place(reason, reason.partition(": ")[0]))) from error
 
 
 # Where poses of photos come from, as several commands take it.

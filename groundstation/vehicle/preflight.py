@@ -269,14 +269,14 @@ def _home_height(state: VehicleState, orders: SortieOrders) -> PreflightCheck:
     stands_m = state.home_altitude_amsl_m + state.motion.value.height_above_home_m
     above_m = stands_above_m(state, orders, stands_m)
     accuracy_m = None if state.fix is None else state.fix.value.vertical_accuracy_m
-    told = "" if accuracy_m is None else say(" (its GNSS height is good to {:.1f} m)", accuracy_m)
+    accuracy = "" if accuracy_m is None else say(" (its GNSS height is good to {:.1f} m)", accuracy_m)
     if abs(above_m) > HOME_HEIGHT_M:
         if above_m < 0.0:
             text = say(
                 "the aircraft stands {:.1f} m lower than the planned home{}, and all of the flight would be: "
                 "raise it by {:.1f} m, or plan from here",
                 -above_m,
-                told,
+                accuracy,
                 -above_m,
             )
         else:
@@ -284,7 +284,7 @@ def _home_height(state: VehicleState, orders: SortieOrders) -> PreflightCheck:
                 "the aircraft stands {:.1f} m higher than the planned home{}, and all of the flight would be: "
                 "lower it by {:.1f} m, or plan from here",
                 above_m,
-                told,
+                accuracy,
                 above_m,
             )
         return PreflightCheck("home-height", Verdict.BAD, text, above_m, HOME_HEIGHT_M, "m")
@@ -306,9 +306,9 @@ def _home_height(state: VehicleState, orders: SortieOrders) -> PreflightCheck:
         verdict = Verdict.WARN if state.autopilot is Autopilot.ARDUPILOT else Verdict.BAD
         return PreflightCheck("home-height", verdict, text, off_m, HOME_HEIGHT_M, "m")
     text = (
-        say("{:.1f} m above the planned home{}", abs(above_m), told)
+        say("{:.1f} m above the planned home{}", abs(above_m), accuracy)
         if above_m >= 0.0
-        else say("{:.1f} m below the planned home{}", abs(above_m), told)
+        else say("{:.1f} m below the planned home{}", abs(above_m), accuracy)
     )
     return PreflightCheck("home-height", Verdict.OK, text, above_m, HOME_HEIGHT_M, "m")
 
@@ -357,8 +357,8 @@ def _sensors(state: VehicleState) -> Iterator[PreflightCheck]:
     problems = state.sensor_problems.value
     if PRE_ARM in problems:
         texts = (text.text for text in reversed(state.texts) if text.text.startswith("PreArm"))
-        said = next(texts, say("it does not say why"))
-        yield PreflightCheck("sensors", Verdict.WAIT, say("the autopilot cannot be armed yet ({})", said))
+        reason = next(texts, say("it does not say why"))
+        yield PreflightCheck("sensors", Verdict.WAIT, say("the autopilot cannot be armed yet ({})", reason))
     elif problems:
         yield PreflightCheck(
             "sensors", Verdict.OK, say("it can be armed, but has trouble with: ") + joined(", ", problems)

@@ -334,12 +334,12 @@ def _with_photo(state: VehicleState, index: int, time_s: float, place: Vec3, sou
 
 def _with_boot_time(state: VehicleState, time_boot_ms: int, now_s: float) -> VehicleState:
     """State with the vehicle's own time; where that began again, UNIX times are to be compared with it anew."""
-    told = replace(state, boot_time_s=time_boot_ms / 1000.0, boot_time_heard_s=now_s)
-    if not is_restarted(state, told):
-        return told
+    updated = replace(state, boot_time_s=time_boot_ms / 1000.0, boot_time_heard_s=now_s)
+    if not is_restarted(state, updated):
+        return updated
     turns_back_s = (*(at_s for at_s in state.turns_back_s if now_s - at_s < TURNS_BACK_S), now_s)
     impostor = TWO_CLOCKS if len(turns_back_s) >= TURNS_BACK else state.impostor
-    return replace(told, photo_clock=PhotoClock(), turns_back_s=turns_back_s, impostor=impostor)
+    return replace(updated, photo_clock=PhotoClock(), turns_back_s=turns_back_s, impostor=impostor)
 
 
 def _with_jump(state: VehicleState, motion: Motion, now_s: float) -> VehicleState:

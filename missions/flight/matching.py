@@ -100,8 +100,8 @@ def _n_lost_between(record: FlightRecord, first: int, last: int) -> int:
         return 0
     if _failed(record, before.time_s, after.time_s):
         return 0
-    told = {photo.index for photo in record.photos[first:last] if before.index < photo.index < after.index}
-    return max(0, after.index - before.index - 1 - len(told))
+    reported_indices = {photo.index for photo in record.photos[first:last] if before.index < photo.index < after.index}
+    return max(0, after.index - before.index - 1 - len(reported_indices))
 
 
 def _is_unheard_between(record: FlightRecord, first: int, last: int) -> bool:
@@ -387,20 +387,20 @@ def _with_lost_reports(found: list[ViewMatch], records: Sequence[FlightRecord], 
     known. Where the track has a pause, because the link was lost, views that it passes by count, too. A sortie that was
     flown in several pieces has no one beginning and end.
     """
-    told = [(view, match.photo) for view, match in enumerate(found) if match.photo is not None]
-    passed = {Reason.NO_PHOTO}
+    photographed = [(view, match.photo) for view, match in enumerate(found) if match.photo is not None]
+    without_photo = {Reason.NO_PHOTO}
     stretches: list[tuple[range, int, set[Reason]]] = []
-    for (before, first), (after, last) in itertools.pairwise(told):
+    for (before, first), (after, last) in itertools.pairwise(photographed):
         if first.record == last.record and first.photo <= last.photo:
             ends = records[first.record], first.photo, last.photo
-            reasons = passed | ({Reason.NOT_REACHED} if _is_unheard_between(*ends) else set())
+            reasons = without_photo | ({Reason.NOT_REACHED} if _is_unheard_between(*ends) else set())
             stretches.append((range(before + 1, after), _n_lost_between(*ends), reasons))
-    if len(own) == 1 and told:
-        (first_view, first), (last_view, last) = told[0], told[-1]
-        stretches.append((range(first_view), n_lost_before(records[own[0]], first.photo), passed))
-        stretches.append((range(last_view + 1, len(found)), n_lost_after(records[own[0]], last.photo), passed))
+    if len(own) == 1 and photographed:
+        (first_view, first), (last_view, last) = photographed[0], photographed[-1]
+        stretches.append((range(first_view), n_lost_before(records[own[0]], first.photo), without_photo))
+        stretches.append((range(last_view + 1, len(found)), n_lost_after(records[own[0]], last.photo), without_photo))
     elif len(own) == 1:
-        stretches.append((range(len(found)), n_lost(records[own[0]]), passed))
+        stretches.append((range(len(found)), n_lost(records[own[0]]), without_photo))
     for views, n_photos, reasons in stretches:
         silent = [view for view in views if found[view].reason in reasons]
         if n_photos == len(silent):

@@ -304,10 +304,10 @@ def _cause(record: FlightRecord, change: FlightEvent) -> Ending | None:
     near = [event for event in record.events if from_s <= event.time_s <= to_s]
     if any(event.code == "order" for event in near):
         return None
-    said = [event.text for event in near if event.code == "text"]
-    if any(MISSION_DONE.search(text) for text in said):
+    texts = [event.text for event in near if event.code == "text"]
+    if any(MISSION_DONE.search(text) for text in texts):
         return Ending.UNKNOWN
-    return next((cause for cause, pattern in CAUSES if any(pattern.search(text) for text in said)), None)
+    return next((cause for cause, pattern in CAUSES if any(pattern.search(text) for text in texts)), None)
 
 
 MISSION_DONE = re.compile(r"(?i)mission\s(finished|complete)")

@@ -148,7 +148,11 @@ def _read_item(item: Any, place: str) -> list[MissionItem]:
                 place=place,
             )
         inner = _list(generated, place)
-        return [made for i, child in enumerate(inner, 1) for made in _read_item(child, f"{place} ({name} {i})")]
+        return [
+            item_of_child
+            for i, child in enumerate(inner, 1)
+            for item_of_child in _read_item(child, f"{place} ({name} {i})")
+        ]
     if item.get("type") != "SimpleItem":
         raise MissionError.say("type is '{}'; expected SimpleItem or ComplexItem", item.get("type"), place=place)
     command, frame, params = item.get("command"), item.get("frame"), item.get("params")

@@ -51,12 +51,12 @@ class Encoder:
         ValueError
             A value does not fit into its field.
         """
-        told = layout(type(message).__name__)
-        values = {each.name: _to_wire(message, each) for each in told.fields}
+        record_layout = layout(type(message).__name__)
+        values = {each.name: _to_wire(message, each) for each in record_layout.fields}
         if self._signer is not None:
             self._mav.signing.timestamp = self._signer.next_timestamp()
         try:
-            frame: bytes = told.packet(**values).pack(self._mav)
+            frame: bytes = record_layout.packet(**values).pack(self._mav)
         except (struct.error, OverflowError, TypeError) as error:
             raise ValueError(f"{message} does not fit into its MAVLink message: {error}") from error
         self._mav.seq = (self._mav.seq + 1) % 256
@@ -225,8 +225,8 @@ def message_of(packet: Any) -> Message | None:
     name = _NAMES.get(packet.get_msgId())
     if name is None:
         return None
-    told = layout(name)
-    return told.record(**{each.name: _from_wire(getattr(packet, each.name)) for each in told.fields})
+    record_layout = layout(name)
+    return record_layout.record(**{each.name: _from_wire(getattr(packet, each.name)) for each in record_layout.fields})
 
 
 def message_id(record: type[Message]) -> int:

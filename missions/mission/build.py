@@ -80,13 +80,15 @@ def missions_from_plan(plan: Plan, origin: Origin | None = None, home_enu_m: Vec
     return tuple(missions)
 
 
-def _agreed(of_plan: Value | None, given: Value | None, name: str) -> Value:
+def _agreed(of_plan: Value | None, of_site: Value | None, name: str) -> Value:
     if of_plan is None:
-        if given is None:
+        if of_site is None:
             raise InputError.say("the plan has no {}, so nothing can be placed on the globe; add --site SITE", name)
-        return given
-    if given is not None and of_plan != given:
-        raise InputError.say("the plan was made for the {} {}, but the site says {}; plan again", name, of_plan, given)
+        return of_site
+    if of_site is not None and of_plan != of_site:
+        raise InputError.say(
+            "the plan was made for the {} {}, but the site says {}; plan again", name, of_plan, of_site
+        )
     return of_plan
 
 

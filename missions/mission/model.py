@@ -369,12 +369,12 @@ def reasons(errors: Sequence[Finding]) -> str:
     kinds: dict[str, list[Finding]] = {}
     for error in errors:
         kinds.setdefault(error.code, []).append(error)
-    told = []
+    examples = []
     for found in list(kinds.values())[:MAX_REASONS]:
         place = found[0].place.strip(", ")
         times = say(" ({} times)", len(found)) if len(found) > 1 else ""
-        told.append(glue(f"{place}: " if place else "", found[0].message, times))
-    return joined("; ", told) + (
+        examples.append(glue(f"{place}: " if place else "", found[0].message, times))
+    return joined("; ", examples) + (
         say("; and {} other kinds", len(kinds) - MAX_REASONS) if len(kinds) > MAX_REASONS else ""
     )
 

@@ -120,8 +120,8 @@ def viewpoints_and_sorties(
         length_m = float(sum(math.dist(a, b) for a, b in itertools.pairwise(path)))
         sortie = Sortie(tuple(view.id for view in views), tuple(path), length_m, 0.0, tuple(in_passing))
         if all(waypoint.stay is not None for waypoint in mission.waypoints):
-            duration_s, told = _time_as_told(mission, before, points, after, rules, aircraft)
-            findings += told
+            duration_s, time_findings = _time_as_told(mission, before, points, after, rules, aircraft)
+            findings += time_findings
         else:
             duration_s = _time_as_planned(sortie, views, mission, rules, aircraft)
         sorties.append(replace(sortie, duration_s=duration_s))

@@ -165,12 +165,12 @@ def serve(
     listening = list(links)
     flown_until_s = heard_s = clock()
     while listening and not stop():
-        said: list[Message] = []
+        messages: list[Message] = []
         for link in tuple(listening):
             try:
                 received = link.receive(LISTEN_S / len(listening))
                 while received is not None:
-                    said += vehicle.receive(received)
+                    messages += vehicle.receive(received)
                     received = link.receive(0.0)
             except LinkError:
                 listening.remove(link)
@@ -180,10 +180,10 @@ def serve(
         if now_s == heard_s or now_s - heard_s > DEAF_S:
             elapsed_s = min(now_s - flown_until_s, MAX_STEP_S)
             flown_until_s = now_s
-            said += vehicle.step(min(elapsed_s * (1.0 if vehicle.is_transferring else speedup), MAX_FLOWN_S))
+            messages += vehicle.step(min(elapsed_s * (1.0 if vehicle.is_transferring else speedup), MAX_FLOWN_S))
             if flown is not None:
                 flown.advance(elapsed_s)
-        _send(listening, said)
+        _send(listening, messages)
 
 
 def _send(links: list[Link], messages: Sequence[Message]) -> None:

@@ -230,8 +230,8 @@ class SimulatedVehicle:
     # Inside
 
     def _said(self) -> list[Message]:
-        said, self._out = self._out, []
-        return said
+        messages, self._out = self._out, []
+        return messages
 
     def _is_for_me(self, message: Message) -> bool:
         system = getattr(message, "target_system", 0)

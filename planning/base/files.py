@@ -84,14 +84,16 @@ def check_ending(path: Path, endings: Sequence[str], others: Collection[str] = P
     ending = path.suffix.lower()
     is_known = FILE_ENDING.fullmatch(ending) is not None and ending not in others
     if is_known and not path.name.lower().endswith(tuple(endings)):
-        told = " or ".join(endings)
+        expected_endings = " or ".join(endings)
         if path.exists():
-            raise InputError.say("would replace a {} file by what is {}; name another file", ending, told, place=path)
+            raise InputError.say(
+                "would replace a {} file by what is {}; name another file", ending, expected_endings, place=path
+            )
         raise InputError.say(
             "not written: the name ends in {}, and what would be in the file is {}; name it so, or choose "
             "another format",
             ending,
-            told,
+            expected_endings,
             place=path,
         )
 

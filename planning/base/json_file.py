@@ -227,12 +227,16 @@ def _in_words(error: Exception, record: type[Any]) -> str:
     """Turn "Expected `float`, got `str` - at `$.a.b`" into "a.b: expected number, got text"."""
     text, _, place = str(error).partition(" - at `$")
     place = place.rstrip("`").lstrip(".")
-    if isinstance(error.__cause__, ValueError) and isinstance(said := str(error.__cause__), Message):
+    if isinstance(error.__cause__, ValueError) and isinstance(own_message := str(error.__cause__), Message):
         # A check of the record's own.
-        is_field = re.fullmatch(r"\w+(\[\d+\])*", said.place) is not None
+        is_field = re.fullmatch(r"\w+(\[\d+\])*", own_message.place) is not None
         if not place:
-            return said
-        return about(f"{place}.{said.place}", without_place(said, said.place)) if is_field else about(place, said)
+            return own_message
+        return (
+            about(f"{place}.{own_message.place}", without_place(own_message, own_message.place))
+            if is_field
+            else about(place, own_message)
+        )
     text = re.sub(r"`(\w+(?: \| \w+)*)`", lambda found: _kind(found[1]), text).replace("`", "'")
     text = re.sub(r"^Object missing", "missing", text)
     text = text[:1].lower() + text[1:] if text.startswith("Expected") else text
@@ -489,8 +493,8 @@ def part_file(target: Path, mode: int = 0o644) -> Iterator[Path]:
 def new_file_beside(target: Path, mode: int = 0o644) -> Iterator[Path]:
     """A new file beside `target` that is removed in the end, unless it has another name then."""
     _clear_parts(target.parent)
-    made, name = tempfile.mkstemp(f".part{target.suffix}", f".{target.stem[:40]}.", target.parent)
-    os.close(made)
+    handle, name = tempfile.mkstemp(f".part{target.suffix}", f".{target.stem[:40]}.", target.parent)
+    os.close(handle)
     part, descriptor = Path(name), None
     try:
         descriptor = _locked(part)

@@ -40,9 +40,9 @@ class Message(str):
 
     def __new__(cls, text: str, template: str, values: tuple[str, ...], place: str = "") -> Message:
         """See the class."""
-        made = super().__new__(cls, text)
-        made.template, made.values, made.place = template, values, place
-        return made
+        message = super().__new__(cls, text)
+        message.template, message.values, message.place = template, values, place
+        return message
 
     def __reduce__(self) -> tuple[type[Message], tuple[str, str, tuple[str, ...], str]]:
         return Message, (str.__str__(self)[:], self.template, self.values, self.place)
@@ -92,10 +92,10 @@ def say(template: str, *values: object, place: object = "") -> Message:
     key, fields, behind = _parsed(template)
     if len(values) != len(fields):
         raise ValueError(f"expected {len(fields)} values for {template!r}, got {len(values)}")
-    said = tuple(_text(value, spec) for value, (_, spec) in zip(values, fields, strict=True))
-    body = "".join(f"{literal}{text}" for (literal, _), text in zip(fields, said, strict=True)) + behind
+    texts = tuple(_text(value, spec) for value, (_, spec) in zip(values, fields, strict=True))
+    body = "".join(f"{literal}{text}" for (literal, _), text in zip(fields, texts, strict=True)) + behind
     where = _text(place, "")
-    return Message(f"{where}: {body}" if where else body, key, said, where)
+    return Message(f"{where}: {body}" if where else body, key, texts, where)
 
 
 def _text(value: object, spec: str) -> str:
@@ -142,13 +142,13 @@ def plain(text: str) -> str:
 
 def about(place: object, text: object) -> Message:
     """A text or an error that says what it is about before a colon; another one it has comes behind."""
-    said, where = _text(text, ""), _text(place, "")
+    body, where = _text(text, ""), _text(place, "")
     if not where:
-        return glue(said)
-    if isinstance(said, Message) and said.template:
-        inner = glue(where, ": ", said.place) if said.place else where
-        return Message(f"{where}: {said}", said.template, said.values, inner)
-    return glue(where, ": ", said)
+        return glue(body)
+    if isinstance(body, Message) and body.template:
+        inner = glue(where, ": ", body.place) if body.place else where
+        return Message(f"{where}: {body}", body.template, body.values, inner)
+    return glue(where, ": ", body)
 
 
 def without_place(text: str, place: object) -> str:

@@ -284,8 +284,8 @@ class CoverageModel:
         if self.whole_panel:
             kept &= _corners_in_picture(views, self.frames.corners, self.camera, view, panel)
         if self.sight is not None:
-            asked = np.flatnonzero(kept)
-            kept[asked] = self.sight(views.positions_enu_m[view[asked]], self.targets_enu_m[panel[asked]])
+            to_check = np.flatnonzero(kept)
+            kept[to_check] = self.sight(views.positions_enu_m[view[to_check]], self.targets_enu_m[panel[to_check]])
         counts = np.bincount(view[kept], minlength=len(found.starts) - 1)
         return Elements(np.concatenate([[0], np.cumsum(counts)]).astype(np.int64), found.items[kept])
 

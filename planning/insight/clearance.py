@@ -86,13 +86,13 @@ def route_clearance(
     if len(path) == 1:
         path = np.repeat(path, 2, axis=0)
     a, b = path[:-1], path[1:]
-    asked = [(space.solids, things.solid_owner)]
+    bodies = [(space.solids, things.solid_owner)]
     if len(space.no_fly.part):
-        asked.append((space.no_fly, things.no_fly_owner))
+        bodies.append((space.no_fly, things.no_fly_owner))
     lengths_m = np.linalg.norm(b - a, axis=1)
     leg, along = _even_samples(lengths_m, spacing_m)
-    triangles = [nearest_triangles(solids, owner, a, b) for solids, owner in asked]
-    for (solids, _), triangle in zip(asked, triangles, strict=True):
+    triangles = [nearest_triangles(solids, owner, a, b) for solids, owner in bodies]
+    for (solids, _), triangle in zip(bodies, triangles, strict=True):
         leg = np.concatenate([leg, np.arange(len(a))])
         along = np.concatenate([along, _nearest_parts(solids.bvh.corners[triangle], a, b)])
     order = np.lexsort([along, leg])
@@ -101,7 +101,7 @@ def route_clearance(
     distance_m = (np.cumsum(lengths_m) - lengths_m)[leg] + along * lengths_m[leg]
     found = [
         _clearance(solids, owner, points, leg, owner[triangle])
-        for (solids, owner), triangle in zip(asked, triangles, strict=True)
+        for (solids, owner), triangle in zip(bodies, triangles, strict=True)
     ]
     return RouteClearance(distance_m, points, leg, found[0], found[1] if len(found) == 2 else None)
 

@@ -492,8 +492,8 @@ def section_reasons(
     things = obstructions_of(site_model, space)
     shape = problem.reachability.verdicts.shape
     verdicts = np.full(shape, UNDECIDED, np.int8)
-    asked = slice(None) if panels is None else panels
-    verdicts[asked] = problem.reachability.verdicts[asked]
+    panel_rows = slice(None) if panels is None else panels
+    verdicts[panel_rows] = problem.reachability.verdicts[panel_rows]
     unreachable = np.flatnonzero(verdicts == UNREACHABLE)
     elements, masks, amounts, places = _explain(model, space, site_model.site.airspace.ground_z_m, unreachable, monitor)
     cut_off, cut_off_places = unflyable_sections(problem, verdicts, monitor)

@@ -352,8 +352,8 @@ def _plan(
 def _names(viewpoints: Sequence[Viewpoint], flown: Sequence[Viewpoint]) -> dict[str, str]:
     """New identifiers by old: those of the flown plan where a view is the same, further ones for the others."""
     known = {_pose(viewpoint): viewpoint.id for viewpoint in flown}
-    taken = set(known.values())
-    further = (name for number in itertools.count(len(flown)) if (name := f"v{number:04d}") not in taken)
+    used_ids = set(known.values())
+    further = (name for number in itertools.count(len(flown)) if (name := f"v{number:04d}") not in used_ids)
     names: dict[str, str] = {}
     for viewpoint in viewpoints:
         same = known.get(_pose(viewpoint))

@@ -60,9 +60,9 @@ class Roadmap:
         """Whether a clear leg joins each allowed point, shape (n, 3), to a node. No means "not found"."""
         connected = np.zeros(len(points_enu_m), np.bool_)
         for n_tried in (4, 16, MOST_NEIGHBOURS):
-            asked = np.flatnonzero(~connected)
-            pairs = self.nearest_clear(points_enu_m[asked], n_tried)
-            connected[asked[pairs[:, 0]]] = True
+            to_check = np.flatnonzero(~connected)
+            pairs = self.nearest_clear(points_enu_m[to_check], n_tried)
+            connected[to_check[pairs[:, 0]]] = True
         return connected
 
     def nearest_clear(self, points_enu_m: Array, n_nearest: int) -> NDArray[np.int64]:

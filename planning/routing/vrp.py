@@ -100,14 +100,14 @@ def _problem_data(
     distance: Floats | None = None,
     duration: Floats | None = None,
 ) -> pyvrp.ProblemData:
-    given = distance if distance is not None else duration
-    assert given is not None
+    stated = distance if distance is not None else duration
+    assert stated is not None
     matrices: list[Any] = []  # PyVRP's annotations ask for a type that NumPy's arrays do not have
     for matrix in (distance, duration):
-        whole = np.zeros(given.shape, np.int64) if matrix is None else matrix.astype(np.int64)
+        whole = np.zeros(stated.shape, np.int64) if matrix is None else matrix.astype(np.int64)
         np.fill_diagonal(whole, 0)
         matrices.append(whole)
-    locations = [pyvrp.Location(0.0, 0.0) for _ in given]
+    locations = [pyvrp.Location(0.0, 0.0) for _ in stated]
     return pyvrp.ProblemData(locations, clients, depots, [vehicle], [matrices[0]], [matrices[1]])
 
 

@@ -81,16 +81,16 @@ class FreeSpace:
         """Whether points, shape (n, 3), keep every distance, wherever the airspace ends."""
         kept = np.ones(len(points_enu_m), np.bool_)
         for solids, distance in self._kept_distances(margin_m):
-            asked = np.flatnonzero(kept)
-            kept[asked] = solids.clearance_m(points_enu_m[asked], 2.0 * distance) >= distance
+            to_check = np.flatnonzero(kept)
+            kept[to_check] = solids.clearance_m(points_enu_m[to_check], 2.0 * distance) >= distance
         return kept
 
     def legs_clear(self, a_enu_m: Array, b_enu_m: Array) -> NDArray[np.bool_]:
         """Whether straight legs between allowed points, shape (n, 3), keep every distance on their whole length."""
         clear = np.ones(len(a_enu_m), np.bool_)
         for solids, distance in self._kept_distances(LEG_MARGIN_M):
-            asked = np.flatnonzero(clear)
-            clear[asked] = solids.segments_clear(a_enu_m[asked], b_enu_m[asked], distance)
+            to_check = np.flatnonzero(clear)
+            clear[to_check] = solids.segments_clear(a_enu_m[to_check], b_enu_m[to_check], distance)
         return clear
 
     def _kept_distances(self, margin_m: float) -> tuple[tuple[Solids, float], ...]:

@@ -471,20 +471,20 @@ def output_folder(path: Path) -> Iterator[Path]:
     InputError
         The folder cannot be made or written into.
     """
-    made = [folder for folder in (path, *path.parents) if not folder.exists()]
+    new_folders = [folder for folder in (path, *path.parents) if not folder.exists()]
     try:
         path.mkdir(parents=True, exist_ok=True)
         with part_folder(path, "tradeoff") as temporary:
             yield temporary
             for file in sorted(temporary.iterdir()):
                 file.replace(path / file.name)
-            made = []
+            new_folders = []
     except OSError as error:
         raise InputError.say(
             "this folder cannot be made or written into ({}); name another", error.strerror or error, place=path
         ) from error
     finally:
-        for folder in made:
+        for folder in new_folders:
             with suppress(OSError):  # it was never made, or holds something
                 folder.rmdir()
 

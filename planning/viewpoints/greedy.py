@@ -293,10 +293,12 @@ def _bound(
     elements: Elements, weights: Array, covered: NDArray[np.int32], n_views: int, known: float, stop: Stop
 ) -> float:
     """Bound on the weight that so many candidates can cover together with what is covered all the same."""
-    given = float(weights[covered > 0].sum())
+    covered_weight = float(weights[covered > 0].sum())
     if n_views == 0:
-        return given
-    return given + dual_bound(elements, np.where(covered > 0, 0.0, weights), n_views, known - given, stop=stop)
+        return covered_weight
+    return covered_weight + dual_bound(
+        elements, np.where(covered > 0, 0.0, weights), n_views, known - covered_weight, stop=stop
+    )
 
 
 def necessary_views(elements: Elements, weights: Array, covered: NDArray[np.int32] | None = None) -> NDArray[np.bool_]:
@@ -412,14 +414,14 @@ def spend_spare_views(
             break
         monitor.report(say("spending spare views"), len(chosen), n_views)
         elements = pool.elements if finer is model else finer.elements(pool.views)
-        taken = np.concatenate([locked.positions_enu_m, pool.views.positions_enu_m[chosen]])
-        apart = SpacingRule(pool.views.positions_enu_m, taken, spacing_m)
+        present_enu_m = np.concatenate([locked.positions_enu_m, pool.views.positions_enu_m[chosen]])
+        apart = SpacingRule(pool.views.positions_enu_m, present_enu_m, spacing_m)
         state = cover_state(elements, np.ones(finer.n_elements), covered_by(finer, locked), apart)
         state.depth[0] = depth
         for candidate in chosen:
             cover_kernel.add_elements(state, elements.of(candidate))
         cover_kernel.refresh_gains(state)
-        state.gains[_at_places(pool.views.positions_enu_m, taken)] = -np.inf
+        state.gains[_at_places(pool.views.positions_enu_m, present_enu_m)] = -np.inf
         added = np.zeros(n_spare, np.int64)
         n_added = cover_kernel.greedy_steps(state, added, 0, n_spare, np.inf)
         chosen = np.concatenate([chosen, added[:n_added]])

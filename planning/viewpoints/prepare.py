@@ -142,12 +142,12 @@ class Prepared:
         The site's checksum does not matter: it changes when the site is saved.
         """
         is_by_user = any(effect.decided_by == "user" for effect in self.effects)
-        asked = replace(self.constraints, occlusion=self.constraints.occlusion if is_by_user else "auto")
+        requested = replace(self.constraints, occlusion=self.constraints.occlusion if is_by_user else "auto")
         constraints = with_site_limits(constraints, site_model, camera)
         return (
             is_same_place(site_model, self.site_model)
             and (camera, precision) == (self.problem.model.camera, self.problem.model.precision)
-            and (constraints, seed) == (asked, self.seed)
+            and (constraints, seed) == (requested, self.seed)
         )
 
 

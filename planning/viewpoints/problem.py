@@ -31,8 +31,8 @@ class ViewProblem:
     def flyable(self, positions_enu_m: NDArray[np.float64], margin_m: float = SAFETY_MARGIN_M) -> NDArray[np.bool_]:
         """Positions, shape (n, 3), that are allowed and can be flown to from home."""
         allowed = self.space.is_allowed(positions_enu_m, margin_m)
-        asked = np.flatnonzero(allowed)
-        allowed[asked] = self.roadmap.connected_to_home(positions_enu_m[asked])
+        to_check = np.flatnonzero(allowed)
+        allowed[to_check] = self.roadmap.connected_to_home(positions_enu_m[to_check])
         return allowed
 
 

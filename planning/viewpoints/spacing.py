@@ -100,9 +100,9 @@ _NOWHERE = np.zeros((0, 3))
 ANYWHERE = SpacingRule(_NOWHERE, _NOWHERE, 0.0)
 
 
-def spacing_rule(views: ViewpointArrays, taken: ViewpointArrays, spacing_m: float) -> SpacingRule:
+def spacing_rule(views: ViewpointArrays, present: ViewpointArrays, spacing_m: float) -> SpacingRule:
     """The rule for views that are chosen beside others that are there in any case."""
-    return SpacingRule(views.positions_enu_m, taken.positions_enu_m, spacing_m)
+    return SpacingRule(views.positions_enu_m, present.positions_enu_m, spacing_m)
 
 
 def rounding_spacing_m(spacing_m: float) -> float:

@@ -122,10 +122,10 @@ class Intrinsics:
         z = points[:, 2]
         with np.errstate(divide="ignore", invalid="ignore"):
             x, y = points[:, 0] / z, points[:, 1] / z
-            meant = z > 0.0
+            is_in_front = z > 0.0
             if not self.is_straight:
-                meant &= (np.abs(x) <= WIDENED * self._reach_x) & (np.abs(y) <= WIDENED * self._reach_y)
-        x, y = np.where(meant, x, np.nan), np.where(meant, y, np.nan)
+                is_in_front &= (np.abs(x) <= WIDENED * self._reach_x) & (np.abs(y) <= WIDENED * self._reach_y)
+        x, y = np.where(is_in_front, x, np.nan), np.where(is_in_front, y, np.nan)
         if not self.is_straight:
             x, y = self._distorted(x, y)
         return np.column_stack([self.fx_px * x + self.cx_px, self.fy_px * y + self.cy_px])

@@ -340,11 +340,11 @@ class ColmapRun:
 
         def work(cancellation_token: Any) -> Any:
             del cancellation_token  # this step takes none; it is short
-            made = self.colmap.triangulate_points(
+            reconstruction = self.colmap.triangulate_points(
                 start, self.database, self.folder, found, clear_points=True, options=options
             )
-            made.extract_colors_for_all_images(self.folder)
-            return made
+            reconstruction.extract_colors_for_all_images(self.folder)
+            return reconstruction
 
         return self._run(say("placing photos by their receivers"), work)
 

@@ -106,12 +106,12 @@ def placed_by_receivers(
     good, found = set[str](), None
     if off is not None:
         most_m = STAYED * max(receivers[image.name].off_m(image) for image in there)
-        told = {
+        usable = {
             name: one if one.cam_from_enu is None else replace(one, cam_from_enu=off @ one.cam_from_enu)
             for name, one in receivers.items()
         }
-        good = {image.name for image in there if told[image.name].fits(image, most_m)}
-        found = _placed(run, model, told, good, most_m, fixed_cameras, scratch)
+        good = {image.name for image in there if usable[image.name].fits(image, most_m)}
+        found = _placed(run, model, usable, good, most_m, fixed_cameras, scratch)
     is_more = found is not None and int(found.num_reg_images()) > len(good)
     n_agreeing = (
         _n_agreeing(found, receivers)
@@ -138,7 +138,7 @@ def _n_agreeing(found: Any | None, receivers: Mapping[str, Receiver]) -> int:
 def _placed(
     run: ColmapRun,
     model: ColmapModel,
-    told: Mapping[str, Receiver],
+    receivers: Mapping[str, Receiver],
     good: Collection[str],
     most_m: float,
     fixed_cameras: set[int],
@@ -147,7 +147,7 @@ def _placed(
     """The model with all photos but the good ones where they say that they were, as far as they stay there."""
     tried, shown = {}, dict(model.images)
     for name, (number, camera) in run.identities().items():
-        one = told.get(name)
+        one = receivers.get(name)
         if name not in good and one is not None and one.cam_from_enu is not None and camera in model.cameras:
             tried[number] = shown[number] = _image_at(one.position_enu_m, one.cam_from_enu, number, camera, name)
     if not tried:
@@ -163,12 +163,12 @@ def _placed(
         found = as_model(added, folder / "adjusted")
         seen = {key: image for key, image in found.images.items() if _n_seen(image) >= LEAST_SEEN}
         if not math.isfinite(most_m) and seen:
-            offs = [told[image.name].off_m(image) for image in seen.values()]
+            offs = [receivers[image.name].off_m(image) for image in seen.values()]
             most_m = STAYED * ROBUST_MEDIANS * max(float(np.median(offs)), LEAST_OFF_M)
         shown = {
             key: image
             for key, image in seen.items()
-            if key in alone or image.name not in told or told[image.name].fits(image, most_m)
+            if key in alone or image.name not in receivers or receivers[image.name].fits(image, most_m)
         }
         if number == 0:
             # Where a receiver was wrong alone, the model was right.

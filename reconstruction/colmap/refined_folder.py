@@ -302,12 +302,12 @@ def write_refined(
     )
     try:
         with part_folder(folder.parent, folder.name) as waiting:
-            made = waiting / "model"
-            write_model(made, refinement.model)
-            write_atomically(made / FILE, json.dumps(asdict(record), indent=1).encode())
+            model_folder = waiting / "model"
+            write_model(model_folder, refinement.model)
+            write_atomically(model_folder / FILE, json.dumps(asdict(record), indent=1).encode())
             if folder.exists():
                 folder.replace(waiting / "before")
-            made.replace(folder)
+            model_folder.replace(folder)
     except OSError as error:
         raise InputError(
             say("cannot be written ({}); name another folder", error.strerror or error, place=folder)

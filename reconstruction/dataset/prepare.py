@@ -201,12 +201,12 @@ def prepare(
     parameters = parameters or PrepareParameters()
     if not photos:
         raise InputError(say("there are no photos with a pose to prepare"))
-    made = _empty(folder)
+    is_new_folder = _empty(folder)
     try:
         prepared = _prepare(photos, model, panel_corners(model.site), folder, parameters, monitor, cloud)
     except BaseException:
         _clear(folder)
-        if made:
+        if is_new_folder:
             shutil.rmtree(folder, ignore_errors=True)
         raise
     (folder / UNFINISHED).unlink(missing_ok=True)

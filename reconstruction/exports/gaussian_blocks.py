@@ -138,10 +138,10 @@ def is_antialiased(scene: GsScene) -> bool:
 def raster_of(scene: GsScene) -> RasterSettings:
     """How splats are to be blurred: as when they were learned, and as usual where nothing or nonsense is said of it."""
     config, usual = scene.training.get("config"), RasterSettings()
-    said = config.get("raster") if isinstance(config, Mapping) else None
-    if not isinstance(said, Mapping) or said.get("antialiased") is not True:
+    settings = config.get("raster") if isinstance(config, Mapping) else None
+    if not isinstance(settings, Mapping) or settings.get("antialiased") is not True:
         return usual
-    blur_px = said.get("blur_px", usual.blur_px)
+    blur_px = settings.get("blur_px", usual.blur_px)
     is_sensible = isinstance(blur_px, float) and 0.0 < blur_px < MOST_BLUR_PX
     return replace(usual, antialiased=True, blur_px=blur_px if is_sensible else usual.blur_px)
 

@@ -286,10 +286,10 @@ def panel_table(scene: GsScene, attributes: Attributes, path: Path) -> PanelTabl
     keys = one_after_the_other(key for key, *_ in known)
     columns, cells = [], []
     for key, (_, name, semantic, values) in zip(keys, known, strict=True):
-        column, made = _column(key, name, semantic, values, path)
+        column, column_cells = _column(key, name, semantic, values, path)
         if column is not None:
             columns.append(column)
-            cells.append(made)
+            cells.append(column_cells)
     rows = {element.global_id: tuple(row) for element, row in zip(elements, zip(*cells, strict=True), strict=True)}
     if len(rows) != len(elements):
         raise InputError(say("several panels have the same GlobalId; organise the model again", place=path))

@@ -105,16 +105,16 @@ def write_gltf(
     """
     check_scene(scene, path)
     table = panel_table(scene, attributes, path)
-    made = Document(scene, scene.components, table, options, path, monitor)
+    document = Document(scene, scene.components, table, options, path, monitor)
     children = []
     for component in scene.components:
-        parts = made.gaussian_nodes(component) + made.panel_nodes(component)
+        parts = document.gaussian_nodes(component) + document.panel_nodes(component)
         extras = component_extras(component, attributes, path)
-        children.append(made.node({"name": plain(component.name), "extras": extras}, parts))
+        children.append(document.node({"name": plain(component.name), "extras": extras}, parts))
     known = attributes_of(scene.global_id, attributes, path)
     extras = {"layer": "scene", "global_id": scene.global_id, "attributes": known}
-    root = made.node({"name": plain(scene.name), **frame_of(scene.origin_enu_m), "extras": extras}, children)
-    write_glb(path, made.content([root]), made.buffer)
+    root = document.node({"name": plain(scene.name), **frame_of(scene.origin_enu_m), "extras": extras}, children)
+    write_glb(path, document.content([root]), document.buffer)
 
 
 def frame_of(origin_enu_m: Vec3) -> dict[str, Any]:

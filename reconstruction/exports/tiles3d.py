@@ -354,9 +354,9 @@ def write_tiles(
     table = panel_table(scene, attributes, folder)
     make_folder(folder)
     old = {path.name for path in folder.glob("*.glb") if _OURS.fullmatch(path.name)}
-    made = _Folder(folder, scene, table, options, monitor)
+    tiles_folder = _Folder(folder, scene, table, options, monitor)
     try:
-        tiles = tuple(made.component(component, attributes) for component in scene.components)
+        tiles = tuple(tiles_folder.component(component, attributes) for component in scene.components)
         tiles = tuple(tile for tile in tiles if tile.children)
         if not tiles:
             raise InputError(say("nothing to write: the scene has neither Gaussians nor panels", place=folder))
@@ -371,9 +371,9 @@ def write_tiles(
             tilesets[folder / name] = _tileset(scene, table, root, layers, needed)
         write_together(tilesets)
     except BaseException:
-        _remove(folder, made.files - old)
+        _remove(folder, tiles_folder.files - old)
         raise
-    _remove(folder, old - made.files)
+    _remove(folder, old - tiles_folder.files)
 
 
 class _Folder:
@@ -426,14 +426,14 @@ class _Folder:
 
     def _file(self, part: GsComponent, layer: Layer) -> str:
         """Write a file; returns its name."""
-        made = Document(self._scene, (part,), self._table, self._options, self._folder, self._monitor)
+        document = Document(self._scene, (part,), self._table, self._options, self._folder, self._monitor)
         frame = frame_of(self._scene.origin_enu_m)
-        nodes = made.gaussian_nodes(part, frame) if layer == "gaussians" else made.panel_nodes(part, frame)
+        nodes = document.gaussian_nodes(part, frame) if layer == "gaussians" else document.panel_nodes(part, frame)
         # Of a facade's name only what every file system and every URI has.
         name = re.sub(r"[^A-Za-z0-9]+", "-", part.name).strip("-")[:40] or "part"
         try:
             with new_file_beside(self._folder / f"{name}-{layer}.glb") as new:
-                write_glb(new, made.content(nodes), made.buffer)
+                write_glb(new, document.content(nodes), document.buffer)
                 file = f"{name}-{layer}-{sha256_of_file(new)[:12]}.glb"
                 self.files.add(file)
                 new.replace(self._folder / file)

@@ -102,11 +102,11 @@ def write_usd(
     try:
         # Gaussians wait in files for all to be written at once: USD would keep them in memory.
         with part_folder(real_path(path).parent, "usd") as waiting:
-            made = _Stage(pxr, scene, table, options, attributes, path, waiting)
+            stage = _Stage(pxr, scene, table, options, attributes, path, waiting)
             try:
-                made.write(monitor)
+                stage.write(monitor)
             finally:
-                made.close()
+                stage.close()
     except OSError as error:
         raise InputError(say("cannot be written ({})", error.strerror or error, place=path)) from error
     except pxr.Tf.ErrorException as error:

@@ -242,8 +242,8 @@ class _Multiplied(torch.autograd.Function):
     @staticmethod
     @once_differentiable
     def backward(ctx: Any, *gradients: Any) -> tuple[Tensor, None]:
-        given = np.asarray(gradients[0].detach().contiguous().numpy())
-        return torch.from_numpy(ctx.linear.back.times(given)), None
+        gradient = np.asarray(gradients[0].detach().contiguous().numpy())
+        return torch.from_numpy(ctx.linear.back.times(gradient)), None
 
 
 # Lookups in cubes of texels and the way back, compiled, float32 in main memory.
@@ -347,11 +347,11 @@ def _give_back(
             w00, w01 = weight * (ONE - a) * (ONE - b), weight * a * (ONE - b)
             w10, w11 = weight * (ONE - a) * b, weight * a * b
             for c in range(n_channels):
-                given = gradient[i, c]
-                of_texels[here, c] += w00 * given
-                of_texels[here + 1, c] += w01 * given
-                of_texels[below, c] += w10 * given
-                of_texels[below + 1, c] += w11 * given
+                slope = gradient[i, c]
+                of_texels[here, c] += w00 * slope
+                of_texels[here + 1, c] += w01 * slope
+                of_texels[below, c] += w10 * slope
+                of_texels[below + 1, c] += w11 * slope
 
 
 @kernel
@@ -416,14 +416,14 @@ class _LookedUp(torch.autograd.Function):
     def backward(ctx: Any, *gradients: Any) -> Any:
         directions, levels, texels = ctx.saved_tensors
         sides, offsets = ctx.sides, ctx.offsets
-        rays, of_rays, table, given = _array(directions), _array(levels), _array(texels), _array(gradients[0])
+        rays, of_rays, table, gradient = _array(directions), _array(levels), _array(texels), _array(gradients[0])
         of_texels = of_directions = of_levels = None
         if ctx.needs_input_grad[2]:
             n_parts = int(min(max(len(rays) * RAYS_PER_TEXEL / len(table) * MOST_PARTS, 1), MOST_PARTS))
             ranges = chunks(len(rays), max(1, -(-len(rays) // n_parts)))
             parts = [np.zeros(table.shape, np.float32) for _ in ranges] or [np.zeros(table.shape, np.float32)]
             run_parallel(
-                lambda a, b, part: _give_back(rays, of_rays, given, sides, offsets, a, b, part),
+                lambda a, b, part: _give_back(rays, of_rays, gradient, sides, offsets, a, b, part),
                 [(a, b, part) for (a, b), part in zip(ranges, parts, strict=False)],
             )
             for part in parts[1:]:
@@ -432,7 +432,7 @@ class _LookedUp(torch.autograd.Function):
         if ctx.needs_input_grad[0] or ctx.needs_input_grad[1]:
             turned, moved = np.empty(rays.shape, np.float32), np.empty(len(rays), np.float32)
             run_chunks(
-                lambda a, b: _turn_back(rays, of_rays, table, given, sides, offsets, a, b, turned, moved),
+                lambda a, b: _turn_back(rays, of_rays, table, gradient, sides, offsets, a, b, turned, moved),
                 chunks(len(rays), RAYS_AT_ONCE),
             )
             of_directions, of_levels = torch.from_numpy(turned), torch.from_numpy(moved)

@@ -158,9 +158,9 @@ def _for_all_faces(
         rows.append((turned * coarse + row_v) * coarse + row_u)
         columns.append(offsets[level] + (other * side + other_v) * side + other_u)
     shape = (FACES * coarse * coarse, int(offsets[-1]))
-    made = sparse.csr_array((np.tile(weight, FACES), (np.concatenate(rows), np.concatenate(columns))), shape)
-    sums: Array = np.asarray(made.sum(axis=1)).ravel()
-    return sparse.csr_array(sparse.diags_array(1.0 / sums) @ made)
+    matrix = sparse.csr_array((np.tile(weight, FACES), (np.concatenate(rows), np.concatenate(columns))), shape)
+    sums: Array = np.asarray(matrix.sum(axis=1)).ravel()
+    return sparse.csr_array(sparse.diags_array(1.0 / sums) @ matrix)
 
 
 @dataclass(frozen=True, slots=True)

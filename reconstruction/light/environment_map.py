@@ -151,18 +151,18 @@ class _LookedUp(torch.autograd.Function):
     @once_differentiable
     def backward(ctx: Any, *gradients: Any) -> Any:
         directions, *levels = ctx.saved_tensors
-        rays, given, places = _array(directions), _array(gradients[0]), ctx.places
+        rays, gradient, places = _array(directions), _array(gradients[0]), ctx.places
         of_levels = [np.zeros(level.shape, np.float32) for level in levels]
         heights = [_height(level) for level in levels]
         if any(ctx.needs_input_grad[1:]):
-            run_parallel(_give_back, [(given, h, places, of) for h, of in zip(heights, of_levels, strict=True)])
+            run_parallel(_give_back, [(gradient, h, places, of) for h, of in zip(heights, of_levels, strict=True)])
         of_directions = np.zeros(rays.shape, np.float32)
         if ctx.needs_input_grad[0]:
             of_places, pictures = np.zeros(places.shape, np.float32), [_array(level) for level in levels]
 
             def turn_back(start: int, stop: int) -> None:
                 for texels, height in zip(pictures, heights, strict=True):
-                    _add_slopes(texels, given, height, places, start, stop, of_places)
+                    _add_slopes(texels, gradient, height, places, start, stop, of_places)
                 _turn_back(rays, of_places, start, stop, of_directions)
 
             run_chunks(turn_back, chunks(len(rays), RAYS_AT_ONCE))

@@ -128,8 +128,8 @@ def train_reflections(
     settings = config.for_grid if model == "radiance-grid" else config
     with _threads(config.threads):
         generator = torch.Generator().manual_seed(config.seed)
-        begun = new_panels(rays, planes, model, config, generator)
-        training = LightTraining(begun, rays, settings, precision, generator, keeping, device, clock)
+        initial = new_panels(rays, planes, model, config, generator)
+        training = LightTraining(initial, rays, settings, precision, generator, keeping, device, clock)
         quality = None if checked is None else partial(_quality, on_device(checked, training.device))
         training.run(quality, max(1, training.n_steps // HISTORY_POINTS), monitor)
         panels, at = training.panels, training.at

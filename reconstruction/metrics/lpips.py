@@ -182,10 +182,10 @@ def read_lpips_weights(paths: Sequence[Path]) -> LpipsWeights:
     for path, written in contents.items():
         for name, value in _tensors(path, written).items():
             # torchvision's names, and those of the authors' package.
-            if met := re.search(r"(?:^|\.)(?:features|slice\d)\.(\d+)\.(weight|bias)$", name):
-                filters.setdefault(int(met[1]), {})[met[2]] = value.float()
-            elif met := re.search(r"(?:^|\.)lin(\d)\.(?:model\.)?\d\.weight$", name):
-                heads[int(met[1])] = value.float().reshape(-1)
+            if match := re.search(r"(?:^|\.)(?:features|slice\d)\.(\d+)\.(weight|bias)$", name):
+                filters.setdefault(int(match[1]), {})[match[2]] = value.float()
+            elif match := re.search(r"(?:^|\.)lin(\d)\.(?:model\.)?\d\.weight$", name):
+                heads[int(match[1])] = value.float().reshape(-1)
     place = ", ".join(str(path) for path in paths)
     backbone = next((name for name, layers in BACKBONES.items() if all(_is_of(filters, each) for each in layers)), None)
     if backbone is None:
@@ -347,8 +347,8 @@ def _unpickled(content: bytes) -> object:
             del stack[-2:]
             stack[-1][key] = value
         elif name == "REDUCE":
-            made, arguments = stack[-2:]
-            stack[-2:] = [_made(made, arguments)]
+            constructor, arguments = stack[-2:]
+            stack[-2:] = [_made(constructor, arguments)]
         elif name == "BUILD":
             _fill(stack[-2], stack.pop())
         elif name == "STOP":
@@ -369,12 +369,12 @@ NUMPY_NAMES = {
 """Names in the pickle, and what they stand for here; they are words, and nothing is called."""
 
 
-def _made(made: object, arguments: tuple[Any, ...]) -> object:
-    if made == "array" and arguments[0] == "ndarray":
+def _made(constructor: object, arguments: tuple[Any, ...]) -> object:
+    if constructor == "array" and arguments[0] == "ndarray":
         return _Array()
-    if made == "dtype" and arguments[0] == "f4":
+    if constructor == "dtype" and arguments[0] == "f4":
         return "float32"
-    raise ValueError(f"{made} of {arguments}")
+    raise ValueError(f"{constructor} of {arguments}")
 
 
 def _fill(target: object, state: tuple[Any, ...]) -> None:

@@ -160,9 +160,9 @@ def pixel_overlaps(
     """
     if found_index is None and found_region is None:
         raise ValueError("expected found panels or a found region")
-    given = [picture for picture in (found_index, true_region, found_region) if picture is not None]
-    if any(picture.shape != true_index.shape for picture in given):
-        raise ValueError(f"expected pictures of one size, got {[picture.shape for picture in (true_index, *given)]}")
+    present = [picture for picture in (found_index, true_region, found_region) if picture is not None]
+    if any(picture.shape != true_index.shape for picture in present):
+        raise ValueError(f"expected pictures of one size, got {[picture.shape for picture in (true_index, *present)]}")
     true_index = _numbers(true_index)
     found_index = np.zeros_like(true_index) if found_index is None else _numbers(found_index)
     in_true = true_index > 0 if true_region is None else true_region

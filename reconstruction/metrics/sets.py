@@ -305,7 +305,7 @@ def synthetic_set(
     return PhotoSet(name, tuple(case_name(shape, seed) for seed in seeds), photos)
 
 
-def scored(made: SyntheticFacade, extent_margin_m: float | None = EXTENT_MARGIN_M) -> ScoredPhoto:
+def scored(facade_photo: SyntheticFacade, extent_margin_m: float | None = EXTENT_MARGIN_M) -> ScoredPhoto:
     """A made facade as a photo to score, with what its stated pose shows of the wall's surface as its view.
 
     Parameters
@@ -317,10 +317,10 @@ def scored(made: SyntheticFacade, extent_margin_m: float | None = EXTENT_MARGIN_
     low = high = None
     if extent_margin_m is not None:
         beside, below = BORDER_M + extent_margin_m, BASE_ABOVE_GROUND_M + extent_margin_m
-        low = np.array([made.columns_m[0] - beside, made.rows_m[0] - below])
-        high = np.array([made.columns_m[-1] + beside, made.rows_m[-1] + beside])
-    view = surface_view(made.photo, surface_of(made.case), low, high)
-    return ScoredPhoto(made.photo.name, made.image, made.index, made.facade, (view,))
+        low = np.array([facade_photo.columns_m[0] - beside, facade_photo.rows_m[0] - below])
+        high = np.array([facade_photo.columns_m[-1] + beside, facade_photo.rows_m[-1] + beside])
+    view = surface_view(facade_photo.photo, surface_of(facade_photo.case), low, high)
+    return ScoredPhoto(facade_photo.photo.name, facade_photo.image, facade_photo.index, facade_photo.facade, (view,))
 
 
 def _beside(case: Case, view: Rectification, number: int) -> tuple[NDArray[np.uint8], SurfaceView]:
@@ -330,10 +330,10 @@ def _beside(case: Case, view: Rectification, number: int) -> tuple[NDArray[np.ui
     aside, above = BESIDE_DEG[number % len(BESIDE_DEG)]
     lens = case.truth.intrinsics
     camera = photo_of(case.wall, case.layout, lens, seed=case.seed, oblique_deg=aside, from_below_deg=above)
-    made = render_facade(replace(case, truth=camera))
+    neighbour = render_facade(replace(case, truth=camera))
     off = np.random.default_rng([case.seed, number]).multivariate_normal(np.zeros(6), STATED_POSE)
     stated = replace(moved_pose(camera.pose, off), covariance=STATED_POSE)
-    return made.image, replace(view, photo=replace(made.photo, pose=stated))
+    return neighbour.image, replace(view, photo=replace(neighbour.photo, pose=stated))
 
 
 def surface_of(case: Case) -> FacadeSurface:

@@ -55,8 +55,8 @@ class PanelGlobalIds:
         """Of a model's site; a GlobalId that several panels have is nobody's."""
         own = {panel.id: panel.source_id for panel in record.site.panels if panel.source_id is not None}
         found = own if source_ids is None else dict(source_ids)
-        given = list(found.values())
-        usable = {name: each for name, each in found.items() if is_global_id(each) and given.count(each) == 1}
+        found_ids = list(found.values())
+        usable = {name: each for name, each in found.items() if is_global_id(each) and found_ids.count(each) == 1}
         return cls(record.site.name, usable)
 
     def panel(self, name: str) -> str:

@@ -99,9 +99,9 @@ def disagreement_with_network(
         sides = [float(np.sqrt(cv2.contourArea(panel.corners_px.astype(np.float32)))) for panel in panels]
         if np.median(sides) * scale < LEAST_SIDE_PX:
             return 0.0, 0.0
-        asked = np.concatenate([_inner(panel.corners_px) for panel in panels])
-        told = predictions.probability_at(asked).reshape(len(panels), len(INNER)).mean(axis=1)
-        no_glass = float((told < NO_GLASS).mean())
+        places_px = np.concatenate([_inner(panel.corners_px) for panel in panels])
+        probabilities = predictions.probability_at(places_px).reshape(len(panels), len(INNER)).mean(axis=1)
+        no_glass = float((probabilities < NO_GLASS).mean())
     share = (np.arange(LEAST_DISAGREEMENT) + 0.5) / LEAST_DISAGREEMENT
     x, y = (each.ravel() for each in np.meshgrid(share * view.width_px, share * view.height_px))
     places = view.to_photo(np.column_stack([x, y]))

@@ -230,7 +230,7 @@ def angle_covariance(cam_from_enu: Array, heading_rad: float, tilt_rad: float) -
 
 def _position_variances(photo: PhotoMetadata, is_absolute: bool, accuracy: Accuracy) -> Array:
     """East, north, up, m^2, in the axes of the photo's own place."""
-    told = photo.rtk_std_lon_m, photo.rtk_std_lat_m, photo.rtk_std_height_m
+    stated_m = photo.rtk_std_lon_m, photo.rtk_std_lat_m, photo.rtk_std_height_m
     is_flown = photo.gimbal_pitch_deg is not None or photo.height_above_takeoff_m is not None
     horizontal_m = accuracy.single_horizontal_m if is_flown else accuracy.hand_held_horizontal_m
     vertical_m = accuracy.single_vertical_m if is_flown else accuracy.hand_held_vertical_m
@@ -241,7 +241,7 @@ def _position_variances(photo: PhotoMetadata, is_absolute: bool, accuracy: Accur
         else (horizontal_m, horizontal_m, photo.accuracy_vertical_m or vertical_m)
     )
     # 0 stands in photos without RTK.
-    east, north, up = (std or other for std, other in zip(told, fallback, strict=True))
+    east, north, up = (std or other for std, other in zip(stated_m, fallback, strict=True))
     return np.square([east, north, up if is_absolute else accuracy.takeoff_height_m])
 
 

@@ -147,7 +147,7 @@ def _properties(
 
 def _flown(how: Circumstances) -> dict[str, str]:
     horizontal_m, vertical_m = how.std_m
-    told = {
+    tags = {
         "drone-dji:RtkFlag": str(RTK_FIXED if how.is_rtk_fixed else RTK_SINGLE),
         "drone-dji:RtkStdLon": f"{horizontal_m:.5f}",
         "drone-dji:RtkStdLat": f"{horizontal_m:.5f}",
@@ -157,8 +157,8 @@ def _flown(how: Circumstances) -> dict[str, str]:
     if how.velocity_enu_m_s is not None:
         east, north, up = how.velocity_enu_m_s
         for axis, speed in (("X", north), ("Y", east), ("Z", -up)):
-            told[f"drone-dji:Flight{axis}Speed"] = f"{speed:+.3f}"
-    return told
+            tags[f"drone-dji:Flight{axis}Speed"] = f"{speed:+.3f}"
+    return tags
 
 
 def _exposed(how: Circumstances) -> dict[Tag, Content]:

@@ -369,14 +369,14 @@ def read_tables(book: RecordBook, tables: Sequence[tuple[Path, Kind]]) -> tuple[
     InputError
         A file cannot be read, is no table of its kind, or the records cannot be written.
     """
-    taken = []
+    imported = []
     what = f"import of {', '.join(path.name for path, _ in tables)}"
     with book.changing(what[:200]) as changes:
         objects = _Objects(book)
         # Inspections before the defects that belong to them.
         for path, kind in sorted(tables, key=lambda table: table[1].code):
-            taken.append(_take(_read(path), kind, objects, changes))
-    return tuple(taken)
+            imported.append(_take(_read(path), kind, objects, changes))
+    return tuple(imported)
 
 
 def _take(table: _Table, kind: Kind, objects: _Objects, changes: Changes) -> ImportedTable:

@@ -142,11 +142,11 @@ class _Colours(torch.autograd.Function):
         means, sh, position = ctx.saved_tensors
         # The kernel fills what is used; unused harmonics have no part in the colour.
         of_means, of_sh = torch.empty(means.shape), torch.zeros(sh.shape)
-        places, table, eye, given = _array(means), _array(sh), _array(position), _array(gradients[0])
+        places, table, eye, gradient = _array(means), _array(sh), _array(position), _array(gradients[0])
         filled, sh_filled = of_means.numpy(), of_sh.numpy()
 
         def work(start: int, stop: int) -> None:
-            _gradients(places, table, eye, given, ctx.n_used, ctx.is_light, start, stop, filled, sh_filled)
+            _gradients(places, table, eye, gradient, ctx.n_used, ctx.is_light, start, stop, filled, sh_filled)
 
         run_chunks(work, chunks(len(means), AT_ONCE))
         return of_means, of_sh, None, None, None

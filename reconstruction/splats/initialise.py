@@ -153,13 +153,13 @@ def _in_sight(points_enu_m: Array, photos: Sequence[PosedPhoto], caster: RayCast
     """Which points a photo sees, shape (n,): none that photogrammetry puts behind glass for what it mirrors."""
     found = np.zeros(len(points_enu_m), bool)
     for photo in _some(photos):
-        asked = np.flatnonzero(~found)
-        asked = asked[photo.sees(points_enu_m[asked])]
-        towards = points_enu_m[asked] - photo.pose.position_enu_m
+        to_check = np.flatnonzero(~found)
+        to_check = to_check[photo.sees(points_enu_m[to_check])]
+        towards = points_enu_m[to_check] - photo.pose.position_enu_m
         lengths = np.linalg.norm(towards, axis=1)
         origins = np.broadcast_to(photo.pose.position_enu_m, towards.shape)
         free_m = caster.cast(origins, towards / lengths[:, None]).distance_m
-        found[asked] = free_m > lengths - SAME_SURFACE_M
+        found[to_check] = free_m > lengths - SAME_SURFACE_M
     return found
 
 

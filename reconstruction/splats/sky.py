@@ -149,11 +149,11 @@ class _Behind(torch.autograd.Function):
     def backward(ctx: Any, *gradients: Any) -> tuple[Tensor, None, Tensor]:
         picture, alphas = ctx.saved_tensors
         of_alphas, known = np.zeros(alphas.shape, np.float32), (_array(picture), ctx.places, _array(alphas))
-        given = _array(gradients[0])
+        gradient = _array(gradients[0])
 
         def give_back(start: int, stop: int) -> Floats:
             of_picture = np.zeros(picture.shape, np.float32)
-            _give_back(*known, given, start, stop, of_picture, of_alphas)
+            _give_back(*known, gradient, start, stop, of_picture, of_alphas)
             return of_picture
 
         of_picture = np.add.reduce(run_chunks(give_back, _parts(len(alphas))))

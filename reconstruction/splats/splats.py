@@ -133,13 +133,13 @@ class _Features(torch.autograd.Function):
     @staticmethod
     def backward(ctx: Any, *gradients: Any) -> tuple[Tensor | None, ...]:
         means, quats, reflectivity, f0, panels, eye = _arrays(ctx.saved_tensors)
-        given = np.ascontiguousarray(gradients[0].numpy())
+        gradient = np.ascontiguousarray(gradients[0].numpy())
         found = [np.empty_like(part) for part in (means, quats, reflectivity, f0)]
 
         def work(start: int, stop: int) -> None:
-            _fill_back(means, quats, reflectivity, f0, panels, eye, given, start, stop, *found)
+            _fill_back(means, quats, reflectivity, f0, panels, eye, gradient, start, stop, *found)
 
-        run_chunks(work, chunks(len(given), AT_ONCE))
+        run_chunks(work, chunks(len(gradient), AT_ONCE))
         return gradients[0][:, :3], *map(torch.from_numpy, found), None, None
 
 
@@ -204,7 +204,7 @@ def _fill_back(
     f0: Floats,
     panels: Panels,
     eye: NDArray[np.float64],
-    given: Floats,
+    gradient: Floats,
     start: int,
     stop: int,
     of_means: Floats,
@@ -217,16 +217,16 @@ def _fill_back(
         of_reflectivity[i] = np.float32(0.0)
         if panels[i] >= 0:
             share = _share(reflectivity[i])
-            of_reflectivity[i] = given[i, 3] * share * (np.float32(1.0) - share)
+            of_reflectivity[i] = gradient[i, 3] * share * (np.float32(1.0) - share)
         for k in range(3):
             share = _share(f0[i, k])
-            of_f0[i, k] = given[i, 4 + k] * share * (np.float32(1.0) - share)
-        by_offset = np.float64(given[i, 10])
+            of_f0[i, k] = gradient[i, 4 + k] * share * (np.float32(1.0) - share)
+        by_offset = np.float64(gradient[i, 10])
         of_means[i, 0], of_means[i, 1], of_means[i, 2] = by_offset * nx, by_offset * ny, by_offset * nz
         if over == 0.0:
             of_quats[i, 0] = of_quats[i, 1] = of_quats[i, 2] = of_quats[i, 3] = np.float32(0.0)
             continue
-        gx, gy, gz = given[i, 7] + by_offset * px, given[i, 8] + by_offset * py, given[i, 9] + by_offset * pz
+        gx, gy, gz = gradient[i, 7] + by_offset * px, gradient[i, 8] + by_offset * py, gradient[i, 9] + by_offset * pz
         # The normal is sign * t / square, t and the square being quadratic in the quaternion.
         along, twice = gx * nx + gy * ny + gz * nz, 2.0 * over
         gx, gy, gz = sign * gx, sign * gy, sign * gz

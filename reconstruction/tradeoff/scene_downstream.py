@@ -152,10 +152,10 @@ def effects_worth(
         From `monitor`.
     """
     decided: dict[str, EffectSetting] = {decision.effect: ("on" if decision.on else "off") for decision in decisions}
-    asked = [decision.effect for decision in decisions if decision.on and decision.effect in effects]
+    chosen = [decision.effect for decision in decisions if decision.on and decision.effect in effects]
     everything = folder / "everything"
     worths = []
-    for number, effect in enumerate(("", *asked)):
+    for number, effect in enumerate(("", *chosen)):
         settings = {**decided, effect: "off"} if effect else decided
         here = folder / f"without-{number}" if effect else everything
         seconds = _rendered_s(scene, photos, RenderSettings(effects=settings), here, monitor)

@@ -295,11 +295,11 @@ def make_truth(
     settings = RenderSettings(samples=TRUTH_SAMPLES, effects=dict.fromkeys(EFFECTS, "on"))
     renderer = Renderer(scene, settings) if make is None else make[0](scene, settings, make[1])
     passes, started = (1 if make is None else 2), clock()
-    taken: list[list[RenderedPhoto]] = [[] for _ in range(passes)]
+    rendered: list[list[RenderedPhoto]] = [[] for _ in range(passes)]
     for again in range(passes):
         for number, photo in enumerate(photos):
             monitor.report("rendering the truth", again * len(photos) + number, passes * len(photos))
-            taken[again].append(renderer.render(photo, seed=again * len(photos) + number))
+            rendered[again].append(renderer.render(photo, seed=again * len(photos) + number))
     seconds = (clock() - started) / (passes * len(photos))
     if make is None:
         name = say("embedded, {} x {} rays", TRUTH_SAMPLES, TRUTH_SAMPLES)
@@ -307,9 +307,9 @@ def make_truth(
         name = say("Mitsuba, {} rays", make[1])
     seen = walls(scene.site.site.facades)
     scores = [
-        _panel_scores(photo, one, metered_exposure(one), seen) for photo, one in zip(photos, taken[0], strict=True)
+        _panel_scores(photo, one, metered_exposure(one), seen) for photo, one in zip(photos, rendered[0], strict=True)
     ]
-    return Truth(name, tuple(taken[0]), tuple(taken[1]) if passes == 2 else None, seconds, summarise(scores))
+    return Truth(name, tuple(rendered[0]), tuple(rendered[1]) if passes == 2 else None, seconds, summarise(scores))
 
 
 TRUTH_SAMPLES = 8
@@ -378,8 +378,8 @@ def run_scene_variants(
     return tuple(trials)
 
 
-def _panel_scores(photo: PosedPhoto, taken: RenderedPhoto, exposure: float, seen: Sequence[Wall]) -> PhotoScores:
-    scored = rendered_photo(photo, developed(taken, exposure), taken.panel, seen)
+def _panel_scores(photo: PosedPhoto, rendered: RenderedPhoto, exposure: float, seen: Sequence[Wall]) -> PhotoScores:
+    scored = rendered_photo(photo, developed(rendered, exposure), rendered.panel, seen)
     return score_answer(scored, own_method()(scored, QUIET))
 
 
@@ -388,8 +388,8 @@ def _narrowed(photo: PosedPhoto, width_px: int) -> PosedPhoto:
     return replace(photo, intrinsics=lens.scaled(width_px, max(1, round(width_px * lens.height_px / lens.width_px))))
 
 
-def _grey(taken: RenderedPhoto, exposure: float) -> NDArray[np.uint8]:
-    return developed(replace(taken, in_camera=taken.in_camera - {NOISE}), exposure)
+def _grey(rendered: RenderedPhoto, exposure: float) -> NDArray[np.uint8]:
+    return developed(replace(rendered, in_camera=rendered.in_camera - {NOISE}), exposure)
 
 
 def _enlarged(picture: NDArray[np.uint8], other: NDArray[np.uint8]) -> NDArray[np.uint8]:

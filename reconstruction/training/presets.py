@@ -67,7 +67,7 @@ def preset(name: str) -> TrainConfig:
     return replace(_CONFIGS[name], time_limit_s=None if minutes is None else minutes * MINUTE_S)
 
 
-def with_request(base: TrainConfig, asked: TrainRequest) -> TrainConfig:
+def with_request(base: TrainConfig, request: TrainRequest) -> TrainConfig:
     """Settings with what was asked for by itself; iterations alone take the preset's time limit away.
 
     Raises
@@ -75,11 +75,11 @@ def with_request(base: TrainConfig, asked: TrainRequest) -> TrainConfig:
     ValueError
         A value is out of range.
     """
-    if asked.iterations is not None:
+    if request.iterations is not None:
         # Fewer steps learn light for a shorter time, too, but not so much shorter that nothing is learned.
-        full, share = base.reflections.steps, min(1.0, asked.iterations / base.iterations)
-        steps = max(LEAST_LIGHT_STEPS, round(share * full), min(LEAST_STEPS, asked.iterations, full))
+        full, share = base.reflections.steps, min(1.0, request.iterations / base.iterations)
+        steps = max(LEAST_LIGHT_STEPS, round(share * full), min(LEAST_STEPS, request.iterations, full))
         base = replace(base, time_limit_s=None, reflections=replace(base.reflections, steps=steps))
     names = ("light", "iterations", "time_limit_s", "seed", "device", "memory_bytes")
-    values = {name: value for name in names if (value := getattr(asked, name)) is not None}
+    values = {name: value for name in names if (value := getattr(request, name)) is not None}
     return replace(base, **values)

@@ -99,7 +99,7 @@ class InterruptedLightStage:
     spent_s: float
 
 
-def write_light(path: Path, begun: InterruptedLightStage) -> None:
+def write_light(path: Path, interrupted: InterruptedLightStage) -> None:
     """Write a checkpoint, whole or not at all.
 
     Raises
@@ -110,10 +110,10 @@ def write_light(path: Path, begun: InterruptedLightStage) -> None:
     write_checkpoint(
         path,
         {
-            STAGE: asdict(begun.stage),
-            "splats": begun.splats,
-            "training": begun.state,
-            "spent_s": begun.spent_s,
+            STAGE: asdict(interrupted.stage),
+            "splats": interrupted.splats,
+            "training": interrupted.state,
+            "spent_s": interrupted.spent_s,
         },
     )
 
@@ -327,8 +327,8 @@ def start_model(
     monitor: Monitor = QUIET,
     watch: Timer | None = None,
     checkpoint: Path | None = None,
-    begun: InterruptedLightStage | None = None,
-    given: Path | None = None,
+    interrupted: InterruptedLightStage | None = None,
+    splats_path: Path | None = None,
 ) -> Start:
     """Place splats, learn the light that glass mirrors from its rays alone, and put both together.
 
@@ -338,15 +338,15 @@ def start_model(
         Of the whole training; None for one that begins now.
     checkpoint
         File that learning light can go on from if it is interrupted; None for none.
-    begun
+    interrupted
         What it goes on from.
-    given
+    splats_path
         PLY file of splats to start from; None for new ones.
 
     Raises
     ------
     InputError
-        The folder has too few photos, nothing to start from, or no glass to be seen; or `begun` is of other photos.
+        The folder has too few photos, nothing to start from, or no glass to be seen; `interrupted` is of other photos.
     ReconstructionError
         Learning light failed.
     OperationCancelled
@@ -357,19 +357,21 @@ def start_model(
     learned = tuple(photo for photo in source.photos if photo.name not in held_out)
     scene = known_scene(source)
     origin = model_origin(scene)
-    told, decision = own_exposures(source, learned, scene.points_enu_m, scene.mesh, config.own_exposures, monitor)
+    point_gains, decision = own_exposures(
+        source, learned, scene.points_enu_m, scene.mesh, config.own_exposures, monitor
+    )
     config = replace(config, own_exposures="on" if decision.on else "off")
     decisions: tuple[Decision, ...] = (decision,)
     known = [source.own_exposures.get(photo.name, 1.0) for photo in learned]
-    exposures = Exposures(np.array(known)[:, None] * told) if decision.on else Exposures(known)
+    exposures = Exposures(np.array(known)[:, None] * point_gains) if decision.on else Exposures(known)
     if decision.on:
-        gains = np.exp(np.log(told).mean(axis=1)) * known
+        gains = np.exp(np.log(point_gains).mean(axis=1)) * known
         own = dict(zip([photo.name for photo in learned], gains.tolist(), strict=True))
         source = replace(source, own_exposures={**source.own_exposures, **own})
-    if begun is not None:
-        splats = splats_from_tensors(begun.splats, str(checkpoint))
-    elif given is not None:
-        splats = splats_of_file(given, source, learned, origin, config.memory_bytes, monitor)
+    if interrupted is not None:
+        splats = splats_from_tensors(interrupted.splats, str(checkpoint))
+    elif splats_path is not None:
+        splats = splats_of_file(splats_path, source, learned, origin, config.memory_bytes, monitor)
         splats = with_primitive(splats, config.trained_by.primitive)
     else:
         parameters = InitialParameters(n_splats=config.n_splats, seed=config.seed)
@@ -382,7 +384,7 @@ def start_model(
         splats = initial_splats(start, learned, origin, parameters, source.picture, monitor)
     light: TrainedReflections | None = None
     shader: Shader | None = None
-    if begun is None and config.trained_by.knows_panels:
+    if interrupted is None and config.trained_by.knows_panels:
         white, decision = white_of(source, learned, config.overexposed)
         config = with_white(config, white)
         decisions = (*decisions, decision)
@@ -391,7 +393,9 @@ def start_model(
         shader = shader_of(config, Surroundings(triangles))
         splats = converted_for_method(splats, config, shader)
     else:
-        light, decisions = _learned_light(source, learned, config, splats, monitor, watch, checkpoint, begun, decisions)
+        light, decisions = _learned_light(
+            source, learned, config, splats, monitor, watch, checkpoint, interrupted, decisions
+        )
     moves = learned_moves(None if light is None else light.panels.light, len(learned))
     cameras = np.array([photo.pose.position_enu_m for photo in moved(learned, moves)])
     if light is not None:
@@ -538,7 +542,7 @@ def _learned_light(
     monitor: Monitor,
     watch: Timer,
     checkpoint: Path | None,
-    begun: InterruptedLightStage | None,
+    interrupted: InterruptedLightStage | None,
     before: tuple[Decision, ...],
 ) -> tuple[TrainedReflections, tuple[Decision, ...]]:
     """The light, and the decisions about what learns it after those that were made before."""
@@ -555,7 +559,7 @@ def _learned_light(
         )
     digest = checksum(rays)
     no_decisions: tuple[Decision, ...] = ()
-    if begun is None:
+    if interrupted is None:
         name, decisions = config.light, no_decisions
         if name == "auto" and config.light_apart == "off":
             name, decisions = "harmonics", (decide(SeparateLight(), None, "off"),)
@@ -571,7 +575,7 @@ def _learned_light(
         limit_s = _light_limit_s(config, watch)
         stage = LightStage(config, site_record(source.folder), name, (*before, *decisions), limit_s, digest)
     else:
-        stage = begun.stage
+        stage = interrupted.stage
         if digest != stage.rays_sha256:
             raise InputError(
                 say(
@@ -583,7 +587,9 @@ def _learned_light(
     if checkpoint is not None:
         placed = splats_to_tensors(splats)
         write = lambda state: write_light(checkpoint, InterruptedLightStage(stage, placed, state, watch()))  # noqa: E731
-        keeping = CheckpointSettings(write, config.checkpoint_every_s, None if begun is None else begun.state)
+        keeping = CheckpointSettings(
+            write, config.checkpoint_every_s, None if interrupted is None else interrupted.state
+        )
     settings = replace(settings, time_limit_s=stage.time_limit_s)
     try:
         trained = train_reflections(
@@ -598,7 +604,7 @@ def _learned_light(
             clock=watch.clock,
         )
     except ValueError as error:
-        if begun is None:
+        if interrupted is None:
             raise
         raise InputError(
             say("is of another version, or damaged ({}); begin the training anew", error, place=checkpoint)

@@ -82,7 +82,7 @@ def train_model(
     watching: Callbacks | None = None,
     checkpoint: Path | None = None,
     *,
-    given: Path | None = None,
+    splats_path: Path | None = None,
     ranks: Ranks = ALONE,
     watch: Timer | None = None,
 ) -> TrainedModel:
@@ -92,7 +92,7 @@ def train_model(
     ----------
     checkpoint
         File that the training can go on from if it is interrupted; None for none.
-    given
+    splats_path
         PLY file of splats to start from; None for new ones, on what is known of the scene.
     ranks
         Processes that train together; all but the first begin with the checkpoint that that one writes.
@@ -115,7 +115,7 @@ def train_model(
             raise ValueError("checkpoint: expected one where several processes train together")
         return _joined_later(folder, checkpoint, watching, ranks, watch)
     source = read_photo_set(folder)
-    start = start_model(source, config, watching.monitor, watch, checkpoint, given=given)
+    start = start_model(source, config, watching.monitor, watch, checkpoint, splats_path=splats_path)
     return _started(source, start, watching, checkpoint, ranks, watch)
 
 
@@ -192,18 +192,18 @@ def resume_model(
     content = read_checkpoint(checkpoint)
     # Nobody writes another one before all have read this one.
     ranks.wait()
-    begun = interrupted_light_stage(content, checkpoint)
-    if begun is None:
+    interrupted = interrupted_light_stage(content, checkpoint)
+    if interrupted is None:
         return _resumed(folder, checkpoint, content, watching, method, ranks, watch)
-    config = begun.stage.config
+    config = interrupted.stage.config
     _check_method(config, method, checkpoint)
     if not ranks.is_first:
         return _joined_later(folder, checkpoint, watching, ranks, watch)
-    if site_record(folder) != begun.stage.site:
+    if site_record(folder) != interrupted.stage.site:
         raise InputError(say("shows other panels; name the data set that the training was begun with", place=folder))
-    watch.before_s += begun.spent_s
+    watch.before_s += interrupted.spent_s
     source = read_photo_set(folder)
-    start = start_model(source, config, watching.monitor, watch, checkpoint, begun)
+    start = start_model(source, config, watching.monitor, watch, checkpoint, interrupted)
     return _started(source, start, watching, checkpoint, ranks, watch)
 
 

@@ -78,8 +78,8 @@ def run(options: argparse.Namespace) -> int:
     write_atomically(options.out, page.encode())
     is_flyable = readiness is not Readiness.NOT_READY
     if options.json:
-        said = {"flyable": is_flyable, "readiness": readiness.value, "findings": n_findings}
-        print_json({"file": str(options.out), **said})
+        summary = {"flyable": is_flyable, "readiness": readiness.value, "findings": n_findings}
+        print_json({"file": str(options.out), **summary})
     else:
         print(options.out)
         if not is_flyable:

@@ -94,8 +94,8 @@ def run(options: argparse.Namespace) -> int:
             options.size,
             options.seed,
         )
-    made = run_job("coarse", lambda context: coarse_files(request, context))
-    report = made.report
+    result = run_job("coarse", lambda context: coarse_files(request, context))
+    report = result.report
     if options.json:
         print_json(report)
         return 0
@@ -119,8 +119,8 @@ def run(options: argparse.Namespace) -> int:
         report["holes_m2"],
         report["guessed_m2"],
     )
-    print_findings(made.findings)
-    tell("written", place=made.site)
+    print_findings(result.findings)
+    tell("written", place=result.site)
     out = options.out
-    print_next("panels", options.photos, made.site, "-o", out / "panels.site.json", "--colmap", out / SPARSE)
+    print_next("panels", options.photos, result.site, "-o", out / "panels.site.json", "--colmap", out / SPARSE)
     return 0

@@ -35,34 +35,34 @@ def run(options: argparse.Namespace) -> int:
     from planning.base.findings import Severity, is_flyable
 
     started = time.perf_counter()
-    made = run_job("demo", lambda context: demonstrate(options.out, options.scene, monitor=context))
+    result = run_job("demo", lambda context: demonstrate(options.out, options.scene, monitor=context))
     seconds = time.perf_counter() - started
-    flyable = is_flyable(made.findings)
+    flyable = is_flyable(result.findings)
     if options.json:
-        content = planned_summary(made.planned, seconds)
-        content["site"], content["plan"] = str(made.site_path), str(made.plan_path)
-        content["missions"] = [str(path) for path in made.mission_paths]
+        content = planned_summary(result.planned, seconds)
+        content["site"], content["plan"] = str(result.site_path), str(result.plan_path)
+        content["missions"] = [str(path) for path in result.mission_paths]
         content["flyable"] = flyable
-        if made.flown is not None and made.flown.flight.report is not None:
+        if result.flown is not None and result.flown.flight.report is not None:
             from planning.base.json_file import plain_values
 
-            content["flight"] = str(made.flight_path)
-            content["flown"] = plain_values(made.flown.flight.report.summary)
+            content["flight"] = str(result.flight_path)
+            content["flown"] = plain_values(result.flown.flight.report.summary)
         print_json(content)
     else:
-        tell("site:     {}", made.site_path)
-        print_summary(made.planned, made.plan_path, seconds)
-        kept = sum(finding.severity is Severity.OK for finding in made.findings)
-        of = sum(finding.severity is not Severity.NOTE for finding in made.findings)
-        tell("check:    {} of {} rules kept, {}", kept, of, verdict_text(made.findings))
-        tell("missions: {}", ", ".join(map(str, made.mission_paths)))
-        if made.flown is not None and made.flown.flight.report is not None:
+        tell("site:     {}", result.site_path)
+        print_summary(result.planned, result.plan_path, seconds)
+        n_kept_rules = sum(finding.severity is Severity.OK for finding in result.findings)
+        of = sum(finding.severity is not Severity.NOTE for finding in result.findings)
+        tell("check:    {} of {} rules kept, {}", n_kept_rules, of, verdict_text(result.findings))
+        tell("missions: {}", ", ".join(map(str, result.mission_paths)))
+        if result.flown is not None and result.flown.flight.report is not None:
             tell(
                 "flight:   {} ({}, {:.1f} s)",
-                made.flight_path,
-                made.flown.flight.sorties[0].vehicle,
-                made.flown.seconds,
+                result.flight_path,
+                result.flown.flight.sorties[0].vehicle,
+                result.flown.seconds,
             )
-            show(report_text(made.flown.flight.report))
-        print_findings(f for f in (*made.findings, *made.export_findings) if f.severity is not Severity.OK)
+            show(report_text(result.flown.flight.report))
+        print_findings(f for f in (*result.findings, *result.export_findings) if f.severity is not Severity.OK)
     return 0 if flyable else 1

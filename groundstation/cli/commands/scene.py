@@ -127,8 +127,8 @@ def _request(options: argparse.Namespace) -> SceneRequest:
         raise InputError(say("--rays is for Mitsuba; add --renderer mitsuba, or leave it out"))
     with in_words_of_options(SceneRequest):
         files = {name: getattr(options, name) for name in ("scene", "plan", "flight", "look", "camera")}
-        asked = SceneRequest(**files, profile_id=options.profile, settings=RenderSettings(effects=settings))
-        return with_values(asked, typed)
+        request = SceneRequest(**files, profile_id=options.profile, settings=RenderSettings(effects=settings))
+        return with_values(request, typed)
 
 
 def _print_text(rendered: RenderedScene) -> None:

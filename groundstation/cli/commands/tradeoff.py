@@ -176,25 +176,25 @@ def _scene_variants(options: argparse.Namespace) -> SceneVariants:
     return SceneVariants(options.samples, options.widths, options.rays, effects)
 
 
-def _print_scene(made: SceneTrials) -> None:
+def _print_scene(trials: SceneTrials) -> None:
     from missions.simulator.build import effects_table
     from reconstruction.tradeoff.scene_tradeoff import scene_rows, truth_error
 
-    own = truth_error(made.truth)
+    own = truth_error(trials.truth)
     accuracy = say(", itself good to {:.2f} grey levels", 255.0 * own) if own else ""
-    tell("truth: {}, {:.1f} s a photo{}", made.truth.name, made.truth.seconds, accuracy)
-    tell("effects:\n{}", effects_table(made.decisions, worded))
+    tell("truth: {}, {:.1f} s a photo{}", trials.truth.name, trials.truth.seconds, accuracy)
+    tell("effects:\n{}", effects_table(trials.decisions, worded))
     heads = (say("setting"), -36), (say("ready in"), 10), (say("s a photo"), 10), ("PSNR", 10), ("mIoU", 17)
     print(table_row(*heads, (say("missed"), 17)))
-    for row in scene_rows(made.truth, made.trials):
+    for row in scene_rows(trials.truth, trials.trials):
         ready, error = " " * 10, " " * 18
         if "psnr_db" in row:
             ready, error = f"{row['prepare_s']:>8.2f} s", f"{row['psnr_db']:>7.1f} dB{row['psnr_change_db']:>+8.2f}"
         single, change = row["individual_miou"], row["individual_miou_change"]
         found = f"{'-':>9}" if single is None else f"{single:>9.4f}{change:>+9.4f}{row['missed']:>8}"
         print(f"  {worded(row['setting']):<36}{ready}{row['seconds']:>10.3f}{error}{found}")
-    if made.worths:
-        _print_worths(made.worths)
+    if trials.worths:
+        _print_worths(trials.worths)
 
 
 def _print_worths(worths: Sequence[EffectWorth]) -> None:

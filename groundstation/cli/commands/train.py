@@ -88,16 +88,16 @@ def run(options: argparse.Namespace) -> int:
 
     request = request_of(options)
     typed = typed_values(options, TrainRequest)
-    given = [each.parameter.option for each in declared(TrainRequest).values() if each.path in typed]
-    given += [f"--{name}" for name in ("settings", "start") if getattr(options, name) is not None]
-    if options.resume and set(given) - {"--method"}:
-        option = next(option for option in given if option != "--method")
+    typed_options = [each.parameter.option for each in declared(TrainRequest).values() if each.path in typed]
+    typed_options += [f"--{name}" for name in ("settings", "start") if getattr(options, name) is not None]
+    if options.resume and set(typed_options) - {"--method"}:
+        option = next(option for option in typed_options if option != "--method")
         raise InputError(
             say("--resume goes on with the settings that the training was begun with; leave {} out", option)
         )
     preview = None if options.preview is None else preview_to(options.preview)
     try:
-        made = run_job(
+        result = run_job(
             "train",
             lambda context: train_files(
                 data_set_of(options.dataset, context),
@@ -115,28 +115,28 @@ def run(options: argparse.Namespace) -> int:
         if (options.out / "checkpoint.safetensors").is_file():
             tell("note: the state is kept in {}; --resume goes on with it", options.out, file=sys.stderr)
         raise
-    if not made.is_written:
+    if not result.is_written:
         return 0
     if options.json:
-        print_json(train_summary(made))
+        print_json(train_summary(result))
     else:
-        _print(made, options)
+        _print(result, options)
     return 0
 
 
 def request_of(options: argparse.Namespace) -> TrainRequest:
     """What the options ask for."""
     with in_words_of_options(TrainRequest):
-        asked = TrainRequest(settings=options.settings, start=options.start)
-        return with_values(asked, typed_values(options, TrainRequest))
+        request = TrainRequest(settings=options.settings, start=options.start)
+        return with_values(request, typed_values(options, TrainRequest))
 
 
-def _print(made: TrainedFiles, options: argparse.Namespace) -> None:
+def _print(result: TrainedFiles, options: argparse.Namespace) -> None:
     from groundstation.services.photos.coarse import data_set_of
 
-    trained = made.trained
+    trained = result.trained
     record = trained.record
-    tell("{} of {}", counted(trained.n_splats, "splat"), counted(len(record.learned), "photo"), place=made.folder)
+    tell("{} of {}", counted(trained.n_splats, "splat"), counted(len(record.learned), "photo"), place=result.folder)
     if record.config.trained_by.knows_panels:
         name = "harmonics" if record.light is None else record.light.name
         tell("  mirrored light: {}{}", name, "" if record.config.light == "auto" else say(", as you asked"))
@@ -144,7 +144,7 @@ def _print(made: TrainedFiles, options: argparse.Namespace) -> None:
         show(glue("  ", decision))
     tell("  {} in {:.0f} s{}", counted(trained.n_steps, "step"), trained.seconds, _told_quality(trained.quality))
     print_notes(trained.notes, sys.stderr)
-    print_next("score", made.folder, data_set_of(options.dataset))
+    print_next("score", result.folder, data_set_of(options.dataset))
 
 
 def _told_quality(quality: Quality | None) -> str:

@@ -257,10 +257,10 @@ class PhotoController(QObject):
         known = self._key[1] if self._key is not None and self._key[0] is model else None
 
         def work(context: JobContext) -> tuple[PreviewPhoto, QImage]:
-            asked = replace(request, site_key=site_key(model) if known is None else known)
-            photo = context.apart(cached_photo, asked)
+            request_for_site = replace(request, site_key=site_key(model) if known is None else known)
+            photo = context.apart(cached_photo, request_for_site)
             if photo is None:
-                photo = context.apart(site_photo, model, asked)
+                photo = context.apart(site_photo, model, request_for_site)
             return photo, painted(photo.picture)
 
         self._job_view, self._is_given_up = wanted.view, False

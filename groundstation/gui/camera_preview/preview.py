@@ -545,9 +545,9 @@ class CameraPreview(QWidget):
         if self._sight is None or self._plan is None:
             return ""
         place = place_text(self._viewpoint, self._pose)
-        told = figures(self._sight, self._panel_ids, self._plan, view, self._covered, place, self._units)
+        texts = figures(self._sight, self._panel_ids, self._plan, view, self._covered, place, self._units)
         # Over a photo the rest would hide what it is looked at for.
-        return told.partition("\n")[0] if self.box.value() else told
+        return texts.partition("\n")[0] if self.box.value() else texts
 
     # Playing
 

@@ -94,9 +94,9 @@ class PreflightList(QWidget):
             if is_used:
                 check = self._checks[number]
                 sign, role = MARKS[check.verdict]
-                told = translated(check.text, self._units)
+                shown_text = translated(check.text, self._units)
                 row.mark.setText(sign)
-                row.words.setText(self.tr("{0}: {1}").format(names.get(check.code, check.code), told))
+                row.words.setText(self.tr("{0}: {1}").format(names.get(check.code, check.code), shown_text))
                 for label in (row.mark, row.words):
                     wanted = role if label is row.mark or check.verdict is not Verdict.OK else ""
                     if label.property("role") != wanted:

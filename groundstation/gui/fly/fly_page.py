@@ -202,10 +202,10 @@ class WarningsView(QWidget):
         self._calm.setVisible(not ordered)
 
     def _said(self, warning: FlightWarning) -> str:
-        told = translated(warning.text, self._units)
+        shown_text = translated(warning.text, self._units)
         if warning.severity is Severity.ERROR:
-            return self.tr("Danger: {0}").format(told)
-        return self.tr("Warning: {0}").format(told)
+            return self.tr("Danger: {0}").format(shown_text)
+        return self.tr("Warning: {0}").format(shown_text)
 
 
 class FlightNotes(QListWidget):

@@ -102,14 +102,14 @@ class PhotoStrip(QWidget):
     def words(self, number: int) -> str:
         """What is known of a view's photo."""
         view_id, state = self._states[number]
-        said = {
+        state_text = {
             ViewState.TO_COME: self.tr("still to come"),
             ViewState.NEXT: self.tr("next"),
             ViewState.TAKEN: self.tr("taken"),
             ViewState.OFF: self.tr("taken, but not where it was planned"),
             ViewState.MISSING: self.tr("passed without a photo"),
         }[state]
-        text = self.tr("{0}: {1}").format(view_id, said)
+        text = self.tr("{0}: {1}").format(view_id, state_text)
         photo = self._photos.get(view_id)
         if photo is not None and photo.position_error_m is not None:
             text += "\n" + self.tr("place off by {0}").format(length_unit(self._units).text(photo.position_error_m))

@@ -108,11 +108,11 @@ class FlightQuestions(QObject):
         )
         return agrees(parent, self.tr("Home here"), text)
 
-    def overrule(self, parent: QWidget, check: str, word: str) -> bool:
+    def overrule(self, parent: QWidget, check: str, confirmation: str) -> bool:
         """Whether to fly though a check grounds the flight: the pilot types the word."""
-        text = self.tr("{0}\n\nTo fly all the same, type {1}:").format(check, word)
+        text = self.tr("{0}\n\nTo fly all the same, type {1}:").format(check, confirmation)
         typed = ask_text(parent, self.tr("Overrule"), text, "")
-        return typed is not None and typed.strip().casefold() == word.casefold()
+        return typed is not None and typed.strip().casefold() == confirmation.casefold()
 
     def confirm_closing_flight(self, parent: QWidget, found: TopUp) -> bool:
         """Whether to plan a flight for the little that is missing."""

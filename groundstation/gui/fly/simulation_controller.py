@@ -146,14 +146,14 @@ class SimulationController(QObject):
             return
         if site_model.site.n_panels == 0:
             return
-        asked = (number, self.conditions, dict(self.effect_settings))
+        request = (number, self.conditions, dict(self.effect_settings))
 
         def work(_context: JobContext) -> tuple[EffectChoice, ...]:
-            return simulation_effects(plan, site_model, *asked)
+            return simulation_effects(plan, site_model, *request)
 
         def done(choices: tuple[EffectChoice, ...]) -> None:
             self.effectsChanged.emit(choices)
-            if asked != (number, self.conditions, self.effect_settings):
+            if request != (number, self.conditions, self.effect_settings):
                 self.look(plan, number)
 
         self._looking_id = self._context.start(self.tr("Look at the flight"), work, done).id

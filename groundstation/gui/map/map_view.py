@@ -107,11 +107,11 @@ class MapLayer:
             painter.drawImage(target, self._picture, QRectF(self._picture.rect()))
 
     def _target(self, viewport: Viewport) -> QRectF:
-        made = self._made_for
-        stretch = viewport.scale / made.scale
-        width, height = made.width_px * stretch, made.height_px * stretch
-        x = (made.centre[0] - viewport.centre[0]) * viewport.scale + (viewport.width_px - width) / 2.0
-        y = (made.centre[1] - viewport.centre[1]) * viewport.scale + (viewport.height_px - height) / 2.0
+        drawn_for = self._made_for
+        stretch = viewport.scale / drawn_for.scale
+        width, height = drawn_for.width_px * stretch, drawn_for.height_px * stretch
+        x = (drawn_for.centre[0] - viewport.centre[0]) * viewport.scale + (viewport.width_px - width) / 2.0
+        y = (drawn_for.centre[1] - viewport.centre[1]) * viewport.scale + (viewport.height_px - height) / 2.0
         return QRectF(x, y, width, height)
 
 

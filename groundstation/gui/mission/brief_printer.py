@@ -321,8 +321,8 @@ class BriefDialog(QDialog):
         today = QLocale().toString(QDate.currentDate(), QLocale.FormatType.LongFormat)
         title = entry.title if entry is not None and entry.plan is plan else ""
         found = flight_brief(site_model, plan, checked.findings, today, title, day=checked.day)
-        told = tuple(translated_finding(finding, self._units) for finding in found.findings)
-        self._brief = replace(found, findings=told)
+        translated_findings = tuple(translated_finding(finding, self._units) for finding in found.findings)
+        self._brief = replace(found, findings=translated_findings)
         self._page, self._paper = QTextBrowser(), ChoiceBox()
         # Paper is white in every theme.
         self._page.setStyleSheet("QTextBrowser { background: #ffffff; color: #000000; }")

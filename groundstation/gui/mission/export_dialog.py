@@ -257,7 +257,7 @@ class ExportDialog(QDialog):
         file_format, options = self._form.value()
         plan, site_model = self._plan, self._site_model
         self._asked += 1
-        asked, self._prepared = self._asked, None
+        request, self._prepared = self._asked, None
         self._write.setEnabled(False)
         self._say("heading", self.tr("Making the files ..."))
 
@@ -265,7 +265,7 @@ class ExportDialog(QDialog):
             return prepare_export(plan, site_model, file_format, options)
 
         def done(prepared: Any) -> None:
-            if asked == self._asked:
+            if request == self._asked:
                 self._show(prepared)
 
         self._context.start(self.tr("Prepare export"), work, done)

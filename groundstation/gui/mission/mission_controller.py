@@ -130,8 +130,8 @@ class MissionController(QObject):
     def _say_findings(self, names: str, findings: Sequence[Finding]) -> None:
         """Say what there is to say of the files of these names; what holds of several sorties once."""
         self._context.settle("plan.file.")
-        told = {found.message: found for found in reversed(findings) if found.severity is not Severity.OK}
-        for found in list(reversed(told.values()))[:MAX_SAID]:
+        by_message = {found.message: found for found in reversed(findings) if found.severity is not Severity.OK}
+        for found in list(reversed(by_message.values()))[:MAX_SAID]:
             item = item_of_place(found.place, self._context.document)
             self._context.say(
                 found.severity,
@@ -139,5 +139,5 @@ class MissionController(QObject):
                 item,
                 f"plan.file.{found.message}",
             )
-        if len(told) > MAX_SAID:
-            self._context.say(Severity.NOTE, self.tr("{0} more findings like these").format(len(told) - MAX_SAID))
+        if len(by_message) > MAX_SAID:
+            self._context.say(Severity.NOTE, self.tr("{0} more findings like these").format(len(by_message) - MAX_SAID))

@@ -349,7 +349,7 @@ class MissionPage(QObject):
     # How it is put together
 
     def _make_actions(self) -> None:
-        made = []
+        actions = []
         for text, key, tip, slot in (
             (self.tr("Export mission files ..."), "Ctrl+E", self.tr("For DJI, QGroundControl, ..."), self.export),
             (
@@ -371,8 +371,8 @@ class MissionPage(QObject):
             action.setShortcut(QKeySequence(key))
             action.setToolTip(tip)
             action.triggered.connect(lambda _checked=False, slot=slot: slot())
-            made.append(action)
-        self._export, self._import, self._compare, self._brief, self._check = self._actions = tuple(made)
+            actions.append(action)
+        self._export, self._import, self._compare, self._brief, self._check = self._actions = tuple(actions)
 
     def _make_left(self) -> QWidget:
         left = QWidget()

@@ -116,11 +116,11 @@ class ModelController(QObject):
 
         self._context.start(self.tr("Open the model"), work, self._opened, self._not_opened)
 
-    def _take_scene(self, made: SceneMade) -> None:
-        if made.folder is not None:
-            self._read(made.folder)
+    def _take_scene(self, scene: SceneMade) -> None:
+        if scene.folder is not None:
+            self._read(scene.folder)
             return
-        self._context.say(Severity.ERROR, self._context.words(made.problem))
+        self._context.say(Severity.ERROR, self._context.words(scene.problem))
         self._not_opened(None)
 
     def _opened(self, found: tuple[SceneCard, tuple[Path, ...]]) -> None:
@@ -190,9 +190,9 @@ class ModelController(QObject):
         self._context.start(self.tr("Export the model"), work, self._exported)
 
     def _exported(self, done: WrittenModel) -> None:
-        said = self.tr("The model is written: {0}, {1} MB").format(done.path, f"{done.n_bytes / 1e6:.3g}")
+        text = self.tr("The model is written: {0}, {1} MB").format(done.path, f"{done.n_bytes / 1e6:.3g}")
         notes = [str(self._context.words(note)) for note in done.notes]
-        self._context.say(Severity.NOTE, "; ".join([said, *notes]))
+        self._context.say(Severity.NOTE, "; ".join([text, *notes]))
 
     # Panels
 

@@ -283,12 +283,12 @@ class PanelSightings(QWidget):
 
     def _shown(self, coverage: PhotoCoverage, panel: int, section: int, state: SectionState) -> ShownSection:
         count = int(coverage.achieved.counts[panel, section])
-        said = {
+        texts = {
             SectionState.COVERED: self.tr("photos that show it: {0}").format(count),
             SectionState.MISSED: self.tr("promised by the plan, but on no photo"),
             SectionState.UNDECIDED: self.tr("on no photo"),
         }
-        return ShownSection(state, count, self.tr("section {0}: {1}").format(section, said[state]))
+        return ShownSection(state, count, self.tr("section {0}: {1}").format(section, texts[state]))
 
 
 class CoverageDisplay(QObject):

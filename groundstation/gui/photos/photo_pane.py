@@ -89,7 +89,7 @@ class ThumbnailStrip(PhotoStrip[PhotoCard]):
 
     def words(self, card: PhotoCard) -> str:
         """What is known of a photo."""
-        said = {
+        texts = {
             PhotoMark.UNREADABLE: self.tr("cannot be decoded"),
             PhotoMark.CUT_OFF: self.tr("the file was cut off"),
             PhotoMark.BLURRED: self.tr("blurred"),
@@ -98,7 +98,7 @@ class ThumbnailStrip(PhotoStrip[PhotoCard]):
             PhotoMark.ALIKE: self.tr("shows the same as another one"),
             PhotoMark.UNPOSED: self.tr("does not say where it was taken"),
         }
-        return "\n".join([card.path.name, *(f"{SIGNS[mark]} {said[mark]}" for mark in card.marks)])
+        return "\n".join([card.path.name, *(f"{SIGNS[mark]} {texts[mark]}" for mark in card.marks)])
 
 
 class PhotoPane(QWidget):

@@ -142,19 +142,21 @@ class PhotosController(QObject):
         """Make a site of a folder of photos alone, open it, and read the photos over it."""
 
         def work(context: JobContext) -> tuple[CoarseFiles, SiteModel]:
-            made = context.apart(coarse_apart, CoarseRequest(photos, out))
-            return made, read_input_site(made.site)
+            files = context.apart(coarse_apart, CoarseRequest(photos, out))
+            return files, read_input_site(files.site)
 
         def done(result: tuple[CoarseFiles, SiteModel]) -> None:
-            made, model = result
-            for found in made.findings:
+            files, model = result
+            for found in files.findings:
                 self._context.say(found.severity, self._context.words(found.message))
             document = with_new_site(self._context.document, model)
             self._context.change(self.tr("Make a coarse model"), document)
             self._context.select(None)
             text = self.tr("The coarse model is made: {0} of {1} photos found their place, walls: {2}. It lies in {3}")
-            n_walls = len(made.report["walls"])
-            self._context.say(Severity.OK, text.format(made.report["registered"], made.report["photos"], n_walls, out))
+            n_walls = len(files.report["walls"])
+            self._context.say(
+                Severity.OK, text.format(files.report["registered"], files.report["photos"], n_walls, out)
+            )
             self.read(photos, out / SPARSE)
 
         self._start(self.tr("Make a coarse model"), work, done)

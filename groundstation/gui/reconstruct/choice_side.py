@@ -297,7 +297,7 @@ class ChoiceSide(QWidget):
         self.pause.setText(self.tr("Resume") if controller.is_paused else self.tr("Pause"))
         self.stop.setEnabled(can_stop)
         self.cancel_training.setEnabled(controller.phase in (BUSY | {Phase.ASKING}) - {Phase.ENDING})
-        told = self._words.told(
+        lines = self._words.told(
             controller.machine,
             controller.cuda,
             controller.choice,
@@ -305,7 +305,7 @@ class ChoiceSide(QWidget):
             controller.forecast(),
             controller.standing,
         )
-        self.wrong.setText("\n".join(text for role, text in told if role == "error"))
+        self.wrong.setText("\n".join(text for role, text in lines if role == "error"))
         self.wrong.setVisible(bool(self.wrong.text()) and is_idle)
 
     def _show_data_set(self) -> None:

@@ -195,7 +195,7 @@ class ReconstructPage(QObject):
     def _show_machine(self) -> None:
         controller, layout = self.controller, self.machine.layout()
         assert isinstance(layout, QVBoxLayout)
-        told = self._words.told(
+        lines = self._words.told(
             controller.machine,
             controller.cuda,
             controller.choice,
@@ -203,13 +203,13 @@ class ReconstructPage(QObject):
             controller.forecast(),
             controller.standing,
         )
-        while len(self._machine_lines) < len(told):
+        while len(self._machine_lines) < len(lines):
             label = QLabel()
             label.setWordWrap(True)
             layout.insertWidget(len(self._machine_lines), label)
             self._machine_lines.append(label)
         for number, label in enumerate(self._machine_lines):
-            role, text = told[number] if number < len(told) else ("", "")
+            role, text = lines[number] if number < len(lines) else ("", "")
             label.setVisible(bool(text))
             label.setText(text)
             if label.property("role") != role:

@@ -90,7 +90,7 @@ class Questions(QObject):
 
     def save_first(self, parent: QWidget) -> Answer:
         """Whether to save before something else happens."""
-        said = _asked(
+        answer = _asked(
             QMessageBox.Icon.Question,
             parent,
             self.tr("Unsaved changes"),
@@ -98,7 +98,7 @@ class Questions(QObject):
             _Button.Save | _Button.Discard | _Button.Cancel,
             _Button.Save,
         )
-        return {_Button.Save: Answer.YES, _Button.Discard: Answer.NO}.get(said, Answer.CANCEL)
+        return {_Button.Save: Answer.YES, _Button.Discard: Answer.NO}.get(answer, Answer.CANCEL)
 
     def recover(self, parent: QWidget, when: str, changes: tuple[str, ...], is_of_saved_state: bool) -> Answer:
         """Whether unsaved work from before a crash is wanted; without `changes` it was never saved at all."""
@@ -117,7 +117,7 @@ class Questions(QObject):
             text += "\n\n" + self.tr(
                 "The project was saved by others since then: what they changed is not in the copy."
             )
-        said = _asked(
+        answer = _asked(
             QMessageBox.Icon.Question,
             parent,
             self.tr("Unsaved work was kept"),
@@ -130,7 +130,7 @@ class Questions(QObject):
                 _Button.Cancel: self.tr("Decide later"),
             },
         )
-        return {_Button.Yes: Answer.YES, _Button.Discard: Answer.NO}.get(said, Answer.CANCEL)
+        return {_Button.Yes: Answer.YES, _Button.Discard: Answer.NO}.get(answer, Answer.CANCEL)
 
     def folder(self, parent: QWidget, title: str, *places: Path | None) -> Path | None:
         """A folder that exists; the dialog begins at the first of the `places` that is there."""
@@ -296,6 +296,6 @@ def _asked(
     box.setDefaultButton(usual)
     for kind, label in (labels or {}).items():
         box.button(kind).setText(label)
-    said = _Button(box.exec())
+    answer = _Button(box.exec())
     box.deleteLater()
-    return said
+    return answer

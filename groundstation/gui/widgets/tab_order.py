@@ -24,8 +24,8 @@ def next_in_order(regions: Sequence[QWidget], current: QWidget | None, *, forwar
         return None
     if current not in stops:
         is_inside = any(region is current or region.isAncestorOf(current) for region in regions if current is not None)
-        beside = _beside(stops, current, forward) if is_inside else None
-        return stops[0 if forward else -1] if beside is None else beside
+        neighbour = _beside(stops, current, forward) if is_inside else None
+        return stops[0 if forward else -1] if neighbour is None else neighbour
     return stops[(stops.index(current) + (1 if forward else -1)) % len(stops)]
 
 

@@ -115,15 +115,15 @@ class MainWindow(QMainWindow):
         """A tab by its name; made when it was not yet."""
         if name not in self._tabs:
             spec = next(spec for spec in TABS if spec.name == name)
-            made = self._tabs[name] = spec.make(self._context, self.shared_view)
+            page = self._tabs[name] = spec.make(self._context, self.shared_view)
             if spec.place is Place.WHOLE_PAGE:
-                self._pages.addWidget(made.left)
+                self._pages.addWidget(page.left)
             else:
-                self._left.addWidget(scrolled(made.left))
-                if made.right is not None:
-                    self._right.addWidget(made.right)
-                if made.bottom is not None:
-                    self._bottom.addWidget(made.bottom)
+                self._left.addWidget(scrolled(page.left))
+                if page.right is not None:
+                    self._right.addWidget(page.right)
+                if page.bottom is not None:
+                    self._bottom.addWidget(page.bottom)
         return self._tabs[name]
 
     def show_tab(self, name: str) -> None:
@@ -157,8 +157,8 @@ class MainWindow(QMainWindow):
                 if widget is not None:
                     stack.setCurrentWidget(widget)
         # Keys of a tab work while it is shown; which of its actions can be done is the tab's own matter.
-        for name, made in self._tabs.items():
-            for action in made.actions():
+        for name, page in self._tabs.items():
+            for action in page.actions():
                 (self.addAction if name == spec.name else self.removeAction)(action)
         tab.shown()
         self.tabShown.emit(spec.name)

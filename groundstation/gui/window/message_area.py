@@ -253,7 +253,7 @@ class MessageSheet(QFrame):
         escape.activated.connect(self.closed)
         self.hide()
 
-    def fill(self, standing: tuple[Message, ...], told: list[tuple[Message, str]]) -> None:
+    def fill(self, standing: tuple[Message, ...], history: list[tuple[Message, str]]) -> None:
         """What holds now, and under it everything, the latest first."""
         chosen = self._chosen()
         self._list.clear()
@@ -263,7 +263,7 @@ class MessageSheet(QFrame):
         if not standing:
             self._head(self.tr("nothing to heed"), is_bold=False)
         self._head(self.tr("Told so far"))
-        for message, when in reversed(told):
+        for message, when in reversed(history):
             self._row(message, f"{when}  ")
         rows = (row for row in range(self._list.count()) if self._message(self._list.item(row)) is chosen)
         if chosen is not None:

@@ -197,8 +197,8 @@ class ProjectController(QObject):
     def open_project(self) -> None:
         """Ask for a folder, and open it."""
         project = self.context.session.folder
-        beside = None if project is None else project.parent
-        folder = self._questions.folder(self.window, self.tr("Open project"), beside)
+        start_folder = None if project is None else project.parent
+        folder = self._questions.folder(self.window, self.tr("Open project"), start_folder)
         if folder is not None:
             self.open_folder(folder)
 
@@ -244,8 +244,8 @@ class ProjectController(QObject):
         session = self.context.session
         site = session.document.site
         name = self.tr("New project") if site is None else file_name(site.site.name)
-        beside = Path.home() if session.folder is None else session.folder.parent
-        folder = self._questions.new_folder(self.window, self.tr("Save project as"), beside / name)
+        start_folder = Path.home() if session.folder is None else session.folder.parent
+        folder = self._questions.new_folder(self.window, self.tr("Save project as"), start_folder / name)
         if folder is not None:
             self.save_in(folder, then)
 
@@ -277,12 +277,12 @@ class ProjectController(QObject):
 
         self.context.start(self.tr("Save"), work, done)
 
-    def _opened(self, taken: LockedProject) -> None:
-        project = taken.project
+    def _opened(self, opened: LockedProject) -> None:
+        project = opened.project
         site_source = project.folder / project.record.site if project.record.site else None
-        self._put_on_controller(replace(project.document, site_source=site_source), project.folder, taken.lock)
-        if taken.problem:
-            self._warn(taken.problem, "project.lock")
+        self._put_on_controller(replace(project.document, site_source=site_source), project.folder, opened.lock)
+        if opened.problem:
+            self._warn(opened.problem, "project.lock")
         for note in project.notes:
             text = self.context.words(note.message)
             self.context.say(note.severity, text, about=f"project.note.{text}")
@@ -293,7 +293,7 @@ class ProjectController(QObject):
             Severity.OK,
             self.tr("{0}: {1} panels, {2} plans").format(project.name, n_panels, len(project.document.plans)),
         )
-        found = find_recovery(project.folder) if taken.lock is not None else None
+        found = find_recovery(project.folder) if opened.lock is not None else None
         if found is not None:
             self._offer(found)
 

@@ -201,13 +201,13 @@ class SampledVehicle(SimulatedVehicle):
 
     def step(self, duration_s: float) -> list[Message]:
         """Fly on for a simulated time; what the vehicle says meanwhile."""
-        said: list[Message] = []
+        messages: list[Message] = []
         with self._lock:
             n_steps = max(1, math.ceil(duration_s / SAMPLE_S))
             for _ in range(n_steps):
-                said += super().step(duration_s / n_steps)
+                messages += super().step(duration_s / n_steps)
                 self._truth.sample()
-        return said
+        return messages
 
     def true_record(self, recorder: Recorder, orders: SortieOrders) -> FlightRecord | None:
         """The last flight as it really was; None where nothing flew."""

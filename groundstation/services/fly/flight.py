@@ -502,30 +502,30 @@ class LiveFlight:
 
     def _take_requests(self) -> None:
         while not self._asked.empty():
-            asked = self._asked.get()
-            if isinstance(asked, FlightSettings):
-                self._settle(asked)
-            elif isinstance(asked, LiveSortie):
+            request = self._asked.get()
+            if isinstance(request, FlightSettings):
+                self._settle(request)
+            elif isinstance(request, LiveSortie):
                 if self._run is None or self._run.phase in BEFORE_TAKE_OFF:
-                    self._activate(asked, self._machine.state)
-            elif not isinstance(asked, Request):
+                    self._activate(request, self._machine.state)
+            elif not isinstance(request, Request):
                 if self._run is not None and self._run.phase in BEFORE_TAKE_OFF:
-                    self._agree(self._run, asked)
-            elif asked not in self._now().may:
-                self._publish(Answered(asked, False, REFUSALS[asked]))
+                    self._agree(self._run, request)
+            elif request not in self._now().may:
+                self._publish(Answered(request, False, REFUSALS[request]))
             else:
-                self._do(asked)
+                self._do(request)
 
     def _settle(self, settings: FlightSettings) -> None:
         self._settings = settings
         if self._run is not None:
             self._run.options = replace(self._run.options, needs_rtk=settings.needs_rtk)
 
-    def _agree(self, run: FlightRun, asked: str | tuple[ParameterChange, ...]) -> None:
-        if isinstance(asked, str):
-            run.options = replace(run.options, overrules=run.options.overrules | {asked})
+    def _agree(self, run: FlightRun, request: str | tuple[ParameterChange, ...]) -> None:
+        if isinstance(request, str):
+            run.options = replace(run.options, overrules=run.options.overrules | {request})
         else:
-            run.set_parameters(asked)
+            run.set_parameters(request)
 
     def _do(self, request: Request) -> None:
         if request is Request.DISCONNECT:

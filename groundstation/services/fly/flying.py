@@ -159,8 +159,8 @@ def _wait_for_link(process: subprocess.Popen[bytes], binary: Path, output: Path,
     while True:
         monitor.report("starting the simulation", 0, 0)
         if process.poll() is not None:
-            said = output.read_text(errors="replace").strip().splitlines()[-1:] or ["it said nothing"]
-            raise LinkError(say("ended at once with status {} ({})", process.returncode, said[0], place=binary))
+            last_lines = output.read_text(errors="replace").strip().splitlines()[-1:] or ["it said nothing"]
+            raise LinkError(say("ended at once with status {} ({})", process.returncode, last_lines[0], place=binary))
         try:
             open_link(SITL_LINK).close()
         except LinkError as error:
@@ -309,13 +309,13 @@ def fly_link(
         link.observe(lambda frame, _sent, _time_s: log.write(frame, time.time()))
         return link
 
-    told = ""
+    reported_problem = ""
 
     def look(view: RunView) -> None:
-        nonlocal told
-        if log.problem and log.problem != told:
+        nonlocal reported_problem
+        if log.problem and log.problem != reported_problem:
             run.note("log", log.problem)
-        told = log.problem
+        reported_problem = log.problem
         if show is not None:
             show(view)
 

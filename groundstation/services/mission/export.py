@@ -54,8 +54,8 @@ def find_site(plan: Plan, plan_path: Path, site_path: Path | None = None) -> Sit
                 )
             )
         return site_model
-    beside = _site_beside(plan, plan_path)
-    return None if beside is None else read_site(beside)
+    site_path_found = _site_beside(plan, plan_path)
+    return None if site_path_found is None else read_site(site_path_found)
 
 
 def _site_beside(plan: Plan, plan_path: Path) -> Path | None:
@@ -159,24 +159,24 @@ def import_missions(
         )
         write_plan(out, plan)
         return plan, findings, site_path
-    beside = out.with_name(out.name.removesuffix(".json").removesuffix(".plan") + ".site.json")
-    check_output(out, [*paths, beside])
-    check_output(beside, [*paths, out])
-    if beside.exists() and not _is_bare(beside):
+    site_out = out.with_name(out.name.removesuffix(".json").removesuffix(".plan") + ".site.json")
+    check_output(out, [*paths, site_out])
+    check_output(site_out, [*paths, out])
+    if site_out.exists() and not _is_bare(site_out):
         raise InputError(
             say(
                 "this is a site of its own, which the mission's bare one would replace; name it with --site, or "
                 "the plan otherwise",
-                place=beside,
+                place=site_out,
             )
         )
     monitor.report(say("reading the mission"), 0, 1)
     read = read_mission_files(paths, strict=strict)
     model, on_site = bare_site(read)
     plan, findings = plan_of_missions(read, model, profile_id, constraints, monitor)
-    write_site(beside, model.site)
+    write_site(site_out, model.site)
     write_plan(out, plan)
-    return plan, (*on_site, *findings), beside
+    return plan, (*on_site, *findings), site_out
 
 
 def _is_bare(path: Path) -> bool:

@@ -266,7 +266,7 @@ def _web(export: ModelToExport) -> list[str]:
         )
         page = write_web(export.scene, export.out, export.rows, options, export.monitor)
     strays, missing, damaged, large = page.n_strays, page.n_missing, page.n_damaged, page.n_large
-    told = (
+    notes_by_count = (
         (strays, say("{} records of objects that the model lacks are left out", strays)),
         (
             missing,
@@ -278,7 +278,7 @@ def _web(export: ModelToExport) -> list[str]:
         (damaged, say("{} pictures of records cannot be read: the page says so; attach them again", damaged)),
         (large, say("{} documents are too large for the page, which names them; pass them on by themselves", large)),
     )
-    return [text for n, text in told if n]
+    return [text for n, text in notes_by_count if n]
 
 
 def _gltf(export: ModelToExport) -> list[str]:

@@ -430,8 +430,8 @@ def import_records(
     if path.suffix.lower() == ".ifc":
         from reconstruction.records.ifc.importing import read_ifc_records
 
-        taken = read_ifc_records(book, path, all_sets, monitor)
-        return Imported({path.name: taken.n_changed}, taken.notes)
+        imported = read_ifc_records(book, path, all_sets, monitor)
+        return Imported({path.name: imported.n_changed}, imported.notes)
     if path.is_dir():
         tables = [(path / table_name(kind), kind) for kind in KINDS if (path / table_name(kind)).is_file()]
         if not tables:
@@ -442,7 +442,7 @@ def import_records(
         tables = [(path, KIND_NAMED[kind_name])]
     else:
         tables = [(path, kind_of_table(path))]
-    return Imported({taken.kind: taken.n_changed for taken in read_tables(book, tables)})
+    return Imported({imported.kind: imported.n_changed for imported in read_tables(book, tables)})
 
 
 def export_tables(book: RecordBook, folder: Path, semicolon: bool = False) -> Exported:

@@ -381,7 +381,7 @@ def _made(
     grid: FacadeGrid, rows: tuple[GridLine, ...], columns: tuple[GridLine, ...], missing: Sequence[tuple[int, int]]
 ) -> FacadeGrid:
     """Panels between lines, cut by the inclined ones that were found."""
-    made = facade_grid(grid.id, grid.rectification, rows, columns, grid.inclined)
-    cells = {*made.missing, *missing}
-    panels = tuple(panel for panel in made.panels if (panel.row, panel.column) not in cells)
-    return replace(made, panels=panels, missing=tuple(sorted(cells)))
+    whole = facade_grid(grid.id, grid.rectification, rows, columns, grid.inclined)
+    cells = {*whole.missing, *missing}
+    panels = tuple(panel for panel in whole.panels if (panel.row, panel.column) not in cells)
+    return replace(whole, panels=panels, missing=tuple(sorted(cells)))

@@ -128,7 +128,7 @@ def find_panel_files(
     options = options or ImportOptions()
     check_not_index(out)
     check_output(out, [model])
-    given = None if grids is None else read_panels_folder(grids)
+    known_grids = None if grids is None else read_panels_folder(grids)
     read = read_photos(folder, monitor)
     site_model = read_input_site(model) if kind_of(model) is FileKind.SITE else None
     without_panels = replace(options, panels_required=False)
@@ -142,16 +142,16 @@ def find_panel_files(
     def load(photo: PosedPhoto) -> NDArray[np.uint8]:
         return colour_picture(metadata[photo.name])
 
-    found = find_panels(photos, mesh, load, parameters, monitor, given)
+    found = find_panels(photos, mesh, load, parameters, monitor, known_grids)
     facades = tuple(site_facade(facade) for facade in found.facades)
     notes: tuple[str, ...] = ()
-    beside = {facades_path(out): facades_bytes(found, photos)}
+    other_files = {facades_path(out): facades_bytes(found, photos)}
     if site_model is not None:
-        written = _rewritten(site_model, model, out, facades, beside)
+        written = _rewritten(site_model, model, out, facades, other_files)
     else:
         assert source is not None
         imported = site_of_facades(model, source, facades, options, source.notes)
-        written, notes = write_imported_site(out, imported, model, beside), imported.notes
+        written, notes = write_imported_site(out, imported, model, other_files), imported.notes
     return PanelSearch(
         written,
         found,
@@ -234,7 +234,7 @@ def _place(
 
 
 def _rewritten(
-    model: SiteModel, source: Path, out: Path, facades: tuple[Facade, ...], beside: Mapping[Path, bytes]
+    model: SiteModel, source: Path, out: Path, facades: tuple[Facade, ...], other_files: Mapping[Path, bytes]
 ) -> SiteModel:
     """The site with other facades, and files that belong to it; its meshes stay where they are."""
 
@@ -248,5 +248,5 @@ def _rewritten(
         obstacles=tuple(replace(obstacle, mesh=moved(obstacle.mesh)) for obstacle in model.site.obstacles),
     )
     content = site_bytes(site)
-    write_together({out: content, **beside})
+    write_together({out: content, **other_files})
     return replace(model, site=site, sha256=hashlib.sha256(content).hexdigest())

@@ -42,20 +42,20 @@ def write_synthetic_flight(folder: Path, monitor: Monitor = QUIET) -> tuple[Path
     InputError
         The folder cannot be written.
     """
-    made = []
+    facades = []
     for number, (aside_deg, up_deg) in enumerate(DIRECTIONS_DEG):
         monitor.report("rendering", number, len(DIRECTIONS_DEG))
         photo = photo_of(WALL, LAYOUT, wide_camera(*PHOTO_PX), seed=SEED, oblique_deg=aside_deg, from_below_deg=up_deg)
-        made.append(render_facade(Case("made", LAYOUT, WALL, photo, DISTURBED, seed=SEED)))
-    write_photos(folder / "photos", [(one.photo, one.image) for one in made], ORIGIN)
+        facades.append(render_facade(Case("made", LAYOUT, WALL, photo, DISTURBED, seed=SEED)))
+    write_photos(folder / "photos", [(one.photo, one.image) for one in facades], ORIGIN)
     site = folder / "made.site.json"
-    write_site(site, _site(folder, made[0]))
+    write_site(site, _site(folder, facades[0]))
     return site, folder / "photos"
 
 
-def _site(folder: Path, made: SyntheticFacade) -> Site:
+def _site(folder: Path, facade: SyntheticFacade) -> Site:
     """The site, with its building mesh written beside it."""
-    corners = np.concatenate([panel.corners_enu_m for panel in made.panels])
+    corners = np.concatenate([panel.corners_enu_m for panel in facade.panels])
     low, high = corners.min(axis=0), corners.max(axis=0)
     front = np.array([low[0] - BORDER_M, low[1], 0.0])
     back = np.array([high[0] + BORDER_M, low[1] + BUILDING_DEPTH_M, high[2] + BORDER_M])
@@ -63,7 +63,7 @@ def _site(folder: Path, made: SyntheticFacade) -> Site:
     return Site(
         name="made",
         origin=ORIGIN,
-        facades=(Facade("A", tuple(_panel(panel) for panel in made.panels if len(panel.corners_enu_m) == 4)),),
+        facades=(Facade("A", tuple(_panel(panel) for panel in facade.panels if len(panel.corners_enu_m) == 4)),),
         airspace=Airspace((-60.0, -60.0, 1.0), (60.0, 40.0, 50.0), 0.0),
         home_enu_m=(-30.0, -40.0, 0.0),
         building_mesh="made.ply",

@@ -60,9 +60,9 @@ class FlownPlan:
 
     def unfinished_sorties(self) -> tuple[int, ...]:
         """Sorties that were begun and have views without a photo, from 1, the one that was flown last in front."""
-        taken, plan = self.taken, self.plan
+        photographed, plan = self.taken, self.plan
         flown = dict.fromkeys(number for number in reversed(self.matching.sortie_of_record) if number > 0)
-        return tuple(number for number in flown if not taken.issuperset(plan.sorties[number - 1].viewpoint_ids))
+        return tuple(number for number in flown if not photographed.issuperset(plan.sorties[number - 1].viewpoint_ids))
 
 
 def flown_plan(flight: Flight, plan: Plan, site_model: SiteModel) -> FlownPlan:

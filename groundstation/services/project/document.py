@@ -129,8 +129,8 @@ class Document:
 
     def free_plan_id(self) -> str:
         """Identifier for a new plan: plan-1, plan-2 and so on, higher than all that there are."""
-        taken = {entry.id for entry in self.plans}
-        return first_free(lambda number: f"plan-{number}", taken)
+        used_ids = {entry.id for entry in self.plans}
+        return first_free(lambda number: f"plan-{number}", used_ids)
 
 
 def exists(document: Document, item: Item) -> bool:
@@ -164,9 +164,9 @@ def _sortie(plan: Plan, number: str) -> Sortie | None:
     return plan.sorties[index] if 0 <= index < len(plan.sorties) else None
 
 
-def first_free(name: Callable[[int], str], taken: set[str]) -> str:
+def first_free(name: Callable[[int], str], used: set[str]) -> str:
     """The first of `name(1)`, `name(2)` and so on that is not taken."""
     number = 1
-    while name(number) in taken:
+    while name(number) in used:
         number += 1
     return name(number)

@@ -139,9 +139,7 @@ def read_request(content: dict[str, Any] | None, what: str) -> tuple[PlanRequest
         return None, [Finding(Severity.WARNING, "request-left-out", text)]
 
 
-def plan_file(
-    folder: Path, entry: PlanEntry, before: ProjectRecord, taken: set[str]
-) -> tuple[PlanRecord, bytes | None]:
+def plan_file(folder: Path, entry: PlanEntry, before: ProjectRecord, used: set[str]) -> tuple[PlanRecord, bytes | None]:
     """Entry of project.json for a plan, and the content to write; None where the file holds the plan already.
 
     A file that another program wrote stays as it is, with fields that this version does not know, while the plan in it
@@ -151,7 +149,7 @@ def plan_file(
     ----------
     before
         The project as it is in the folder.
-    taken
+    used
         Files of other plans.
 
     Raises
@@ -169,12 +167,12 @@ def plan_file(
     if (
         known is not None
         and known.file.rpartition("/")[0] == PLANS_FOLDER
-        and known.file not in taken
+        and known.file not in used
         and may_replace(folder / known.file, known.sha256, content)
     ):
         file = known.file
     else:
-        file = _free_file(folder, entry.id, {*taken, *(plan.file for plan in before.plans)})
+        file = _free_file(folder, entry.id, {*used, *(plan.file for plan in before.plans)})
     record = PlanRecord(
         id=entry.id,
         file=file,
@@ -490,14 +488,14 @@ def create_project(folder: Path, document: Document, *, name: str = "", site_sou
         raise InputError(say("there is a project here already; open it, or name another folder", place=folder))
     if folder.exists() and not folder.is_dir():
         raise InputError(say("expected a folder for the project, found a file; name another folder", place=folder))
-    made = [path for path in (folder, *(folder / part for part in FOLDERS)) if not path.exists()]
+    new_folders = [path for path in (folder, *(folder / part for part in FOLDERS)) if not path.exists()]
     try:
         with in_words(folder):
-            for path in made:
+            for path in new_folders:
                 path.mkdir(parents=True, exist_ok=True)
         return save_project(folder, document, name=name, site_source=site_source)
     except BaseException:
-        for path in reversed(made):
+        for path in reversed(new_folders):
             with contextlib.suppress(OSError):  # what cannot be removed holds something, or was never made
                 path.rmdir()
         raise

@@ -77,8 +77,8 @@ def name_plans(content: Content, _listing: Listing) -> Content:
     plans: list[Content] = []
     for file in files:
         name = title_of(file)
-        taken = {plan["id"] for plan in plans}
-        plans.append({"id": free_name(name, taken), "title": name, "file": file})
+        used_ids = {plan["id"] for plan in plans}
+        plans.append({"id": free_name(name, used_ids), "title": name, "file": file})
     current = plans[-1]["id"] if plans else ""
     return {"current_plan_id": current, **content, "format": f"{FORMAT}2", "plans": plans}
 
@@ -89,9 +89,9 @@ def title_of(file: str) -> str:
     return name.removesuffix(".json").removesuffix(".plan") or "plan"
 
 
-def free_name(name: str, taken: set[str]) -> str:
+def free_name(name: str, used: set[str]) -> str:
     """The name, or with -2, -3 and so on where it is taken."""
-    return first_free(lambda number: name if number == 1 else f"{name}-{number}", taken)
+    return first_free(lambda number: name if number == 1 else f"{name}-{number}", used)
 
 
 MIGRATIONS: tuple[Migration, ...] = (from_loose_files, name_plans)

@@ -159,8 +159,8 @@ class Autosave:
             self._write_copy(document)
         except Exception as error:  # nobody stands above a thread of an executor, so everything is told here
             with self._state:
-                told, self._has_failed, self._last = self._has_failed, True, None
-            if not told:
+                had_failed, self._has_failed, self._last = self._has_failed, True, None
+            if not had_failed:
                 cause = str(error) if isinstance(error, (GroundStationError, OSError)) else repr(error)
                 self._report(
                     say(

@@ -153,13 +153,13 @@ class Session:
         self._history.redo()
         self._publish(before)
 
-    def saved(self, asked: Document, written: Document, folder: Path) -> None:
-        """Note that `asked` was saved in `folder`, where it stands as `written` (with the checksum of its site file).
+    def saved(self, requested: Document, written: Document, folder: Path) -> None:
+        """Note that `requested` was saved in `folder`, where it is `written`, with the checksum of its site file.
 
         Does nothing to a document that has been changed since but for noting the folder.
         """
         self._folder = folder
-        if self.document is asked:
+        if self.document is requested:
             before = self.document
             self._history.amend(written)
             self._saved = written

@@ -119,19 +119,19 @@ def replace_together(
     InputError
         Something cannot be written; the project is as it was then.
     """
-    made: list[Path] = []
+    written: list[Path] = []
     try:
         for file, content in (created or {}).items():
-            made.append(folder / file)
-            write_atomically(made[-1], content)
+            written.append(folder / file)
+            write_atomically(written[-1], content)
         for file, content in files.items():
-            made.append(_staged(folder / file))
-            write_atomically(made[-1], content)
+            written.append(_staged(folder / file))
+            write_atomically(written[-1], content)
         with in_words(folder):
-            _sync(path.parent for path in made)
+            _sync(path.parent for path in written)
         write_atomically(folder / PROJECT_FILE, project)
     except BaseException:
-        remove(made)
+        remove(written)
         raise
     # From here on the project is the new one; what cannot be renamed now is read where it is, and renamed at the next
     # save.

@@ -143,7 +143,7 @@ class _Server:
         try:
             if not order.resume:
                 note_training(order.out, order.dataset, order.request)
-            made = train_files(
+            files = train_files(
                 order.dataset,
                 order.out,
                 order.request,
@@ -160,10 +160,10 @@ class _Server:
             self._tell(Ended("failed", sendable(error)))
         else:
             self._is_joint = False
-            self._render_queue.keep_trained(made.trained)
-            for point in made.trained.history[self._n_measured :]:
+            self._render_queue.keep_trained(files.trained)
+            for point in files.trained.history[self._n_measured :]:
                 self._tell(Measured(point.t_s, point.value))
-            self._tell(Ended("done", None, train_summary(made)))
+            self._tell(Ended("done", None, train_summary(files)))
 
     def _ask(self, order: AskScene) -> None:
         from groundstation.services.reconstruct.training import light_of_scene

@@ -188,7 +188,7 @@ def _trained(
     if ranks.is_first:
         _check_begin(dataset, out, checkpoint)
     config = _config_of_data_set(dataset, request)
-    return train_model(dataset, config, watching, checkpoint, given=request.start, ranks=ranks, watch=watch)
+    return train_model(dataset, config, watching, checkpoint, splats_path=request.start, ranks=ranks, watch=watch)
 
 
 PLAIN_METHOD = "2dgs"
@@ -249,12 +249,12 @@ def preview_to(path: Path) -> Callable[[Preview], None]:
     return write
 
 
-def train_summary(made: TrainedFiles) -> dict[str, Any]:
+def train_summary(files: TrainedFiles) -> dict[str, Any]:
     """For `--json`."""
-    trained = made.trained
+    trained = files.trained
     record = trained.record
     return {
-        "model": str(made.folder),
+        "model": str(files.folder),
         "method": record.config.method,
         "light": None if record.light is None else record.light.name,
         "effects": [asdict(decision) for decision in record.decisions],

@@ -182,10 +182,10 @@ class _Studio:
         photo = PosedPhoto(request.view.id, Path(request.view.id), lens, Pose.of(request.view), None)
         renderer, decisions = (self._quick, ()) if request.is_quick else self._decided(photo, monitor)
         started_s = time.perf_counter()
-        taken = _taken(renderer, photo, monitor)
-        picture = developed(taken)
+        rendered = _taken(renderer, photo, monitor)
+        picture = developed(rendered)
         seconds = time.perf_counter() - started_s
-        seen = np.unique(taken.panel).astype(np.int64)
+        seen = np.unique(rendered.panel).astype(np.int64)
         clearance_m = self._solids.clearance_m(np.asarray(photo.pose.position_enu_m)[None])[0]
         return PreviewPhoto(request, picture, seen[seen > 0] - 1, decisions, bool(clearance_m < 0.0), seconds)
 
@@ -196,11 +196,11 @@ class _Studio:
         from reconstruction.scenes.parameters import RenderSettings
         from reconstruction.scenes.photos.renderer import Renderer
 
-        asked = [effect for effect in effects() if effect.name not in OF_FILES and effect.name not in LEFT_OUT]
-        monitor.report(say("choosing what to simulate"), 0, len(asked))
+        to_decide = [effect for effect in effects() if effect.name not in OF_FILES and effect.name not in LEFT_OUT]
+        monitor.report(say("choosing what to simulate"), 0, len(to_decide))
         probe, decisions = Probe(self._scene, [photo]), []
-        for done, effect in enumerate(asked):
-            monitor.report(say("choosing what to simulate"), done, len(asked))
+        for done, effect in enumerate(to_decide):
+            monitor.report(say("choosing what to simulate"), done, len(to_decide))
             decisions.append(decide(effect, probe))
         chosen = frozenset(found.effect for found in decisions if found.on)
         if self._fine is None or self._fine[0] != chosen:
@@ -230,12 +230,12 @@ def _strip(renderer: Renderer, photo: PosedPhoto, top: int, bottom: int) -> Rend
     lens = photo.intrinsics
     first, last = max(top - EXTRA_ROWS, 0), min(bottom + EXTRA_ROWS, lens.height_px)
     part = replace(lens, height_px=last - first, cy_px=lens.cy_px - first)
-    taken = renderer.render(replace(photo, intrinsics=part))
+    rendered = renderer.render(replace(photo, intrinsics=part))
     rows = slice(top - first, bottom - first)
-    layers: dict[str, Any] = {name: getattr(taken, name)[rows] for name in _layers(taken)}
-    return replace(taken, **layers)
+    layers: dict[str, Any] = {name: getattr(rendered, name)[rows] for name in _layers(rendered)}
+    return replace(rendered, **layers)
 
 
-def _layers(taken: RenderedPhoto) -> tuple[str, ...]:
+def _layers(rendered: RenderedPhoto) -> tuple[str, ...]:
     """Names of what has a value for each pixel."""
-    return tuple(field.name for field in fields(taken) if isinstance(getattr(taken, field.name), np.ndarray))
+    return tuple(field.name for field in fields(rendered) if isinstance(getattr(rendered, field.name), np.ndarray))

@@ -215,10 +215,10 @@ def scene_views(request: SceneRequest, scene: Scene, written: SiteModel, folder:
         camera = profile(request.profile_id).camera
         shots = square_shots(scene, lens_of(camera), request.n_square, request.seed)
         return SceneViews(shots, camera, {"square": {"n_views": request.n_square, "profile": request.profile_id}}, {})
-    made = _planned_here(request, written, folder, monitor)
-    asked = {"n_views": request.n_views or DEFAULT_VIEWS, "profile": request.profile_id}
-    content = json.dumps(plan_to_json(made), indent=1, allow_nan=False).encode()
-    return SceneViews(planned_shots(made), made.camera, {"views": asked}, {PLAN_FILE: content})
+    plan_made_here = _planned_here(request, written, folder, monitor)
+    options = {"n_views": request.n_views or DEFAULT_VIEWS, "profile": request.profile_id}
+    content = json.dumps(plan_to_json(plan_made_here), indent=1, allow_nan=False).encode()
+    return SceneViews(planned_shots(plan_made_here), plan_made_here.camera, {"views": options}, {PLAN_FILE: content})
 
 
 SITE_CHANGED = Finding(

@@ -77,11 +77,11 @@ def index_of(ids: Iterable[str], wanted: str, kind: str) -> int:
     raise ValueError(f"there is no {kind} '{wanted}' on this site")
 
 
-def check_new_name(name: str, taken: Iterable[str], kind: str) -> None:
+def check_new_name(name: str, used: Iterable[str], kind: str) -> None:
     """Raise `InputError` unless `name` says something and is free."""
     if not name.strip():
         raise InputError(say("name: expected a name for the {}, got an empty text", kind))
-    if name in taken:
+    if name in used:
         raise InputError(say("name: there is a {} '{}' already; choose another name", kind, name))
 
 
@@ -107,8 +107,8 @@ def add_box(model: SiteModel, low_enu_m: Vec3, high_enu_m: Vec3) -> tuple[SiteMo
 
 def add_mesh_obstacle(model: SiteModel, name: str, mesh: TriangleMesh) -> tuple[SiteModel, str]:
     """With one more obstacle from a mesh in local ENU metres, called `name` or like it; returns its name as well."""
-    taken = set(obstacle_ids(model))
-    obstacle_id = name if name not in taken else first_free(lambda number: f"{name}-{number + 1}", taken)
+    used = set(obstacle_ids(model))
+    obstacle_id = name if name not in used else first_free(lambda number: f"{name}-{number + 1}", used)
     files = {found for found in (model.site.building_mesh, *(o.mesh for o in model.site.obstacles)) if found}
     file = first_free(lambda number: f"{name}.ply" if number == 1 else f"{name}-{number}.ply", files)
     return _with_obstacle(model, Obstacle(obstacle_id, mesh=file), mesh), obstacle_id
@@ -347,8 +347,8 @@ def _corner(point: Sequence[float]) -> Vec3:
 
 def _free_facade_name(site: Site) -> str:
     """The first letter that neither a facade nor the panels of a renamed one use."""
-    taken = {facade.id for facade in site.facades} | {panel.id.rpartition("-")[0] for panel in site.panels}
-    return first_free(lambda number: facade_name(number - 1), taken)
+    used = {facade.id for facade in site.facades} | {panel.id.rpartition("-")[0] for panel in site.panels}
+    return first_free(lambda number: facade_name(number - 1), used)
 
 
 def with_facades(model: SiteModel, facades: Iterable[Facade]) -> SiteModel:

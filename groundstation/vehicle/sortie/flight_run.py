@@ -543,8 +543,8 @@ def _put_rally_points(run: SortieRun) -> Steps:
         run.on_board = replace(run.on_board, rally=True)
     if text:
         run.note("warning-rally", text)
-        told = PreflightCheck("rally", Verdict.WARN, text)
-        run.on_board = replace(run.on_board, failsafes=(told, *run.on_board.failsafes))
+        check = PreflightCheck("rally", Verdict.WARN, text)
+        run.on_board = replace(run.on_board, failsafes=(check, *run.on_board.failsafes))
 
 
 def _put(run: SortieRun, ours: BoardList) -> Steps:

@@ -116,14 +116,14 @@ class CameraReports:
         self._asked_s = now_s
         # The last question was given its time for an answer, too.
         self._missing = {index: n_asks for index, n_asks in self._missing.items() if n_asks < N_ASKS}
-        asked: list[Message] = []
+        messages: list[Message] = []
         if self._n_count_asks is not None:
             self._n_count_asks = self._n_count_asks + 1 if self._n_count_asks < N_ASKS else None
-            asked += [self._request(system, CAPTURE_STATUS)] if self._n_count_asks is not None else []
+            messages += [self._request(system, CAPTURE_STATUS)] if self._n_count_asks is not None else []
         for index in sorted(self._missing)[:MAX_AT_ONCE]:
-            asked.append(self._request(system, IMAGE_CAPTURED, index))
+            messages.append(self._request(system, IMAGE_CAPTURED, index))
             self._missing[index] += 1
-        return asked
+        return messages
 
     def _told(self, index: int) -> None:
         self._missing.pop(index, None)

@@ -276,10 +276,10 @@ class Instruments:
     def photo_taken(self, number: int) -> Message:
         """What tells of a photo: ArduPilot's has the vehicle's attitude, PX4's the camera's."""
         self._n_photos = number
-        told = self._photo(number)
-        if isinstance(told, CameraImageCaptured):
-            self._told[told.image_index] = told
-        return told
+        message = self._photo(number)
+        if isinstance(message, CameraImageCaptured):
+            self._told[message.image_index] = message
+        return message
 
     def _photo(self, number: int) -> Message:
         estimate, place = self._pose(), self.here()

@@ -35,16 +35,16 @@ class ParameterTable:
 
     Parameters
     ----------
-    given
+    changed
         Values that differ from the profile's, None for what this vehicle does not have; each name must be one of the
         profile's.
     """
 
-    def __init__(self, autopilot: Autopilot, given: Mapping[str, float | None] | None = None) -> None:
+    def __init__(self, autopilot: Autopilot, changed: Mapping[str, float | None] | None = None) -> None:
         self.revision = 0
         self._autopilot = autopilot
         self._values = dict(sorted(vehicle_profile(autopilot).parameters.items()))
-        for name, value in (given or {}).items():
+        for name, value in (changed or {}).items():
             if name not in self._values:
                 raise ValueError(f"expected a parameter of the simulated {autopilot.value}, got '{name}'")
             if value is None:

@@ -111,14 +111,14 @@ class GlassSky:
             at_glass, m, d = at_glass[is_free], m[is_free], d[is_free]
         n_sky = int(self._is_sky.sum())
         extra_m = way_m[at_glass] * (1.0 - np.einsum("ij,ij->i", m, d))
-        heard = max(1.0, n_sky * (1.0 - hidden))
+        n_received = max(1.0, n_sky * (1.0 - hidden))
         # A reflection in phase or against it: the code is late by a share of the extra way, up to half the correlator's
         # spacing (Kaplan and Hegarty 2006, Understanding GPS, section 6.3); its phase is anything, hence the root of 2.
         widest_m = 0.5 * facts.spacing_chips * facts.chip_m
         code_m = facts.amplitude * np.minimum(extra_m, widest_m) / math.sqrt(2.0)
         phase_m = facts.wavelength_m / (2.0 * math.pi) * math.asin(facts.amplitude) / math.sqrt(2.0)
-        share = min(1.0, len(at_glass) / heard)
-        code_error_m = min(float(np.sqrt((code_m**2).sum() / heard)), facts.amplitude * widest_m)
+        share = min(1.0, len(at_glass) / n_received)
+        code_error_m = min(float(np.sqrt((code_m**2).sum() / n_received)), facts.amplitude * widest_m)
         return Sky(hidden, len(at_glass) / n_sky, code_error_m, phase_m * math.sqrt(share))
 
     def _cast(self, origins: Floats, directions: Floats) -> tuple[Floats, NDArray[np.int64]]:

@@ -65,11 +65,11 @@ def read_cityjson(path: Path, options: ImportOptions, monitor: Monitor) -> Sourc
 
 def _vertices(content: dict[str, Any]) -> Array:
     """Coordinates of all vertices, shape (n, 3); NaN for what is no point in space."""
-    given = content["vertices"]
+    listed = content["vertices"]
     try:
-        vertices = np.array(given, np.float64).reshape(-1, 3)
+        vertices = np.array(listed, np.float64).reshape(-1, 3)
     except (ValueError, TypeError):
-        vertices = np.array([_point(vertex) for vertex in given], np.float64).reshape(-1, 3)
+        vertices = np.array([_point(vertex) for vertex in listed], np.float64).reshape(-1, 3)
     transform = content.get("transform")
     if transform is None:
         return vertices

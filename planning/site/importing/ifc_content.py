@@ -554,16 +554,16 @@ def _one_by_one(announce: Callable[[str], None]) -> Shaping:
     return shapes
 
 
-def _shape(made: Any) -> Shape | None:
+def _shape(tessellated: Any) -> Shape | None:
     """Triangles of an element; None without any."""
-    vertices = np.array(made.geometry.verts, np.float64).reshape(-1, 3)
-    faces = np.array(made.geometry.faces, np.int64).reshape(-1, 3)
+    vertices = np.array(tessellated.geometry.verts, np.float64).reshape(-1, 3)
+    faces = np.array(tessellated.geometry.faces, np.int64).reshape(-1, 3)
     if not len(faces) or not np.isfinite(vertices).all():
         return None
     # The last entry is that of faces without a style (number -1).
-    styles = np.array([*(style.transparency for style in made.geometry.materials), np.nan], np.float64)
-    numbers = np.array(made.geometry.material_ids, np.int64)
-    return Shape(made.guid, made.type, vertices[faces], styles[numbers])
+    styles = np.array([*(style.transparency for style in tessellated.geometry.materials), np.nan], np.float64)
+    numbers = np.array(tessellated.geometry.material_ids, np.int64)
+    return Shape(tessellated.guid, tessellated.type, vertices[faces], styles[numbers])
 
 
 def _panes(elements: _Elements, shapes: dict[str, Shape]) -> tuple[dict[str, Pane], list[str], list[str]]:

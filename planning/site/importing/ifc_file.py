@@ -134,17 +134,17 @@ def _map_frame(found: MapParameters, unit_m: float, options: ImportOptions) -> M
     )
 
 
-def _true_scale(given: float, map_unit_per_file_unit: float) -> tuple[float, tuple[str, ...]]:
+def _true_scale(stated_scale: float, map_unit_per_file_unit: float) -> tuple[float, tuple[str, ...]]:
     """Scale of the map, near 1, from one that may also hold the change of units."""
-    true = given * map_unit_per_file_unit
+    true = stated_scale * map_unit_per_file_unit
     if abs(true - 1.0) <= SCALE_TOLERANCE:
         return true, ()
-    if abs(given - 1.0) <= SCALE_TOLERANCE:
-        return given, (say("the scale of IfcMapConversion leaves out the change of units, which is put right"),)
+    if abs(stated_scale - 1.0) <= SCALE_TOLERANCE:
+        return stated_scale, (say("the scale of IfcMapConversion leaves out the change of units, which is put right"),)
     raise InputError.say(
         "IfcMapConversion has the scale {:g}, which is neither near 1 nor the change of units ({:g}); "
         "give the place with --origin",
-        given,
+        stated_scale,
         1.0 / map_unit_per_file_unit,
     )
 

@@ -473,7 +473,7 @@ def _solid_notes(source: SourceModel) -> tuple[str, ...]:
 
 
 def write_imported_site(
-    path: Path, imported: ImportedSite, source: Path, beside: Mapping[Path, bytes] | None = None
+    path: Path, imported: ImportedSite, source: Path, other_files: Mapping[Path, bytes] | None = None
 ) -> SiteModel:
     """Write the site file and, beside it, its meshes; returns the model as it was written.
 
@@ -481,7 +481,7 @@ def write_imported_site(
 
     Parameters
     ----------
-    beside
+    other_files
         Content of further files that belong to the site.
 
     Raises
@@ -505,7 +505,7 @@ def write_imported_site(
         meshes[path.with_name(name)] = ply_bytes(join(list(model.obstacles)))
         site = replace(site, obstacles=(replace(site.obstacles[0], mesh=name),))
     content = site_bytes(site)
-    write_together({path: content, **meshes, **(beside or {})})
+    write_together({path: content, **meshes, **(other_files or {})})
     return replace(model, site=site, sha256=hashlib.sha256(content).hexdigest())
 
 

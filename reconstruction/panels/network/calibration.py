@@ -124,17 +124,17 @@ def _fitted(parts: Sequence[Sequence[tuple[Array, NDArray[np.bool_]]]], weights:
     middle, spread = features.mean(axis=0), features.std(axis=0) + 1e-9
     x = np.column_stack([(features - middle) / spread, np.ones(len(features))])
     ridge = RIDGE * np.diag([*np.ones(x.shape[1] - 1), 0.0])
-    told = np.zeros(x.shape[1])
+    coefficients = np.zeros(x.shape[1])
     for _ in range(50):
-        probability = 1.0 / (1.0 + np.exp(-np.clip(x @ told, -30.0, 30.0)))
-        slope = x.T @ (weight * (probability - is_there)) + ridge @ told
+        probability = 1.0 / (1.0 + np.exp(-np.clip(x @ coefficients, -30.0, 30.0)))
+        slope = x.T @ (weight * (probability - is_there)) + ridge @ coefficients
         curve = (x * (weight * probability * (1.0 - probability))[:, None]).T @ x + ridge
         step = np.linalg.solve(curve, slope)
-        told -= step
+        coefficients -= step
         if np.abs(step).max() < 1e-6:
             break
-    scaled = told[:-1] / spread
-    return Regression(scaled, float(told[-1] - scaled @ middle))
+    scaled = coefficients[:-1] / spread
+    return Regression(scaled, float(coefficients[-1] - scaled @ middle))
 
 
 def write_regressions(regressions: tuple[Regression, Regression], path: Path) -> None:

@@ -102,9 +102,9 @@ def find_panes(predictions: PhotoPrediction, monitor: Monitor = QUIET) -> FoundP
     first, second = regressions()
     features = first_features(candidates)
     joined = candidates.joined(first.probability(features), features)
-    told = second.probability(second_features(joined))
-    order = np.argsort(-told)
-    panes = tuple(replace(joined.panes[i], confidence=float(told[i])) for i in order)
+    probabilities = second.probability(second_features(joined))
+    order = np.argsort(-probabilities)
+    panes = tuple(replace(joined.panes[i], confidence=float(probabilities[i])) for i in order)
     return FoundPanes(panes, predictions)
 
 
@@ -258,8 +258,8 @@ def _places(candidates: Candidates) -> tuple[Array, Array]:
         distance = np.maximum(np.linalg.norm(from_middle, axis=1, keepdims=True), 1e-6)
         within = np.concatenate([share * from_middle for share in INTO])
         beyond = from_middle * (1.0 + OUT_PX / STRIDE / distance)
-        for told, points in ((inside, within), (around, beyond)):
-            told[i] = _mean_at(look.probability, points + corners.mean(axis=0))
+        for samples, points in ((inside, within), (around, beyond)):
+            samples[i] = _mean_at(look.probability, points + corners.mean(axis=0))
     return inside, around
 
 

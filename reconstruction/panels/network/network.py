@@ -158,7 +158,7 @@ def pane_votes(image: Picture, by: PaneNetwork | None = None) -> tuple[NDArray[n
     """
     height, width = -(-image.shape[0] // STRIDE), -(-image.shape[1] // STRIDE)
     with torch.inference_mode():
-        told = (by or network())(as_input(image))[0, :, :height, :width]
-    probability = torch.sigmoid(told[0]).numpy()
-    offsets = told[1:].permute(1, 2, 0).reshape(height, width, 4, 2).numpy() * OFFSET_PX
+        output = (by or network())(as_input(image))[0, :, :height, :width]
+    probability = torch.sigmoid(output[0]).numpy()
+    offsets = output[1:].permute(1, 2, 0).reshape(height, width, 4, 2).numpy() * OFFSET_PX
     return probability, offsets + places_px(height, width)[:, :, None]

@@ -94,13 +94,13 @@ class Pool:
 
 def _write_file(number: int, path: Path, per_file: int) -> None:
     cv2.setNumThreads(1)
-    made = [synthetic_picture(seed, MADE_PX) for seed in range(number * per_file, (number + 1) * per_file)]
-    corners = [picture.corners_px for picture in made]
+    pictures = [synthetic_picture(seed, MADE_PX) for seed in range(number * per_file, (number + 1) * per_file)]
+    corners = [picture.corners_px for picture in pictures]
     unfinished = path.with_suffix(".part.npz")
     np.savez(
         unfinished,
-        images=np.stack([picture.image for picture in made]),
-        indices=np.stack([picture.index for picture in made]),
+        images=np.stack([picture.image for picture in pictures]),
+        indices=np.stack([picture.index for picture in pictures]),
         corners=np.concatenate(corners),
         counts=np.array([len(each) for each in corners]),
     )

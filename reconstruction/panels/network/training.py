@@ -35,11 +35,11 @@ FIRST_PICTURES = 1000
 """Pictures made by chance with which it begins; others come while it learns."""
 
 
-def loss_of(told: Tensor, is_pane: Tensor, counts: Tensor, offsets: Tensor, weight: Tensor) -> tuple[Tensor, Tensor]:
+def loss_of(output: Tensor, is_pane: Tensor, counts: Tensor, offsets: Tensor, weight: Tensor) -> tuple[Tensor, Tensor]:
     """Losses of logits and of offsets: told is (n, 9, h, w), the truths (n, h, w) twice and (n, h, w, 8) twice."""
-    each = functional.binary_cross_entropy_with_logits(told[:, 0], is_pane, reduction="none")
+    each = functional.binary_cross_entropy_with_logits(output[:, 0], is_pane, reduction="none")
     logits = (each * counts).sum() / counts.sum().clamp(min=1.0)
-    off = torch.abs(told[:, 1:].permute(0, 2, 3, 1) - offsets) * weight
+    off = torch.abs(output[:, 1:].permute(0, 2, 3, 1) - offsets) * weight
     robust = torch.where(off < SHARP, 0.5 * off * off / SHARP, off - 0.5 * SHARP)
     return logits, robust.sum() / (8.0 * torch.count_nonzero(weight[..., 0]).clamp(min=1))
 
@@ -76,8 +76,8 @@ class _Learner:
         for group in self.optimiser.param_groups:
             group["lr"] = rate
         with torch.autocast(images.device.type, torch.bfloat16, enabled=images.is_cuda):
-            told = self.net(images)
-        logits, off = loss_of(told.float(), truth.is_pane, truth.counts, truth.offsets, truth.weight)
+            output = self.net(images)
+        logits, off = loss_of(output.float(), truth.is_pane, truth.counts, truth.offsets, truth.weight)
         self.optimiser.zero_grad(set_to_none=True)
         torch.autograd.backward([logits + off])
         torch.nn.utils.clip_grad_norm_(self.net.parameters(), 5.0)

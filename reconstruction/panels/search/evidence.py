@@ -166,8 +166,8 @@ class Stillness:
             self._mean(last_px + STRIP_PX[0], last_px + STRIP_PX[1]),
         )
         ratio = np.hypot(frame, NOISE_GREY) / np.hypot(glass, NOISE_GREY)
-        told = np.abs(np.log(ratio)) + 0.5 * (np.minimum(ratio, 1.0 / ratio) ** 2 - 1.0)
-        signed = np.minimum(told, MOST_OF_A_VALUE) * np.sign(1.0 - ratio)
+        strength = np.abs(np.log(ratio)) + 0.5 * (np.minimum(ratio, 1.0 / ratio) ** 2 - 1.0)
+        signed = np.minimum(strength, MOST_OF_A_VALUE) * np.sign(1.0 - ratio)
         return np.asarray(np.clip(VALUES * signed.mean(axis=0), *OF_A_WITNESS))
 
     def _mean(self, start_px: Array, stop_px: Array) -> Array:

@@ -211,26 +211,26 @@ def grid_from_file(
     InputError
         A line of it has no point on the facade, or an inclined one leaves it.
     """
-    on_it = [given for given in record.facades if given.panels and _is_on(given, photo, facade)]
+    on_it = [file_facade for file_facade in record.facades if file_facade.panels and _is_on(file_facade, photo, facade)]
     if not on_it:
         return None
-    given = max(on_it, key=lambda one: len(one.panels))
-    rows = _lines(given.horizontal_lines, view, 1, _gaps(given, view, 1))
-    columns = _lines(given.vertical_lines, view, 0, _gaps(given, view, 0))
-    inclined = tuple(_inclined(line, index, view) for index, line in enumerate(given.inclined_lines))
-    made = facade_grid(facade_id, view, rows, columns, inclined)
-    kept = [_meant(made, panel) for panel in given.panels]
-    panels = tuple(panel for panel in made.panels if panel in kept)
+    file_facade = max(on_it, key=lambda one: len(one.panels))
+    rows = _lines(file_facade.horizontal_lines, view, 1, _gaps(file_facade, view, 1))
+    columns = _lines(file_facade.vertical_lines, view, 0, _gaps(file_facade, view, 0))
+    inclined = tuple(_inclined(line, index, view) for index, line in enumerate(file_facade.inclined_lines))
+    whole_grid = facade_grid(facade_id, view, rows, columns, inclined)
+    matched = [_meant(whole_grid, panel) for panel in file_facade.panels]
+    panels = tuple(panel for panel in whole_grid.panels if panel in matched)
     cells = {(row, column) for row in range(len(rows) - 1) for column in range(len(columns) - 1)}
     present = {(panel.row, panel.column) for panel in panels}
     return FacadeGrid(facade_id, view, rows, columns, panels, tuple(sorted(cells - present)), inclined)
 
 
-def _meant(made: FacadeGrid, given: FilePanel) -> FoundPanel | None:
+def _meant(grid: FacadeGrid, file_panel: FilePanel) -> FoundPanel | None:
     """The panel of the given one's cell that lies nearest to it: cells may be cut."""
-    beside = [panel for panel in made.panels if (panel.row, panel.column) == (given.row, given.column)]
-    middle = np.mean(given.corners_px, axis=0)
-    return min(beside, key=lambda panel: float(np.linalg.norm(panel.corners_px.mean(axis=0) - middle)), default=None)
+    same_cell = [panel for panel in grid.panels if (panel.row, panel.column) == (file_panel.row, file_panel.column)]
+    middle = np.mean(file_panel.corners_px, axis=0)
+    return min(same_cell, key=lambda panel: float(np.linalg.norm(panel.corners_px.mean(axis=0) - middle)), default=None)
 
 
 def _inclined(line: FileInclined, index: int, view: Rectification) -> InclinedLine:
@@ -248,8 +248,8 @@ def _inclined(line: FileInclined, index: int, view: Rectification) -> InclinedLi
     return InclinedLine(*ends, abs(width), GIVEN_SIGMA_PX, line.confidence, open_side)
 
 
-def _is_on(given: FileFacade, photo: PosedPhoto, facade: Facade) -> bool:
-    middles = np.array([np.mean(panel.corners_px, axis=0) for panel in given.panels])
+def _is_on(file_facade: FileFacade, photo: PosedPhoto, facade: Facade) -> bool:
+    middles = np.array([np.mean(panel.corners_px, axis=0) for panel in file_facade.panels])
     surface: FacadeSurface = facade.fit.surface
     st = surface.hits(*photo.rays(middles))
     with np.errstate(invalid="ignore"):
@@ -258,11 +258,11 @@ def _is_on(given: FileFacade, photo: PosedPhoto, facade: Facade) -> bool:
 
 
 def _lines(
-    given: Sequence[FileLine], view: Rectification, across: int, widths: Mapping[int, float]
+    file_lines: Sequence[FileLine], view: Rectification, across: int, widths: Mapping[int, float]
 ) -> tuple[GridLine, ...]:
     usual = float(np.median(list(widths.values()))) if widths else 0.0
     lines = []
-    for index, line in enumerate(given):
+    for index, line in enumerate(file_lines):
         places = view.to_rectified(np.array(line.points_px).reshape(-1, 2))[:, across]
         places = places[np.isfinite(places)]
         if not len(places):
@@ -279,14 +279,14 @@ def _lines(
     return tuple(sorted(lines, key=lambda line: line.position_px))
 
 
-def _gaps(given: FileFacade, view: Rectification, across: int) -> dict[int, float]:
+def _gaps(file_facade: FileFacade, view: Rectification, across: int) -> dict[int, float]:
     """Widths of the profiles between panels, by the line's index: what is left between the panels beside it."""
     ends: dict[tuple[int, int], tuple[float, float]] = {}
-    for panel in given.panels:
+    for panel in file_facade.panels:
         places = view.to_rectified(np.array(panel.corners_px))[:, across]
         if len(panel.corners_px) == 4 and np.isfinite(places).all():
             low, high = np.sort(places).reshape(2, 2).mean(axis=1)
-            ends[_place(panel, given.rows, across)] = float(low), float(high)
+            ends[_place(panel, file_facade.rows, across)] = float(low), float(high)
     gaps: dict[int, list[float]] = {}
     for (along, order), (_, high) in ends.items():
         beyond = ends.get((along, order + 1))

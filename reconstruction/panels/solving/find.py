@@ -302,17 +302,17 @@ def search_facade(
     name: str,
     load: LoadPhoto,
     parameters: FindParameters,
-    given: Mapping[int, PanelsFile],
+    known_grids: Mapping[int, PanelsFile],
     monitor: Monitor,
 ) -> SearchedFacade:
     """Find the grid of a facade.
 
     Parameters
     ----------
-    given
+    known_grids
         Panels by the number of their photo: such photos are not searched, and are used in any case.
     """
-    by_hand = [number for number in facade.photos if number in given]
+    by_hand = [number for number in facade.photos if number in known_grids]
     numbers = tuple(dict.fromkeys((*by_hand, *facade.photos[: parameters.photos_per_facade])))
     views = _views(photos, facade, numbers)
     if not views:
@@ -324,8 +324,8 @@ def search_facade(
             drawn = drawn_view(view, parameters.view, unrolling)
         except InfeasibleError:
             continue
-        if number in given:
-            grid = grid_from_file(given[number], photos[number], facade, drawn, name)
+        if number in known_grids:
+            grid = grid_from_file(known_grids[number], photos[number], facade, drawn, name)
             if grid is not None:
                 grids[number] = grid
         else:
@@ -426,7 +426,7 @@ def find_panels(
     load: LoadPhoto,
     parameters: FindParameters | None = None,
     monitor: Monitor = QUIET,
-    given: Mapping[str, PanelsFile] | None = None,
+    known_grids: Mapping[str, PanelsFile] | None = None,
 ) -> FoundPanels:
     """Find the panels of all facades.
 
@@ -436,7 +436,7 @@ def find_panels(
         The coarse model, ENU.
     load
         Reads a photo: shape (h, w, 3), of the size that its intrinsics say.
-    given
+    known_grids
         Panels by the name of their photo, in place of a search of that photo.
 
     Raises
@@ -447,7 +447,7 @@ def find_panels(
         No photo shows an upright facade of the model, or no grid was found on any.
     """
     parameters = parameters or FindParameters()
-    by_hand = files_by_photo(photos, given or {})
+    by_hand = files_by_photo(photos, known_grids or {})
     patches = []
     for number, photo in enumerate(photos):
         monitor.report(say("looking for facades"), number, len(photos))

@@ -165,16 +165,16 @@ def _length(metres: float) -> str:
 
 def _told_px(probe: Probe, *, positions: bool) -> float:
     """How far poses that are told wrong, in their positions or in their angles, move what photos show of buildings."""
-    told = reported_poses(
+    reported = reported_poses(
         probe.photos, probe.moments, probe.camera_model, probe.scene.seed, positions=positions, angles=not positions
     )
     is_building = np.array([*(body.layer is Layer.BUILDING for body in probe.scene.bodies), False])
     moved = []
-    for number in np.unique(np.linspace(0, len(told) - 1, min(MOST_TOLD, len(told))).round().astype(int)):
+    for number in np.unique(np.linspace(0, len(reported) - 1, min(MOST_TOLD, len(reported))).round().astype(int)):
         photo = probe.photos[number]
         met = probe.geometry.meet(*photo.rays(_grid(photo)))
         shown = met.points_enu_m[is_building[met.bodies] | (met.panes >= 0)]
-        off = replace(photo, pose=told[number].pose).pixels(shown) - photo.pixels(shown)
+        off = replace(photo, pose=reported[number].pose).pixels(shown) - photo.pixels(shown)
         # Told so wrong that it is no longer before the camera, a thing is out of the picture by more than its width.
         off = np.where(np.isfinite(off), off, photo.intrinsics.width_px)
         moved.append(np.linalg.norm(off, axis=1))

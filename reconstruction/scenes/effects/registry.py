@@ -51,5 +51,5 @@ def decide_effects(
     if not photos:
         raise InputError(say("effects are decided by the photos of a flight; expected at least one, got none"))
     probe = Probe(scene, photos, camera_model, moments)
-    chosen, asked = effects(settings.tolerance, camera_model.sensor), settings.effects
-    return {effect.name: decide(effect, probe, asked.get(effect.name, "auto")) for effect in chosen}
+    chosen, requested = effects(settings.tolerance, camera_model.sensor), settings.effects
+    return {effect.name: decide(effect, probe, requested.get(effect.name, "auto")) for effect in chosen}

@@ -147,8 +147,8 @@ def grid_of_layout(layout: Layout, rng: np.random.Generator) -> Grid:
         for part in range(2 ** int((cell_braces[row, column] >= 0).sum())):
             is_pane = area(grid.corners(row, column, part)) >= LEAST_PIECE * (s1 - s0) * (h1 - h0)
             grid.panel_numbers[row, column, part] = is_pane
-    made = grid.panel_numbers > 0
-    grid.panel_numbers[made] = np.arange(1, made.sum() + 1)
+    has_panel = grid.panel_numbers > 0
+    grid.panel_numbers[has_panel] = np.arange(1, has_panel.sum() + 1)
     return grid
 
 

@@ -137,9 +137,9 @@ class SheetRole:
 
     def plugin(self) -> dict[str, Any]:
         """Its description for Mitsuba, which takes numbers and words."""
-        made: dict[str, Any] = {"type": SHEET, "part": self.part, "fresnel": self.fresnel}
+        description: dict[str, Any] = {"type": SHEET, "part": self.part, "fresnel": self.fresnel}
         glass = asdict(self.glass)
-        return made | dict(zip(TINTS, glass.pop("tint"), strict=True)) | glass
+        return description | dict(zip(TINTS, glass.pop("tint"), strict=True)) | glass
 
     @classmethod
     def of(cls, props: Any) -> SheetRole:

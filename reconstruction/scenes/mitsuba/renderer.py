@@ -136,9 +136,9 @@ def _bodies(mi: Any, bodies: list[Body], middle: Array) -> Any:
 
 def _panes(mi: Any, scene: Scene, switches: Switches, middle: Array) -> dict[str, Any]:
     """Surfaces of all panes by their kind of glass, and the rooms behind."""
-    made: dict[str, Any] = {}
+    content: dict[str, Any] = {}
     if not len(scene.panes.corners_enu_m):
-        return made
+        return content
     panes = replace(
         scene.panes,
         tilts_rad=switches.tilt * scene.panes.tilts_rad,
@@ -147,8 +147,8 @@ def _panes(mi: Any, scene: Scene, switches: Switches, middle: Array) -> dict[str
     for kind, glass in enumerate(scene.glasses):
         rows = np.flatnonzero(panes.glass == kind)
         if len(rows):
-            made |= _of_glass(mi, f"panes-{kind}", glass, panes, rows, switches, middle)
-    return made
+            content |= _of_glass(mi, f"panes-{kind}", glass, panes, rows, switches, middle)
+    return content
 
 
 def _of_glass(
@@ -318,15 +318,19 @@ class MitsubaRenderer:
 
     def render(self, photo: PosedPhoto, seed: int = 0, moved_enu_m: Array | None = None) -> RenderedPhoto:
         """Take a photograph, as `Renderer` does; `seed` is that of Mitsuba's rays, too."""
-        taken = self._embedded.render(photo, seed, moved_enu_m)
-        lacking = 0.0 if self._without is None else taken.linear - self._without.render(photo, seed, moved_enu_m).linear
+        rendered = self._embedded.render(photo, seed, moved_enu_m)
+        lacking = (
+            0.0 if self._without is None else rendered.linear - self._without.render(photo, seed, moved_enu_m).linear
+        )
         if not self._settings.is_on(DISTORTION):
             photo = replace(photo, intrinsics=photo.intrinsics.straight())
         moved = moved_enu_m if self._settings.is_on(MOTION_BLUR) else None
         linear = np.maximum(self._linear(photo, seed, moved) + lacking, np.float32(0.0))
-        mirrored = np.divide(taken.reflection, taken.linear, out=np.zeros_like(linear), where=taken.linear > 0.0)
+        mirrored = np.divide(
+            rendered.reflection, rendered.linear, out=np.zeros_like(linear), where=rendered.linear > 0.0
+        )
         reflection = mirrored * linear
-        return replace(taken, linear=linear, diffuse=linear - reflection, reflection=reflection)
+        return replace(rendered, linear=linear, diffuse=linear - reflection, reflection=reflection)
 
     def _linear(self, photo: PosedPhoto, seed: int, moved_enu_m: Array | None) -> NDArray[np.float32]:
         mi = mitsuba(self._variant)

@@ -43,7 +43,7 @@ def layer_file(folder: Path, layer: str, name: str) -> Path:
     return folder / layer / f"{name}.npy" if layer in ARRAYS else layer_path(folder, layer, name)
 
 
-def layer_contents(taken: RenderedPhoto, facade: NDArray[np.bool_]) -> dict[str, bytes]:
+def layer_contents(rendered: RenderedPhoto, facade: NDArray[np.bool_]) -> dict[str, bytes]:
     """Content of each layer's file; docs/reference/file-formats.md says how they are coded.
 
     Parameters
@@ -52,13 +52,13 @@ def layer_contents(taken: RenderedPhoto, facade: NDArray[np.bool_]) -> dict[str,
         Shape (h, w): panels and the frames between them.
     """
     return {
-        "depth": _npy(taken.depth_m.astype(np.float32)),
-        "diffuse": _npy(np.clip(taken.diffuse, 0.0, BRIGHTEST).astype(np.float16)),
-        "reflection": _npy(np.clip(taken.reflection, 0.0, BRIGHTEST).astype(np.float16)),
-        "panels": _png(taken.panel.astype(np.uint16)),
+        "depth": _npy(rendered.depth_m.astype(np.float32)),
+        "diffuse": _npy(np.clip(rendered.diffuse, 0.0, BRIGHTEST).astype(np.float16)),
+        "reflection": _npy(np.clip(rendered.reflection, 0.0, BRIGHTEST).astype(np.float16)),
+        "panels": _png(rendered.panel.astype(np.uint16)),
         "masks": _png(facade.astype(np.uint8) * 255),
-        "normals": _png(_coded(taken.normal_enu)),
-        "glass": _png(taken.is_glass.astype(np.uint8) * 255),
+        "normals": _png(_coded(rendered.normal_enu)),
+        "glass": _png(rendered.is_glass.astype(np.uint8) * 255),
     }
 
 

@@ -45,7 +45,7 @@ def reported_poses(
     Errors are normal, a part of each sortie and a part of each photo. Leaving one kind out, or other photos, does not
     change what is drawn for the rest.
     """
-    told = []
+    reported = []
     for number, (photo, moment) in enumerate(zip(photos, moments, strict=True)):
         of_sortie, of_photo = _drawn(seed, OF_SORTIE, moment.sortie), _drawn(seed, OF_PHOTO, number)
         pose, higher_m = photo.pose, 0.0
@@ -64,8 +64,8 @@ def reported_poses(
             turn = bias_deg * of_sortie[3:] + deviation_deg * of_photo[3:]
             heading, pitch, roll = (np.array(pose.angles_deg) + turn).tolist()
             pose = Pose.looking(pose.position_enu_m, heading, pitch, roll)
-        told.append(ReportedPose(pose, higher_m))
-    return tuple(told)
+        reported.append(ReportedPose(pose, higher_m))
+    return tuple(reported)
 
 
 def _drawn(seed: int, stream: int, number: int) -> Array:

@@ -138,10 +138,10 @@ class Renderer:
     def _middles(self, photo: PosedPhoto) -> RenderedPhoto:
         """With one ray through the middle of each pixel."""
         height, width = photo.intrinsics.height_px, photo.intrinsics.width_px
-        taken = _blank(height, width)
-        colours = (taken.linear, taken.diffuse, taken.reflection, taken.normal_enu)
+        rendered = _blank(height, width)
+        colours = (rendered.linear, rendered.diffuse, rendered.reflection, rendered.normal_enu)
         linear, diffuse, reflection, normal = (a.reshape(-1, 3) for a in colours)
-        depth, panel, glass = taken.depth_m.reshape(-1), taken.panel.reshape(-1), taken.is_glass.reshape(-1)
+        depth, panel, glass = rendered.depth_m.reshape(-1), rendered.panel.reshape(-1), rendered.is_glass.reshape(-1)
 
         def work(start: int, stop: int) -> None:
             pixel = np.arange(start, stop)
@@ -155,22 +155,24 @@ class Renderer:
             glass[start:stop] = light.met.panes >= 0
 
         run_chunks(work, chunks(height * width, RAYS_AT_ONCE))
-        return taken
+        return rendered
 
-    def _blur(self, photo: PosedPhoto, taken: RenderedPhoto, moved_enu_m: Array) -> None:
+    def _blur(self, photo: PosedPhoto, rendered: RenderedPhoto, moved_enu_m: Array) -> None:
         """Put the mean over area and exposure into all pixels over which detail passes."""
-        way = moved_px(photo, moved_enu_m, taken.depth_m)
+        way = moved_px(photo, moved_enu_m, rendered.depth_m)
         window = windows(*way)
         samples, n = self._settings.samples, n_times(*way, window)
-        rough = varies(taken.linear, taken.panel, window, DETAIL) if samples == "auto" else np.ones(n.shape, np.bool_)
+        rough = (
+            varies(rendered.linear, rendered.panel, window, DETAIL) if samples == "auto" else np.ones(n.shape, np.bool_)
+        )
         for count in np.unique(n).tolist():
             pixels = np.flatnonzero(rough & (n == count))
-            self._refine(photo, taken, pixels, FINE if samples == "auto" else samples, moved_enu_m, count)
+            self._refine(photo, rendered, pixels, FINE if samples == "auto" else samples, moved_enu_m, count)
 
     def _refine(
         self,
         photo: PosedPhoto,
-        taken: RenderedPhoto,
+        rendered: RenderedPhoto,
         pixels: NDArray[np.int64],
         side: int,
         moved_enu_m: Array | None = None,
@@ -182,7 +184,9 @@ class Renderer:
         moves, each part's rays are sent at so many moments.
         """
         width = photo.intrinsics.width_px
-        linear, diffuse, reflection = (a.reshape(-1, 3) for a in (taken.linear, taken.diffuse, taken.reflection))
+        linear, diffuse, reflection = (
+            a.reshape(-1, 3) for a in (rendered.linear, rendered.diffuse, rendered.reflection)
+        )
         parts = np.stack(np.meshgrid(np.arange(side), np.arange(side)), axis=-1).reshape(1, -1, 2)
         shifts = None
         if moved_enu_m is not None:

@@ -67,12 +67,12 @@ def captures_of(job: PhotoJob, common: float, monitor: Monitor = QUIET) -> tuple
         As `common_exposure` gives it.
     """
     is_on, seed = job.settings.is_on, job.scene.seed
-    told = reported_poses(
+    reported = reported_poses(
         job.photos, job.moments, job.camera_model, seed, positions=is_on(POSITION_ERROR), angles=is_on(GIMBAL_ERROR)
     )
     factors = _own_exposures(job, common, monitor)
     captures = []
-    for moment, one, factor in zip(job.moments, told, factors.tolist(), strict=True):
+    for moment, one, factor in zip(job.moments, reported, factors.tolist(), strict=True):
         exposure_s = moment.exposure_s * factor
         way_m = np.array(moment.velocity_enu_m_s) * exposure_s * is_on(MOTION_BLUR)
         captures.append(Capture(one.pose, one.higher_m, way_m, factor, exposure_s))

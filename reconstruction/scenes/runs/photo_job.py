@@ -77,19 +77,19 @@ class RenderWorker:
         """Render a photo; returns the content of its files by path in the folder."""
         job, photo, capture = self._job, self._job.photos[number], self._captures[number]
         seed = int(np.random.SeedSequence([job.scene.seed, number]).generate_state(1)[0])
-        taken = self._renderer.render(photo, seed, capture.moved_enu_m)
+        rendered = self._renderer.render(photo, seed, capture.moved_enu_m)
         site = job.scene.site.site
         assert photo.taken_at is not None
-        picture = developed(taken, self._exposure * capture.exposure, job.camera_model.sensor)
-        told, position = replace(photo, pose=capture.told), job.camera_model.position
+        picture = developed(rendered, self._exposure * capture.exposure, job.camera_model.sensor)
+        reported, position = replace(photo, pose=capture.told), job.camera_model.position
         how = Circumstances(
             position.fix == "rtk", position.total_m, capture.exposure_s, self._moments[number].velocity_enu_m_s
         )
         home_up_m = site.home_enu_m[2] + capture.told_higher_m
-        jpeg = photo_jpeg(picture, told, site.origin, photo.taken_at, home_up_m, how)
+        jpeg = photo_jpeg(picture, reported, site.origin, photo.taken_at, home_up_m, how)
         contents = {photo.path: jpeg}
-        mask = facade_mask(photo, self._grown, taken.depth_m)
-        for layer, content in layer_contents(taken, mask).items():
+        mask = facade_mask(photo, self._grown, rendered.depth_m)
+        for layer, content in layer_contents(rendered, mask).items():
             contents[layer_file(self._folder, layer, photo.name)] = content
         return {path.relative_to(self._folder).as_posix(): content for path, content in contents.items()}
 

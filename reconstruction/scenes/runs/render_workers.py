@@ -80,8 +80,8 @@ def _side_by_side(
 ) -> Iterator[tuple[int, dict[str, str]]]:
     with _pool(photographer, folder, n_processes) as pool:
         # No more are handed out than are rendered, so that a cancelled run has little to wait for.
-        begun, left = list(numbers[:n_processes]), list(numbers[n_processes:])
-        waiting: dict[Future[dict[str, str]], int] = {pool.submit(_take, number, folder): number for number in begun}
+        running, left = list(numbers[:n_processes]), list(numbers[n_processes:])
+        waiting: dict[Future[dict[str, str]], int] = {pool.submit(_take, number, folder): number for number in running}
         while waiting:
             monitor.report("rendering photos", len(job.photos) - len(waiting) - len(left), len(job.photos))
             for future in wait(waiting, PATIENCE_S, FIRST_COMPLETED).done:

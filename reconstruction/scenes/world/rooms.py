@@ -55,7 +55,7 @@ def shared_rooms(panes: Panes, rng: np.random.Generator) -> Index:
     same = np.column_stack([frames.normals, off, height, halves[:, 1]])
     order = np.lexsort([along, *np.round(same / SAME).T])
     first = np.arange(len(along))
-    begun, wanted = -1, 0
+    room_start, wanted = -1, 0
     for before, pane in zip(np.concatenate([[-1], order[:-1]]), order, strict=True):
         is_beside = (
             before >= 0
@@ -63,8 +63,8 @@ def shared_rooms(panes: Panes, rng: np.random.Generator) -> Index:
             and along[pane] - along[before] - halves[pane, 0] - halves[before, 0] <= GAP_M
         )
         if not is_beside or wanted == 0:
-            begun, wanted = pane, int(rng.integers(1, MOST_PANES + 1))
-        first[pane], wanted = begun, wanted - 1
+            room_start, wanted = pane, int(rng.integers(1, MOST_PANES + 1))
+        first[pane], wanted = room_start, wanted - 1
     return first
 
 

@@ -371,8 +371,8 @@ class RefGaussian(Shader):
             numbers = np.arange(len(corners), dtype=np.int64).reshape(-1, 3)
             self._caster = RayCaster(TriangleMesh(corners, numbers))
         position = view.position_m.to(pixels.normals)
-        given = (pixels.points_m(raster, position), pixels.normals, pixels.directions)
-        blended, normals, directions = (each.double().cpu().numpy() for each in given)
+        rays = (pixels.points_m(raster, position), pixels.normals, pixels.directions)
+        blended, normals, directions = (each.double().cpu().numpy() for each in rays)
         points = points_on_mesh(self._caster, position.double().cpu().numpy(), directions, blended)
         return torch.from_numpy(meets_scene(self._caster, points, normals, directions)).to(position.device)
 

@@ -160,11 +160,11 @@ class RefGsShading(nn.Module):
 
 def _layer(inputs: int, outputs: int, generator: torch.Generator | None) -> nn.Linear:
     """Weights as K. He et al., Delving deep into rectifiers, 2015, biases 0."""
-    made = nn.Linear(inputs, outputs)
+    layer = nn.Linear(inputs, outputs)
     with torch.no_grad():
-        made.weight.copy_(math.sqrt(2.0 / inputs) * torch.randn(made.weight.shape, generator=generator))
-        made.bias.zero_()
-    return made
+        layer.weight.copy_(math.sqrt(2.0 / inputs) * torch.randn(layer.weight.shape, generator=generator))
+        layer.bias.zero_()
+    return layer
 
 
 # Ref-GS in the joint training; see `reconstruction.training.methods.ref_gs`.

@@ -90,9 +90,9 @@ def fitted_gain(light: Tensor, truth: Tensor, display: Tensor, channels: Literal
     """
     if light.shape != truth.shape or light.shape != display.shape or light.ndim != 2 or light.shape[1] != 3:
         raise ValueError(f"expected three of shape (n, 3), got {[*light.shape]}, {[*truth.shape]}, {[*display.shape]}")
-    told = (display > DARKEST) & (display < BRIGHTEST) & torch.isfinite(light)
-    found = torch.where(told, light, 0.0).double()
-    products, squares, counts = found * truth.double(), found * found, told.double()
+    is_usable = (display > DARKEST) & (display < BRIGHTEST) & torch.isfinite(light)
+    found = torch.where(is_usable, light, 0.0).double()
+    products, squares, counts = found * truth.double(), found * found, is_usable.double()
     sums = torch.stack([part.sum(dim=0) for part in (products, squares, counts)])
     if channels == 1:
         sums = sums.sum(dim=1, keepdim=True)
@@ -191,16 +191,16 @@ def own_exposures(
     OperationCancelled
         From `monitor`.
     """
-    told = PointGains(np.ones((len(photos), 3)), 0.0, 0)
+    point_gains = PointGains(np.ones((len(photos), 3)), 0.0, 0)
     some = photos[:: -(-len(photos) // LOOKED_AT)]
     if setting != "off":
-        told = gains_from_points(source, some, points_enu_m, mesh, monitor)
-    decision = decide(OwnExposures(), told, setting)
+        point_gains = gains_from_points(source, some, points_enu_m, mesh, monitor)
+    decision = decide(OwnExposures(), point_gains, setting)
     if not decision.on:
         return np.ones((len(photos), 3)), decision
     if len(some) < len(photos):
-        told = gains_from_points(source, photos, points_enu_m, mesh, monitor)
-    return told.gains, decision
+        point_gains = gains_from_points(source, photos, points_enu_m, mesh, monitor)
+    return point_gains.gains, decision
 
 
 def gains_from_points(

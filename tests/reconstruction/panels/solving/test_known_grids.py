@@ -77,7 +77,7 @@ def errors_m(found: Any, truth: SyntheticFacade) -> np.ndarray[Any, Any]:
 @pytest.mark.parametrize("curvature", [slow(0.0), 0.05])
 def test_given_grids_are_used_and_their_photos_not_searched(curvature: float) -> None:
     given = {name: drawn_by_hand(number, curvature) for number, name in enumerate(NAMES)}
-    found = find_panels(named(curvature), coarse_model(made(curvature)[0].case.wall), never, given=given)
+    found = find_panels(named(curvature), coarse_model(made(curvature)[0].case.wall), never, known_grids=given)
     (facade,) = found.facades
     assert len(facade.panels) == len(made(curvature)[0].panels)
     assert np.linalg.norm(errors_m(facade, made(curvature)[0]), axis=1).max() < 0.1
@@ -130,7 +130,7 @@ def test_a_corrected_line_and_a_panel_taken_out_arrive_in_3d() -> None:
     changed = replace(facade, panels=fewer, missing=(FileCell(1, 2),), vertical_lines=lines)
     model = coarse_model(made()[0].case.wall)
     before, after = (
-        find_panels(named()[:1], model, never, given={"a.jpg": replace(given, facades=(one,))}).facades[0]
+        find_panels(named()[:1], model, never, known_grids={"a.jpg": replace(given, facades=(one,))}).facades[0]
         for one in (facade, changed)
     )
     assert (1, 2) in {(panel.row, panel.column) for panel in before.panels}
@@ -150,7 +150,7 @@ def test_a_file_that_says_nothing_of_a_facade_leaves_the_photo_out() -> None:
         named(),
         coarse_model(made()[0].case.wall),
         never,
-        given={"a.jpg": replace(given, facades=(aside,)), "b.jpg": drawn_by_hand(1)},
+        known_grids={"a.jpg": replace(given, facades=(aside,)), "b.jpg": drawn_by_hand(1)},
     )
     assert {number for _, number in found.grids} == {1}
 
@@ -159,15 +159,15 @@ def test_a_file_that_says_nothing_of_a_facade_leaves_the_photo_out() -> None:
 def test_files_of_other_photos_and_sizes_are_refused_in_words() -> None:
     model = coarse_model(made()[0].case.wall)
     with pytest.raises(InputError, match=r"'c\.jpg' are given, which is none of the 2 photos"):
-        find_panels(named(), model, never, given={"c.jpg": drawn_by_hand(0)})
+        find_panels(named(), model, never, known_grids={"c.jpg": drawn_by_hand(0)})
     with pytest.raises(InputError, match="for 10 x 720 pixels, but it has 960 x 720"):
-        find_panels(named(), model, never, given={"a.jpg": replace(drawn_by_hand(0), width_px=10)})
+        find_panels(named(), model, never, known_grids={"a.jpg": replace(drawn_by_hand(0), width_px=10)})
     (facade,) = drawn_by_hand(0).facades
     bare = replace(facade, vertical_lines=(FileLine(()), *facade.vertical_lines[1:]))
     with pytest.raises(InputError, match=r"vertical_lines\[0\] of a panels file has no point on the facade"):
-        find_panels(named(), model, never, given={"a.jpg": replace(drawn_by_hand(0), facades=(bare,))})
+        find_panels(named(), model, never, known_grids={"a.jpg": replace(drawn_by_hand(0), facades=(bare,))})
     empty = PanelsFile("reflight-panels/1", "a.jpg", 960, 720, drawn_by_hand(0).pixel_convention, ())
-    found = find_panels(named(), model, never, given={"a.jpg": empty, "b.jpg": drawn_by_hand(1)})
+    found = find_panels(named(), model, never, known_grids={"a.jpg": empty, "b.jpg": drawn_by_hand(1)})
     assert len(found.facades[0].panels) == len(made()[1].panels)
 
 

@@ -72,10 +72,10 @@ def test_a_training_goes_on_from_the_splats_of_another(data_set, tmp_path):
     )
     first = train_model(data_set, config)
     write_splats(tmp_path / "a.ply", first.model.splats, "2dgs", first.record.origin_enu_m)
-    again = train_model(data_set, replace(config, n_splats=20, iterations=1), given=tmp_path / "a.ply")
+    again = train_model(data_set, replace(config, n_splats=20, iterations=1), splats_path=tmp_path / "a.ply")
     assert again.n_splats == first.n_splats > 200
     assert torch.allclose(again.model.splats.means, first.model.splats.means, atol=0.01)
     assert torch.allclose(again.model.splats.sh, first.model.splats.sh, atol=0.01)
     with_light = replace(config, method="refglass-gs", light="environment-map", reflections=light, iterations=1)
-    mirrored = train_model(data_set, with_light, given=tmp_path / "a.ply")
+    mirrored = train_model(data_set, with_light, splats_path=tmp_path / "a.ply")
     assert (mirrored.model.splats.panels >= 0).double().mean() > 0.3
