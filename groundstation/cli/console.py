@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO, TypeVar
 
 from groundstation.services.jobs.runner import JobContext, JobEvent, JobProgress, JobRunner
-from groundstation.services.messages import LANGUAGES, told, translation
+from groundstation.services.messages import LANGUAGES, localized, translation
 from groundstation.services.units import UnitSystem
 from planning.base.findings import Finding, Severity
 from planning.base.messages import Message, about, glue, say
@@ -47,7 +47,7 @@ def worded(text: str) -> str:
     """A message in the language of the command line."""
     if _LANGUAGE.get() == LANGUAGES[0]:
         return text
-    return told(text, translation(_LANGUAGE.get()), UnitSystem.METRIC)
+    return localized(text, translation(_LANGUAGE.get()), UnitSystem.METRIC)
 
 
 def tell(template: str, *values: object, place: object = "", file: TextIO | None = None, end: str = "\n") -> None:

@@ -84,7 +84,7 @@ def translation(language: str, context: str = "Sentences") -> Translate:
     return lambda text: known.get(text) or text
 
 
-def told(text: str, translate: Translate, units: UnitSystem) -> str:
+def localized(text: str, translate: Translate, units: UnitSystem) -> str:
     """A message in the user's language and units.
 
     What is no message is looked up as a whole, as are names of things that stand in messages; what is not known stays.
@@ -122,7 +122,7 @@ def _is_quoted(template: str, field: re.Match[str]) -> bool:
 def _value(value: str, translate: Translate, units: UnitSystem) -> str:
     """What stands in a field: a message, a known word, or a number with its unit; a file's path stays as it is."""
     if isinstance(value, Message):
-        return told(value, translate, units)
+        return localized(value, translate, units)
     if _QUANTITY.fullmatch(value):
         return _in_units(value, units)
     number, _, unit = value.partition(" ")

@@ -93,12 +93,12 @@ class ParameterCall:
 
     Parameters
     ----------
-    wanted
+    new_value
         The value that it shall have; None: only read it.
     """
 
-    def __init__(self, name: str, wanted: float | None, autopilot: Autopilot, target: Address) -> None:
-        self.name, self._wanted, self._autopilot, self._target = name, wanted, autopilot, target
+    def __init__(self, name: str, new_value: float | None, autopilot: Autopilot, target: Address) -> None:
+        self.name, self._new_value, self._autopilot, self._target = name, new_value, autopilot, target
         self.outcome: ParameterOutcome | None = None
         self._setting: ParamSet | None = None
         self._former: float | None = None
@@ -133,12 +133,12 @@ class ParameterCall:
 
     def _heard(self, value: float, param_type: int, now_s: float) -> list[Message]:
         self._former = value
-        if self._wanted is None:
+        if self._new_value is None:
             return self._end(ParameterStatus.READ, value)
         if self._is_wanted(value):
             return self._end(ParameterStatus.UNCHANGED, value)
         try:
-            carried = encoded(self._wanted, param_type, self._autopilot)
+            carried = encoded(self._new_value, param_type, self._autopilot)
         except ValueError:
             return self._end(ParameterStatus.REFUSED, value)
         target = self._target
@@ -162,7 +162,7 @@ class ParameterCall:
 
     def _is_wanted(self, value: float) -> bool:
         """Whether a value is the one wanted, to float32."""
-        return self._wanted is not None and math.isclose(value, self._wanted, rel_tol=1e-6, abs_tol=1e-9)
+        return self._new_value is not None and math.isclose(value, self._new_value, rel_tol=1e-6, abs_tol=1e-9)
 
     def _end(self, status: ParameterStatus, value: float | None) -> list[Message]:
         self.outcome = ParameterOutcome(self.name, status, value, self._former)

@@ -115,13 +115,13 @@ def is_simulation(autopilot: Autopilot, values: Mapping[str, float]) -> bool:
 
 
 def parameter_changes(
-    autopilot: Autopilot, wanted: Mapping[str, float], values: Mapping[str, float]
+    autopilot: Autopilot, needed: Mapping[str, float], values: Mapping[str, float]
 ) -> tuple[ParameterChange, ...]:
     """What differs from what a plan needs, of the parameters that the vehicle knows."""
     setup = _setups()[autopilot]
     return tuple(
         ParameterChange(name, values[name], new, name in setup.reboot, setup.off.get(name) == values[name])
-        for name, new in wanted.items()
+        for name, new in needed.items()
         if name in values and not math.isclose(values[name], new, rel_tol=1e-3, abs_tol=1e-9)
     )
 

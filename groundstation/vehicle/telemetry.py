@@ -152,7 +152,9 @@ def _attitude(state: VehicleState, message: messages.Attitude, now_s: float, _: 
 
 def _system_time(state: VehicleState, message: messages.SystemTime, now_s: float, _: LocalFrame) -> VehicleState:
     state = _with_boot_time(state, message.time_boot_ms, now_s)
-    return replace(state, photo_clock=state.photo_clock.told(message.time_unix_usec, message.time_boot_ms / 1000.0))
+    return replace(
+        state, photo_clock=state.photo_clock.after_system_time(message.time_unix_usec, message.time_boot_ms / 1000.0)
+    )
 
 
 def _gimbal(
@@ -276,7 +278,7 @@ def _feedback(state: VehicleState, message: messages.CameraFeedback, now_s: floa
     time_s = now_s
     if state.boot_time_s is not None:
         own_s, silent_s = state.boot_time_s, now_s - state.boot_time_heard_s
-        clock = state.photo_clock.heard(message.time_usec, own_s, silent_s)
+        clock = state.photo_clock.after_photo(message.time_usec, own_s, silent_s)
         state, time_s = replace(state, photo_clock=clock), clock.taken_s(message.time_usec, own_s, silent_s)
     return _with_photo(state, message.img_idx, time_s, place, "camera-feedback", now_s)
 

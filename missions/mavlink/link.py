@@ -65,7 +65,7 @@ class Channel(Protocol):
     def write(self, data: bytes) -> None:
         """Send one frame."""
 
-    def heard(self, origin: Hashable) -> None:
+    def note_peer(self, origin: Hashable) -> None:
         """Note that this origin speaks MAVLink."""
 
     def close(self) -> None:
@@ -103,7 +103,7 @@ class MemoryChannel:
             raise LinkError.say("the link is closed")
         self.outbox.put(data)
 
-    def heard(self, origin: Hashable) -> None:
+    def note_peer(self, origin: Hashable) -> None:
         """Nothing to note: there is one other end."""
 
     def is_idle(self) -> bool:
@@ -180,7 +180,7 @@ class UdpChannel:
         except OSError as error:
             raise LinkError.say("the UDP link broke: {}", error.strerror or error) from error
 
-    def heard(self, origin: Hashable) -> None:
+    def note_peer(self, origin: Hashable) -> None:
         """Answer this one from now on."""
         if origin in self._peers or len(self._peers) < MAX_PEERS:
             self._peers[origin] = self._clock()
@@ -217,7 +217,7 @@ class TcpChannel:
         except OSError as error:
             raise LinkError.say("the TCP link to {} broke: {}", self._name, error.strerror or error) from error
 
-    def heard(self, origin: Hashable) -> None:
+    def note_peer(self, origin: Hashable) -> None:
         """Nothing to note: there is one other end."""
 
     def close(self) -> None:
@@ -271,7 +271,7 @@ class TcpServerChannel:
                 with suppress(OSError):
                     client.shutdown(socket.SHUT_RDWR)
 
-    def heard(self, origin: Hashable) -> None:
+    def note_peer(self, origin: Hashable) -> None:
         """Nothing to note: every client is answered."""
 
     def close(self) -> None:
@@ -319,7 +319,7 @@ class SerialChannel:
         except (self._broken, OSError) as error:
             raise LinkError.say("the serial line {} broke: {}", self._device, error) from error
 
-    def heard(self, origin: Hashable) -> None:
+    def note_peer(self, origin: Hashable) -> None:
         """Nothing to note: there is one other end."""
 
     def close(self) -> None:
@@ -425,7 +425,7 @@ class ChannelLink:
             decoder = self._decoders[origin] = Decoder(self.signer, self.counts)
         now_s = self.clock()
         for frame in decoder.feed(chunk.data, now_s, chunk.is_datagram):
-            self.channel.heard(chunk.origin)
+            self.channel.note_peer(chunk.origin)
             self._show(frame.data, False, now_s)
             if frame.received is not None:
                 self._waiting.append(frame.received)

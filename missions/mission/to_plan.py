@@ -136,8 +136,8 @@ class _Ids:
     used: set[str] = field(default_factory=set)
     count: int = 0
 
-    def next(self, wanted: str) -> str:
-        identifier = wanted
+    def next(self, stated: str) -> str:
+        identifier = stated
         while not identifier or identifier in self.used:
             identifier = f"v{self.count:04d}"
             self.count += 1
@@ -348,7 +348,7 @@ def flown_s(route: Sequence[RoutePoint], limits: MotionLimits) -> float:
     """
     rests = [point.stay for point in route if point.stay.is_stop]
     rests_s = sum(stay.wait_s + math.radians(stay.turn_deg) / limits.yaw_rate_rad_s for stay in rests)
-    kept = _kept(route)
+    kept = _without_straight_places(route)
     legs = np.diff([point.place_enu_m for point in kept], axis=0)
     if not len(legs):
         return rests_s
@@ -359,7 +359,7 @@ def flown_s(route: Sequence[RoutePoint], limits: MotionLimits) -> float:
     return rests_s + _legs_s(legs, np.array(speeds, np.float64), cuts, limits)
 
 
-def _kept(route: Sequence[RoutePoint]) -> list[RoutePoint]:
+def _without_straight_places(route: Sequence[RoutePoint]) -> list[RoutePoint]:
     """The route without places on straight legs, and with those at which it does not move on as one."""
     apart: list[RoutePoint] = []
     for point in route:

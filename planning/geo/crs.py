@@ -233,7 +233,7 @@ class _Order(NamedTuple):
     notes: tuple[str, ...]
 
 
-def _axis_order(name: str, crs: CRS, middle: NDArray[np.float64], wanted: AxisOrder) -> _Order:
+def _axis_order(name: str, crs: CRS, middle: NDArray[np.float64], stated: AxisOrder) -> _Order:
     """Which of the first two coordinates is east.
 
     Where both orders are possible, a geographic system named by URN or URL means what the authority lists; old short
@@ -244,12 +244,12 @@ def _axis_order(name: str, crs: CRS, middle: NDArray[np.float64], wanted: AxisOr
     is_short_name = re.match(r"(?i)\s*(epsg:)?\d", name) is not None
     prefers_swap = lists_north_first and crs.is_geographic and not is_short_name
     in_words = {False: say("(east, north)"), True: say("(north, east)")}
-    orders = (prefers_swap, not prefers_swap) if wanted == "auto" else (wanted == "yx",)
+    orders = (prefers_swap, not prefers_swap) if stated == "auto" else (stated == "yx",)
     is_far = float(np.abs(middle[:2]).max()) > MIN_FAR_COORDINATE
     for margin_deg in (0.0, AREA_MARGIN_DEG) if is_far else (0.0,):
         for swaps in orders:
             if _is_in_area(crs, *_east_north(middle, swaps), margin_deg):
-                if swaps == lists_north_first or wanted != "auto":
+                if swaps == lists_north_first or stated != "auto":
                     return _Order(swaps, ())
                 listed = in_words[lists_north_first]
                 note = say(
@@ -322,7 +322,7 @@ class _Heights(NamedTuple):
     note: str
 
 
-def _heights(crs: CRS, wanted: HeightReference, keeps_height: bool, geoid_m: float) -> _Heights:
+def _heights(crs: CRS, stated: HeightReference, keeps_height: bool, geoid_m: float) -> _Heights:
     """What the third coordinate is above, and its unit."""
     geoid = say("EGM96, here {:.1f} m above the ellipsoid", geoid_m)
     stand_in = say("{}, stands in for the national geoid, {}", geoid, GEOID_UNCERTAINTY)
@@ -330,7 +330,7 @@ def _heights(crs: CRS, wanted: HeightReference, keeps_height: bool, geoid_m: flo
         vertical = crs.sub_crs_list[1]
         axis = vertical.axis_info[0]
         unit_m = axis.unit_conversion_factor * (-1.0 if axis.direction.lower() == "down" else 1.0)
-        if wanted == "ellipsoid":
+        if stated == "ellipsoid":
             return _Heights(
                 unit_m, False, say("heights are taken above the ellipsoid, as you asked, not as {}", vertical.name)
             )
@@ -342,11 +342,11 @@ def _heights(crs: CRS, wanted: HeightReference, keeps_height: bool, geoid_m: flo
     axis = crs.axis_info[0]
     unit_m = axis.unit_conversion_factor if crs.is_projected else 1.0
     unit = "" if unit_m == 1.0 else say(" in the unit of the other coordinates ({})", axis.unit_name)
-    if wanted == "ellipsoid":
+    if stated == "ellipsoid":
         return _Heights(unit_m, False, say("heights are taken above the ellipsoid{}, as you asked", unit))
     why = (
         say("as you asked")
-        if wanted == "orthometric"
+        if stated == "orthometric"
         else say("as the system has none of its own (see --height-reference)")
     )
     return _Heights(unit_m, True, say("heights are taken above sea level{}, {}; {}", unit, why, stand_in))

@@ -109,7 +109,7 @@ def views_within_budget(
     spacing_m = rounding_spacing_m(aircraft.min_waypoint_spacing_m)
     choice = Choice(problem, weights, covered, locked, spacing_m, seed, stop, Trace(trace.clock), monitor)
     free, _, _ = choice.greedily(candidate_pool(problem, seed, parameters.n_candidates), n_free, np.inf)
-    free = shortlist(free, weights, covered, n_free, apart=spacing_rule(free.views, locked, spacing_m))
+    free = shortlist(free, weights, covered, n_free, spacing=spacing_rule(free.views, locked, spacing_m))
     pool = join_pools(Pool(locked, problem.model.elements(locked)), free)
     times = flight_times(problem.roadmap, pool.views, aircraft, rules, monitor)
     gain = CoverGain(pool.elements, weights)
@@ -199,10 +199,10 @@ def shortlist(
     covered: NDArray[np.int32] | None,
     n_most: int,
     depths: Sequence[int] = CHOICE_DEPTHS,
-    apart: SpacingRule = ANYWHERE,
+    spacing: SpacingRule = ANYWHERE,
 ) -> Pool:
     """The candidates that greedy takes first, for several depths, beside what is `covered` all the same."""
-    state = cover_state(pool.elements, weights, covered, apart)
+    state = cover_state(pool.elements, weights, covered, spacing)
     chosen = np.zeros(min(n_most, len(state.gains)), np.int64)
     n_chosen = 0
     for depth in depths:

@@ -113,10 +113,10 @@ def facing_targets(frames: PanelFrames, positions_enu_m: Array, rng: np.random.G
     return frames.centroids[target]
 
 
-def witness_candidates(problem: ViewProblem, wanted: NDArray[np.bool_], rng: np.random.Generator) -> ViewpointArrays:
-    """Flyable views of the reachable elements where `wanted`, at their witnesses and around, aimed at their panels."""
+def witness_candidates(problem: ViewProblem, is_open: NDArray[np.bool_], rng: np.random.Generator) -> ViewpointArrays:
+    """Flyable views of the reachable elements where `is_open`, at their witnesses and around, aimed at their panels."""
     reachability = problem.reachability
-    element = np.flatnonzero((reachability.verdicts.reshape(-1) == REACHABLE) & wanted)
+    element = np.flatnonzero((reachability.verdicts.reshape(-1) == REACHABLE) & is_open)
     positions = reachability.witnesses_enu_m.reshape(-1, 3)[element]
     positions, number = places_around(problem, element, positions, rng, MAX_AROUND // 4)
     flyable = problem.flyable(positions)

@@ -322,7 +322,7 @@ def choose_greedily(
     trace: Trace,
     monitor: Monitor,
     covered: NDArray[np.int32] | None = None,
-    apart: SpacingRule = ANYWHERE,
+    spacing: SpacingRule = ANYWHERE,
     first: NDArray[np.int64] = NOTHING,
 ) -> tuple[NDArray[np.int64], float]:
     """Numbers of the candidates chosen, in order, and the weight that is covered with them (and `covered` without).
@@ -332,7 +332,7 @@ def choose_greedily(
     Ends at `n_wanted` candidates, at a weight of `enough`, or when nothing is left to gain. It is quick, and the first
     answer of an anytime method, so nothing stops it but cancelling.
     """
-    state = cover_state(pool.elements, weights, covered, apart)
+    state = cover_state(pool.elements, weights, covered, spacing)
     chosen = np.zeros(max(len(first), min(n_wanted, len(state.gains))), np.int64)
     n_chosen = len(first)
     chosen[:n_chosen] = first
@@ -415,8 +415,8 @@ def spend_spare_views(
         monitor.report(say("spending spare views"), len(chosen), n_views)
         elements = pool.elements if finer is model else finer.elements(pool.views)
         present_enu_m = np.concatenate([locked.positions_enu_m, pool.views.positions_enu_m[chosen]])
-        apart = SpacingRule(pool.views.positions_enu_m, present_enu_m, spacing_m)
-        state = cover_state(elements, np.ones(finer.n_elements), covered_by(finer, locked), apart)
+        spacing = SpacingRule(pool.views.positions_enu_m, present_enu_m, spacing_m)
+        state = cover_state(elements, np.ones(finer.n_elements), covered_by(finer, locked), spacing)
         state.depth[0] = depth
         for candidate in chosen:
             cover_kernel.add_elements(state, elements.of(candidate))

@@ -46,9 +46,9 @@ def refine_views(
     monitor: Monitor = QUIET,
     improved: Callable[[NDArray[np.int64]], None] | None = None,
     covered: NDArray[np.int32] | None = None,
-    apart: SpacingRule = ANYWHERE,
+    spacing: SpacingRule = ANYWHERE,
 ) -> ViewpointArrays:
-    """Views of at least the same value, in the same order, as far apart as `apart` says of them.
+    """Views of at least the same value, in the same order, as far apart as `spacing` says of them.
 
     Sweeps over all views until a sweep brings nothing or `stop` asks for an end. `improved` is called after each sweep
     with the number of views per element. `covered` counts the views that each element has beside these.
@@ -67,7 +67,7 @@ def refine_views(
             if stop():
                 break
             counts[elements[i]] -= 1
-            others = apart.of_others(poses[:, :3], i)
+            others = spacing.of_others(poses[:, :3], i)
             search = _PoseSearch(problem, np.where(counts == 0, weights, 0.0), elements[i], others)
             better = search.run(poses[i])
             if better is not None:
@@ -148,7 +148,7 @@ RADIANS_PER_METRE = 0.05
 
 
 def cover_state(
-    elements: Elements, weights: Array, covered: NDArray[np.int32] | None = None, apart: SpacingRule = ANYWHERE
+    elements: Elements, weights: Array, covered: NDArray[np.int32] | None = None, spacing: SpacingRule = ANYWHERE
 ) -> kernel.CoverState:
     """State with nothing chosen and depth 1; `covered` counts the views that each element has all the same."""
     inverse_starts, inverse_items = kernel.invert(elements.starts, elements.items, len(weights))
@@ -162,9 +162,9 @@ def cover_state(
         counts=np.zeros(len(weights), np.int32) if covered is None else covered.copy(),
         gains=np.zeros(n_candidates),
         depth=np.ones(1, np.int64),
-        positions=np.array(apart.positions_enu_m, np.float64, order="C"),
-        taken=np.array(apart.present_enu_m, np.float64, order="C"),
-        spacing=float(apart.spacing_m),
+        positions=np.array(spacing.positions_enu_m, np.float64, order="C"),
+        taken=np.array(spacing.present_enu_m, np.float64, order="C"),
+        spacing=float(spacing.spacing_m),
     )
     kernel.refresh_gains(state)
     return state
@@ -180,10 +180,10 @@ class Exchange:
         chosen: NDArray[np.int64],
         seed: int,
         covered: NDArray[np.int32] | None = None,
-        apart: SpacingRule = ANYWHERE,
+        spacing: SpacingRule = ANYWHERE,
     ) -> None:
         self.elements, self.chosen, self.seed = elements, chosen.copy(), seed
-        self.state = cover_state(elements, weights, covered, apart)
+        self.state = cover_state(elements, weights, covered, spacing)
         for candidate in self.chosen:
             kernel.add_elements(self.state, elements.of(candidate))
         self._rests_until = np.zeros(len(self.state.gains), np.int64)

@@ -70,7 +70,7 @@ class WebFiles:
     states: dict[str, State]
     sizes: dict[str, int]
 
-    def told(self) -> dict[str, dict[str, Any]]:
+    def as_json(self) -> dict[str, dict[str, Any]]:
         """As the page knows them: the number of the part that holds it, its bytes, and why it is not there."""
         found: dict[str, dict[str, Any]] = {name: {"state": state} for name, state in self.states.items()}
         found |= {name: {"picture": number} for number, name in enumerate(self.pictures)}

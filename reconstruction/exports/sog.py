@@ -355,7 +355,7 @@ def write_sog(
     monitor.report(say("writing images"), 2, 7)
     codes = codebook(found.log_scales)
     images["scales.webp"] = rows_as_image(nearest_codes(found.log_scales, codes))
-    meta["scales"] = {"codebook": _told(codes), "files": ["scales.webp"]}
+    meta["scales"] = {"codebook": _shortened(codes), "files": ["scales.webp"]}
     monitor.report(say("writing images"), 3, 7)
     images["quats.webp"] = rows_as_image(found.quats)
     meta["quats"] = {"files": ["quats.webp"]}
@@ -363,7 +363,7 @@ def write_sog(
     codes = codebook(found.colours)
     pixels = np.column_stack([nearest_codes(found.colours, codes), found.opacities])
     images["sh0.webp"] = rows_as_image(pixels)
-    meta["sh0"] = {"codebook": _told(codes), "files": ["sh0.webp"]}
+    meta["sh0"] = {"codebook": _shortened(codes), "files": ["sh0.webp"]}
     if compression.degree > 0:
         _put_palette(scene, compression, axes, found.rank, meta, images, monitor)
     content = _zipped(meta, images)
@@ -447,7 +447,7 @@ def _put_palette(
     meta["shN"] = {
         "count": len(found.colours),
         "bands": compression.degree,
-        "codebook": _told(codes),
+        "codebook": _shortened(codes),
         "files": ["shN_centroids.webp", "shN_labels.webp"],
     }
 
@@ -478,7 +478,7 @@ def _asset(scene: GsScene, axes: Axes) -> dict[str, Any]:
     return asset
 
 
-def _told(codes: NDArray[np.float64]) -> list[float]:
+def _shortened(codes: NDArray[np.float64]) -> list[float]:
     """As many digits as readers keep."""
     return [float(f"{code:.8g}") for code in codes]
 

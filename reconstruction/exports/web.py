@@ -447,7 +447,7 @@ def write_web(
         **described_panes(scene, elements),
         "columns": [asdict(column) for column in columns_of(elements, found)],
         "records": found,
-        "files": files.told(),
+        "files": files.as_json(),
     }
     head = _head(described, options.title or scene.name)
 

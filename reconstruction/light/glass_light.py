@@ -78,13 +78,13 @@ class GlassLight(nn.Module):
         n, k = len(rays), self.rays
         offsets = pixel_offsets(n, k, generator).to(rays.panels.device)
         moves = self.moves - self.moves.mean(dim=0) if self.moves is not None and self.training else None
-        met = rays.repeated(k).met(offsets, moves)
+        hits = rays.repeated(k).hits(offsets, moves)
         panels = rays.panels.long().repeat_interleave(k)
-        omega_r, cosines = self.mirrored(rays.table, met, panels)
-        light = self.light(rays.table.rescaled(met.points_m).float(), omega_r, panels)
+        omega_r, cosines = self.mirrored(rays.table, hits, panels)
+        light = self.light(rays.table.rescaled(hits.points_m).float(), omega_r, panels)
         if k == 1:
             return light, cosines
-        shares = met.shares.detach()
+        shares = hits.shares.detach()
         counts = ((shares >= 0.0) & (shares <= 1.0)).all(dim=1).float().reshape(n, k)
         counts = torch.where(counts.sum(dim=1, keepdim=True) > 0.0, counts, torch.ones_like(counts))
         weights = counts / counts.sum(dim=1, keepdim=True)
@@ -135,18 +135,18 @@ class GlassLight(nn.Module):
         """What follows the last step of all, also of a training that a time limit ended."""
         self.after_step(config, config.grid.rest - 1, 1.0)
 
-    def mirrored(self, table: RayTable, met: PaneHits, panels: Tensor) -> tuple[Tensor, Tensor]:
+    def mirrored(self, table: RayTable, hits: PaneHits, panels: Tensor) -> tuple[Tensor, Tensor]:
         """Where rays go on, unit, shape (n, 3), and cosines of their angles of incidence, shape (n,), float32."""
-        if met.directions.requires_grad or met.directions.device.type != "cpu":
-            normals, directions = self.normals(table, met, panels), met.directions.float()
+        if hits.directions.requires_grad or hits.directions.device.type != "cpu":
+            normals, directions = self.normals(table, hits, panels), hits.directions.float()
             cosines = (directions * normals).sum(dim=1).abs().clamp(max=1.0)
             return reflected_directions(directions, normals), cosines
         normals = table.normals.float()
         bows = torch.zeros(len(normals), 2) if self.bows is None else self.bows
-        found: tuple[Tensor, Tensor] = _Mirror.apply(self.true_tilts(), bows, met, panels, normals, self.edges)  # type: ignore[no-untyped-call]
+        found: tuple[Tensor, Tensor] = _Mirror.apply(self.true_tilts(), bows, hits, panels, normals, self.edges)  # type: ignore[no-untyped-call]
         return found
 
-    def normals(self, table: RayTable, met: PaneHits, panels: Tensor) -> Tensor:
+    def normals(self, table: RayTable, hits: PaneHits, panels: Tensor) -> Tensor:
         """Unit, at the places that rays meet, shape (n, 3), float32."""
         normals = table.normals[panels].float()
         if self.tilts is None and self.bows is None:
@@ -155,7 +155,7 @@ class GlassLight(nn.Module):
         if self.tilts is not None:
             turns = turns + self.true_tilts()[panels]
         if self.bows is not None:
-            turns = turns + self.bows[panels] * (2.0 * met.shares.float().clamp(0.0, 1.0) - 1.0)
+            turns = turns + self.bows[panels] * (2.0 * hits.shares.float().clamp(0.0, 1.0) - 1.0)
         edges = self.edges[panels]
         return nn.functional.normalize(normals + (turns[..., None] * edges).sum(dim=1), dim=1)
 
@@ -172,10 +172,10 @@ class GlassLight(nn.Module):
 class _Mirror(torch.autograd.Function):
     @staticmethod
     def forward(
-        ctx: Any, tilts: Tensor, bows: Tensor, met: PaneHits, panels: Tensor, normals: Tensor, edges: Tensor
+        ctx: Any, tilts: Tensor, bows: Tensor, hits: PaneHits, panels: Tensor, normals: Tensor, edges: Tensor
     ) -> tuple[Tensor, Tensor]:
         n = len(panels)
-        values = (met.directions, met.shares, panels, normals, edges, tilts, bows)
+        values = (hits.directions, hits.shares, panels, normals, edges, tilts, bows)
         fixed: Any = tuple(np.ascontiguousarray(value.detach().numpy()) for value in values)
         omega_r, cosines = np.empty((n, 3), np.float32), np.empty(n, np.float32)
         mirror: Any = kernels.mirror

@@ -98,17 +98,17 @@ class GlassRays:
         """Exposure of each ray's photo on top of that of all photos, shape (n,), float32."""
         return self.table.gains[self.photos].float()
 
-    def met(self, offsets_px: Tensor | None = None, moves: Tensor | None = None) -> PaneHits:
+    def hits(self, offsets_px: Tensor | None = None, moves: Tensor | None = None) -> PaneHits:
         """One ray of each pixel, through its middle or off it by `offsets_px`, shape (n, 2); see `RayTable.meet`."""
         places = self.middles_px if offsets_px is None else self.middles_px + offsets_px
         return self.table.meet(self.photos, places, self.panels, moves)
 
     def middle(self) -> MiddleRays:
         """Through the pixels' middles, mirrored by the panels' planes."""
-        met = self.met()
-        mirrored = reflected_directions(met.directions, self.table.normals[self.panels])
-        cosines = met.cosines.abs().clamp(max=1.0)
-        return MiddleRays(self.table.rescaled(met.points_m).float(), mirrored.float(), cosines.float())
+        hits = self.hits()
+        mirrored = reflected_directions(hits.directions, self.table.normals[self.panels])
+        cosines = hits.cosines.abs().clamp(max=1.0)
+        return MiddleRays(self.table.rescaled(hits.points_m).float(), mirrored.float(), cosines.float())
 
 
 COLUMNS = tuple(field.name for field in fields(GlassRays) if field.name != "table")
@@ -230,7 +230,7 @@ def _kept(
     )
     is_kept = torch.ones(len(rays), dtype=torch.bool)
     for corner in CORNERS if which == "whole" else ((0.0, 0.0),):
-        is_kept &= table.inside(rays.met(torch.tensor(corner, dtype=torch.float64)), rays.panels)
+        is_kept &= table.inside(rays.hits(torch.tensor(corner, dtype=torch.float64)), rays.panels)
     return rays[torch.nonzero(is_kept).squeeze(1)]
 
 

@@ -121,10 +121,10 @@ def box_around(
 
 def box_of(rays: GlassRays, settings: GridSettings, n_rays: int) -> GridBox:
     """The box that these rays call for, a few thousand of the `n_rays` that are learned from."""
-    table, met, middle = rays.table, rays.met(), rays.middle()
+    table, hits, middle = rays.table, rays.hits(), rays.middle()
     half_m = float(table.half_side_m)
     reach_m = settings.reach_m or REACH * half_m
-    covered_m = float(((met.distances_m + 0.5 * reach_m) / table.lenses[rays.photos, 0]).median())
+    covered_m = float(((hits.distances_m + 0.5 * reach_m) / table.lenses[rays.photos, 0]).median())
     return box_around(
         middle.points,
         middle.omega_r,

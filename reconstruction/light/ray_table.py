@@ -283,7 +283,7 @@ class RayTable:
             ENU; gradients flow through.
         """
         if moves is None and not places_px.requires_grad and places_px.device.type == "cpu":
-            return self._met(photos, places_px, panels)
+            return self._hits(photos, places_px, panels)
         lenses = self.lenses[photos]
         bent = (places_px - lenses[:, 2:4]) / lenses[:, :2]
         x, y = self._unbent(bent[:, 0], bent[:, 1], photos).unbind(dim=1)
@@ -303,7 +303,7 @@ class RayTable:
         points = origins + distances[:, None] * directions
         return PaneHits(points, directions, cosines, _shares(points, corners), distances)
 
-    def _met(self, photos: Tensor, places_px: Tensor, panels: Tensor) -> PaneHits:
+    def _hits(self, photos: Tensor, places_px: Tensor, panels: Tensor) -> PaneHits:
         """The same without corrections, on a processor."""
         n = len(photos)
         found = tuple(np.empty((n, *shape)) for shape in ((3,), (3,), (), (2,), ()))
@@ -330,13 +330,13 @@ class RayTable:
         shares = _shares(points_m, self.corners_m[panels])
         return PaneHits(points_m, directions, cosines, shares, torch.full_like(cosines, torch.inf))
 
-    def inside(self, met: PaneHits, panels: Tensor) -> Tensor:
+    def inside(self, hits: PaneHits, panels: Tensor) -> Tensor:
         """Whether rays meet the fronts of their panels, which are convex, inside their edges, shape (n,), bool."""
         corners, normals = self.corners_m[panels], self.normals[panels]
-        found = met.cosines > LEAST_COSINE
+        found = hits.cosines > LEAST_COSINE
         for number in range(4):
             first, second = corners[:, number], corners[:, (number + 1) % 4]
-            found = found & ((torch.linalg.cross(second - first, met.points_m - first) * normals).sum(dim=1) >= 0.0)
+            found = found & ((torch.linalg.cross(second - first, hits.points_m - first) * normals).sum(dim=1) >= 0.0)
         return found
 
     def off_axis(self, photos: Tensor, places_px: Tensor) -> Tensor:

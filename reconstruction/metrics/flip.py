@@ -68,7 +68,7 @@ def flip_map(found: NDArray[Any], truth: NDArray[Any], pixels_per_degree: float 
     if found.shape != truth.shape or found.ndim != 3 or found.shape[2] != 3 or not found.size:
         raise ValueError(f"expected two pictures of one shape (h, w, 3), got {found.shape} and {truth.shape}")
     one, other = (_opponent(_linear(_values(picture))) for picture in (found, truth))
-    colour = _colour_difference(_seen(one, pixels_per_degree), _seen(other, pixels_per_degree))
+    colour = _colour_difference(_perceived(one, pixels_per_degree), _perceived(other, pixels_per_degree))
     grey, other_grey = ((picture[..., 0] + 16.0) / 116.0 for picture in (one, other))
     feature = _feature_difference(grey, other_grey, pixels_per_degree)
     return np.asarray(np.power(colour, 1.0 - feature))
@@ -119,7 +119,7 @@ def _linear_of_opponent(opponent: Array) -> Array:
     return np.asarray((np.stack([x, y, z], axis=-1) * WHITE) @ np.linalg.inv(XYZ_OF_RGB).T)
 
 
-def _seen(opponent: Array, pixels_per_degree: float) -> Array:
+def _perceived(opponent: Array, pixels_per_degree: float) -> Array:
     """L*a*b* of what the eye sees, a* and b* weaker where it is dark (the effect of Hunt)."""
     blurred = [_sum_of_blurs(opponent[..., k], _sensitivity(k, pixels_per_degree)) for k in range(3)]
     return _hunt(_lab(np.clip(_linear_of_opponent(np.stack(blurred, axis=-1)), 0.0, 1.0)))

@@ -49,7 +49,7 @@ class Quads:
         inwards = np.cross(normals[:, None], edges)
         return cls(corners, normals, inwards, np.einsum("mkj,mkj->mk", inwards, corners))
 
-    def met(self, origin_enu_m: Array, directions: Array) -> tuple[NDArray[np.int64], Array]:
+    def first_hits(self, origin_enu_m: Array, directions: Array) -> tuple[NDArray[np.int64], Array]:
         """Panels that rays meet first.
 
         Parameters
@@ -115,7 +115,7 @@ def picked(quads: Quads, camera: PosedPhoto, places_px: Array, depths_m: Array |
         does.
     """
     rays = rays_of(camera, np.asarray(places_px, float))
-    numbers, distances = quads.met(camera.pose.position_enu_m, rays)
+    numbers, distances = quads.first_hits(camera.pose.position_enu_m, rays)
     if depths_m is None:
         return numbers
     return np.where(_is_before(depths_m, distances * (rays @ camera.pose.forward_enu)), -1, numbers)

@@ -100,7 +100,7 @@ def camera_kind(photo: PhotoMetadata) -> CameraKind | None:
 
 
 def of_camera(
-    photos: Sequence[PhotoMetadata], wanted: CameraKind | None = None
+    photos: Sequence[PhotoMetadata], kind_of_camera: CameraKind | None = None
 ) -> tuple[list[PhotoMetadata], tuple[Finding, ...]]:
     """Photos of one camera; without a wish the first of `CameraKind` that there is.
 
@@ -108,9 +108,9 @@ def of_camera(
     """
     kinds = [camera_kind(photo) or CameraKind.WIDE for photo in photos]
     counts = Counter(kinds)
-    wanted = wanted or next((kind for kind in CameraKind if counts[kind]), None)
-    kept = [photo for photo, kind in zip(photos, kinds, strict=True) if kind is wanted]
-    left = ", ".join(f"{n} {kind}" for kind, n in sorted(counts.items()) if kind is not wanted)
+    kind_of_camera = kind_of_camera or next((kind for kind in CameraKind if counts[kind]), None)
+    kept = [photo for photo, kind in zip(photos, kinds, strict=True) if kind is kind_of_camera]
+    left = ", ".join(f"{n} {kind}" for kind, n in sorted(counts.items()) if kind is not kind_of_camera)
     if not left:
         return kept, ()
     text = say("photos of other cameras are left out ({}); choose another camera to use those instead", left)

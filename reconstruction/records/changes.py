@@ -49,13 +49,13 @@ def indexed_text(text: str) -> str:
     return text if text.isascii() else _WITHOUT_BLANKS.sub(r" \1 ", text)
 
 
-def query_of(words: str) -> str | None:
+def query_of(text: str) -> str | None:
     """Query for texts that hold all words, the last letters of each left open; None without a word.
 
     Only letters and digits of the user's get into it, each run of them in quotes.
     """
     found = []
-    for word in _WORD.findall(words[:MAX_QUERY].replace("_", " "))[:MAX_QUERY_WORDS]:
+    for word in _WORD.findall(text[:MAX_QUERY].replace("_", " "))[:MAX_QUERY_WORDS]:
         found.append(f'"{" ".join(indexed_text(word).split())}"*')
     return " ".join(found) or None
 

@@ -219,7 +219,7 @@ def _checked(book: RecordBook, name: str, value: Any, kind: str) -> Value:
     return str(value)
 
 
-def find_objects(book: RecordBook, wanted: ObjectFilter) -> tuple[ObjectRow, ...]:
+def find_objects(book: RecordBook, object_filter: ObjectFilter) -> tuple[ObjectRow, ...]:
     """Objects that a filter lets through, in the order of the model.
 
     Raises
@@ -227,36 +227,39 @@ def find_objects(book: RecordBook, wanted: ObjectFilter) -> tuple[ObjectRow, ...
     InputError
         `not_inspected_since` is no date.
     """
-    wheres, values = ["(o.is_present OR ?)"], [wanted.with_absent]
-    for sql, value in _conditions(wanted):
+    wheres, values = ["(o.is_present OR ?)"], [object_filter.with_absent]
+    for sql, value in _conditions(object_filter):
         wheres.append(sql)
         values += value
     sql = f"SELECT {OBJECT_COLUMNS} FROM {OBJECTS} WHERE {' AND '.join(wheres)} ORDER BY o.id"
     return tuple(object_of(row, book.database) for row in book.database.rows(sql, values))
 
 
-def _conditions(wanted: ObjectFilter) -> list[tuple[str, list[Any]]]:
+def _conditions(object_filter: ObjectFilter) -> list[tuple[str, list[Any]]]:
     found: list[tuple[str, list[Any]]] = []
-    if wanted.layer is not None:
-        found.append(("o.layer = ?", [wanted.layer]))
-    if wanted.parent is not None:
-        found.append(("p.global_id = ?", [wanted.parent]))
-    if wanted.name_part:
-        found.append(("instr(lower(o.name), lower(?)) > 0", [wanted.name_part]))
-    if wanted.attribute in COMPUTED:
+    if object_filter.layer is not None:
+        found.append(("o.layer = ?", [object_filter.layer]))
+    if object_filter.parent is not None:
+        found.append(("p.global_id = ?", [object_filter.parent]))
+    if object_filter.name_part:
+        found.append(("instr(lower(o.name), lower(?)) > 0", [object_filter.name_part]))
+    if object_filter.attribute in COMPUTED:
         found.append(
-            (f"(? IS NULL OR o.{wanted.attribute}_m = ?) AND o.{wanted.attribute}_m NOTNULL", [wanted.value] * 2)
+            (
+                f"(? IS NULL OR o.{object_filter.attribute}_m = ?) AND o.{object_filter.attribute}_m NOTNULL",
+                [object_filter.value] * 2,
+            )
         )
-    elif wanted.attribute is not None:
+    elif object_filter.attribute is not None:
         sql = "SELECT 1 FROM attributes a WHERE a.object_id = o.id AND a.name = ? AND (? IS NULL OR a.value = ?)"
-        found.append((f"EXISTS ({sql})", [wanted.attribute, wanted.value, wanted.value]))
-    if wanted.min_open_severity is not None:
+        found.append((f"EXISTS ({sql})", [object_filter.attribute, object_filter.value, object_filter.value]))
+    if object_filter.min_open_severity is not None:
         sql = "SELECT 1 FROM defects d WHERE d.object_id = o.id AND d.status = 'open' AND d.severity >= ?"
-        found.append((f"EXISTS ({sql})", [wanted.min_open_severity]))
-    if wanted.not_inspected_since is not None:
-        check_date(wanted.not_inspected_since, "not_inspected_since")
+        found.append((f"EXISTS ({sql})", [object_filter.min_open_severity]))
+    if object_filter.not_inspected_since is not None:
+        check_date(object_filter.not_inspected_since, "not_inspected_since")
         sql = "SELECT 1 FROM inspections i WHERE i.object_id = o.id AND i.date >= ?"
-        found.append((f"NOT EXISTS ({sql})", [wanted.not_inspected_since]))
+        found.append((f"NOT EXISTS ({sql})", [object_filter.not_inspected_since]))
     return found
 
 

@@ -36,7 +36,7 @@ ON_PANE_M = 0.3
 
 def assign_panels(
     splats: Splats,
-    seen: Iterable[tuple[View, NDArray[np.integer[Any]]]],
+    panels_in_views: Iterable[tuple[View, NDArray[np.integer[Any]]]],
     corners_m: NDArray[np.float64],
     settings: RasterSettings | None = None,
     monitor: Monitor = QUIET,
@@ -48,14 +48,14 @@ def assign_panels(
 
     Parameters
     ----------
-    seen
+    panels_in_views
         Views, and the panel of each of their pixels, from 0, or -1, shape (h, w).
     corners_m
         Of the panels in the model's frame, shape (m, 4, 3).
     """
     n, n_panels = len(splats), len(corners_m)
     total = sparse.csr_array((n, n_panels + 1))
-    for done, (view, panels) in enumerate(seen):
+    for done, (view, panels) in enumerate(panels_in_views):
         monitor.report(say("telling panels of splats"), done, 0)
         if panels.shape != (view.height_px, view.width_px):
             raise ValueError(f"panels: expected shape {(view.height_px, view.width_px)}, got {panels.shape}")

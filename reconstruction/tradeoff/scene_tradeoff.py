@@ -378,8 +378,8 @@ def run_scene_variants(
     return tuple(trials)
 
 
-def _panel_scores(photo: PosedPhoto, rendered: RenderedPhoto, exposure: float, seen: Sequence[Wall]) -> PhotoScores:
-    scored = rendered_photo(photo, developed(rendered, exposure), rendered.panel, seen)
+def _panel_scores(photo: PosedPhoto, rendered: RenderedPhoto, exposure: float, walls: Sequence[Wall]) -> PhotoScores:
+    scored = rendered_photo(photo, developed(rendered, exposure), rendered.panel, walls)
     return score_answer(scored, own_method()(scored, QUIET))
 
 

@@ -78,7 +78,7 @@ def observe_pictures(
     pulls = torch.zeros_like(offsets) if offsets.grad is None else offsets.grad
     seen = torch.cat([pulls / (1.0 + weight), raster.weights[:, None], raster.radii_px[:, None].to(pulls)], dim=1)
     for found, sample in zip(ranks.gathered(seen), samples, strict=True):
-        strategy.seen(replace(raster, weights=found[:, 2], radii_px=found[:, 3]), found[:, :2], sample.view)
+        strategy.observe(replace(raster, weights=found[:, 2], radii_px=found[:, 3]), found[:, :2], sample.view)
 
 
 # The end of a training that was stopped: its rates fall to their last in a short time.

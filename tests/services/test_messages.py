@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from groundstation.services.messages import LANGUAGES, told, translation
+from groundstation.services.messages import LANGUAGES, localized, translation
 from groundstation.services.settings import Language
 from groundstation.services.units import UnitSystem
 from planning.base.messages import Message, about, glue, joined, packed, say, unpacked, without_place
@@ -30,13 +30,13 @@ def test_whatever_stands_in_a_message_it_can_be_told(first, second, language, un
         joined("; ", (first, second)),
         about(first, second),
     ):
-        assert isinstance(told(message, translation(language), units), str)
+        assert isinstance(localized(message, translation(language), units), str)
 
 
 @given(VALUES, VALUES)
 def test_in_english_and_metres_a_message_is_its_own_text_and_goes_to_other_processes_whole(first, second):
     message = say("the {} is not on the vehicle: {}", first, second, place="a.json")
-    assert told(message, translation("en"), UnitSystem.METRIC) == message
+    assert localized(message, translation("en"), UnitSystem.METRIC) == message
     other = pickle.loads(pickle.dumps(message))
     assert (other, other.template, other.values, other.place) == (
         *(message, message.template),
@@ -56,11 +56,11 @@ def test_a_place_can_be_taken_off_again(value, place):
 def test_numbers_with_their_units_and_known_words_are_told_names_are_not():
     german, metric, imperial = translation("de"), UnitSystem.METRIC, UnitSystem.IMPERIAL
     limit = say("{}, at least {}", "-74.2 deg", "3 views")
-    assert told(limit, german, metric) == "-74.2°, mindestens 3 Aufnahmen"
+    assert localized(limit, german, metric) == "-74.2°, mindestens 3 Aufnahmen"
     named = say("obstacle '{}' is a mesh, not a box", "panel")
-    assert told(named, german, metric).startswith("Hindernis 'panel'")
+    assert localized(named, german, metric).startswith("Hindernis 'panel'")
     low = say("home lies at {} m, below the ground at {} m; put it on the ground", 3.048, 0)
-    assert told(low, german, imperial) == (
+    assert localized(low, german, imperial) == (
         "der Startplatz liegt bei 10.0 ft, unter dem Boden bei 0.0 ft; ihn auf den Boden setzen"
     )
 

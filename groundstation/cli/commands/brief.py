@@ -40,7 +40,7 @@ def run(options: argparse.Namespace) -> int:
     from datetime import date
 
     from groundstation.services.jobs.runner import JobContext
-    from groundstation.services.messages import told, translation
+    from groundstation.services.messages import localized, translation
     from groundstation.services.mission.brief import flight_brief
     from groundstation.services.mission.brief_html import brief_html, brief_pictures, sources_in_page
     from groundstation.services.mission.readiness import Readiness, preflight
@@ -66,7 +66,7 @@ def run(options: argparse.Namespace) -> int:
         found = preflight(plan, site_model, day, context)
         today = date.today().isoformat()
         findings = tuple(
-            replace(each, message=told(each.message, words, units), place=told(each.place, words, units))
+            replace(each, message=localized(each.message, words, units), place=localized(each.place, words, units))
             for each in found.findings
         )
         brief = flight_brief(site_model, plan, findings, today, options.plan.name, day=day)

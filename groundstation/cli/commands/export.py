@@ -120,8 +120,8 @@ def _export_model(options: argparse.Namespace) -> int:
     left_out = _left_out(options)
     with in_words_of_options(ModelExport):
         typed = typed_values(options, ModelExport)
-        wanted = with_values(ModelExport(options.format, components=options.components), typed)
-    done = run_job("export", lambda context: export_model(options.plan, options.out, wanted, context))
+        export = with_values(ModelExport(options.format, components=options.components), typed)
+    done = run_job("export", lambda context: export_model(options.plan, options.out, export, context))
     notes = [*left_out, *done.notes]
     if options.json:
         print_json({"file": str(done.path), "format": options.format, "bytes": done.n_bytes, "notes": notes})

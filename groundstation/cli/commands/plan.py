@@ -112,21 +112,21 @@ def request_of(options: argparse.Namespace) -> PlanRequest:
     if any((name,) in typed for name in GOALS):
         base = replace(base, n_views=None, share=None, n_batteries=None)
     with in_words_of_options(PlanParameters):
-        wanted = with_values(base, typed)
+        parameters = with_values(base, typed)
         if options.max_gsd is not None:
-            constraints = replace(wanted.constraints, max_distance_m=_max_distance_m(wanted, options.max_gsd))
-            wanted = replace(wanted, constraints=constraints)
-        return PlanRequest(**{each.name: getattr(wanted, each.name) for each in fields(PlanParameters)})
+            constraints = replace(parameters.constraints, max_distance_m=_max_distance_m(parameters, options.max_gsd))
+            parameters = replace(parameters, constraints=constraints)
+        return PlanRequest(**{each.name: getattr(parameters, each.name) for each in fields(PlanParameters)})
 
 
-def _max_distance_m(wanted: PlanParameters, max_gsd_mm: float) -> float:
+def _max_distance_m(parameters: PlanParameters, max_gsd_mm: float) -> float:
     """The nearer of the largest distance and that at which a pixel size is reached."""
     from planning.aircraft.catalogue import profile
 
     if not max_gsd_mm > 0.0:
         raise InputError(say("expected a positive number of millimetres, got {:g}", max_gsd_mm, place="--max-gsd"))
-    by_gsd_m = profile(wanted.profile_id).camera.distance_for_gsd_m(max_gsd_mm / 1000.0)
-    min_m, max_m = wanted.constraints.min_distance_m, wanted.constraints.max_distance_m
+    by_gsd_m = profile(parameters.profile_id).camera.distance_for_gsd_m(max_gsd_mm / 1000.0)
+    min_m, max_m = parameters.constraints.min_distance_m, parameters.constraints.max_distance_m
     if not by_gsd_m > min_m:
         raise InputError(
             say(

@@ -134,7 +134,7 @@ def run_list(options: argparse.Namespace) -> int:
 
     attribute, equals, value = (options.attribute or "").partition("=")
     with open_records(options.folder) as book:
-        wanted = ObjectFilter(
+        object_filter = ObjectFilter(
             parent=None if options.facade is None else book.object(options.facade).global_id,
             name_part=options.name,
             attribute=attribute or None,
@@ -143,7 +143,7 @@ def run_list(options: argparse.Namespace) -> int:
             not_inspected_since=options.not_inspected_since,
             with_absent=options.absent,
         )
-        lines = object_lines(book, wanted)
+        lines = object_lines(book, object_filter)
     if options.json:
         print_json({"objects": lines})
         return 0

@@ -12,7 +12,7 @@ from PySide6.QtCore import QCoreApplication, QLibraryInfo, QLocale, QTranslator
 from PySide6.QtGui import QKeySequence
 from PySide6.QtWidgets import QApplication
 
-from groundstation.services.messages import told, with_window_labels
+from groundstation.services.messages import localized, with_window_labels
 from groundstation.services.settings import Language
 from groundstation.services.units import UnitSystem
 from planning.base.findings import Finding
@@ -404,7 +404,7 @@ class Translations:
 
 def translated(text: str, units: UnitSystem) -> str:
     """A message, stage or name from below in the user's language and units; as it is where it is not known."""
-    return with_fields(told(text, _in_language, units))
+    return with_fields(localized(text, _in_language, units))
 
 
 def with_fields(text: str) -> str:

@@ -130,14 +130,14 @@ SEED = 0
 
 
 @dataclass(frozen=True, slots=True)
-class _Wanted:
+class _FinePhoto:
     """A fine photo of a site."""
 
     model: SiteModel
     request: PhotoRequest
 
     @property
-    def view(self) -> _Wanted:
+    def view(self) -> _FinePhoto:
         """The same for pictures that differ in nothing but their size."""
         return replace(self, request=replace(self.request, width_px=1))
 
@@ -148,14 +148,14 @@ class PhotoController(QObject):
     def __init__(self, context: ApplicationContext, preview: CameraPreview, parent: QObject) -> None:
         super().__init__(parent)
         self._context, self._preview = context, preview
-        self._wanted: _Wanted | None = None
-        self._refused: _Wanted | None = None
+        self._wanted: _FinePhoto | None = None
+        self._refused: _FinePhoto | None = None
         """The view of what failed or was cancelled."""
         self._job: Job[tuple[PreviewPhoto, QImage]] | None = None
-        self._job_view: _Wanted | None = None
+        self._job_view: _FinePhoto | None = None
         self._is_given_up = False
         self._shown: PreviewPhoto | None = None
-        self._cached: OrderedDict[_Wanted, tuple[PreviewPhoto, QImage]] = OrderedDict()
+        self._cached: OrderedDict[_FinePhoto, tuple[PreviewPhoto, QImage]] = OrderedDict()
         self._key: tuple[SiteModel, str] | None = None
         self._seconds_per_px: float | None = None
         self._effects: EffectsWindow | None = None
@@ -209,7 +209,7 @@ class PhotoController(QObject):
             self._preview.show_note("")
         self._timer.start(AFTER_MS)
 
-    def _request(self) -> _Wanted | None:
+    def _request(self) -> _FinePhoto | None:
         shot = self._preview.shot()
         if shot is None:
             return None
@@ -219,7 +219,7 @@ class PhotoController(QObject):
         heading_deg = wrap_heading_deg(math.degrees(pose.heading_rad))
         view = Viewpoint("photo", (east, north, up), heading_deg, math.degrees(pose.pitch_rad))
         width = min(MAX_WIDTH_PX, max(LEAST_WIDTH_PX, self._preview.width_px()))
-        return _Wanted(model, PhotoRequest("", self._preview.box.light.value(), SEED, view, camera, width))
+        return _FinePhoto(model, PhotoRequest("", self._preview.box.light.value(), SEED, view, camera, width))
 
     def _go_on(self) -> None:
         """Do what comes next for the photo that is wanted."""
@@ -239,7 +239,7 @@ class PhotoController(QObject):
         else:
             self._start(wanted)
 
-    def _is_fine(self, wanted: _Wanted) -> bool:
+    def _is_fine(self, wanted: _FinePhoto) -> bool:
         shown = self._shown
         return (
             shown is not None
@@ -249,7 +249,7 @@ class PhotoController(QObject):
 
     # Rendering
 
-    def _start(self, wanted: _Wanted) -> None:
+    def _start(self, wanted: _FinePhoto) -> None:
         request, model = wanted.request, wanted.model
         quick = quick_width_px(request.width_px, self._seconds_per_px)
         if self._shown is None and quick < request.width_px:
@@ -258,9 +258,9 @@ class PhotoController(QObject):
 
         def work(context: JobContext) -> tuple[PreviewPhoto, QImage]:
             request_for_site = replace(request, site_key=site_key(model) if known is None else known)
-            photo = context.apart(cached_photo, request_for_site)
+            photo = context.run_in_process(cached_photo, request_for_site)
             if photo is None:
-                photo = context.apart(site_photo, model, request_for_site)
+                photo = context.run_in_process(site_photo, model, request_for_site)
             return photo, painted(photo.picture)
 
         self._job_view, self._is_given_up = wanted.view, False
@@ -268,7 +268,7 @@ class PhotoController(QObject):
             self.tr("Render the photo"), work, lambda found: self._done(wanted, *found), self._failed
         )
 
-    def _done(self, wanted: _Wanted, photo: PreviewPhoto, image: QImage) -> None:
+    def _done(self, wanted: _FinePhoto, photo: PreviewPhoto, image: QImage) -> None:
         self._key = wanted.model, photo.request.site_key
         self._seconds_per_px = photo.seconds / (photo.picture.shape[0] * photo.picture.shape[1])
         if not photo.request.is_quick:

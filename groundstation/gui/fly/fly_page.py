@@ -194,14 +194,14 @@ class WarningsView(QWidget):
             label.setVisible(number < len(ordered))
             if number < len(ordered):
                 warning = ordered[number]
-                label.setText(self._said(warning))
+                label.setText(self._warning_text(warning))
                 role = warning.severity.value
                 if label.property("role") != role:
                     label.setProperty("role", role)
                     label.style().polish(label)
         self._calm.setVisible(not ordered)
 
-    def _said(self, warning: FlightWarning) -> str:
+    def _warning_text(self, warning: FlightWarning) -> str:
         shown_text = translated(warning.text, self._units)
         if warning.severity is Severity.ERROR:
             return self.tr("Danger: {0}").format(shown_text)

@@ -12,7 +12,7 @@ from groundstation.gui.application.context import ApplicationContext
 from groundstation.services.jobs.channel import ProcessEnded
 from groundstation.services.jobs.runner import JobContext
 from groundstation.services.jobs.worker import Worker
-from groundstation.services.model.export import ModelExport, WrittenModel, export_apart
+from groundstation.services.model.export import ModelExport, WrittenModel, export_model_in_process
 from groundstation.services.model.facility_records import (
     Attachment,
     attachments_of,
@@ -63,7 +63,7 @@ class ModelController(QObject):
     recordsChanged()
         Something was written.
     coloursChanged()
-    seen(Seen or None), probed(Probed)
+    viewAnswered(ViewAnswer or None), probed(Probed)
         A picture came (None: the process has ended, so what was asked for will not come); a probe was answered.
     """
 
@@ -72,7 +72,7 @@ class ModelController(QObject):
     subjectChanged = Signal()  # noqa: N815
     recordsChanged = Signal()  # noqa: N815
     coloursChanged = Signal()  # noqa: N815
-    seen = Signal(object)
+    viewAnswered = Signal(object)  # noqa: N815
     probed = Signal(object)
     _came = Signal(object)
 
@@ -166,7 +166,7 @@ class ModelController(QObject):
 
     # For other programs
 
-    def export(self, out: Path, wanted: ModelExport) -> None:
+    def export(self, out: Path, export: ModelExport) -> None:
         """Write the scene, in a process beside this one and that of the pictures."""
         card = self.card
         if card is None:
@@ -176,10 +176,10 @@ class ModelController(QObject):
             worker = Worker()
             try:
                 return worker.run(
-                    export_apart,
+                    export_model_in_process,
                     card.folder,
                     out,
-                    wanted,
+                    export,
                     stop=context.stop,
                     trace=context.trace,
                     monitor=context,
@@ -305,13 +305,13 @@ class ModelController(QObject):
             self._say(error)
             return ()
 
-    def search(self, words: str) -> tuple[Hit, ...]:
+    def search(self, query: str) -> tuple[Hit, ...]:
         """Records that have these words."""
         from reconstruction.records.queries import search
 
         try:
             with self._reading() as book:
-                return () if book is None else search(book, words)
+                return () if book is None else search(book, query)
         except GroundStationError as error:
             self._say(error)
             return ()
@@ -376,7 +376,7 @@ class ModelController(QObject):
     def _take(self, message: Any) -> None:
         match message:
             case ViewAnswer():
-                self.seen.emit(message)
+                self.viewAnswered.emit(message)
             case Probed():
                 self.probed.emit(message)
             case SceneMade():
@@ -390,7 +390,7 @@ class ModelController(QObject):
                         status
                     ),
                 )
-                self.seen.emit(None)
+                self.viewAnswered.emit(None)
 
     def _say(self, error: GroundStationError) -> None:
         self._context.say(Severity.ERROR, self._context.words(str(error)))

@@ -75,7 +75,7 @@ class ReportMaker(QObject):
         self._path, self._is_letter = Path(), False
         self._number = self._reading = 0
         self._units = UnitSystem.METRIC
-        controller.seen.connect(self._take)
+        controller.viewAnswered.connect(self._take)
 
     @property
     def is_busy(self) -> bool:
@@ -140,17 +140,17 @@ class ReportMaker(QObject):
     def _not_read(self, _error: BaseException | None) -> None:
         self._reading = 0
 
-    def _take(self, seen: ViewAnswer | None) -> None:
+    def _take(self, answer: ViewAnswer | None) -> None:
         if not self._number:
             return
-        if seen is None:
+        if answer is None:
             self._number = 0
             self.failed.emit(self.tr("the process that shows models has ended; try again"))
-        elif seen.look.place == REPORT and seen.look.number == self._number:
+        elif answer.look.place == REPORT and answer.look.number == self._number:
             global_id, panels = self._left.pop(0)
-            if seen.picture is not None:
+            if answer.picture is not None:
                 defects = {panel: self._entries[panel.global_id].get(Defect, ()) for panel in panels}
-                self._pictures[global_id] = marked(image_of(seen.picture), seen, defects)
+                self._pictures[global_id] = marked(image_of(answer.picture), answer, defects)
             self._next()
 
     def _write(self) -> None:
@@ -238,7 +238,7 @@ def _fitted(picture: bytes) -> str:
     return f"width='{size.width()}' height='{size.height()}'"
 
 
-def marked(picture: QImage, seen: ViewAnswer, defects: Mapping[PanelRow, Sequence[Defect]]) -> QImage:
+def marked(picture: QImage, answer: ViewAnswer, defects: Mapping[PanelRow, Sequence[Defect]]) -> QImage:
     """A picture with panels outlined, and their open defects where they are.
 
     Those of one panel have their numbers. Of several, what has no place on its panel is in the panel's middle.
@@ -252,7 +252,7 @@ def marked(picture: QImage, seen: ViewAnswer, defects: Mapping[PanelRow, Sequenc
     font.setPixelSize(round(1.2 * MARK_PX))
     painter.setFont(font)
     for panel in defects:
-        outline = places_in(seen.look.camera, panel.element.corners_enu_m)
+        outline = places_in(answer.look.camera, panel.element.corners_enu_m)
         if outline is not None:
             painter.setPen(QPen(QColor("#e69f00"), 2.5 if is_one else 1.0))
             painter.drawPolygon(QPolygonF(outline))
@@ -266,7 +266,7 @@ def marked(picture: QImage, seen: ViewAnswer, defects: Mapping[PanelRow, Sequenc
                 continue
             u, v = 0.5 if defect.u is None else defect.u, 0.5 if defect.v is None else defect.v
             point = tuple(a + u * (b - a) + v * (d - a) for a, b, d in zip(c0, c1, c3, strict=True))
-            place = places_in(seen.look.camera, [point])
+            place = places_in(answer.look.camera, [point])
             if place is None:
                 continue
             painter.drawEllipse(place[0], radius, radius)

@@ -182,7 +182,7 @@ class ScenePane(QWidget):
         view.clicked.connect(self._clicked)
         view.pointed.connect(self._point_at)
         self.looks.pictureCame.connect(self._show_picture)
-        controller.seen.connect(self._take)
+        controller.viewAnswered.connect(self._take)
         controller.probed.connect(self._take_probe)
         controller.selectionChanged.connect(self._say)
         controller.coloursChanged.connect(self.show_view)
@@ -251,11 +251,11 @@ class ScenePane(QWidget):
         other = str(self.compare.currentData() or "")
         return Subject("model", card.folder), Subject("model", Path(other)) if other else None
 
-    def _take(self, seen: ViewAnswer | None) -> None:
-        if seen is None:
+    def _take(self, answer: ViewAnswer | None) -> None:
+        if answer is None:
             self.looks.forget()
         else:
-            self.looks.take(seen)
+            self.looks.take(answer)
 
     def _take_probe(self, found: Probed) -> None:
         card, probe = self._controller.card, found.probe
@@ -270,14 +270,14 @@ class ScenePane(QWidget):
             self._measured = [*(self._measured if len(self._measured) < 2 else []), found.point_enu_m]
         self._say()
 
-    def _show_picture(self, place: str, image: QImage | None, seen: ViewAnswer) -> None:
+    def _show_picture(self, place: str, image: QImage | None, answer: ViewAnswer) -> None:
         left, right = self._subjects()
-        if seen.look.subject != (left if place == "left" else right):
+        if answer.look.subject != (left if place == "left" else right):
             return
         self._images[place] = image
-        self._problem = seen.problem
-        if place == "left" and seen.depth_m is not None:
-            self.led.distance_m = seen.depth_m
+        self._problem = answer.problem
+        if place == "left" and answer.depth_m is not None:
+            self.led.distance_m = answer.depth_m
         self._say()
 
     def _say(self) -> None:

@@ -11,7 +11,7 @@ from PySide6.QtCore import QObject, Signal
 
 from groundstation.gui.application.context import ApplicationContext
 from groundstation.services.jobs.runner import JobContext
-from groundstation.services.photos.coarse import SPARSE, CoarseFiles, CoarseRequest, coarse_apart
+from groundstation.services.photos.coarse import SPARSE, CoarseFiles, CoarseRequest, coarse_files_in_process
 from groundstation.services.photos.found_panels import (
     AppliedPoses,
     PanelDraft,
@@ -142,7 +142,7 @@ class PhotosController(QObject):
         """Make a site of a folder of photos alone, open it, and read the photos over it."""
 
         def work(context: JobContext) -> tuple[CoarseFiles, SiteModel]:
-            files = context.apart(coarse_apart, CoarseRequest(photos, out))
+            files = context.run_in_process(coarse_files_in_process, CoarseRequest(photos, out))
             return files, read_input_site(files.site)
 
         def done(result: tuple[CoarseFiles, SiteModel]) -> None:

@@ -193,7 +193,7 @@ class PlanController(QObject):
         prepared = self._plan_cache.prepared_for(request, site)
 
         def work(context: JobContext) -> Planned:
-            return with_local_site(context.apart(plan_document_site, site, request, prepared), site, prepared)
+            return with_local_site(context.run_in_process(plan_document_site, site, request, prepared), site, prepared)
 
         def done(planned: Planned) -> None:
             self._planned(planned, request, site)

@@ -17,7 +17,7 @@ from groundstation.gui.plan.plan_controller import PlanController
 from groundstation.gui.shared_view import SharedView
 from groundstation.gui.widgets.inputs import Form, LengthBox, NumberBox
 from groundstation.gui.widgets.scrolling import ButtonGrid
-from groundstation.services.plan.editing import above_home, beside
+from groundstation.services.plan.editing import above_home, viewpoint_beside
 from groundstation.services.project.document import Document, Item, ItemKind
 from groundstation.services.units import UnitSystem, sampling_unit
 from planning.base.findings import Severity
@@ -434,7 +434,9 @@ class ViewpointPage(QWidget):
         site = self._context.document.site
         if active is None or site is None:
             return
-        self._controller.add_viewpoint(above_home(site.site) if value is None else beside(value, site.site.airspace))
+        self._controller.add_viewpoint(
+            above_home(site.site) if value is None else viewpoint_beside(value, site.site.airspace)
+        )
 
     def delete_viewpoint(self) -> None:
         """The selected viewpoint away."""

@@ -36,7 +36,7 @@ StatusLine = tuple[str, str]
 class MachineTexts(QObject):
     """Says it."""
 
-    def told(
+    def lines(
         self,
         machine: Machine,
         cuda: tuple[str, ...] | None,
@@ -297,7 +297,7 @@ class ChoiceSide(QWidget):
         self.pause.setText(self.tr("Resume") if controller.is_paused else self.tr("Pause"))
         self.stop.setEnabled(can_stop)
         self.cancel_training.setEnabled(controller.phase in (BUSY | {Phase.ASKING}) - {Phase.ENDING})
-        lines = self._words.told(
+        lines = self._words.lines(
             controller.machine,
             controller.cuda,
             controller.choice,

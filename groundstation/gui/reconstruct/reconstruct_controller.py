@@ -271,14 +271,14 @@ class ReconstructController(FolderController):
         It is known which light the scene calls for.
     errorsChanged()
         It is known how well the model shows another photo.
-    seen(Seen)
+    viewAnswered(ViewAnswer)
         A picture came.
     """
 
     progressed = Signal()
     lightChanged = Signal()  # noqa: N815
     errorsChanged = Signal()  # noqa: N815
-    seen = Signal(object)
+    viewAnswered = Signal(object)  # noqa: N815
     _came = Signal(object)
 
     def __init__(self, context: ApplicationContext, parent: QObject | None = None) -> None:
@@ -395,7 +395,7 @@ class ReconstructController(FolderController):
     def _take(self, message: Any) -> None:
         match message:
             case ViewAnswer():
-                self.seen.emit(message)
+                self.viewAnswered.emit(message)
             case Stage():
                 self.training.stage = message
                 self.progressed.emit()
@@ -468,7 +468,7 @@ class ReconstructController(FolderController):
             )
         self.placeChanged.emit()
         self.stateChanged.emit()
-        self.seen.emit(None)
+        self.viewAnswered.emit(None)
 
     def _say_error(self, error: BaseException) -> None:
         if isinstance(error, (GroundStationError, OSError)):

@@ -195,7 +195,7 @@ class ReconstructPage(QObject):
     def _show_machine(self) -> None:
         controller, layout = self.controller, self.machine.layout()
         assert isinstance(layout, QVBoxLayout)
-        lines = self._words.told(
+        lines = self._words.lines(
             controller.machine,
             controller.cuda,
             controller.choice,

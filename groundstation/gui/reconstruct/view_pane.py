@@ -388,7 +388,7 @@ class ViewPane(QWidget):
         view.valueChanged.connect(self._line_moved)
         self.line.valueChanged.connect(self._slider_moved)
         self.looks.pictureCame.connect(self._show_picture)
-        controller.seen.connect(self._take)
+        controller.viewAnswered.connect(self._take)
         controller.errorsChanged.connect(self._errors_changed)
         self._judged.timeout.connect(self._show_errors)
 
@@ -445,23 +445,23 @@ class ViewPane(QWidget):
             return left, photo
         return left, None if compare == NOTHING else Subject("model", Path(compare))
 
-    def _take(self, seen: ViewAnswer | None) -> None:
-        if seen is None:
+    def _take(self, answer: ViewAnswer | None) -> None:
+        if answer is None:
             self.looks.forget()
         else:
-            self.looks.take(seen)
+            self.looks.take(answer)
 
-    def _show_picture(self, place: str, image: QImage | None, seen: ViewAnswer) -> None:
+    def _show_picture(self, place: str, image: QImage | None, answer: ViewAnswer) -> None:
         left, right = self._subjects()
-        if seen.look.subject != (left if place == "left" else right):
+        if answer.look.subject != (left if place == "left" else right):
             return
         self._images[place] = image
         if place == "left":
-            self._scale, self._problem = seen.scale, seen.problem
-            if seen.depth_m is not None:
-                self.led.distance_m = seen.depth_m
-        elif seen.problem:
-            self._problem = seen.problem
+            self._scale, self._problem = answer.scale, answer.problem
+            if answer.depth_m is not None:
+                self.led.distance_m = answer.depth_m
+        elif answer.problem:
+            self._problem = answer.problem
         self._say()
 
     def _say(self) -> None:

@@ -168,9 +168,9 @@ class ViewPictures(QObject):
         """Whether nothing is on its way, and everything is as fine as it will be."""
         return not self._on_way and not self._rest.isActive() and not self._missing()
 
-    def take(self, seen: ViewAnswer) -> None:
+    def take(self, answer: ViewAnswer) -> None:
         """An answer has come."""
-        place, number = seen.look.place, seen.look.number
+        place, number = answer.look.place, answer.look.number
         waited_for = self._on_way.get(place)
         if waited_for is None or number < waited_for:
             return
@@ -180,10 +180,10 @@ class ViewPictures(QObject):
             self._shown[place] = (-1, False)
             self._go_on()
             return
-        lens = seen.look.camera.intrinsics
-        if seen.picture is not None and seen.look.subject.kind != "photo":
-            self._pace(place, seen.look.subject).took(lens.width_px * lens.height_px, seen.seconds)
-        self.pictureCame.emit(place, None if seen.picture is None else image_of(seen.picture), seen)
+        lens = answer.look.camera.intrinsics
+        if answer.picture is not None and answer.look.subject.kind != "photo":
+            self._pace(place, answer.look.subject).took(lens.width_px * lens.height_px, answer.seconds)
+        self.pictureCame.emit(place, None if answer.picture is None else image_of(answer.picture), answer)
         self._go_on()
 
     def _look_again(self) -> None:

@@ -45,18 +45,18 @@ def agrees(parent: QWidget, title: str, text: str, *, is_usual: bool = False, wa
     """
     icon = QMessageBox.Icon.Warning if warns else QMessageBox.Icon.Question
     usual = _Button.Yes if is_usual else _Button.Cancel
-    return _asked(icon, parent, title, text, _Button.Yes | _Button.Cancel, usual) == _Button.Yes
+    return _answer(icon, parent, title, text, _Button.Yes | _Button.Cancel, usual) == _Button.Yes
 
 
 def choose_file(parent: QWidget, title: str, kinds: str) -> Path | None:
     """A file that exists; `kinds` as Qt has them, "Sites (*.json)"."""
-    found = _PathDialog(parent, title, _Wanted.FILE, kinds=kinds).ask()
+    found = _PathDialog(parent, title, _PathKind.FILE, kinds=kinds).ask()
     return found[0] if found else None
 
 
 def choose_files(parent: QWidget, title: str, kinds: str, folder: Path) -> tuple[Path, ...]:
     """Files that exist, first looked for in a folder; none where the user thought better of it."""
-    return _PathDialog(parent, title, _Wanted.FILES, folder, kinds=kinds).ask()
+    return _PathDialog(parent, title, _PathKind.FILES, folder, kinds=kinds).ask()
 
 
 def choose_new_file(
@@ -75,7 +75,7 @@ def choose_new_file(
         return path if fits and _ENDING.fullmatch(found) else path.with_name(path.name + ending)
 
     folder = proposed.parent if proposed.is_absolute() else None
-    chosen = _PathDialog(parent, title, _Wanted.NEW_FILE, folder, proposed.name, kinds, whole).ask()
+    chosen = _PathDialog(parent, title, _PathKind.NEW_FILE, folder, proposed.name, kinds, whole).ask()
     return chosen[0] if chosen else None
 
 
@@ -90,7 +90,7 @@ class Questions(QObject):
 
     def save_first(self, parent: QWidget) -> Answer:
         """Whether to save before something else happens."""
-        answer = _asked(
+        answer = _answer(
             QMessageBox.Icon.Question,
             parent,
             self.tr("Unsaved changes"),
@@ -117,7 +117,7 @@ class Questions(QObject):
             text += "\n\n" + self.tr(
                 "The project was saved by others since then: what they changed is not in the copy."
             )
-        answer = _asked(
+        answer = _answer(
             QMessageBox.Icon.Question,
             parent,
             self.tr("Unsaved work was kept"),
@@ -135,13 +135,13 @@ class Questions(QObject):
     def folder(self, parent: QWidget, title: str, *places: Path | None) -> Path | None:
         """A folder that exists; the dialog begins at the first of the `places` that is there."""
         begin = next((place for place in places if place is not None and place.is_dir()), None)
-        found = _PathDialog(parent, title, _Wanted.FOLDER, begin).ask()
+        found = _PathDialog(parent, title, _PathKind.FOLDER, begin).ask()
         return found[0] if found else None
 
     def new_folder(self, parent: QWidget, title: str, proposed: Path) -> Path | None:
         """A folder to be made; the `proposed` one stands in the dialog, under a name that is free."""
         free = free_name(proposed)
-        dialog = _PathDialog(parent, title, _Wanted.NEW_FOLDER, free.parent, free.name)
+        dialog = _PathDialog(parent, title, _PathKind.NEW_FOLDER, free.parent, free.name)
         dialog.setLabelText(QFileDialog.DialogLabel.FileName, self.tr("New folder:"))
         found = dialog.ask()
         return found[0] if found else None
@@ -151,7 +151,7 @@ class Questions(QObject):
         return choose_file(parent, title, kinds)
 
 
-class _Wanted(Enum):
+class _PathKind(Enum):
     """What a path is asked for."""
 
     FILE = auto()
@@ -161,12 +161,12 @@ class _Wanted(Enum):
     NEW_FOLDER = auto()
 
 
-NEW = (_Wanted.NEW_FILE, _Wanted.NEW_FOLDER)
+NEW = (_PathKind.NEW_FILE, _PathKind.NEW_FOLDER)
 
 MODES = {
-    _Wanted.FILE: QFileDialog.FileMode.ExistingFile,
-    _Wanted.FILES: QFileDialog.FileMode.ExistingFiles,
-    _Wanted.FOLDER: QFileDialog.FileMode.Directory,
+    _PathKind.FILE: QFileDialog.FileMode.ExistingFile,
+    _PathKind.FILES: QFileDialog.FileMode.ExistingFiles,
+    _PathKind.FOLDER: QFileDialog.FileMode.Directory,
 }
 
 
@@ -188,7 +188,7 @@ class _PathDialog(QFileDialog):
         self,
         parent: QWidget,
         title: str,
-        wanted: _Wanted,
+        wanted: _PathKind,
         folder: Path | None = None,
         name: str = "",
         kinds: str = "",
@@ -198,7 +198,7 @@ class _PathDialog(QFileDialog):
         self._wanted, self._name, self._whole = wanted, name, whole
         self._typed: tuple[Path, ...] = ()
         self.setFileMode(MODES.get(wanted, QFileDialog.FileMode.AnyFile))
-        self.setOption(QFileDialog.Option.ShowDirsOnly, wanted in (_Wanted.FOLDER, _Wanted.NEW_FOLDER))
+        self.setOption(QFileDialog.Option.ShowDirsOnly, wanted in (_PathKind.FOLDER, _PathKind.NEW_FOLDER))
         if wanted in NEW:
             self.setAcceptMode(QFileDialog.AcceptMode.AcceptSave)
             # It is asked here, for the name with its ending.
@@ -227,7 +227,7 @@ class _PathDialog(QFileDialog):
         text = line.text().strip()
         names = re.findall(r'"([^"]*)"', text) if '"' in text else [text]
         paths = tuple(Path(self.directory().absolutePath(), Path(name).expanduser()) for name in names)
-        if self._wanted is not _Wanted.FOLDER and len(paths) == 1 and paths[0].is_dir():
+        if self._wanted is not _PathKind.FOLDER and len(paths) == 1 and paths[0].is_dir():
             self.setDirectory(str(paths[0]))
             self.selectFile(self._name)
             return
@@ -247,22 +247,22 @@ class _PathDialog(QFileDialog):
 
     def _is_wanted(self, paths: tuple[Path, ...]) -> bool:
         match self._wanted:
-            case _Wanted.NEW_FOLDER:
+            case _PathKind.NEW_FOLDER:
                 return not paths[0].exists()
-            case _Wanted.NEW_FILE:
+            case _PathKind.NEW_FILE:
                 return True
-            case _Wanted.FOLDER:
+            case _PathKind.FOLDER:
                 there = paths[0].is_dir()
             case _:
                 there = all(path.is_file() for path in paths)
         if not there:
             text = QCoreApplication.translate("Questions", "{0}: there is nothing of that name.")
-            missing = next(path for path in paths if not path.exists() or self._wanted is _Wanted.FOLDER)
-            _asked(QMessageBox.Icon.Warning, self, self.windowTitle(), text.format(missing), _Button.Ok, _Button.Ok)
+            missing = next(path for path in paths if not path.exists() or self._wanted is _PathKind.FOLDER)
+            _answer(QMessageBox.Icon.Warning, self, self.windowTitle(), text.format(missing), _Button.Ok, _Button.Ok)
         return there
 
     def _may_replace(self, path: Path) -> bool:
-        if self._wanted is not _Wanted.NEW_FILE or not path.exists():
+        if self._wanted is not _PathKind.NEW_FILE or not path.exists():
             return True
         text = QCoreApplication.translate("Questions", "{0} is there already. Replace it?").format(path.name)
         return agrees(self, self.windowTitle(), text, warns=True)
@@ -282,7 +282,7 @@ def free_name(path: Path) -> Path:
     return free
 
 
-def _asked(
+def _answer(
     icon: QMessageBox.Icon,
     parent: QWidget,
     title: str,

@@ -115,7 +115,7 @@ class JobContext:
         remaining = spent * (total - done) / done if done > 0 and total > done and spent > 0.2 else None
         self._publish(JobProgress(self._job.id, self._job.name, stage, done, total, now - self._start_s, remaining))
 
-    def apart(self, function: Callable[..., Result], *arguments: Any) -> Result:
+    def run_in_process(self, function: Callable[..., Result], *arguments: Any) -> Result:
         """Call `function(*arguments, stop=, trace=, monitor=)` in a process of its own, where there is one for it."""
         run = self._worker.run if self._worker is not None else _here
         return run(function, *arguments, stop=self.stop, trace=self.trace, monitor=self)
@@ -185,7 +185,7 @@ class JobRunner:
     Parameters
     ----------
     worker
-        The process for `JobContext.apart`; without one that work, too, is done on the job's thread.
+        The process for `JobContext.run_in_process`; without one that work, too, is done on the job's thread.
     """
 
     def __init__(self, n_workers: int = 1, clock: Clock = time.perf_counter, *, worker: Worker | None = None) -> None:

@@ -124,7 +124,7 @@ def check_name(out: Path, kind: str) -> None:
     check_output(out)
 
 
-def export_model(folder: Path, out: Path, wanted: ModelExport, monitor: Monitor = QUIET) -> WrittenModel:
+def export_model(folder: Path, out: Path, export: ModelExport, monitor: Monitor = QUIET) -> WrittenModel:
     """Write a model, with the records that lie beside it where the format has a place for them.
 
     Raises
@@ -132,22 +132,22 @@ def export_model(folder: Path, out: Path, wanted: ModelExport, monitor: Monitor 
     InputError
         The folder holds no model, or a file cannot be read or written.
     """
-    check_name(out, wanted.format)
-    if wanted.format == "ifc":
+    check_name(out, export.format)
+    if export.format == "ifc":
         return _ifc(folder, out)
-    exporter = model_exporter(wanted.format)
+    exporter = model_exporter(export.format)
     whole, trained = _read(folder, monitor)
-    scene, notes = _shown(whole, trained, wanted, exporter, monitor)
+    scene, notes = _shown(whole, trained, export, exporter, monitor)
     attributes, rows = _records(folder)
-    notes += exporter.write(ModelToExport(scene, trained, folder, out, wanted, attributes, rows, monitor))
+    notes += exporter.write(ModelToExport(scene, trained, folder, out, export, attributes, rows, monitor))
     return WrittenModel(out, _size(out), tuple(notes))
 
 
-def export_apart(
-    folder: Path, out: Path, wanted: ModelExport, *, stop: Stop, trace: Trace, monitor: Monitor
+def export_model_in_process(
+    folder: Path, out: Path, export: ModelExport, *, stop: Stop, trace: Trace, monitor: Monitor
 ) -> WrittenModel:
     """`export_model`, as a process beside the window's calls it; it gets no better by and by, so it is not stopped."""
-    return export_model(folder, out, wanted, monitor)
+    return export_model(folder, out, export, monitor)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -191,19 +191,19 @@ def _read(folder: Path, monitor: Monitor) -> tuple[GsScene, TrainedModel]:
 
 
 def _shown(
-    whole: GsScene, trained: TrainedModel, wanted: ModelExport, exporter: ModelExporter, monitor: Monitor
+    whole: GsScene, trained: TrainedModel, export: ModelExport, exporter: ModelExporter, monitor: Monitor
 ) -> tuple[GsScene, list[str]]:
     """The components that are wanted, with what panels show in their colours."""
     from reconstruction.exports.mesh import baked, needs_baking
     from reconstruction.training.methods.shader import Shader
 
     scene, notes = whole, list[str]()
-    if wanted.components is not None:
+    if export.components is not None:
         known = [component.name for component in whole.components]
-        unknown = next((name for name in wanted.components if name not in known), None)
+        unknown = next((name for name in export.components if name not in known), None)
         if unknown is not None:
             raise InputError(say("--components: there is no component '{}'; known are {}", unknown, ", ".join(known)))
-        chosen = tuple(component for component in whole.components if component.name in wanted.components)
+        chosen = tuple(component for component in whole.components if component.name in export.components)
         scene = replace(whole, components=chosen)
     if not exporter.has_colours:
         return scene, notes
@@ -212,7 +212,7 @@ def _shown(
             notes.append(
                 say("what this method's shading adds is not in the file: its Gaussians have their own colours only")
             )
-    elif wanted.baked:
+    elif export.baked:
         scene = baked(scene, trained.model, monitor)
         notes.append(
             say("mirrored light is in the colours, as harmonics of degree 3: blurred, and it stays on the panes")

@@ -243,12 +243,12 @@ def make_records(folder: Path, site_path: Path | None = None, who: str | None = 
         return book.set_objects(rows, origin)
 
 
-def object_lines(book: RecordBook, wanted: ObjectFilter) -> list[dict[str, Any]]:
+def object_lines(book: RecordBook, object_filter: ObjectFilter) -> list[dict[str, Any]]:
     """Objects with what matters most about them: latest inspection, worst open defect."""
     from reconstruction.records.queries import find_objects, latest_inspections, worst_open_defects
 
     with book.database.snapshot():
-        rows = find_objects(book, wanted)
+        rows = find_objects(book, object_filter)
         inspections, defects = latest_inspections(book), worst_open_defects(book)
     lines = []
     for row in rows:

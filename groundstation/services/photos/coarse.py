@@ -134,7 +134,7 @@ def coarse_files(request: CoarseRequest, monitor: Monitor = QUIET) -> CoarseFile
     return CoarseFiles(request.out / SITE_FILE, report, (*read.findings, *coarse.findings, *findings))
 
 
-def coarse_apart(
+def coarse_files_in_process(
     request: CoarseRequest, *, stop: Stop = never, trace: Trace | None = None, monitor: Monitor = QUIET
 ) -> CoarseFiles:
     """As `coarse_files`, for a process of its own: COLMAP ends the process that it runs in when it fails badly."""

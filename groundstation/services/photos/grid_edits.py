@@ -258,7 +258,7 @@ def set_panel(draft: PanelDraft, place: GridPlace, row: int, column: int, *, is_
         cell = cell_at(grid, (float(at[0]), float(at[1])))
         if cell is not None:
             missing = [found for found in grid.missing if found != cell]
-            grids[other.facade, other.photo] = _made(
+            grids[other.facade, other.photo] = _with_panels_between(
                 grid, grid.rows, grid.columns, [*missing, *([] if is_panel else [cell])]
             )
     return _changed(draft, place.facade, grids)
@@ -374,10 +374,12 @@ def _remade(grid: FacadeGrid, rows: tuple[GridLine, ...], columns: tuple[GridLin
     """The grid with other lines; cells around the middle of one that was no panel are none either."""
     bare = replace(grid, rows=rows, columns=columns, panels=(), missing=())
     middles = [cell_middle(grid, *cell) for cell in grid.missing]
-    return _made(grid, rows, columns, [cell for cell in (cell_at(bare, middle) for middle in middles) if cell])
+    return _with_panels_between(
+        grid, rows, columns, [cell for cell in (cell_at(bare, middle) for middle in middles) if cell]
+    )
 
 
-def _made(
+def _with_panels_between(
     grid: FacadeGrid, rows: tuple[GridLine, ...], columns: tuple[GridLine, ...], missing: Sequence[tuple[int, int]]
 ) -> FacadeGrid:
     """Panels between lines, cut by the inclined ones that were found."""

@@ -226,7 +226,7 @@ def refined_poses(
         The photos do not fit together.
     """
     where = request.kept_in(folder)
-    kept = _kept(where, photos, request)
+    kept = _stored_refinement(where, photos, request)
     if kept is not None:
         return _judged(photos, kept, where, was_kept=True)
     load_colmap()  # what is missing is said before anything is compared
@@ -262,7 +262,7 @@ def refined_summary(outcome: RefinedOutcome) -> dict[str, Any]:
     }
 
 
-def _kept(where: Path, photos: Sequence[PosedPhoto], request: RefineRequest) -> StoredRefinement | None:
+def _stored_refinement(where: Path, photos: Sequence[PosedPhoto], request: RefineRequest) -> StoredRefinement | None:
     """What was computed before of the same photos, and in the size that is wished for."""
     if not is_refined_folder(where):
         return None

@@ -91,7 +91,7 @@ def with_edited_plan(document: Document, revision: Revision) -> Document:
     return document.with_plan(replace(entry, plan=revision.plan, bound_for_views=None))
 
 
-def beside(viewpoint: Viewpoint, airspace: Airspace) -> Viewpoint:
+def viewpoint_beside(viewpoint: Viewpoint, airspace: Airspace) -> Viewpoint:
     """A viewpoint that looks as another one does, `BESIDE_M` to its right or, where the airspace ends, to its left.
 
     Where both lie outside, as they do for a viewpoint that is outside itself, it stands to the right.

@@ -54,13 +54,13 @@ class FlownPlan:
     findings: tuple[Finding, ...]
 
     @property
-    def taken(self) -> frozenset[str]:
+    def photographed(self) -> frozenset[str]:
         """Views that have a photo."""
         return frozenset(match.view_id for match in self.matching.views if match.reason is Reason.TAKEN)
 
     def unfinished_sorties(self) -> tuple[int, ...]:
         """Sorties that were begun and have views without a photo, from 1, the one that was flown last in front."""
-        photographed, plan = self.taken, self.plan
+        photographed, plan = self.photographed, self.plan
         flown = dict.fromkeys(number for number in reversed(self.matching.sortie_of_record) if number > 0)
         return tuple(number for number in flown if not photographed.issuperset(plan.sorties[number - 1].viewpoint_ids))
 
@@ -222,7 +222,7 @@ def resume_flight(
         number = unfinished[0]
     elif not 1 <= number <= len(plan.sorties):
         raise InputError(say("sortie: expected 1 to {}, got {}", len(plan.sorties), number))
-    rest = resume_sortie(plan, flown.site_model, number, flown.taken, prepared=prepared, monitor=monitor)
+    rest = resume_sortie(plan, flown.site_model, number, flown.photographed, prepared=prepared, monitor=monitor)
     duration_s = rest.plan.sorties[0].duration_s
     charge = 1.0 if battery is None else battery
     usable_s = plan.aircraft.endurance_s * (charge - plan.rules.battery_reserve)

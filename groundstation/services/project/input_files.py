@@ -117,7 +117,7 @@ def read_input_site(path: Path) -> SiteModel:
 
 
 @contextmanager
-def expecting(wanted: FileKind, path: Path) -> Iterator[None]:
+def expecting(expected: FileKind, path: Path) -> Iterator[None]:
     """Turn the refusal of a file into one that says what was found instead, where that is another kind of file.
 
     Raises
@@ -125,16 +125,18 @@ def expecting(wanted: FileKind, path: Path) -> Iterator[None]:
     InputError
         As it was raised inside, or in other words.
     """
-    if wanted not in EXPECTED:
-        raise ValueError(f"expected a kind of file that can be asked for, got {wanted}")
+    if expected not in EXPECTED:
+        raise ValueError(f"expected a kind of file that can be asked for, got {expected}")
     try:
         yield
     except (InputError, MissionError) as error:
         found = kind_of(path)
-        if found is None or found is wanted or (wanted, found) in READERS_KNOW_BETTER:
+        if found is None or found is expected or (expected, found) in READERS_KNOW_BETTER:
             raise
         raise InputError(
-            say("expected {}, found {}; {}", EXPECTED[wanted], found.value, _advice(wanted, found, path), place=path)
+            say(
+                "expected {}, found {}; {}", EXPECTED[expected], found.value, _advice(expected, found, path), place=path
+            )
         ) from error
 
 
@@ -195,21 +197,21 @@ def _project_record(path: Path) -> ProjectRecord | None:
         return None
 
 
-def _advice(wanted: FileKind, found: FileKind, path: Path) -> str:
+def _advice(expected: FileKind, found: FileKind, path: Path) -> str:
     if found is FileKind.PROJECT:
-        return _advice_on_project(wanted, path)
-    return ADVICE.get((wanted, found), ADVICE_FOR_ALL.get(found, say("name another file")))
+        return _advice_on_project(expected, path)
+    return ADVICE.get((expected, found), ADVICE_FOR_ALL.get(found, say("name another file")))
 
 
-def _advice_on_project(wanted: FileKind, path: Path) -> str:
+def _advice_on_project(expected: FileKind, path: Path) -> str:
     """Which file of a project can be named instead."""
     folder, record = project_folder(path), _project_record(path)
     if record is None:
         return say("name a file in it")
-    if wanted is FileKind.SITE and record.site:
+    if expected is FileKind.SITE and record.site:
         return say("its site is {}", folder / record.site)
-    if wanted is FileKind.PLAN and record.plans:
+    if expected is FileKind.PLAN and record.plans:
         return say("name one of its plans: ") + ", ".join(str(folder / plan.file) for plan in record.plans)
-    if wanted is FileKind.PLAN and record.site:
+    if expected is FileKind.PLAN and record.site:
         return say("it has no plan yet; 'plan {} -o PLAN' makes one", folder / record.site)
     return say("name a file in it")

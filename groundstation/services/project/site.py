@@ -259,8 +259,8 @@ def is_plain(name: str) -> bool:
     return forbidden is None and 0 < len(name) <= MAX_NAME_LENGTH and not name.startswith(".")
 
 
-def _plain_name(wanted: str) -> str:
-    return f"{file_stem(PurePath(wanted.replace(chr(92), '/')).stem) or 'mesh'}.ply"
+def _plain_name(name: str) -> str:
+    return f"{file_stem(PurePath(name.replace(chr(92), '/')).stem) or 'mesh'}.ply"
 
 
 def file_stem(name: str) -> str:

@@ -235,7 +235,7 @@ def probed(probe: Probe, shown: ShownModel, model: SceneModel) -> Probed:
     if shown.quads is not None:
         panel = int(picked(shown.quads, camera, place, np.array([depth_m]))[0])
         if panel >= 0 and (probe.section is None or np.isfinite(depth_m)):
-            _, distances = shown.quads.met(origin, ray[None])
+            _, distances = shown.quads.first_hits(origin, ray[None])
             return Probed(probe, panel, _point(origin + distances[0] * ray))
     if not np.isfinite(depth_m) or depth_m <= 0.0:
         return Probed(probe, None, None)
@@ -395,7 +395,7 @@ class RenderQueue:
 
     # Pictures
 
-    def seen(self, look: ViewRequest) -> ViewAnswer:
+    def answer(self, look: ViewRequest) -> ViewAnswer:
         """Answer a look."""
         begun_s = time.perf_counter()
         try:
@@ -467,18 +467,18 @@ class RenderQueue:
 
     # Photos, one by one
 
-    def judge(self, wanted: WatchErrors | None, visit: TrainingSnapshot | None) -> bool:
+    def judge(self, request: WatchErrors | None, visit: TrainingSnapshot | None) -> bool:
         """Tell how well one photo is shown, where somebody wants to know; whether there is another one to tell of.
 
         Beside a training it takes a small share of the time, round and round; of a model that stays as it is, or whose
         training is paused, each photo is told once.
         """
-        if wanted is None or wanted.subject is None:
+        if request is None or request.subject is None:
             self._let_errors_go()
             return False
         try:
-            shown = self._subject(wanted.subject)
-            self._turn_to(wanted, shown)
+            shown = self._subject(request.subject)
+            self._turn_to(request, shown)
         except (GroundStationError, OSError):
             self._let_errors_go()
             return False
@@ -499,17 +499,17 @@ class RenderQueue:
         found = errors.next_db(shown.model, shown.gains, shown.settings)
         self._judged_s += time.monotonic() - now
         if found is not None:
-            self._tell(PhotoError(wanted.subject, *found))
+            self._tell(PhotoError(request.subject, *found))
         return True
 
-    def _turn_to(self, wanted: WatchErrors, shown: ShownModel) -> None:
+    def _turn_to(self, request: WatchErrors, shown: ShownModel) -> None:
         from reconstruction.training.model.render import PhotoErrors
 
-        if self._errors is not None and self._errors[0] == wanted and self._errors[1] is shown.version:
+        if self._errors is not None and self._errors[0] == request and self._errors[1] is shown.version:
             return
         self._let_errors_go()
-        photos = shown.photos(self._source(wanted.dataset))
-        self._errors = wanted, shown.version, PhotoErrors(self._source(wanted.dataset), photos)
+        photos = shown.photos(self._source(request.dataset))
+        self._errors = request, shown.version, PhotoErrors(self._source(request.dataset), photos)
         self._n_left, self._judged_s, self._since_s = len(photos), 0.0, time.monotonic()
         self._was_paused = False
 

@@ -219,7 +219,7 @@ class _Server:
         look = self._requests.next_look()
         match look:
             case ViewRequest():
-                self._tell(self._render_queue.seen(look))
+                self._tell(self._render_queue.answer(look))
             case Probe():
                 self._tell(self._render_queue.probed(look))
         return look is not None

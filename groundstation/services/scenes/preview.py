@@ -182,7 +182,7 @@ class _Studio:
         photo = PosedPhoto(request.view.id, Path(request.view.id), lens, Pose.of(request.view), None)
         renderer, decisions = (self._quick, ()) if request.is_quick else self._decided(photo, monitor)
         started_s = time.perf_counter()
-        rendered = _taken(renderer, photo, monitor)
+        rendered = _rendered_in_strips(renderer, photo, monitor)
         picture = developed(rendered)
         seconds = time.perf_counter() - started_s
         seen = np.unique(rendered.panel).astype(np.int64)
@@ -213,7 +213,7 @@ _KEPT: list[_Studio] = []
 """The studio of the last photo, at most one."""
 
 
-def _taken(renderer: Renderer, photo: PosedPhoto, monitor: Monitor) -> RenderedPhoto:
+def _rendered_in_strips(renderer: Renderer, photo: PosedPhoto, monitor: Monitor) -> RenderedPhoto:
     """A photograph, rendered strip by strip so that it can be cancelled; the same as in one piece."""
     height, width = photo.intrinsics.height_px, photo.intrinsics.width_px
     rows = max(1, STRIP_PX // width)

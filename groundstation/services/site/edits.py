@@ -69,12 +69,12 @@ def _rounded(point: Sequence[float]) -> Vec3:
     return x, y, z
 
 
-def index_of(ids: Iterable[str], wanted: str, kind: str) -> int:
+def index_of(ids: Iterable[str], identifier: str, kind: str) -> int:
     """Where an identifier stands; `ValueError` where it does not."""
     for index, found in enumerate(ids):
-        if found == wanted:
+        if found == identifier:
             return index
-    raise ValueError(f"there is no {kind} '{wanted}' on this site")
+    raise ValueError(f"there is no {kind} '{identifier}' on this site")
 
 
 def check_new_name(name: str, used: Iterable[str], kind: str) -> None:

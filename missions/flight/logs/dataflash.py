@@ -72,7 +72,7 @@ def looks_like_text(head: bytes) -> bool:
     return b"FMT," in head
 
 
-def binary_tables(content: bytes, wanted: frozenset[str], monitor: Monitor = QUIET) -> tuple[dict[str, Table], int]:
+def binary_tables(content: bytes, names: frozenset[str], monitor: Monitor = QUIET) -> tuple[dict[str, Table], int]:
     """Tables of the wanted messages of a binary log, and how many bytes of it are no records."""
     data = np.frombuffer(content, np.uint8)
     monitor.report("reading the log", 0, 1)
@@ -84,7 +84,7 @@ def binary_tables(content: bytes, wanted: frozenset[str], monitor: Monitor = QUI
     tables: dict[str, Table] = {}
     for record in formats:
         name = _text(record["name"])
-        if name not in wanted or name in tables:
+        if name not in names or name in tables:
             continue
         layout = _layout(_text(record["letters"]), _text(record["labels"]))
         if layout is None or layout.itemsize + 3 != record["length"]:
@@ -119,7 +119,7 @@ def _scaled(values: Column, letter: str) -> Column:
     return np.asarray(numbers if factor == 1 else numbers * factor)
 
 
-def text_tables(content: bytes, wanted: frozenset[str], monitor: Monitor = QUIET) -> tuple[dict[str, Table], int]:
+def text_tables(content: bytes, names: frozenset[str], monitor: Monitor = QUIET) -> tuple[dict[str, Table], int]:
     """Tables of the wanted messages of a text log, and how many of its lines make no sense."""
     letters: dict[str, str] = {}
     labels: dict[str, list[str]] = {}
@@ -132,7 +132,7 @@ def text_tables(content: bytes, wanted: frozenset[str], monitor: Monitor = QUIET
         name, _, rest = line.partition(",")
         if name == "FMT":
             parts = [part.strip() for part in rest.split(",")]
-            if len(parts) >= 5 and parts[2] in wanted:
+            if len(parts) >= 5 and parts[2] in names:
                 letters[parts[2]], labels[parts[2]] = parts[3], parts[4:]
         elif name in labels:
             values = [value.strip() for value in rest.split(",", len(labels[name]) - 1)]

@@ -44,20 +44,25 @@ class PhotoClock:
     ----------
     unix_less_own_s
         None before it is known.
-    is_told
+    is_of_system_time
         SYSTEM_TIME told it; else it is from a photo, which may have been some tenths of a second on its way.
     """
 
     unix_less_own_s: float | None = None
-    is_told: bool = False
+    is_of_system_time: bool = False
 
-    def told(self, time_unix_usec: int, own_s: float) -> PhotoClock:
+    def after_system_time(self, time_unix_usec: int, own_s: float) -> PhotoClock:
         """The clock after SYSTEM_TIME, which gives both times; the same where the UNIX time is not known yet."""
         return PhotoClock(time_unix_usec / 1e6 - own_s, True) if time_unix_usec >= LEAST_UNIX_USEC else self
 
-    def heard(self, time_usec: int, own_s: float, silent_s: float) -> PhotoClock:
+    def after_photo(self, time_usec: int, own_s: float, silent_s: float) -> PhotoClock:
         """The clock after a photo, which counts where nothing told of it, and only beside a fresh time."""
-        if self.is_told or self.unix_less_own_s is not None or time_usec < LEAST_UNIX_USEC or silent_s >= SILENT_S:
+        if (
+            self.is_of_system_time
+            or self.unix_less_own_s is not None
+            or time_usec < LEAST_UNIX_USEC
+            or silent_s >= SILENT_S
+        ):
             return self
         return replace(self, unix_less_own_s=time_usec / 1e6 - own_s)
 

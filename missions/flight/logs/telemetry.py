@@ -89,7 +89,7 @@ class TelemetryReader:
         }
 
     @property
-    def wanted(self) -> frozenset[type[Message]]:
+    def message_names(self) -> frozenset[type[Message]]:
         """Messages that tell something."""
         return frozenset(self._handlers)
 
@@ -140,7 +140,7 @@ class TelemetryReader:
 
     def _system_time(self, message: messages.SystemTime, now_s: float) -> None:
         if self._is_own:
-            self._photo_clock = self._photo_clock.told(message.time_unix_usec, now_s)
+            self._photo_clock = self._photo_clock.after_system_time(message.time_unix_usec, now_s)
 
     def _battery(self, message: messages.SysStatus | messages.BatteryStatus, now_s: float) -> None:
         if 0 <= message.battery_remaining <= 100:
@@ -185,7 +185,7 @@ class TelemetryReader:
 
     def _camera_feedback(self, message: messages.CameraFeedback, now_s: float) -> None:
         """The angles in it are the vehicle's: they count for nothing."""
-        self._photo_clock = self._photo_clock.heard(message.time_usec, now_s, self._silent_s)
+        self._photo_clock = self._photo_clock.after_photo(message.time_usec, now_s, self._silent_s)
         photo = RawPhoto(
             message.img_idx,
             self._photo_clock.taken_s(message.time_usec, now_s, self._silent_s),
@@ -272,7 +272,7 @@ def read_tlog(content: bytes, monitor: Monitor = QUIET) -> RawLog:
 
     decoder = ardupilotmega.MAVLink(None)
     reader = TelemetryReader()
-    wanted = frozenset(map(message_id, reader.wanted))
+    wanted = frozenset(map(message_id, reader.message_names))
     at = n_lost = 0
     while at + TIME_BYTES < len(content):
         size = _frame_bytes(content, at)

@@ -592,7 +592,7 @@ def _seen_from_above(corners: Array) -> _Map:
     )
 
 
-def _surfaces(seen: _Map) -> _Surfaces:
+def _surfaces(height_map: _Map) -> _Surfaces:
     """Smooth surfaces that are open to the sky.
 
     Ground is what things rise from, and what falls nowhere, or only on a shorter way than it goes on to the edge of the
@@ -602,13 +602,13 @@ def _surfaces(seen: _Map) -> _Surfaces:
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
-    top, is_there = seen.top, ~np.isnan(seen.top)
+    top, is_there = height_map.top, ~np.isnan(height_map.top)
     index = np.full(top.shape, -1)
     index[is_there] = np.arange(int(is_there.sum()))
     pairs = []
     every, but_last, but_first = slice(None), slice(None, -1), slice(1, None)
     for a, b in (((but_last, every), (but_first, every)), ((every, but_last), (every, but_first))):
-        is_smooth = np.abs(np.nan_to_num(top[a] - top[b], nan=np.inf)) <= SMOOTH_SLOPE * seen.cell_m
+        is_smooth = np.abs(np.nan_to_num(top[a] - top[b], nan=np.inf)) <= SMOOTH_SLOPE * height_map.cell_m
         pairs.append(np.stack([index[a][is_smooth], index[b][is_smooth]]))
     edges, n = np.concatenate(pairs, axis=1), int(is_there.sum())
     graph = coo_array((np.ones(edges.shape[1], bool), tuple(edges)), shape=(n, n))
@@ -618,7 +618,7 @@ def _surfaces(seen: _Map) -> _Surfaces:
     falls = top - ndimage.minimum_filter(np.where(is_there, top, np.inf), 3, mode="nearest") >= DROP_M
     # At the edge of what the file holds, walls that go down tell a roof from the end of a scan.
     is_edge = ndimage.binary_dilation(~is_there, np.ones((3, 3), bool)) & is_there
-    falls |= is_edge & (top - ndimage.minimum_filter(np.where(is_there, seen.bottom, np.inf), 3) >= DROP_M)
+    falls |= is_edge & (top - ndimage.minimum_filter(np.where(is_there, height_map.bottom, np.inf), 3) >= DROP_M)
     n_rising, n_falling, n_ending, n_cells = (
         np.bincount(number[is_there & mask], minlength=int(number.max()) + 1)
         for mask in (rises, falls, is_edge & ~falls, is_there)
@@ -627,7 +627,7 @@ def _surfaces(seen: _Map) -> _Surfaces:
     return _Surfaces(number, (n_cells >= MIN_GROUND_CELLS) & (n_rising >= MIN_FOOT_CELLS) & is_low)
 
 
-def _open_ground(seen: _Map, surfaces: _Surfaces) -> Ground | None:
+def _open_ground(height_map: _Map, surfaces: _Surfaces) -> Ground | None:
     """Ground around what rises from it; None where there is too little."""
     from scipy import ndimage
 
@@ -635,8 +635,8 @@ def _open_ground(seen: _Map, surfaces: _Surfaces) -> Ground | None:
         return None
     is_ground = (surfaces.number >= 0) & surfaces.is_ground[surfaces.number]
     nearest = ndimage.distance_transform_edt(~is_ground, return_distances=False, return_indices=True)
-    heights = np.where(is_ground, seen.top, np.nan)
-    above = np.nan_to_num(seen.top - heights[tuple(nearest)], nan=0.0)
+    heights = np.where(is_ground, height_map.top, np.nan)
+    above = np.nan_to_num(height_map.top - heights[tuple(nearest)], nan=0.0)
     around = np.ones((3, 3), bool)
     label, n = ndimage.label(above >= RISE_M, around)
     if n == 0:
@@ -661,20 +661,23 @@ def _open_ground(seen: _Map, surfaces: _Surfaces) -> Ground | None:
     low, high = (float(value) for value in np.quantile(feet, END_QUANTILES))
     z = float(np.median(feet)) if high - low <= EVEN_M else high
     # A canopy around a building that stands below it: small, and the walls go on down.
-    if area < CANOPY_AREA and float(np.median(seen.bottom[outline & ~np.isnan(seen.bottom)])) < z - MIN_WALL_M:
+    if (
+        area < CANOPY_AREA
+        and float(np.median(height_map.bottom[outline & ~np.isnan(height_map.bottom)])) < z - MIN_WALL_M
+    ):
         return None
-    corner = (float(seen.corner[0]), float(seen.corner[1]))
-    return Ground(z, low, high, share, Terrain(corner, seen.cell_m, heights))
+    corner = (float(height_map.corner[0]), float(height_map.corner[1]))
+    return Ground(z, low, high, share, Terrain(corner, height_map.cell_m, heights))
 
 
-def _foot_of_walls(seen: _Map, corners: Array) -> Ground:
+def _foot_of_walls(height_map: _Map, corners: Array) -> Ground:
     """Where the walls along the outline end."""
     from scipy import ndimage
 
-    is_there = ndimage.binary_fill_holes(~np.isnan(seen.top))
+    is_there = ndimage.binary_fill_holes(~np.isnan(height_map.top))
     band = is_there & ~ndimage.binary_erosion(is_there, np.ones((3, 3), bool), 2)
-    is_wall = band & (np.nan_to_num(seen.wall_high - seen.wall_low, nan=0.0) >= MIN_WALL_M)
-    feet = seen.wall_low[is_wall]
+    is_wall = band & (np.nan_to_num(height_map.wall_high - height_map.wall_low, nan=0.0) >= MIN_WALL_M)
+    feet = height_map.wall_low[is_wall]
     if len(feet) < MIN_WALL_CELLS:
         low = float(np.quantile(corners[..., 2].min(axis=1), 0.005))
         return Ground(low, low, low, is_known=False)
@@ -683,26 +686,26 @@ def _foot_of_walls(seen: _Map, corners: Array) -> Ground:
         return Ground(high, low, high, other_m=low)
     z = float(np.median(feet[feet <= high + SAME_FOOT_M]))
     # Walls further in that go deeper: a ground floor that stands back, or a cellar.
-    if seen.n_cells_below(z - SAME_FOOT_M) > DEEPER_SHARE * is_there.sum():
-        is_deeper = np.nan_to_num(seen.bottom, nan=np.inf) < z - SAME_FOOT_M
-        return Ground(z, low, high, other_m=float(np.median(seen.bottom[is_deeper])))
+    if height_map.n_cells_below(z - SAME_FOOT_M) > DEEPER_SHARE * is_there.sum():
+        is_deeper = np.nan_to_num(height_map.bottom, nan=np.inf) < z - SAME_FOOT_M
+        return Ground(z, low, high, other_m=float(np.median(height_map.bottom[is_deeper])))
     return Ground(z, low, high)
 
 
-def _deck_m(seen: _Map, surfaces: _Surfaces, ground_m: float) -> float | None:
+def _deck_m(height_map: _Map, surfaces: _Surfaces, ground_m: float) -> float | None:
     """Height of a deck that lies all around the building's upper part, at most a storey above the ground."""
     from scipy import ndimage
 
-    is_raised = np.nan_to_num(seen.top - ground_m, nan=0.0)
+    is_raised = np.nan_to_num(height_map.top - ground_m, nan=0.0)
     candidates = np.unique(surfaces.number[(is_raised >= DECK_M[0]) & (is_raised <= DECK_M[1])])
     for number in candidates[candidates >= 0]:
         deck = surfaces.number == number
         if deck.sum() < MIN_GROUND_CELLS:
             continue
-        height = float(np.median(seen.top[deck]))
+        height = float(np.median(height_map.top[deck]))
         rise_m = height - ground_m
         inside = ndimage.binary_fill_holes(deck) & ~deck
-        upper = inside & (np.nan_to_num(seen.top, nan=-np.inf) >= height + max(RISE_M, 2.0 * rise_m))
+        upper = inside & (np.nan_to_num(height_map.top, nan=-np.inf) >= height + max(RISE_M, 2.0 * rise_m))
         if DECK_M[0] <= rise_m <= DECK_M[1] and MIN_GROUND_CELLS <= upper.sum() <= deck.sum():
             return height
     return None

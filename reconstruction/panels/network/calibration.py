@@ -58,7 +58,7 @@ class Source:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Seen:
+class _PictureCandidates:
     """Candidates of one picture, what the first regression weighs, and whether they are there."""
 
     candidates: Candidates
@@ -72,7 +72,7 @@ def calibrated(sources: Sequence[Source], tell: Callable[[str], None]) -> tuple[
     seen = []
     for number, source in enumerate(sources):
         looking = cycle(source.networks or [network()])
-        seen.append([_seen(*picture, by) for picture, by in zip(source.pictures, looking, strict=False)])
+        seen.append([_picture_candidates(*picture, by) for picture, by in zip(source.pictures, looking, strict=False)])
         tell(f"source {number}: {sum(len(one.is_there) for one in seen[-1])} candidates")
     weights = [source.weight for source in sources]
     first = _fitted([[(one.features, one.is_there) for one in part] for part in seen], weights)
@@ -90,9 +90,9 @@ def calibrated(sources: Sequence[Source], tell: Callable[[str], None]) -> tuple[
     return first, second
 
 
-def _seen(image: Picture, index: Index, by: PaneNetwork) -> _Seen:
+def _picture_candidates(image: Picture, index: Index, by: PaneNetwork) -> _PictureCandidates:
     candidates = candidates_of(predict_photo(image, LONG_SIDES_PX[-1], by=by))
-    return _Seen(candidates, first_features(candidates), index, are_there(list(candidates.quads), index))
+    return _PictureCandidates(candidates, first_features(candidates), index, are_there(list(candidates.quads), index))
 
 
 def are_there(quads: Sequence[Array], index: Index) -> NDArray[np.bool_]:

@@ -91,7 +91,7 @@ class FoundPanes:
 def predict_photo(
     image: Picture,
     long_side_px: int,
-    seen: PhotoPrediction | None = None,
+    known: PhotoPrediction | None = None,
     monitor: Monitor = QUIET,
     by: PaneNetwork | None = None,
 ) -> PhotoPrediction:
@@ -99,7 +99,7 @@ def predict_photo(
 
     Parameters
     ----------
-    seen
+    known
         What smaller sizes of the same photo showed: they are not looked at again.
     by
         Another network than the one that comes with the program.
@@ -108,7 +108,7 @@ def predict_photo(
 
     longest = max(image.shape[:2])
     most = min(long_side_px, longest, LONG_SIDES_PX[-1])
-    predictions = {} if seen is None else dict(seen.by_size)
+    predictions = {} if known is None else dict(known.by_size)
     sizes = sorted({min(size, most) for size in LONG_SIDES_PX} - set(predictions))
     for number, size in enumerate(sizes):
         monitor.report(say("look for panes"), number, len(sizes))

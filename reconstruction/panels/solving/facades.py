@@ -219,14 +219,14 @@ def grid_from_file(
     columns = _lines(file_facade.vertical_lines, view, 0, _gaps(file_facade, view, 0))
     inclined = tuple(_inclined(line, index, view) for index, line in enumerate(file_facade.inclined_lines))
     whole_grid = facade_grid(facade_id, view, rows, columns, inclined)
-    matched = [_meant(whole_grid, panel) for panel in file_facade.panels]
+    matched = [_matching_panel(whole_grid, panel) for panel in file_facade.panels]
     panels = tuple(panel for panel in whole_grid.panels if panel in matched)
     cells = {(row, column) for row in range(len(rows) - 1) for column in range(len(columns) - 1)}
     present = {(panel.row, panel.column) for panel in panels}
     return FacadeGrid(facade_id, view, rows, columns, panels, tuple(sorted(cells - present)), inclined)
 
 
-def _meant(grid: FacadeGrid, file_panel: FilePanel) -> FoundPanel | None:
+def _matching_panel(grid: FacadeGrid, file_panel: FilePanel) -> FoundPanel | None:
     """The panel of the given one's cell that lies nearest to it: cells may be cut."""
     same_cell = [panel for panel in grid.panels if (panel.row, panel.column) == (file_panel.row, file_panel.column)]
     middle = np.mean(file_panel.corners_px, axis=0)

@@ -151,7 +151,7 @@ MOST_SURE = 0.99
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Seen:
+class _PhotoLine:
     """One photo's line: ends from left to right (upright ones upwards), shape (2, 2)."""
 
     photo: int
@@ -174,11 +174,11 @@ def surface_inclined(
     narrowest_m
         Narrowest panel of the grid.
     """
-    seen: list[_Seen] = []
+    seen: list[_PhotoLine] = []
     for number, grid in grids.items():
         photo = replace(photos[number], pose=adjusted.poses.get(number, photos[number].pose))
-        seen += [one for line in grid.inclined if (one := _seen(photo, number, grid, adjusted, line)) is not None]
-    groups: list[list[_Seen]] = []
+        seen += [one for line in grid.inclined if (one := _photo_line(photo, number, grid, adjusted, line)) is not None]
+    groups: list[list[_PhotoLine]] = []
     for one in sorted(seen, key=lambda line: -line.confidence):
         for group in groups:
             if all(one.photo != other.photo for other in group) and _is_same(one, group[0], TOGETHER * narrowest_m):
@@ -191,7 +191,9 @@ def surface_inclined(
     return tuple(line for line in found if line.confidence >= 0.5)
 
 
-def _seen(photo: PosedPhoto, number: int, grid: FacadeGrid, adjusted: Adjusted, line: InclinedLine) -> _Seen | None:
+def _photo_line(
+    photo: PosedPhoto, number: int, grid: FacadeGrid, adjusted: Adjusted, line: InclinedLine
+) -> _PhotoLine | None:
     ends = np.array([line.first_px, line.last_px])
     along = (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0])
     across = np.array([-along[1], along[0]])
@@ -206,10 +208,10 @@ def _seen(photo: PosedPhoto, number: int, grid: FacadeGrid, adjusted: Adjusted, 
     if (last - first) @ (1.0, 1e-3) < 0.0:
         first, last, side = last, first, -side
     sigma = max(line.sigma_px * m_per_px, LEAST_SIGMA_M)
-    return _Seen(number, np.array([first, last]), line.width_px * m_per_px, sigma, line.confidence, side)
+    return _PhotoLine(number, np.array([first, last]), line.width_px * m_per_px, sigma, line.confidence, side)
 
 
-def _is_same(one: _Seen, other: _Seen, tolerance_m: float) -> bool:
+def _is_same(one: _PhotoLine, other: _PhotoLine, tolerance_m: float) -> bool:
     """Whether each line's ends lie on the other's course, and their stretches have a part in common."""
     cut = Cut(other.ends_st_m[0], other.ends_st_m[1], 0.0)
     if np.abs(cut.signed(one.ends_st_m)).max() > tolerance_m:
@@ -231,7 +233,7 @@ def _covered(photo: PosedPhoto, grid: FacadeGrid, adjusted: Adjusted, number: in
     return np.array([st.min(axis=0), st.max(axis=0)])
 
 
-def _joined(group: Sequence[_Seen], covered: Mapping[int, Array]) -> SurfaceInclined:
+def _joined(group: Sequence[_PhotoLine], covered: Mapping[int, Array]) -> SurfaceInclined:
     """The mean line of several photos, from its outermost end to the other."""
     base = group[0].ends_st_m
     along = (base[1] - base[0]) / np.linalg.norm(base[1] - base[0])
@@ -258,7 +260,7 @@ def _joined(group: Sequence[_Seen], covered: Mapping[int, Array]) -> SurfaceIncl
     )
 
 
-def _offsets_at(one: _Seen, origin: Array, along: Array, across: Array, places: tuple[float, float]) -> Array:
+def _offsets_at(one: _PhotoLine, origin: Array, along: Array, across: Array, places: tuple[float, float]) -> Array:
     """Offsets of a photo's line from the base line at two places along it, shape (2,)."""
     u, off = (one.ends_st_m - origin) @ along, (one.ends_st_m - origin) @ across
     slope = (off[1] - off[0]) / (u[1] - u[0])

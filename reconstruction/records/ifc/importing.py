@@ -156,11 +156,11 @@ def extend_copy(
     return found
 
 
-def _run(task: str, path: Path, folder: Path, wanted: bytes, kind: type[Result], monitor: Monitor) -> Result:
+def _run(task: str, path: Path, folder: Path, request: bytes, kind: type[Result], monitor: Monitor) -> Result:
     root = Path(__file__).resolve().parents[3]
     inherited = os.environ.get("PYTHONPATH")
     environment = {**os.environ, "PYTHONPATH": f"{root}{os.pathsep}{inherited}" if inherited else str(root)}
-    (folder / "wanted.json").write_bytes(wanted)
+    (folder / "wanted.json").write_bytes(request)
     # -P: modules that lie about in the current folder are not ours.
     process = subprocess.Popen(
         [sys.executable, "-P", "-m", "reconstruction.records.ifc.importing", task, str(path.absolute()), str(folder)],
@@ -208,9 +208,9 @@ def main(arguments: list[str]) -> int:
     return 0
 
 
-def _extend(path: Path, copy: Path, wanted: _Sets) -> Extension:
+def _extend(path: Path, copy: Path, sets: _Sets) -> Extension:
     """Write the copy, and see that it has as many instances as it should."""
-    found = extension(path, wanted.sets, wanted.known)
+    found = extension(path, sets.sets, sets.known)
     try:
         copy.write_bytes(edited(read_input_file(path, IFC_FILE), found.lines, found.replaced))
     except InputError as error:

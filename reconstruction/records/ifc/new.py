@@ -81,15 +81,15 @@ def extension(path: Path, sets: dict[str, tuple[PropertySet, ...]], known: froze
         raise InputError(say("this IFC file is broken ({}: {})", type(error).__name__, error, place=path)) from error
 
 
-def added_set(model: Any, element: Any, wanted: PropertySet) -> list[Any]:
+def added_set(model: Any, element: Any, property_set: PropertySet) -> list[Any]:
     """New instances that give an element a property set; their GlobalIds follow from the element's."""
-    properties = [_property(model, each) for each in wanted.properties]
-    key, history = f"{element.GlobalId} {wanted.name}", element.OwnerHistory
+    properties = [_property(model, each) for each in property_set.properties]
+    key, history = f"{element.GlobalId} {property_set.name}", element.OwnerHistory
     added = model.create_entity(
         "IfcPropertySet",
         GlobalId=global_id_of(key, "set"),
         OwnerHistory=history,
-        Name=wanted.name,
+        Name=property_set.name,
         HasProperties=properties,
     )
     relation = model.create_entity(
@@ -102,20 +102,20 @@ def added_set(model: Any, element: Any, wanted: PropertySet) -> list[Any]:
     return [*properties, added, relation]
 
 
-def _property(model: Any, wanted: Property) -> Any:
+def _property(model: Any, stated: Property) -> Any:
     # By their places: IFC 4.3 calls the description a specification.
-    values = (wanted.name, wanted.description or None, _value(model, wanted))
+    values = (stated.name, stated.description or None, _value(model, stated))
     return model.create_entity("IfcPropertySingleValue", *values)
 
 
-def _value(model: Any, wanted: Property) -> Any:
-    if wanted.kind == "yes/no":
-        return model.create_entity("IfcBoolean", bool(wanted.value))
-    if wanted.kind == "number":
-        return model.create_entity("IfcReal", float(wanted.value))
+def _value(model: Any, stated: Property) -> Any:
+    if stated.kind == "yes/no":
+        return model.create_entity("IfcBoolean", bool(stated.value))
+    if stated.kind == "number":
+        return model.create_entity("IfcReal", float(stated.value))
     # IFC 2x3 knows no plain dates.
-    kind = "IfcDate" if wanted.kind == "date" and model.schema != "IFC2X3" else "IfcText"
-    return model.create_entity(kind, str(wanted.value))
+    kind = "IfcDate" if stated.kind == "date" and model.schema != "IFC2X3" else "IfcText"
+    return model.create_entity(kind, str(stated.value))
 
 
 def _without_ours(model: Any, elements: frozenset[str]) -> dict[int, str]:

@@ -85,15 +85,15 @@ def _ways_px(probe: Probe, number: int) -> tuple[Array, Array]:
     moment, geometry = probe.moments[number], probe.geometry
     way_m = np.array(moment.velocity_enu_m_s) * moment.exposure_s
     across_m = np.linalg.norm(np.cross(directions, way_m), axis=1)
-    met = geometry.meet(origins, directions)
-    panes = met.panes >= 0
-    out = mirrored(directions[panes], met.normals_enu[panes])
-    starts, ahead = geometry.leaving(met.points_enu_m[panes], out, met.normals_enu[panes])
-    path_m = met.distance_m[panes] + ahead + geometry.meet(starts, out).distance_m
+    hits = geometry.meet(origins, directions)
+    panes = hits.panes >= 0
+    out = mirrored(directions[panes], hits.normals_enu[panes])
+    starts, ahead = geometry.leaving(hits.points_enu_m[panes], out, hits.normals_enu[panes])
+    path_m = hits.distance_m[panes] + ahead + geometry.meet(starts, out).distance_m
     ways_px = [
         # The sky does not move.
         (focal_px * across / np.maximum(away_m, NEAREST_M))[np.isfinite(away_m)]
-        for across, away_m in ((across_m, met.distance_m), (across_m[panes], path_m))
+        for across, away_m in ((across_m, hits.distance_m), (across_m[panes], path_m))
     ]
     return ways_px[0], ways_px[1]
 
@@ -172,8 +172,8 @@ def _told_px(probe: Probe, *, positions: bool) -> float:
     moved = []
     for number in np.unique(np.linspace(0, len(reported) - 1, min(MOST_TOLD, len(reported))).round().astype(int)):
         photo = probe.photos[number]
-        met = probe.geometry.meet(*photo.rays(_grid(photo)))
-        shown = met.points_enu_m[is_building[met.bodies] | (met.panes >= 0)]
+        hits = probe.geometry.meet(*photo.rays(_grid(photo)))
+        shown = hits.points_enu_m[is_building[hits.bodies] | (hits.panes >= 0)]
         off = replace(photo, pose=reported[number].pose).pixels(shown) - photo.pixels(shown)
         # Told so wrong that it is no longer before the camera, a thing is out of the picture by more than its width.
         off = np.where(np.isfinite(off), off, photo.intrinsics.width_px)

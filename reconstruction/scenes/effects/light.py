@@ -75,7 +75,7 @@ class Interior:
             return Assessment(0.0, NO_GLASS, 0.0)
         if scene.interiors is None:
             return Assessment(0.0, say("there are no rooms behind the panes"), 0.0)
-        kinds = scene.panes.glass[seen.met.panes]
+        kinds = scene.panes.glass[seen.hits.panes]
         through = np.zeros(len(seen))
         for number, glass in enumerate(scene.glasses):
             through[kinds == number] = pane_light(seen.cosines[kinds == number], glass)[2].mean(axis=1)

@@ -131,12 +131,12 @@ class Curvature:
         if not len(seen):
             return Assessment(0.0, NO_GLASS, 0.0)
         turns = np.degrees(np.arctan(np.abs(bows) * half_sides_m(probe.scene.panes, probe.geometry.pane_frames)))
-        most = float(turns[seen.met.panes].max())
+        most = float(turns[seen.hits.panes].max())
         if most == 0.0:
             return Assessment(0.0, say("the panes are flat"), 0.0)
         # As of a spherical mirror's image, seen from s and t away: 1 / (1 + 2 s t / (R (s + t))).
         between = 1.0 / (1.0 / np.maximum(seen.sight_m, NEAREST_M) + 1.0 / np.maximum(seen.path_m, NEAREST_M))
-        size = np.median(1.0 / np.abs(1.0 + 2.0 * between * bows[seen.met.panes, 0]))
+        size = np.median(1.0 / np.abs(1.0 + 2.0 * between * bows[seen.hits.panes, 0]))
         reason = say(
             "panes turn by up to {:.2f} degrees to their edges; mirror images appear {:.2f} times as wide", most, size
         )
@@ -158,7 +158,7 @@ class Doubling:
         if not len(seen):
             return Assessment(0.0, NO_GLASS, 0.0)
         gaps = np.array([glass.gap_m if glass.sheets == 2 else 0.0 for glass in scene.glasses])
-        gap = gaps[scene.panes.glass[seen.met.panes]]
+        gap = gaps[scene.panes.glass[seen.hits.panes]]
         if not gap.any():
             return Assessment(0.0, say("the panes are single"), 0.0)
         shift = 2.0 * gap * np.sqrt(np.clip(1.0 - seen.cosines**2, 0.0, 1.0))

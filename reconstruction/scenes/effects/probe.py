@@ -39,7 +39,7 @@ class Mirrored:
         Of their photos, shape (n,).
     directions_enu
         Of the rays, unit, shape (n, 3).
-    met, after
+    hits, after
         Meetings of the rays with panes, and of the mirrored rays with what comes then.
     sight_m, path_m
         Lengths from camera to pane and from there on, inf to the sky, each shape (n,).
@@ -56,7 +56,7 @@ class Mirrored:
 
     focal_px: Array
     directions_enu: Array
-    met: RayHits
+    hits: RayHits
     after: RayHits
     sight_m: Array
     path_m: Array
@@ -116,7 +116,7 @@ class Probe:
         rays = [spread(photos[k]) for k in chosen]
         self._origins, self._directions = (np.concatenate([r[i] for r in rays]) for i in (0, 1))
         self._focal_px = np.concatenate([np.full(len(r[0]), r[2]) for r in rays])
-        self.met = self.geometry.meet(self._origins, self._directions)
+        self.hits = self.geometry.meet(self._origins, self._directions)
         """What the rays met first."""
         self.mirrored = self._follow()
         light = self._light(Switches())
@@ -145,7 +145,7 @@ class Probe:
         """Light from around as it reaches places, against that of open sky and even ground."""
         tracer = Tracer(self.scene, Switches(sun_glare=False), self.geometry)
         change = grey_levels(self.exposure * self._traced(tracer)) - self._grey
-        seen = self.met.at(self.met.bodies >= 0)
+        seen = self.hits.at(self.hits.bodies >= 0)
         assert tracer.ambient is not None
         reaches = tracer.ambient.on(seen.points_enu_m, seen.normals_enu, seen.triangles).sum()
         is_open = SkyLight(self.scene.sky).on(seen.normals_enu).sum()
@@ -159,8 +159,8 @@ class Probe:
     def hidden_share(self) -> float:
         """Of the rays to the facade, those that something near stands before."""
         is_near, is_facade = (layer_mask(self.scene, layer) for layer in (Layer.NEAR, Layer.BUILDING))
-        behind = self.geometry.beyond(self.met, self._directions, is_near, is_facade)
-        n_hidden = (behind.triangles != self.met.triangles).sum()
+        behind = self.geometry.beyond(self.hits, self._directions, is_near, is_facade)
+        n_hidden = (behind.triangles != self.hits.triangles).sum()
         n_facade = (is_facade[behind.bodies] & (behind.triangles >= 0)).sum()
         return float(n_hidden / max(n_facade, 1))
 
@@ -168,14 +168,14 @@ class Probe:
         """Angles between what bowed panes mirror and where flat ones would show it, for all rays that meet panes."""
         seen, frames = self.mirrored, self.geometry.pane_frames
         surfaces = PaneSurfaces(self.scene.panes, frames, tilt=False)
-        met, normals = surfaces.meet(seen.met, seen.directions_enu)
-        flat, which = met.normals_enu, met.panes
+        hits, normals = surfaces.meet(seen.hits, seen.directions_enu)
+        flat, which = hits.normals_enu, hits.panes
         out = mirrored(seen.directions_enu, normals)
-        depths = np.maximum(-surfaces.heights_m(met.points_enu_m, which, flat), 0.0)
-        starts, _ = self.geometry.leaving(met.points_enu_m, out, flat, depths)
+        depths = np.maximum(-surfaces.heights_m(hits.points_enu_m, which, flat), 0.0)
+        starts, _ = self.geometry.leaving(hits.points_enu_m, out, flat, depths)
         after = self.geometry.meet(starts, out)
         off_plane = np.einsum("nk,nk->n", after.points_enu_m - frames.middles_enu_m[which], flat)
-        origins = seen.met.points_enu_m - seen.sight_m[:, None] * seen.directions_enu
+        origins = seen.hits.points_enu_m - seen.sight_m[:, None] * seen.directions_enu
         image = after.points_enu_m - 2.0 * off_plane[:, None] * flat - origins
         image = np.where(np.isfinite(after.distance_m)[:, None], image, mirrored(out, flat))
         return _angles(seen.directions_enu, image)
@@ -191,14 +191,14 @@ class Probe:
         return found.diffuse + found.reflection
 
     def _follow(self) -> Mirrored:
-        rows = self.met.panes >= 0
-        met = self.met.at(rows)
-        directions, flat = self._directions[rows], met.normals_enu
+        rows = self.hits.panes >= 0
+        hits = self.hits.at(rows)
+        directions, flat = self._directions[rows], hits.normals_enu
         out = mirrored(directions, flat)
-        starts, ahead = self.geometry.leaving(met.points_enu_m, out, flat)
+        starts, ahead = self.geometry.leaving(hits.points_enu_m, out, flat)
         after = self.geometry.meet(starts, out)
         path = ahead + after.distance_m
-        _, tilted = PaneSurfaces(self.scene.panes, self.geometry.pane_frames, bow=False).meet(met, directions)
+        _, tilted = PaneSurfaces(self.scene.panes, self.geometry.pane_frames, bow=False).meet(hits, directions)
         # The last entry is that of body -1: sky or panes.
         around = np.array([*(body.layer is not Layer.BUILDING for body in self.scene.bodies), False])
         is_around = around[after.bodies]
@@ -207,7 +207,7 @@ class Probe:
         cosines = np.abs(np.einsum("nk,nk->n", directions, flat))
         tilts = _angles(tilted, flat)
         return Mirrored(
-            self._focal_px[rows], directions, met, after, met.distance_m, path, cosines, tilts, parallax, is_around
+            self._focal_px[rows], directions, hits, after, hits.distance_m, path, cosines, tilts, parallax, is_around
         )
 
 

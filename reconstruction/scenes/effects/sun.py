@@ -135,7 +135,7 @@ class _Finder:
         lights = [tracer.trace(origins, directions, 0.75 * step_px / f) for tracer in (self._with, self._without)]
         light = np.subtract(*(found.diffuse + found.reflection for found in lights))
         # Neighbours have images of their own.
-        light[lights[0].met.panes != pane] = 0.0
+        light[lights[0].hits.panes != pane] = 0.0
         is_sun = light.any(axis=1)
         if not is_sun.any():
             return None

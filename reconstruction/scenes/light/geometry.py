@@ -127,13 +127,13 @@ class Geometry:
         starts = origins_enu_m + skipped[:, None] * directions_enu
         hits = self._caster.cast(starts, directions_enu)
         which = hits.triangles
-        distance, points, normals = _met(
+        distance, points, normals = _hits(
             starts, directions_enu, hits.distance_m, which, self.normals_enu, self._on_plane, self._lift_m
         )
         bodies, panes = self._body[which], self._pane[which]
         return RayHits(distance + skipped, points, normals, bodies, panes, which)
 
-    def beyond(self, met: RayHits, directions_enu: Array, is_passed: Mask, is_wanted: Mask) -> RayHits:
+    def beyond(self, hits: RayHits, directions_enu: Array, is_passed: Mask, is_wanted: Mask) -> RayHits:
         """What rays meet behind bodies that they pass through, where that is something wanted; else what they met.
 
         Parameters
@@ -141,8 +141,8 @@ class Geometry:
         is_passed, is_wanted
             By body, and at last by pane, shape (number of bodies + 1,).
         """
-        rows = going = np.flatnonzero(is_passed[met.bodies] & (met.triangles >= 0))
-        found = met.at(rows)
+        rows = going = np.flatnonzero(is_passed[hits.bodies] & (hits.triangles >= 0))
+        found = hits.at(rows)
         # Each step passes one surface; a crown of leaves has the most of them.
         for _ in range(MOST_PASSED):
             if not len(going):
@@ -154,7 +154,7 @@ class Geometry:
             found = found.with_rows(at, then)
             going = going[is_passed[then.bodies] & (then.triangles >= 0)]
         wanted = (found.triangles >= 0) & is_wanted[found.bodies]
-        return met.with_rows(rows[wanted], found.at(np.flatnonzero(wanted)))
+        return hits.with_rows(rows[wanted], found.at(np.flatnonzero(wanted)))
 
     def leaving(
         self, points_enu_m: Array, directions_enu: Array, normals_enu: Array, depths_m: Array | float = 0.0
@@ -181,7 +181,7 @@ class Geometry:
 
 
 @kernel
-def _met(
+def _hits(
     starts: Array, directions: Array, cast: Array, triangles: Index, normals_enu: Array, on_plane: Array, agree_m: float
 ) -> tuple[Array, Array, Array]:
     """Distances, points and normals towards the ray, from the planes of the triangles that Embree found."""

@@ -49,7 +49,9 @@ class RoomLight:
         self._axes = np.stack([frames.rights, frames.ups, -frames.normals])
         self._halves = half_sides_m(panes, frames)
 
-    def seen(self, points_enu_m: Array, directions_enu: Array, which: Index, flat: Array, widths_m: Array) -> Array:
+    def light_from(
+        self, points_enu_m: Array, directions_enu: Array, which: Index, flat: Array, widths_m: Array
+    ) -> Array:
         """Light, shape (n, 3), that rays see behind panes; from inside the building, the room's mean.
 
         Parameters

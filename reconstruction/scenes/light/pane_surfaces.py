@@ -163,31 +163,31 @@ class PaneSurfaces:
         self.sharpest_per_m = np.abs(bows).max(axis=1, initial=0.0)
         """The larger curvature of each pane, shape (m,)."""
 
-    def meet(self, met: RayHits, directions_enu: Array) -> tuple[RayHits, Array]:
+    def meet(self, hits: RayHits, directions_enu: Array) -> tuple[RayHits, Array]:
         """Meetings of rays with the real panes in place of those with the flat ones; and the real unit normals.
 
         Both are shape (n, 3) for all rays; the normals of the meetings stay those of the flat panes. A ray that passes
         the edge of a bulge meets it where it comes closest, and goes on as it came; one that starts between a flat pane
         and its real surface meets the flat one.
         """
-        rows = np.flatnonzero(met.panes >= 0)
+        rows = np.flatnonzero(hits.panes >= 0)
         if self.is_flat or not len(rows):
-            return met, met.normals_enu
-        ahead, normals = _met(
-            met.points_enu_m[rows],
+            return hits, hits.normals_enu
+        ahead, normals = _hits(
+            hits.points_enu_m[rows],
             directions_enu[rows],
-            met.distance_m[rows],
-            met.normals_enu[rows],
-            met.panes[rows],
+            hits.distance_m[rows],
+            hits.normals_enu[rows],
+            hits.panes[rows],
             self._middles,
             self._axes,
             self._shapes,
         )
-        distance, points, all_normals = met.distance_m.copy(), met.points_enu_m.copy(), met.normals_enu.copy()
+        distance, points, all_normals = hits.distance_m.copy(), hits.points_enu_m.copy(), hits.normals_enu.copy()
         distance[rows] += ahead
         points[rows] += ahead[:, None] * directions_enu[rows]
         all_normals[rows] = normals
-        return replace(met, distance_m=distance, points_enu_m=points), all_normals
+        return replace(hits, distance_m=distance, points_enu_m=points), all_normals
 
     def heights_m(self, points_enu_m: Array, which: Index, flat: Array) -> Array:
         """How far points on panes stand before the flat ones, whose normals towards the rays are `flat`, shape (n,)."""
@@ -204,7 +204,7 @@ def half_sides_m(panes: Panes, frames: PaneFrames) -> Array:
 
 
 @kernel
-def _met(
+def _hits(
     points: Array, directions: Array, distances: Array, flat: Array, which: Index, middles: Array, axes: Array,
     shapes: Array,
 ) -> tuple[Array, Array]:  # fmt: skip

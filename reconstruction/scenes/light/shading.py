@@ -312,7 +312,7 @@ class SkyLight:
         self._above = self._from_above()
         self._below = GROUND_ALBEDO * (self.sun * max(float(self.sun_direction_enu[2]), 0.0) + self._above)
 
-    def seen(self, directions_enu: Array) -> Array:
+    def light_from(self, directions_enu: Array) -> Array:
         """In unit directions, shape (n, 3); below the horizon the clear sky looks as it does there."""
         if self._panorama is not None:
             return look_up(self._panorama, directions_enu)
@@ -534,10 +534,10 @@ class Environment:
         strips = run_chunks(self._strip, chunks(rows, ROWS_AT_ONCE))
         self._picture = np.concatenate(strips).reshape(rows, 2 * rows, 4)
 
-    def seen(self, directions_enu: Array) -> Array:
+    def light_from(self, directions_enu: Array) -> Array:
         """Light from unit directions, shape (n, 3)."""
         found = look_up(self._picture, directions_enu)
-        return np.asarray(found[:, :3] + (1.0 - found[:, 3:]) * self._sky.seen(directions_enu))
+        return np.asarray(found[:, :3] + (1.0 - found[:, 3:]) * self._sky.light_from(directions_enu))
 
     def _strip(self, start: int, stop: int) -> NDArray[np.float32]:
         """Light of bodies, and the share of each pixel that they cover, shape (pixels of these rows, 4)."""
@@ -546,18 +546,18 @@ class Environment:
         elevation, heading = (a.ravel() for a in np.meshgrid(elevation, heading, indexing="ij"))
         level = np.cos(elevation)
         directions = np.column_stack([level * np.sin(heading), level * np.cos(heading), np.sin(elevation)])
-        met = self._geometry.meet(np.broadcast_to(self._middle, directions.shape), directions)
-        is_body = met.bodies >= 0
+        hits = self._geometry.meet(np.broadcast_to(self._middle, directions.shape), directions)
+        is_body = hits.bodies >= 0
         light = np.zeros((len(directions), 4), np.float32)
         light[:, 3] = is_body
-        normals = met.normals_enu[is_body]
+        normals = hits.normals_enu[is_body]
         light[is_body, :3] = self._matt.light(
-            met.bodies[is_body],
-            met.triangles[is_body],
-            met.points_enu_m[is_body],
+            hits.bodies[is_body],
+            hits.triangles[is_body],
+            hits.points_enu_m[is_body],
             normals,
             np.abs(np.einsum("nk,nk->n", normals, directions[is_body])),
-            math.pi / self._rows * met.distance_m[is_body],
+            math.pi / self._rows * hits.distance_m[is_body],
         )
         return light
 

@@ -55,7 +55,7 @@ class Sun:
         """Of a disc of this radius that sends the sun's light, shape (3,)."""
         return np.asarray(self._light / (2.0 * math.sin(0.5 * radius_rad)) ** 2)
 
-    def seen(self, directions_enu: Array, beams_rad: Array | float) -> Array:
+    def light_from(self, directions_enu: Array, beams_rad: Array | float) -> Array:
         """Light of the disc in unit directions, shape (n, 3), for pixels `beams_rad` wide, shape (n,) or ().
 
         Its edge is as soft as a pixel is wide, so that few rays sum up to its light wherever they pass.
@@ -191,7 +191,7 @@ class Light:
 
     Parameters
     ----------
-    met
+    hits
         What the rays met first, bowed and tilted panes where they are; its normals are the flat panes'.
     normals_enu
         Unit, towards the ray's origin, with the panes' tilt and bow, shape (n, 3); 0 for sky.
@@ -199,7 +199,7 @@ class Light:
         Linear light without mirror images, and that of mirror images alone, each shape (n, 3).
     """
 
-    met: RayHits
+    hits: RayHits
     normals_enu: Array
     diffuse: Array
     reflection: Array
@@ -269,38 +269,43 @@ class Tracer:
     def from_around(self, starts_enu_m: Array, directions_enu: Array) -> tuple[Array, NDArray[np.bool_]]:
         """As `Gather`, by rays as wide as light on a surface allows."""
         light = self.trace(starts_enu_m, directions_enu, AMBIENT_BEAM_RAD)
-        triangles = light.met.triangles
+        triangles = light.hits.triangles
         wound = self.geometry.normals_enu[triangles]
         is_behind = (triangles >= 0) & (np.einsum("nk,nk->n", wound, directions_enu) > 0.0)
         return light.diffuse + light.reflection, is_behind
 
     def trace(self, origins_enu_m: Array, directions_enu: Array, beam_rad: float) -> Light:
         """Light along rays, shape (n, 3), unit directions, whose pixels are `beam_rad` wide."""
-        met = self.geometry.meet(origins_enu_m, directions_enu)
+        hits = self.geometry.meet(origins_enu_m, directions_enu)
         if not self._switches.occlusion:
-            met = self.geometry.beyond(met, directions_enu, self._is_near, self._is_facade)
-        met, normals = self.surfaces.meet(met, directions_enu)
+            hits = self.geometry.beyond(hits, directions_enu, self._is_near, self._is_facade)
+        hits, normals = self.surfaces.meet(hits, directions_enu)
         diffuse, reflection = np.zeros_like(directions_enu), np.zeros_like(directions_enu)
-        is_body, is_pane = met.bodies >= 0, met.panes >= 0
-        diffuse[is_body] = _of_bodies(self._matt, met, is_body, directions_enu, beam_rad * met.distance_m)
+        is_body, is_pane = hits.bodies >= 0, hits.panes >= 0
+        diffuse[is_body] = _of_bodies(self._matt, hits, is_body, directions_enu, beam_rad * hits.distance_m)
         is_sky = ~(is_body | is_pane)
-        diffuse[is_sky] = self._sky.seen(directions_enu[is_sky])
+        diffuse[is_sky] = self._sky.light_from(directions_enu[is_sky])
         if self._shines:
-            diffuse[is_sky] += self._sun.seen(directions_enu[is_sky], beam_rad)
+            diffuse[is_sky] += self._sun.light_from(directions_enu[is_sky], beam_rad)
         if is_pane.any():
             bounces = 2 if self._switches.second_bounce else 1
-            rooms = self._scene.panes.rooms[met.panes[is_pane]]
+            rooms = self._scene.panes.rooms[hits.panes[is_pane]]
             if self._rooms is not None:
-                where = met.points_enu_m[is_pane], directions_enu[is_pane], met.panes[is_pane], met.normals_enu[is_pane]
-                rooms = self._rooms.seen(*where, beam_rad * met.distance_m[is_pane])
+                where = (
+                    hits.points_enu_m[is_pane],
+                    directions_enu[is_pane],
+                    hits.panes[is_pane],
+                    hits.normals_enu[is_pane],
+                )
+                rooms = self._rooms.light_from(*where, beam_rad * hits.distance_m[is_pane])
             diffuse[is_pane], reflection[is_pane] = self._of_panes(
-                met, is_pane, directions_enu, normals, rooms, met.distance_m, beam_rad, bounces
+                hits, is_pane, directions_enu, normals, rooms, hits.distance_m, beam_rad, bounces
             )
-        return Light(met, normals, diffuse, reflection)
+        return Light(hits, normals, diffuse, reflection)
 
     def _of_panes(
         self,
-        met: RayHits,
+        hits: RayHits,
         rows: NDArray[np.bool_],
         directions_enu: Array,
         normals_enu: Array,
@@ -314,8 +319,8 @@ class Tracer:
         `path_m`, shape (n,), is what each ray has come already; `normals_enu`, shape (n, 3), the mirrors'; `rooms` the
         light from behind the panes, shape (number of rows, 3).
         """
-        directions, normals, points = directions_enu[rows], normals_enu[rows], met.points_enu_m[rows]
-        which, flat, path = met.panes[rows], met.normals_enu[rows], path_m[rows]
+        directions, normals, points = directions_enu[rows], normals_enu[rows], hits.points_enu_m[rows]
+        which, flat, path = hits.panes[rows], hits.normals_enu[rows], path_m[rows]
         heights = self.surfaces.heights_m(points, which, flat)
         depths = np.maximum(-heights, 0.0)
         cosines = np.abs(np.einsum("nk,nk->n", directions, normals))
@@ -323,7 +328,7 @@ class Tracer:
         diffuse = (1.0 - dirt) * through * rooms
         dusty = np.flatnonzero(dirt)
         before = points[dusty] + depths[dusty, None] * flat[dusty]
-        arriving = self._matt.arriving(before, flat[dusty], met.triangles[rows][dusty])
+        arriving = self._matt.arriving(before, flat[dusty], hits.triangles[rows][dusty])
         diffuse[dusty] += dirt[dusty] * DUST_ALBEDO * arriving
         if bounces == 0:
             return diffuse, np.zeros_like(diffuse)
@@ -358,25 +363,25 @@ class Tracer:
         """
         geometry, matt, far = self._around
         starts, ahead = self.geometry.leaving(points, directions, flat, depths_m)
-        met, normals = self.surfaces.meet(geometry.meet(starts, directions), directions)
-        path = path_m + ahead + met.distance_m
+        hits, normals = self.surfaces.meet(geometry.meet(starts, directions), directions)
+        path = path_m + ahead + hits.distance_m
         light = np.zeros_like(directions)
-        is_body, is_pane = met.bodies >= 0, met.panes >= 0
-        light[is_body] = _of_bodies(matt, met, is_body, directions, beam_rad * path)
+        is_body, is_pane = hits.bodies >= 0, hits.panes >= 0
+        light[is_body] = _of_bodies(matt, hits, is_body, directions, beam_rad * path)
         is_sky = ~(is_body | is_pane)
-        light[is_sky] = far.seen(directions[is_sky])
+        light[is_sky] = far.light_from(directions[is_sky])
         if self._shines:
             self._add_sun(light, np.flatnonzero(is_sky), starts, directions, flat, sun_beam_rad)
         if is_pane.any():
-            rooms = self._scene.panes.rooms[met.panes[is_pane]]
-            light[is_pane] = sum(self._of_panes(met, is_pane, directions, normals, rooms, path, beam_rad, bounces))
+            rooms = self._scene.panes.rooms[hits.panes[is_pane]]
+            light[is_pane] = sum(self._of_panes(hits, is_pane, directions, normals, rooms, path, beam_rad, bounces))
         return light
 
     def _add_sun(
         self, light: Array, rows: Index, starts: Array, directions: Array, flat: Array, beam_rad: Array
     ) -> None:
         """Add the sun to mirrored light, shape (n, 3), that comes from the sky, in place."""
-        sun = self._sun.seen(directions[rows], beam_rad[rows])
+        sun = self._sun.light_from(directions[rows], beam_rad[rows])
         bright = np.flatnonzero(sun.any(axis=1))
         if not self._switches.near_field and len(bright):
             # What is near was left out of the way of these rays.
@@ -391,10 +396,10 @@ def layer_mask(scene: Scene, layer: Layer) -> NDArray[np.bool_]:
     return np.array([*(body.layer is layer for body in scene.bodies), layer is Layer.BUILDING])
 
 
-def _of_bodies(matt: MattLight, met: RayHits, rows: NDArray[np.bool_], directions_enu: Array, width_m: Array) -> Array:
-    normals = met.normals_enu[rows]
+def _of_bodies(matt: MattLight, hits: RayHits, rows: NDArray[np.bool_], directions_enu: Array, width_m: Array) -> Array:
+    normals = hits.normals_enu[rows]
     cosines = np.abs(np.einsum("nk,nk->n", normals, directions_enu[rows]))
-    return matt.light(met.bodies[rows], met.triangles[rows], met.points_enu_m[rows], normals, cosines, width_m[rows])
+    return matt.light(hits.bodies[rows], hits.triangles[rows], hits.points_enu_m[rows], normals, cosines, width_m[rows])
 
 
 @kernel

@@ -86,7 +86,7 @@ def _sky(mi: Any, sky: Sky) -> dict[str, Any]:
     elevation, heading = (a.ravel() for a in np.meshgrid(elevation, heading, indexing="ij"))
     level = np.cos(elevation)
     directions = np.column_stack([level * np.sin(heading), level * np.cos(heading), np.sin(elevation)])
-    picture = SkyLight(sky).seen(directions).reshape(height, width, 3).astype(np.float32)
+    picture = SkyLight(sky).light_from(directions).reshape(height, width, 3).astype(np.float32)
     if not picture.any():
         return {}
     # Its axes are east, up, south.

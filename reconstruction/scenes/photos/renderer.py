@@ -150,9 +150,9 @@ class Renderer:
             diffuse[start:stop], reflection[start:stop] = light.diffuse, light.reflection
             linear[start:stop] = diffuse[start:stop] + reflection[start:stop]
             normal[start:stop] = light.normals_enu
-            depth[start:stop] = light.met.distance_m * forward
-            panel[start:stop] = light.met.panes + 1
-            glass[start:stop] = light.met.panes >= 0
+            depth[start:stop] = light.hits.distance_m * forward
+            panel[start:stop] = light.hits.panes + 1
+            glass[start:stop] = light.hits.panes >= 0
 
         run_chunks(work, chunks(height * width, RAYS_AT_ONCE))
         return rendered

@@ -99,7 +99,7 @@ class AdaptiveControl:
     def before_step(self, step: int, splats: Splats, optimiser: Optimizer) -> None:
         """Nothing to add."""
 
-    def seen(self, raster: Raster, screen_gradients: Tensor | None, view: View) -> None:
+    def observe(self, raster: Raster, screen_gradients: Tensor | None, view: View) -> None:
         """Add up what the pictures say about each splat."""
         self._seen = self._seen.before(raster)
         self._seen.add(raster, screen_gradients, view)

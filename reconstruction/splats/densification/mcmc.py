@@ -99,7 +99,7 @@ class MarkovChain:
         _add_gradient(splats.opacity_logits, chosen.opacity_weight / n * slopes)
         _add_gradient(splats.log_scales, chosen.size_weight / sizes.numel() * sizes / sizes.median())
 
-    def seen(self, raster: Raster, screen_gradients: Tensor | None, view: View) -> None:
+    def observe(self, raster: Raster, screen_gradients: Tensor | None, view: View) -> None:
         """Add up whether splats show."""
         self._seen = self._seen.before(raster)
         self._seen.add(raster, None, view)

@@ -190,7 +190,7 @@ class Densification(Protocol):
     def before_step(self, step: int, splats: Splats, optimiser: Optimizer) -> None:
         """After `backward` and before the optimiser's step: gradients of what the strategy wants may be added."""
 
-    def seen(self, raster: Raster, screen_gradients: Tensor | None, view: View) -> None:
+    def observe(self, raster: Raster, screen_gradients: Tensor | None, view: View) -> None:
         """Take in a picture that was rendered and its gradients of the splats' screen positions, shape (n, 2), px."""
 
     def after_step(self, step: int, splats: Splats, optimiser: Optimizer, generator: torch.Generator) -> Change:
@@ -212,7 +212,7 @@ class FixedNumber:
     def before_step(self, step: int, splats: Splats, optimiser: Optimizer) -> None:
         """Nothing to add."""
 
-    def seen(self, raster: Raster, screen_gradients: Tensor | None, view: View) -> None:
+    def observe(self, raster: Raster, screen_gradients: Tensor | None, view: View) -> None:
         """Nothing to remember."""
 
     def after_step(self, step: int, splats: Splats, optimiser: Optimizer, generator: torch.Generator) -> Change:

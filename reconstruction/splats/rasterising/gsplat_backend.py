@@ -57,7 +57,7 @@ LEAST_COSINE = 1e-3
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Seen:
+class _ProjectedSplats:
     """Splats as gsplat projects them, each with one camera in front.
 
     Parameters
@@ -79,7 +79,7 @@ class _Seen:
     normals: Tensor | None
     has_low_pass: bool = True
 
-    def detached(self) -> _Seen:
+    def detached(self) -> _ProjectedSplats:
         """Without gradients."""
         return replace(
             self,
@@ -169,12 +169,12 @@ def _shown(
 
 def _projected_discs(
     means: Tensor, quats_wxyz: Tensor, scales: Tensor, view: View, lens: Tensor, settings: RasterSettings
-) -> _Seen:
+) -> _ProjectedSplats:
     """Of standard deviations along two tangents."""
     from gsplat import fully_fused_projection_2dgs
 
     thickness = torch.ones_like(scales[:, :1])
-    return _Seen(
+    return _ProjectedSplats(
         *fully_fused_projection_2dgs(
             means, quats_wxyz, torch.cat([scales, thickness], dim=1), view.cam_from_world.to(means)[None], lens[None],
             view.width_px, view.height_px, near_plane=settings.near_m,
@@ -184,7 +184,7 @@ def _projected_discs(
 
 def _blurred_discs(
     means: Tensor, quats_wxyz: Tensor, scales: Tensor, view: View, lens: Tensor, settings: RasterSettings
-) -> _Seen:
+) -> _ProjectedSplats:
     """The same, blurred; in float64, as `_shown`."""
     rows = torch.nonzero(depths_of(means.detach(), view) > settings.near_m).squeeze(-1)
     seen = project(means[rows].double(), quats_wxyz[rows].double(), scales[rows].double(), view)
@@ -195,7 +195,7 @@ def _blurred_discs(
         found = torch.zeros((len(means), *values.shape[1:]), dtype=like.dtype, device=means.device)
         return found.index_put((rows,), values.to(like.dtype))[None]
 
-    return _Seen(
+    return _ProjectedSplats(
         of_all(halves.ceil(), torch.zeros((), dtype=torch.int32)),
         of_all(middles, means),
         of_all(seen.depths_m, means),
@@ -233,7 +233,7 @@ def boxes_of(projected: Projected, reach: float, view: View) -> tuple[Tensor, Te
 
 def _projected_ellipsoids(
     means: Tensor, quats_wxyz: Tensor, scales: Tensor, view: View, lens: Tensor, settings: RasterSettings
-) -> _Seen:
+) -> _ProjectedSplats:
     """Of standard deviations along three axes, by the whole picture, whose field of view limits their shape."""
     from gsplat import fully_fused_projection
 
@@ -244,20 +244,20 @@ def _projected_ellipsoids(
         means, None, quats_wxyz, scales, view.cam_from_world.to(means)[None], of_picture[None],
         right - left, bottom - top, eps2d=settings.blur_px**2, near_plane=settings.near_m,
     )  # fmt: skip
-    return _Seen(radii, centres + corner, depths, conics, None)
+    return _ProjectedSplats(radii, centres + corner, depths, conics, None)
 
 
-def _moved(seen: _Seen, offsets: Tensor) -> _Seen:
+def _moved(projected: _ProjectedSplats, offsets: Tensor) -> _ProjectedSplats:
     """Moved in the picture by offsets, shape (n, 2), px."""
-    shapes = seen.shapes
-    if seen.normals is not None:
+    shapes = projected.shapes
+    if projected.normals is not None:
         # Rows of a disc's transform are x w, y w and w: a shift by o adds o w, as the definition has it.
         rows = shapes[..., :2, :] + offsets[..., None] * shapes[..., 2:, :]
         shapes = torch.cat([rows, shapes[..., 2:, :]], dim=-2)
-    return replace(seen, centres_px=seen.centres_px + offsets, shapes=shapes)
+    return replace(projected, centres_px=projected.centres_px + offsets, shapes=shapes)
 
 
-def _blend(channels: Tensor, opacities: Tensor, seen: _Seen, view: View) -> tuple[Tensor, Tensor]:
+def _blend(channels: Tensor, opacities: Tensor, projected: _ProjectedSplats, view: View) -> tuple[Tensor, Tensor]:
     """Channels, shape (n, c), and alphas of all splats as pictures, shapes (h, w, c) and (h, w)."""
     n_channels = channels.shape[1]
     channels = filled_up(channels)
@@ -265,17 +265,19 @@ def _blend(channels: Tensor, opacities: Tensor, seen: _Seen, view: View) -> tupl
 
     n_columns, n_rows = -(-view.width_px // TILE_PX), -(-view.height_px // TILE_PX)
     _, tile_ids, splat_ids = isect_tiles(
-        seen.centres_px.detach(), seen.radii_px, seen.depths_m.detach(), TILE_PX, n_columns, n_rows
+        projected.centres_px.detach(), projected.radii_px, projected.depths_m.detach(), TILE_PX, n_columns, n_rows
     )
     starts = isect_offset_encode(tile_ids, 1, n_columns, n_rows).reshape(1, n_rows, n_columns)
     of_tiles = view.width_px, view.height_px, TILE_PX, starts, splat_ids
     colours = channels[None], opacities[None]
-    if seen.normals is None:
-        picture, alphas = rasterize_to_pixels(seen.centres_px, seen.shapes, *colours, *of_tiles)
+    if projected.normals is None:
+        picture, alphas = rasterize_to_pixels(projected.centres_px, projected.shapes, *colours, *of_tiles)
     else:
-        densify = torch.zeros_like(seen.centres_px)
-        circles = seen.centres_px if seen.has_low_pass else torch.full_like(seen.centres_px, FAR_PX)
-        picture, alphas, *_ = rasterize_to_pixels_2dgs(circles, seen.shapes, *colours, seen.normals, densify, *of_tiles)
+        densify = torch.zeros_like(projected.centres_px)
+        circles = projected.centres_px if projected.has_low_pass else torch.full_like(projected.centres_px, FAR_PX)
+        picture, alphas, *_ = rasterize_to_pixels_2dgs(
+            circles, projected.shapes, *colours, projected.normals, densify, *of_tiles
+        )
     return picture[0, ..., :n_channels], alphas[0, ..., 0]
 
 

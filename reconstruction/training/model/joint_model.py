@@ -248,7 +248,7 @@ class SceneModel(nn.Module):
             shaded = self.shader(view, raster, directions, raster.features[..., N_FEATURES:], splats)
         diffuse = shaded.own + self.sky.behind(directions, raster.alphas)
         light = diffuse + shaded.reflection
-        display = display_from_linear(self._kept(view)[..., None] * gain * light)
+        display = display_from_linear(self._vignetting(view)[..., None] * gain * light)
         normals = raster.features[..., FEATURES["normal"]]
         return Picture(
             display,
@@ -405,7 +405,7 @@ class SceneModel(nn.Module):
         light = self.light.light(rescaled, reflected_directions(omega_o, normals))
         return light, incidence_cosines(omega_o, normals)
 
-    def _kept(self, view: View) -> Tensor:
+    def _vignetting(self, view: View) -> Tensor:
         """Share of the light that vignetting leaves, shape (h, w)."""
         x = (torch.arange(view.width_px) + 0.5 - view.cx_px) / view.fx_px
         y = (torch.arange(view.height_px) + 0.5 - view.cy_px) / view.fy_px

@@ -144,12 +144,12 @@ def are_apart(apart: SpacingRule, chosen: NDArray[np.int64]) -> bool:
 @settings(max_examples=60)
 def test_every_step_of_the_choice_keeps_views_apart_and_none_loses(seed: int, n_wanted: int) -> None:
     elements, weights, apart = crowded(seed)
-    state = cover_state(elements, weights, apart=apart)
+    state = cover_state(elements, weights, spacing=apart)
     chosen = np.zeros(n_wanted, np.int64)
     n = int(kernel.greedy_steps(state, chosen, 0, n_wanted, np.inf))
     values = [float(kernel.objective(state))]
     assert are_apart(apart, chosen[:n])
-    exchange = Exchange(elements, weights, chosen[:n], seed, apart=apart)
+    exchange = Exchange(elements, weights, chosen[:n], seed, spacing=apart)
     everything = np.arange(len(weights))[np.isin(np.arange(len(weights)), elements.items)]
     for step in (lambda: exchange.run(never), lambda: exchange.make_room(everything, n_wanted, never)):
         step()
@@ -177,9 +177,9 @@ def test_room_is_made_where_greedy_leaves_none() -> None:
             for choice in choices
             if are_apart(apart, np.array(choice))
         )
-        state, chosen = cover_state(elements, weights, apart=apart), np.zeros(12, np.int64)
+        state, chosen = cover_state(elements, weights, spacing=apart), np.zeros(12, np.int64)
         n = int(kernel.greedy_steps(state, chosen, 0, 12, np.inf))
-        exchange = Exchange(elements, weights, chosen[:n], seed, apart=apart)
+        exchange = Exchange(elements, weights, chosen[:n], seed, spacing=apart)
         exchange.make_room(np.unique(elements.items).astype(np.int64), 12, never)
         assert exchange.value() <= best
         n_greedy += float(kernel.objective(state)) < best

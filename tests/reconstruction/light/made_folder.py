@@ -43,8 +43,8 @@ def far(places: Array, omega_r: Array) -> Array:
 
 def near(places: Array, omega_r: Array) -> Array:
     """Light of a board parallel to the glass: stripes, 3 to 4 m wide, that show parallax."""
-    met = places - (BOARD_M + places[:, 1:2]) / omega_r[:, 1:2] * omega_r
-    x, z = met[:, 0], met[:, 2]
+    hits = places - (BOARD_M + places[:, 1:2]) / omega_r[:, 1:2] * omega_r
+    x, z = hits[:, 0], hits[:, 2]
     return 0.5 + 0.4 * np.column_stack([np.sin(2 * x), np.cos(1.8 * z), np.sin(1.6 * (x + z))])
 
 

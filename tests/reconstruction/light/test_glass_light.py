@@ -67,9 +67,9 @@ def test_a_pixel_has_the_mean_light_of_its_rays(source):
     one = light_of(source.panels)
     parts = []
     for offset in pixel_offsets(1, 16, None):
-        met = rays.met(offset)
-        normals = one.normals(rays.table, met, rays.panels.long())
-        directions = met.directions.float()
+        hits = rays.hits(offset)
+        normals = one.normals(rays.table, hits, rays.panels.long())
+        directions = hits.directions.float()
         mirrored = directions - 2.0 * (directions * normals).sum(dim=1, keepdim=True) * normals
         parts.append(one.light(None, mirrored, None))
     assert torch.allclose(many, torch.stack(parts).mean(dim=0), atol=1e-4)
@@ -83,11 +83,11 @@ def test_rays_that_meet_the_frame_beside_a_pane_do_not_count(source):
     table = RayTable.of([photo], source.panels, {})
     rays = rays_of_pixels(table, 0, column, row, torch.tensor([4]))
     glass = light_of(source.panels, rays=64)
-    shares = rays.repeated(64).met(pixel_offsets(1, 64, None)).shares
+    shares = rays.repeated(64).hits(pixel_offsets(1, 64, None)).shares
     inside = ((shares >= 0.0) & (shares <= 1.0)).all(dim=1)
     assert 0 < inside.sum() < 64
-    met = rays.repeated(64).met(pixel_offsets(1, 64, None))
-    directions = met.directions.float()[inside]
+    hits = rays.repeated(64).hits(pixel_offsets(1, 64, None))
+    directions = hits.directions.float()[inside]
     mirrored = directions * torch.tensor([1.0, -1.0, 1.0])
     assert torch.allclose(glass(rays)[0][0], torch.sin(60.0 * mirrored).mean(dim=0), atol=1e-3)
 
@@ -112,15 +112,15 @@ def test_a_tilted_pane_mirrors_twice_as_far(source):
     glass = light_of(source.panels, tilts=True)
     with torch.no_grad():
         glass.tilts[:3, 1], glass.tilts[3:, 1] = 0.01, -0.01
-    met, panels = rays.met(), rays.panels.long()
-    normals = glass.normals(rays.table, met, panels)
+    hits, panels = rays.hits(), rays.panels.long()
+    normals = glass.normals(rays.table, hits, panels)
     expected = torch.where(panels < 3, 0.01, -0.01)
     assert torch.allclose(torch.asin(normals[:, 2]), torch.atan(expected), atol=1e-6)
 
 
 def test_mirrored_rays_and_what_tilts_and_bows_learn_are_those_of_plain_torch(source):
     rays = glass_rays(source, source.photos)[:200]
-    met, panels = rays.met(), rays.panels.long()
+    hits, panels = rays.hits(), rays.panels.long()
     generator = torch.Generator().manual_seed(5)
     weights, more = torch.randn(200, 3, generator=generator), torch.randn(200, generator=generator)
     found = []
@@ -130,11 +130,11 @@ def test_mirrored_rays_and_what_tilts_and_bows_learn_are_those_of_plain_torch(so
             glass.tilts += torch.linspace(-0.02, 0.03, glass.tilts.numel()).reshape(-1, 2)
             glass.bows += torch.linspace(0.02, -0.01, glass.bows.numel()).reshape(-1, 2)
         if is_plain:
-            normals, directions = glass.normals(rays.table, met, panels), met.directions.float()
+            normals, directions = glass.normals(rays.table, hits, panels), hits.directions.float()
             along = (directions * normals).sum(dim=1, keepdim=True)
             omega_r, cosines = directions - 2.0 * along * normals, along[:, 0].abs()
         else:
-            omega_r, cosines = glass.mirrored(rays.table, met, panels)
+            omega_r, cosines = glass.mirrored(rays.table, hits, panels)
         ((omega_r * weights).sum() + (cosines * more).sum()).backward()
         found.append([omega_r.detach(), cosines.detach(), glass.tilts.grad, glass.bows.grad])
     for value, truth in zip(*found, strict=True):

@@ -39,9 +39,9 @@ def test_rays_are_taken_by_numbers_masks_and_ranges(source):
 def test_rays_are_those_that_plain_torch_makes(source):
     rays = glass_rays(source, source.photos)
     n_photos = len(source.photos)
-    found = rays.met()
+    found = rays.hits()
     # With corrections, be they none, they are made in torch.
-    expected = rays.met(moves=torch.zeros(n_photos, 6, dtype=torch.float64))
+    expected = rays.hits(moves=torch.zeros(n_photos, 6, dtype=torch.float64))
     for name in ("points_m", "directions", "cosines", "shares", "distances_m"):
         assert torch.allclose(getattr(found, name), getattr(expected, name), rtol=1e-12, atol=1e-12)
 

@@ -58,7 +58,7 @@ def test_the_nearest_panel_is_found_as_by_triangles_one_by_one(seed):
     rays = rng.normal(size=(40, 3)) * 0.3 + (0.0, 1.0, 0.0)
     rays /= np.linalg.norm(rays, axis=1, keepdims=True)
     origin = rng.normal(size=3)
-    found, distances = Quads.of(corners).met(origin, rays)
+    found, distances = Quads.of(corners).first_hits(origin, rays)
     assert found.tolist() == [one_by_one(corners, origin, ray) for ray in rays]
     assert np.array_equal(np.isfinite(distances), found >= 0)
 
@@ -85,15 +85,15 @@ def test_what_stands_well_before_a_panel_hides_it_and_what_shines_through_does_n
 def test_panels_are_met_from_behind_and_not_behind_the_camera():
     quads = Quads.of(np.array([pane(0, 0)]))
     ray = np.array([[0.0, -1.0, 0.0]])
-    assert quads.met(np.array([0.5, 3.0, 0.5]), ray)[0].tolist() == [0]
-    assert quads.met(np.array([0.5, -3.0, 0.5]), ray)[0].tolist() == [-1]
+    assert quads.first_hits(np.array([0.5, 3.0, 0.5]), ray)[0].tolist() == [0]
+    assert quads.first_hits(np.array([0.5, -3.0, 0.5]), ray)[0].tolist() == [-1]
 
 
 @pytest.mark.parametrize(
     "corners", [np.zeros((0, 4, 3)), np.zeros((1, 4, 3)), np.array([pane(0, 0)]) * 1e-9, np.array([pane(0, 0)]) * 1e6]
 )
 def test_no_panel_and_points_for_panels_are_no_trouble(corners):
-    found, distances = Quads.of(corners).met(np.array([0.1, -5.0, 0.1]), rays_of(camera(), middles()))
+    found, distances = Quads.of(corners).first_hits(np.array([0.1, -5.0, 0.1]), rays_of(camera(), middles()))
     assert found.shape == distances.shape == (64 * 48,)
     assert not np.isnan(distances).any()
 

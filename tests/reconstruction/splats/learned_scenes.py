@@ -121,7 +121,7 @@ def train(
         raster = picture_of(splats, view, 0, offsets)
         (raster.features[..., :3] - truth).abs().mean().backward()
         if strategy is not None:
-            strategy.seen(raster, offsets.grad, view)
+            strategy.observe(raster, offsets.grad, view)
             strategy.before_step(step, splats, optimiser)
         optimiser.step()
         if strategy is not None:

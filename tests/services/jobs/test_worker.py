@@ -229,7 +229,7 @@ def test_a_job_works_apart_with_a_worker_and_here_without_one(worker):
     for helper, is_here in ((worker, False), (None, True)):
         events, runner = [], JobRunner(worker=helper)
         runner.subscribe(events.append)
-        job = runner.submit("where", lambda context: (context.apart(where), context.apart(double, 1)))
+        job = runner.submit("where", lambda context: (context.run_in_process(where), context.run_in_process(double, 1)))
         process, doubled = job.result()
         runner.shutdown()
         assert (process == os.getpid()) == is_here

@@ -10,10 +10,10 @@ import pytest
 from groundstation.services.plan.editing import (
     BESIDE_M,
     above_home,
-    beside,
     coverage_change,
     edit_effect,
     has_same_panels,
+    viewpoint_beside,
     with_edited_plan,
 )
 from groundstation.services.project.document import Document, PlanEntry
@@ -78,7 +78,7 @@ def test_a_new_viewpoint_stands_beside_the_other_and_inside_the_airspace(heading
     low, high = (np.array(corner) for corner in (site.airspace.min_enu_m, site.airspace.max_enu_m))
     for corner in (low, high, 0.5 * (low + high)):
         old = Viewpoint("v", tuple(corner.tolist()), heading_deg, 5.0, locked=True)
-        new = beside(old, site.airspace)
+        new = viewpoint_beside(old, site.airspace)
         place = np.array(new.position_enu_m)
         assert np.linalg.norm(place - corner) == pytest.approx(BESIDE_M)
         assert place[2] == corner[2]

@@ -94,7 +94,7 @@ def codes(findings: Sequence[Finding]) -> set[str]:
 def test_the_views_without_a_photo_are_closed() -> None:
     first, second = sizes()
     flown = opened([range(first - 3), range(2, second)])
-    assert len(flown.taken) == first + second - 5
+    assert len(flown.photographed) == first + second - 5
     found, findings = top_up_flight(flown, SOON, prepared())
     assert found.plan is not None
     assert 0 < found.wanted == found.closed
@@ -147,7 +147,7 @@ def test_a_flight_without_checksum_is_refused_where_no_photo_is_near_a_view() ->
     with pytest.raises(InputError, match="none of its 2 photos was taken near a view"):
         flown_plan(away, planned(), site())
     near = replace(flight([[0, 1]]), plan_sha256="")
-    assert len(flown_plan(near, planned(), site()).taken) == 2
+    assert len(flown_plan(near, planned(), site()).photographed) == 2
 
 
 def test_a_flight_at_another_place_is_refused() -> None:

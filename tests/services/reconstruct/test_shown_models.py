@@ -44,7 +44,7 @@ def folders(tmp_path_factory):
 
 
 @pytest.fixture
-def darkroom():
+def render_queue():
     return RenderQueue(lambda _message: None)
 
 
@@ -56,16 +56,18 @@ def camera(folders):
     return read_photo_set(folders / "data").photos[0]
 
 
-def test_a_model_and_its_objects_are_the_same_picture(folders, darkroom):
-    pictures = [darkroom.seen(look(folders / name, camera(folders))).picture for name in ("model", "scene")]
+def test_a_model_and_its_objects_are_the_same_picture(folders, render_queue):
+    pictures = [render_queue.answer(look(folders / name, camera(folders))).picture for name in ("model", "scene")]
     assert np.array_equal(*pictures)
     assert pictures[0].any()
 
 
-def test_colours_lie_on_their_panels_and_nowhere_else(folders, darkroom):
-    plain = darkroom.seen(look(folders / "scene", camera(folders))).picture.astype(float)
-    red = darkroom.seen(look(folders / "scene", camera(folders), tints=((0, (255, 0, 0)), (99, (1, 2, 3))))).picture
-    panels = darkroom._models.of(folders / "scene").model(_view(folders)).panels.numpy()
+def test_colours_lie_on_their_panels_and_nowhere_else(folders, render_queue):
+    plain = render_queue.answer(look(folders / "scene", camera(folders))).picture.astype(float)
+    red = render_queue.answer(
+        look(folders / "scene", camera(folders), tints=((0, (255, 0, 0)), (99, (1, 2, 3))))
+    ).picture
+    panels = render_queue._models.of(folders / "scene").model(_view(folders)).panels.numpy()
     mixed = np.round(plain * (1.0 - TINT_SHARE) + np.array([255.0, 0.0, 0.0]) * TINT_SHARE)
     is_red = (red == mixed).all(axis=2) & (red != plain).any(axis=2)
     assert ((panels == 0) & is_red).sum() > 0.9 * is_red.sum() > 20
@@ -79,81 +81,85 @@ def _view(folders):
     return View.of(camera(folders), model.origin_enu_m)
 
 
-def test_what_lies_beyond_a_section_is_not_there(folders, darkroom):
-    means = darkroom._models.of(folders / "scene").model.splats.means.detach().numpy()
-    origin = darkroom._models.of(folders / "scene").model.origin_enu_m
+def test_what_lies_beyond_a_section_is_not_there(folders, render_queue):
+    means = render_queue._models.of(folders / "scene").model.splats.means.detach().numpy()
+    origin = render_queue._models.of(folders / "scene").model.origin_enu_m
     at_m = float(np.median(means[:, 0]) + origin[0])
-    shown = darkroom._models.of(folders / "scene")
+    shown = render_queue._models.of(folders / "scene")
     for is_above in (True, False):
-        kept = darkroom._models.cut(shown, Section(0, at_m, is_above)).splats.means[:, 0] + origin[0]
+        kept = render_queue._models.cut(shown, Section(0, at_m, is_above)).splats.means[:, 0] + origin[0]
         assert (kept <= at_m).all() if is_above else (kept >= at_m).all()
         assert 0.3 * len(means) < len(kept) < 0.7 * len(means)
-    whole = darkroom.seen(look(folders / "scene", camera(folders))).picture
-    nothing = darkroom.seen(look(folders / "scene", camera(folders), section=Section(0, -1e6)))
+    whole = render_queue.answer(look(folders / "scene", camera(folders))).picture
+    nothing = render_queue.answer(look(folders / "scene", camera(folders), section=Section(0, -1e6)))
     assert nothing.problem == ""
     assert not np.array_equal(whole, nothing.picture)
     assert np.array_equal(
-        whole, darkroom.seen(look(folders / "scene", camera(folders), section=Section(0, 1e6))).picture
+        whole, render_queue.answer(look(folders / "scene", camera(folders), section=Section(0, 1e6))).picture
     )
 
 
-def test_the_same_section_of_two_models_is_cut_once_each(folders, darkroom):
+def test_the_same_section_of_two_models_is_cut_once_each(folders, render_queue):
     section = Section(2, 1.0)
-    shown = [darkroom._models.of(folders / "scene"), ShownModels().of(folders / "scene")]
-    first = [darkroom._models.cut(each, section) for each in shown]
+    shown = [render_queue._models.of(folders / "scene"), ShownModels().of(folders / "scene")]
+    first = [render_queue._models.cut(each, section) for each in shown]
     assert first[0] is not first[1]
     for each, cut in zip(shown, first, strict=True):
-        assert darkroom._models.cut(each, section) is cut
-        assert darkroom._models.cut(each, Section(2, 2.0)) is not cut
+        assert render_queue._models.cut(each, section) is cut
+        assert render_queue._models.cut(each, Section(2, 2.0)) is not cut
 
 
-def test_quick_pictures_of_small_models_are_as_they_are(folders, darkroom):
-    plain, quick = (darkroom.seen(look(folders / "scene", camera(folders), is_quick=q)).picture for q in (False, True))
+def test_quick_pictures_of_small_models_are_as_they_are(folders, render_queue):
+    plain, quick = (
+        render_queue.answer(look(folders / "scene", camera(folders), is_quick=q)).picture for q in (False, True)
+    )
     assert np.array_equal(plain, quick)
-    assert not darkroom._models._of_detail
+    assert not render_queue._models._of_detail
 
 
-def test_quick_pictures_of_large_models_look_like_them_and_have_sections(folders, darkroom, monkeypatch):
+def test_quick_pictures_of_large_models_look_like_them_and_have_sections(folders, render_queue, monkeypatch):
     """A model that counts as large, from so far away that pixels are as coarse as its cubes."""
     monkeypatch.setattr("groundstation.services.reconstruct.render_queue.LARGE", 100)
     monkeypatch.setattr("reconstruction.splats.merged_splats.FEWEST", 20)
     near = camera(folders)
     lens = near.intrinsics
     small = replace(near, intrinsics=lens.scaled(lens.width_px // 4, lens.height_px // 4))
-    shown = darkroom._models.of(folders / "scene")
-    n = len(darkroom._models.quick(shown, None, _view_of(small, shown)).splats)
+    shown = render_queue._models.of(folders / "scene")
+    n = len(render_queue._models.quick(shown, None, _view_of(small, shown)).splats)
     assert 0 < n < len(shown.model.splats)
     plain, quick = (
-        darkroom.seen(look(folders / "scene", small, is_quick=is_quick)).picture.astype(float)
+        render_queue.answer(look(folders / "scene", small, is_quick=is_quick)).picture.astype(float)
         for is_quick in (False, True)
     )
     assert 0.0 < np.abs(plain - quick).mean() < 10.0
     means = shown.model.splats.means.detach().numpy()
     at_m = float(np.median(means[:, 0]) + shown.model.origin_enu_m[0])
-    cut = darkroom._models.quick(shown, Section(0, at_m), _view_of(small, shown)).splats
+    cut = render_queue._models.quick(shown, Section(0, at_m), _view_of(small, shown)).splats
     assert 0 < len(cut) < n
     assert (cut.means[:, 0].detach().numpy() + shown.model.origin_enu_m[0] <= at_m).all()
-    assert len(darkroom._models._of_detail) == 1
-    assert not darkroom.prepare()
+    assert len(render_queue._models._of_detail) == 1
+    assert not render_queue.prepare()
 
 
-def test_a_large_model_is_made_ready_while_nobody_waits(folders, darkroom, monkeypatch):
-    assert not darkroom.prepare()
-    darkroom.seen(look(folders / "scene", camera(folders)))
-    assert not darkroom.prepare()
+def test_a_large_model_is_made_ready_while_nobody_waits(folders, render_queue, monkeypatch):
+    assert not render_queue.prepare()
+    render_queue.answer(look(folders / "scene", camera(folders)))
+    assert not render_queue.prepare()
     monkeypatch.setattr("groundstation.services.reconstruct.render_queue.LARGE", 100)
-    assert [darkroom.prepare(), darkroom.prepare()] == [True, False]
+    assert [render_queue.prepare(), render_queue.prepare()] == [True, False]
 
 
-def test_where_there_is_no_memory_for_it_quick_pictures_are_as_they_are(folders, darkroom, monkeypatch):
+def test_where_there_is_no_memory_for_it_quick_pictures_are_as_they_are(folders, render_queue, monkeypatch):
     def no_memory(_splats):
         raise MemoryError
 
     monkeypatch.setattr("groundstation.services.reconstruct.render_queue.LARGE", 100)
     monkeypatch.setattr("reconstruction.splats.merged_splats.splats_of_detail", no_memory)
-    plain, quick = (darkroom.seen(look(folders / "scene", camera(folders), is_quick=q)).picture for q in (False, True))
+    plain, quick = (
+        render_queue.answer(look(folders / "scene", camera(folders), is_quick=q)).picture for q in (False, True)
+    )
     assert np.array_equal(plain, quick)
-    assert not darkroom.prepare()
+    assert not render_queue.prepare()
 
 
 def _view_of(photo, shown):
@@ -162,7 +168,7 @@ def _view_of(photo, shown):
     return View.of(photo, shown.model.origin_enu_m)
 
 
-def test_a_probe_tells_panel_and_place(folders, darkroom):
+def test_a_probe_tells_panel_and_place(folders, render_queue):
     source = read_photo_set(folders / "data")
     photo, corners = source.photos[0], source.panels.corners_enu_m
     middle = corners[0].mean(axis=0)
@@ -172,10 +178,10 @@ def test_a_probe_tells_panel_and_place(folders, darkroom):
         lens.cx_px + lens.fx_px * in_camera[0] / in_camera[2],
         lens.cy_px + lens.fy_px * in_camera[1] / in_camera[2],
     )
-    found = darkroom.probed(Probe("pick", 1, Subject("model", folders / "scene"), photo, at))
+    found = render_queue.probed(Probe("pick", 1, Subject("model", folders / "scene"), photo, at))
     assert found.panel == 0
     np.testing.assert_allclose(found.point_enu_m, middle, atol=1e-6)
-    sky = darkroom.probed(Probe("pick", 2, Subject("model", folders / "scene"), photo, (-500.0, -5000.0)))
+    sky = render_queue.probed(Probe("pick", 2, Subject("model", folders / "scene"), photo, (-500.0, -5000.0)))
     assert (sky.panel, sky.point_enu_m) == (None, None)
-    missing = darkroom.probed(Probe("pick", 3, Subject("model", Path("nowhere")), photo, at))
+    missing = render_queue.probed(Probe("pick", 3, Subject("model", Path("nowhere")), photo, at))
     assert "make one with `organise`" in missing.problem or "no finished model" in missing.problem

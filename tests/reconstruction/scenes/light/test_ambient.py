@@ -28,9 +28,9 @@ def light_on(made: Scene, points: list[tuple[float, float, float]], normal: tupl
     tracer = Tracer(made, Switches())
     assert tracer.ambient is not None
     at, n = np.array(points, float), np.broadcast_to(np.array(normal, float), (len(points), 3))
-    met = tracer.geometry.meet(at + 0.5 * n, -n)
-    assert (met.bodies >= 0).all()
-    return tracer.ambient.on(met.points_enu_m, met.normals_enu, met.triangles)[:, 0]
+    hits = tracer.geometry.meet(at + 0.5 * n, -n)
+    assert (hits.bodies >= 0).all()
+    return tracer.ambient.on(hits.points_enu_m, hits.normals_enu, hits.triangles)[:, 0]
 
 
 def black(body: Body) -> Body:

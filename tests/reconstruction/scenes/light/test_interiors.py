@@ -49,7 +49,7 @@ def seen(rooms: Interiors, points: Array, directions: Array) -> Array:
     n = len(points)
     flat = np.tile([0.0, -1.0, 0.0], (n, 1))
     light = RoomLight(rooms, made, PaneFrames.of(made))
-    return light.seen(points, directions, np.zeros(n, np.int64), flat, np.full(n, np.inf))[:, 0]
+    return light.light_from(points, directions, np.zeros(n, np.int64), flat, np.full(n, np.inf))[:, 0]
 
 
 def by_steps(point: Array, direction: Array) -> float:
@@ -100,7 +100,7 @@ def test_rays_along_the_glass_see_something_finite(direction: tuple[float, float
 
 def test_seen_from_inside_a_pane_shows_the_mean() -> None:
     made = panes(facing_south(4.0, 3.0), room=0.31)
-    light = RoomLight(one_room(), made, PaneFrames.of(made)).seen(
+    light = RoomLight(one_room(), made, PaneFrames.of(made)).light_from(
         np.array([[0.0, 0.0, 10.0]]), np.array([[0.0, -1.0, 0.0]]), np.zeros(1, np.int64), np.array([[0.0, 1.0, 0.0]]),
         np.ones(1),
     )  # fmt: skip
@@ -128,7 +128,7 @@ def far_and_wide(made: Scene, rng: np.random.Generator) -> tuple[Array, Array]:
     axes = np.stack([frames.rights, frames.ups, frames.normals], axis=1)[which]
     directions = np.einsum("nj,njk->nk", local, axes)
     assert made.interiors is not None
-    light = RoomLight(made.interiors, made.panes, frames).seen(
+    light = RoomLight(made.interiors, made.panes, frames).light_from(
         points, directions, which, frames.normals[which], np.full(m * n, np.inf)
     )
     return light.reshape(m, n, 3).mean(axis=1), made.panes.rooms
@@ -211,5 +211,5 @@ def test_every_third_row_is_painted_behind_and_all_other_rooms_stay() -> None:
     rays /= np.linalg.norm(rays, axis=1, keepdims=True)
     places = middles[which] + rng.uniform(-0.5, 0.5, (len(which), 1)) * frames.rights[which]
     light = RoomLight(made.interiors, made.panes, frames)
-    seen = light.seen(places, rays, which, frames.normals[which], np.full(len(which), 0.01))
+    seen = light.light_from(places, rays, which, frames.normals[which], np.full(len(which), 0.01))
     np.testing.assert_allclose(seen, np.broadcast_to(PAINT, seen.shape), rtol=0.01)

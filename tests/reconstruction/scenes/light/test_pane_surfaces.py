@@ -64,12 +64,12 @@ def board_places(made: Scene, camera: PosedPhoto, pixels: Array) -> Array:
     """x and z where mirrored rays meet the board's plane, shape (n, 2)."""
     geometry = Geometry(made)
     origins, directions = camera.rays(pixels)
-    met, normals = PaneSurfaces(made.panes, geometry.pane_frames).meet(geometry.meet(origins, directions), directions)
+    hits, normals = PaneSurfaces(made.panes, geometry.pane_frames).meet(geometry.meet(origins, directions), directions)
     out = mirrored(directions, normals)
-    ahead = (BOARD_Y_M - met.points_enu_m[:, 1]) / out[:, 1]
-    hits = met.points_enu_m + ahead[:, None] * out
-    hits[met.panes < 0] = np.nan
-    return hits[:, [0, 2]]
+    ahead = (BOARD_Y_M - hits.points_enu_m[:, 1]) / out[:, 1]
+    places = hits.points_enu_m + ahead[:, None] * out
+    places[hits.panes < 0] = np.nan
+    return places[:, [0, 2]]
 
 
 def missed_px(made: Scene, camera: PosedPhoto, pixels: Array, points: Array) -> Array:
@@ -158,14 +158,14 @@ def test_rays_meet_the_glass_where_it_is(
     directions = np.tile(-away, (35, 1))
     flat = PLANE.meet(towards + away_m * away, directions)
     assert (flat.panes == 0).all()
-    met, normals = surfaces.meet(flat, directions)
-    off, expected = surface_m(made, met.points_enu_m)
-    moved = met.distance_m != flat.distance_m
+    hits, normals = surfaces.meet(flat, directions)
+    off, expected = surface_m(made, hits.points_enu_m)
+    moved = hits.distance_m != flat.distance_m
     # What passes the edge of a bulge comes closest there, along the glass.
     facing = np.einsum("nk,nk->n", normals, directions)
     assert ((np.abs(off) < 1e-8) | (np.abs(facing) < 1e-8))[moved].all()
     assert np.allclose(normals, -side * expected if behind else expected, atol=1e-12)
-    assert np.allclose(towards + away_m * away + met.distance_m[:, None] * directions, met.points_enu_m, atol=1e-8)
+    assert np.allclose(towards + away_m * away + hits.distance_m[:, None] * directions, hits.points_enu_m, atol=1e-8)
     # Of a bulge, the near side: the glass faces the ray.
     assert (facing[moved] <= 1e-9).all()
     if np.sin(rise) > 0.9:
@@ -177,13 +177,13 @@ def test_a_pane_without_tilt_and_bow_is_met_where_it_was() -> None:
     geometry = Geometry(made)
     surfaces = PaneSurfaces(made.panes, geometry.pane_frames)
     origins, directions = photo().rays(np.array([[100.0, 90.0], [128.0, 96.0], [3.0, 4.0]]))
-    met = geometry.meet(origins, directions)
+    hits = geometry.meet(origins, directions)
     assert surfaces.is_flat
-    assert surfaces.meet(met, directions)[0] is met
+    assert surfaces.meet(hits, directions)[0] is hits
     tiny = with_panes(made, bows_per_m=np.full((1, 2), 1e-12), tilts_rad=np.full((1, 2), 1e-14))
-    again, normals = PaneSurfaces(tiny.panes, geometry.pane_frames).meet(met, directions)
-    assert np.allclose(again.points_enu_m, met.points_enu_m, atol=1e-10)
-    assert np.allclose(normals, met.normals_enu, atol=1e-10)
+    again, normals = PaneSurfaces(tiny.panes, geometry.pane_frames).meet(hits, directions)
+    assert np.allclose(again.points_enu_m, hits.points_enu_m, atol=1e-10)
+    assert np.allclose(normals, hits.normals_enu, atol=1e-10)
 
 
 @pytest.mark.few(10)

@@ -36,7 +36,7 @@ def forced(splats, view, parameters=QUICK, limits=None, seed=0):
     """One change right after one picture, every visible splat being pulled at."""
     strategy, optimiser = AdaptiveControl(parameters, limits), adam(splats)
     offsets = torch.full((len(splats), 2), 1.0)
-    strategy.seen(picture_of(splats, view), offsets, view)
+    strategy.observe(picture_of(splats, view), offsets, view)
     step = parameters.start - parameters.start % parameters.every + parameters.every - 1
     return strategy.after_step(step, splats, optimiser, torch.Generator().manual_seed(seed))
 
@@ -102,7 +102,7 @@ def test_the_number_of_splats_has_an_end_and_the_strongest_pulls_go_first():
     strategy, optimiser = AdaptiveControl(QUICK, Limits(n_most=50)), adam(splats)
     pulls = torch.full((48, 2), 1.0)
     pulls[[7, 31]] = 5.0
-    strategy.seen(picture_of(splats, view), pulls, view)
+    strategy.observe(picture_of(splats, view), pulls, view)
     strategy.after_step(39, splats, optimiser, torch.Generator())
     assert len(splats) == 50
     assert splats.panels.bincount()[[7, 31]].tolist() == [2, 2]
@@ -114,7 +114,7 @@ def test_splats_that_fade_or_are_at_the_lens_are_pruned():
         splats.opacity_logits[3] = math.log(0.015)
         splats.means[5] = view.position_m + torch.tensor([0.0, 0.5, 0.0])
     strategy, optimiser = AdaptiveControl(QUICK), adam(splats)
-    strategy.seen(picture_of(splats, view), None, view)
+    strategy.observe(picture_of(splats, view), None, view)
     change = strategy.after_step(39, splats, optimiser, torch.Generator())
     assert (change.n_pruned, len(splats), change.n_dead) == (2, 46, 0)
 
@@ -177,7 +177,7 @@ def test_nothing_happens_outside_the_steps_it_is_meant_for():
     splats, view = grey_wall(), view_from((0.0, -4.0, 0.3))
     strategy, optimiser = AdaptiveControl(QUICK), adam(splats)
     for step in (9, 19, 159):
-        strategy.seen(picture_of(splats, view), torch.ones(48, 2), view)
+        strategy.observe(picture_of(splats, view), torch.ones(48, 2), view)
         assert (strategy.after_step(step, splats, optimiser, torch.Generator()).is_nothing) == (step != 39)
     assert len(splats) == 48
 

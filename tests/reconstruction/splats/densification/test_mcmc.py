@@ -39,7 +39,7 @@ def test_copies_in_one_place_cover_what_the_one_covered(opacity, n):
 
 def relocated(splats, view, parameters=QUICK, seed=0):
     strategy, optimiser = MarkovChain(parameters), adam(splats)
-    strategy.seen(picture_of(splats, view), None, view)
+    strategy.observe(picture_of(splats, view), None, view)
     return strategy.after_step(39, splats, optimiser, torch.Generator().manual_seed(seed))
 
 
@@ -78,7 +78,7 @@ def test_what_is_seen_nowhere_is_relocated_too():
         adam(splats),
     )
     for _ in range(HIDDEN_VIEWS + 1):
-        strategy.seen(picture_of(splats, view), None, view)
+        strategy.observe(picture_of(splats, view), None, view)
     assert strategy.after_step(39, splats, optimiser, torch.Generator().manual_seed(0)).n_relocated == 1
     assert abs(splats.means[0, 1].item()) < 1e-6
 

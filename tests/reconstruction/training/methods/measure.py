@@ -173,10 +173,10 @@ def facade(folder):
 
 
 def _with_rays(rays):
-    met = rays.met()
+    hits = rays.hits()
     return {
-        "omega_o": met.directions.float(), "normals": rays.table.normals[rays.panels].float(),
-        "panels": rays.panels.long(), "shares": met.shares.float().clamp(0.0, 1.0), "display": rays.display,
+        "omega_o": hits.directions.float(), "normals": rays.table.normals[rays.panels].float(),
+        "panels": rays.panels.long(), "shares": hits.shares.float().clamp(0.0, 1.0), "display": rays.display,
         "gains": rays.gains[:, None], "off_axis": rays.off_axis[:, None],
     }  # fmt: skip
 
