@@ -119,10 +119,6 @@ class Comparison:
     sampling: tuple[PanelSampling, ...]
     findings: tuple[tuple[Finding, ...], ...]
 
-    def only(self, first: int, second: int) -> NDArray[np.bool_]:
-        """Sections that the first of two plans covers and the second does not, shape (m, s)."""
-        return np.asarray((self.counts[first] > 0) & (self.counts[second] == 0))
-
     def more_covered_per_panel(self, first: int, second: int) -> NDArray[np.int64]:
         """How many more sections of each panel the first of two plans covers, shape (m,); negative: fewer."""
         covered = np.count_nonzero(self.counts > 0, axis=2)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from dataclasses import dataclass
 
@@ -254,11 +253,6 @@ class ProfileSamples:
         """Heights above a level, ENU z: the ground's, or home's for height above take-off."""
         return self.positions_enu_m[:, 2] - base_z_m
 
-    def decimated(self, n_most: int) -> ProfileSamples:
-        """About `n_most` samples or fewer, with all extremes of speed and height of the parts they stand for."""
-        kept = keep_extremes((self.speed_m_s, self.positions_enu_m[:, 2]), n_most)
-        return ProfileSamples(self.t_s[kept], self.distance_m[kept], self.positions_enu_m[kept], self.speed_m_s[kept])
-
 
 def sortie_profile(plan: Plan, sortie: Sortie) -> FlightProfile | None:
     """Profile of one of a plan's sorties; None where its path has no leg or misses one of its viewpoints.
@@ -285,25 +279,3 @@ def sortie_profile(plan: Plan, sortie: Sortie) -> FlightProfile | None:
     stop_s = photo_stop_s(plan.aircraft, plan.rules) - plan.rules.settle_s
     photo_s = photos_s - np.where(passing.hover_s[at_photos] > 0.0, stop_s, 0.0)
     return FlightProfile(flown.vertices_enu_m, arrival, departure, ramps, photo_s, sortie.viewpoint_ids)
-
-
-def keep_extremes(series: tuple[Array, ...], n_most: int) -> NDArray[np.int64]:
-    """Indices of samples to draw, rising: the ends, and the least and greatest of each series in each of equal parts.
-
-    Parameters
-    ----------
-    series
-        Arrays of shape (q,) over the same samples.
-    n_most
-        As many are kept, or all where there are no more; at least the extremes of one part.
-    """
-    q = len(series[0])
-    if q <= n_most:
-        return np.arange(q)
-    n_parts = max(1, (n_most - 2) // (2 * len(series)))
-    borders = np.linspace(0, q, n_parts + 1).astype(np.int64)
-    kept = [np.array([0, q - 1])]
-    for first, last in itertools.pairwise(borders):
-        for values in series:
-            kept.append(first + np.array([np.argmin(values[first:last]), np.argmax(values[first:last])]))
-    return np.unique(np.concatenate(kept))

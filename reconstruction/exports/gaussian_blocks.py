@@ -42,11 +42,6 @@ def turned(ellipsoids: Ellipsoids, axes: Axes) -> Ellipsoids:
     return _turned(ellipsoids, QUARTER_TURNS[axes])
 
 
-def turned_back(ellipsoids: Ellipsoids, axes: Axes) -> Ellipsoids:
-    """Gaussians in `axes`, told in ENU."""
-    return _turned(ellipsoids, -QUARTER_TURNS[axes])
-
-
 def rotation_about_x(quarters: int) -> NDArray[np.int64]:
     """Shape (3, 3)."""
     cos, sin = (1, 0, -1, 0)[quarters % 4], (0, 1, 0, -1)[quarters % 4]

@@ -313,12 +313,6 @@ class ReflectionScore:
         """Of the worst view."""
         return min(view.psnr_db for view in self.views)
 
-    @property
-    def all_rays_db(self) -> float:
-        """PSNR of all rays of the views together."""
-        squares = sum(view.n_rays * 10.0 ** (-view.psnr_db / 10.0) for view in self.views)
-        return -10.0 * math.log10(squares / sum(view.n_rays for view in self.views))
-
 
 def score_views(
     trained: TrainedReflections, source: PhotoSet, names: Collection[str], monitor: Monitor = QUIET

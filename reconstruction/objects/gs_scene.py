@@ -117,10 +117,6 @@ class GsComponent:
         if self.kind == "background" and self.elements:
             raise ValueError("elements: expected none of the background")
 
-    def gaussians_of(self, element: GsElement) -> GsGaussian:
-        """Those of one element."""
-        return self.gaussians.part(element.start, element.stop)
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class GsAuxiliary:

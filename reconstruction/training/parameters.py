@@ -54,8 +54,6 @@ LIGHTS = (
     Choice("radiance-grid", "near things (radiance grid)"),
 )
 
-SETTINGS_HELP = "TOML file with settings that differ from the preset's"
-
 
 @dataclass(frozen=True, slots=True)
 class TrainRequest:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 import sqlite3
 from collections.abc import Iterable
 from pathlib import Path
@@ -10,7 +11,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from groundstation.services.map.web_mercator import Tile, tile_at, world_from_geodetic
+from groundstation.services.map.web_mercator import Tile, world_from_geodetic
 
 
 def colour_of(tile: Tile) -> tuple[int, int, int]:
@@ -23,6 +24,12 @@ def picture(tile: Tile, ending: str = ".png", size: int = 256) -> bytes:
     pixels = np.full((size, size, 3), colour_of(tile)[::-1], np.uint8)
     cv2.rectangle(pixels, (0, 0), (size - 1, size - 1), (230, 230, 230), 1)
     return bytes(cv2.imencode(ending, pixels)[1])
+
+
+def tile_at(x: float, y: float, zoom: int) -> Tile:
+    """The tile of a level that holds a point of the world; points beyond its edge go to the tile at the edge."""
+    n = 2**zoom
+    return Tile(zoom, *(min(max(math.floor(value * n), 0), n - 1) for value in (x, y)))
 
 
 def tiles_around(lat_deg: float, lon_deg: float, levels: Iterable[int], reach: int = 2) -> list[Tile]:

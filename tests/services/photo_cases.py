@@ -35,7 +35,7 @@ def draft_of(photos: list[PosedPhoto] | None = None, seed: int = 0) -> PanelDraf
     """Found panels, 3 rows of 10; the poses are those of `photos`, or wrong by what RTK leaves."""
     rng = np.random.default_rng(seed)
     truth = surface(0.0, lean_rad=0.0)
-    fit = SurfaceFit(truth, np.diag([0.02, 2e-4, 2e-4]) ** 2, 0.05, 1000, 1.0)
+    fit = SurfaceFit(truth, np.diag([0.02, 2e-4, 2e-4]) ** 2, 0.05, 1000)
     true = true_photos()
     told = [stated(photo, RTK, rng) for photo in true] if photos is None else photos
     grids = {i: found_grid(true[i], told[i], truth, truth, 0.3, rng) for i in range(len(true))}

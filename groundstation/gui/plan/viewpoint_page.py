@@ -109,10 +109,6 @@ class PanelDetail(QWidget):
         """Everything that is said."""
         return "\n".join(label.text() for label in (self._title, self._words, self._section_words))
 
-    def hemisphere(self) -> HemisphereView:
-        """The picture."""
-        return self._hemisphere
-
     def _show(self) -> None:
         insight, panel = self._insight, self._panel
         if insight is None or panel is None:

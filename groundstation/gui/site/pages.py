@@ -491,10 +491,6 @@ class NoFlyPage(ItemPage):
         for box in (self._floor, self._ceiling, self._polygon):
             box.set_units(units)
 
-    def polygon_box(self) -> PolygonBox:
-        """Editor of the corners."""
-        return self._polygon
-
     def _set(self, _value: object) -> None:
         if self._item is not None:
             edit = partial(

@@ -66,12 +66,6 @@ def world_from_enu(origin: Origin, points_enu_m: ArrayLike) -> NDArray[np.float6
     return world
 
 
-def tile_at(x: float, y: float, zoom: int) -> Tile:
-    """The tile of a level that holds a point; points beyond the world's edge go to the tile at the edge."""
-    n = 2**zoom
-    return Tile(zoom, *(min(max(math.floor(value * n), 0), n - 1) for value in (x, y)))
-
-
 def metres_per_point(lat_deg: float, zoom: float) -> float:
     """Metres from west to east that one point spans, on the ellipsoid.
 

@@ -29,7 +29,7 @@ Table = dict[str, Column]
 """Columns of one kind of message by label, all of one length; numbers are float64 in the units of the log."""
 
 HEADER = b"\xa3\x95"
-FMT_TYPE, FMT_BYTES = 128, 89
+FMT_TYPE = 128
 _FMT = np.dtype([("type", "u1"), ("length", "u1"), ("name", "S4"), ("letters", "S16"), ("labels", "S64")])
 
 _KINDS: Mapping[str, tuple[str, float]] = {

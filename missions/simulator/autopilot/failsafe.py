@@ -24,7 +24,7 @@ from planning.geo.frames import Vec3
 CHECK_S = 0.2
 """How often all are looked at."""
 
-INCLUSION, EXCLUSION = (5001, 5003), (5002, 5004)
+INCLUSION = (5001, 5003)
 POLYGONS = (5001, 5002)
 
 GROUND_STATION_SYSTEM = 255

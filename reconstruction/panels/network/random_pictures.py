@@ -175,14 +175,6 @@ class _Facade:
     panes: Array
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Cells:
-    """Cells of a facade, each with its glass: left, top, right, bottom, px, shape (rows, columns, 4)."""
-
-    boxes: Array
-    is_glazed: NDArray[np.bool_]
-
-
 def _facade(rng: np.random.Generator, close_up: bool, is_night: bool) -> _Facade:
     kind = rng.choice(["curtain", "windows", "bands"], p=[0.8, 0.15, 0.05] if close_up else [0.45, 0.45, 0.1])
     most = 4 if close_up else int(rng.choice([8, 14, 26]))

@@ -77,15 +77,12 @@ class SurfaceFit:
         Robust standard deviation of the points about the surface (1.4826 times the median of their distances).
     n_points
         That were used.
-    inliers
-        Share of points within three times `noise_m`.
     """
 
     surface: FacadeSurface
     covariance: Array
     noise_m: float
     n_points: int
-    inliers: float
 
     @property
     def curvature_sigma_per_m(self) -> float:
@@ -219,7 +216,7 @@ def _refined(start: FacadeSurface, points: Array, parameters: FitParameters, n_f
     if n_free == 5:
         information[3, 3] += LEVEL_RAD**-2
     covariance = np.asarray(np.linalg.pinv(information, hermitian=True), float)
-    return SurfaceFit(surface, covariance, noise, len(points), float(inside.mean()))
+    return SurfaceFit(surface, covariance, noise, len(points))
 
 
 def _noise_m(surface: FacadeSurface, points: Array) -> float:

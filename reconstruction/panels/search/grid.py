@@ -105,12 +105,6 @@ class Rows:
         return np.asarray(np.clip(ssim, -1.0, 1.0, out=ssim))
 
 
-def similarity_matrix(picture: NDArray[Any], n_samples: int = 0) -> Floats:
-    """HSIM of a grey picture, shape (n, n) for n rows (Eq. 3); VSIM is that of its transpose (Eq. 4)."""
-    rows = Rows.of(picture, n_samples)
-    return rows.similarity(0, len(rows.means))
-
-
 # Lines that look alike share their evidence: prior times similarity, summed (Eqs. 5 to 8).
 
 

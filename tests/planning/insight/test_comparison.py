@@ -36,7 +36,6 @@ def test_a_plan_beside_itself_is_equal_in_every_row_and_better_in_none():
     for row in same.rows:
         assert row.values[0] == row.values[1]
         assert row.best == ()
-    assert not same.only(0, 1).any()
     assert not same.more_covered_per_panel(0, 1).any()
     assert same.notes == ()
 
@@ -53,7 +52,6 @@ def test_rows_hold_what_is_measured_one_by_one():
     assert values(found, "only-here") == (float((covered[0] & ~covered[1]).sum()), 0.0)
     facade_a = (site().problem.reachability.verdicts[:9] != UNREACHABLE).sum()
     assert values(found, "facade-share", "A") == pytest.approx([c[:9].sum() / facade_a for c in covered])
-    np.testing.assert_array_equal(found.only(0, 1), covered[0] & ~covered[1])
     np.testing.assert_array_equal(found.more_covered_per_panel(0, 1), covered[0].sum(axis=1) - covered[1].sum(axis=1))
     measured = {f.code: f.value for f in check_plan(planned(), model())}
     assert values(found, "clearance") == (pytest.approx(measured["leg-distance"], abs=1e-5), None)

@@ -4,11 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from planning.base.errors import InfeasibleError
-from planning.insight.flight_profile import LOW_M, keep_extremes, low_flight, lowest_flight, sortie_profile
+from planning.insight.flight_profile import LOW_M, low_flight, lowest_flight, sortie_profile
 from planning.parameters import FlightRules
 from planning.plan import Sortie
 from tests.planning.insight.cases import plan
@@ -118,23 +116,3 @@ def test_paths_without_legs_or_without_their_viewpoints_have_no_profile():
 def test_a_storm_is_refused_in_words():
     with pytest.raises(InfeasibleError, match="wait for less wind"):
         profile_of(rules=FlightRules(wind_m_s=30.0))
-
-
-@given(st.lists(st.tuples(st.floats(-9, 9), st.floats(-9, 9)), min_size=1, max_size=400), st.integers(1, 120))
-def test_decimation_keeps_ends_and_extremes_and_no_more_than_asked_for(values, n_most):
-    first, second = np.array(values).T
-    kept = keep_extremes((first, second), n_most)
-    assert (np.diff(kept) > 0).all()
-    assert (kept[0], kept[-1]) == (0, len(first) - 1)
-    for series in (first, second):
-        assert series[kept].min() == series.min()
-        assert series[kept].max() == series.max()
-    assert len(kept) <= max(n_most, 6)
-
-
-def test_a_decimated_profile_is_a_shorter_one():
-    samples = profile_of().samples()
-    short = samples.decimated(40)
-    assert len(short.t_s) <= 40 < len(samples.t_s)
-    assert short.speed_m_s.max() == samples.speed_m_s.max()
-    assert set(short.t_s) <= set(samples.t_s)

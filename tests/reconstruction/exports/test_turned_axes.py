@@ -6,7 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from reconstruction.exports.component_parts import ellipsoids_of_all
-from reconstruction.exports.gaussian_blocks import QUARTER_TURNS, harmonic_turns, rotation_about_x, turned, turned_back
+from reconstruction.exports.gaussian_blocks import QUARTER_TURNS, harmonic_turns, rotation_about_x, turned
+from tests.reconstruction.exports.spz.reading import turned_back
 from tests.reconstruction.exports.test_ellipsoids import standard_harmonics
 from tests.reconstruction.objects.made_scene import made_scene
 

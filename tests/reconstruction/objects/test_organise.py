@@ -54,7 +54,7 @@ def test_each_panel_has_just_the_gaussians_that_lie_on_it(scene, trained):
     panels = trained.model.splats.panels.numpy()
     means = trained.model.splats.means.detach().numpy()
     for component, element in scene.elements:
-        found = component.gaussians_of(element)
+        found = component.gaussians.part(element.start, element.stop)
         assert np.array_equal(np.sort(found.places), np.flatnonzero(panels == element.panel))
         assert np.array_equal(found.values["means"], means[found.places])
         assert scene.element(element.global_id) == (component, element)

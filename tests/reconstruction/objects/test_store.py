@@ -82,7 +82,7 @@ def test_an_element_is_read_alone(stored):
     for component, element in whole.elements:
         found, gaussians = store.element(element.global_id)
         assert found == element
-        assert_same_table(gaussians, component.gaussians_of(element))
+        assert_same_table(gaussians, component.gaussians.part(element.start, element.stop))
     with pytest.raises(InputError, match="no element with the GlobalId"):
         store.element("nothing")
 

@@ -13,12 +13,12 @@ from groundstation.services.map.web_mercator import (
     Tile,
     geodetic_from_world,
     metres_per_point,
-    tile_at,
     world_from_enu,
     world_from_geodetic,
 )
 from planning.geo.frames import Origin
 from tests.missions.plans import ORIGINS
+from tests.services.map_files import tile_at
 
 
 def test_chicago_lies_where_googles_documentation_puts_it():

@@ -13,11 +13,11 @@ from planning.base.errors import InputError
 from planning.base.files import MIB, FileLimit, check_zip_directory, open_input_file
 from planning.base.json_file import parse_json, to_record
 from reconstruction.exports.component_parts import NO_PANEL, Ellipsoids
-from reconstruction.exports.gaussian_blocks import Axes, turned_back
+from reconstruction.exports.gaussian_blocks import Axes
 from reconstruction.exports.sog import CODES, FIRST_TAG, META, PALETTE_COLUMNS, STEPS, Bytes, values_of
 from reconstruction.exports.spz import LARGEST_SMALL, OTHERS
 from reconstruction.splats.harmonic_colour import N_HARMONICS
-from tests.reconstruction.exports.spz.reading import MOST_GAUSSIANS
+from tests.reconstruction.exports.spz.reading import MOST_GAUSSIANS, turned_back
 
 Floats = NDArray[np.float32]
 

@@ -15,10 +15,7 @@ from planning.base.errors import InputError
 from planning.base.files import MIB, FileLimit, open_input_file
 from reconstruction.exports import spz
 from reconstruction.exports.component_parts import NO_PANEL, Ellipsoids
-from reconstruction.exports.gaussian_blocks import (
-    Axes,
-    turned_back,
-)
+from reconstruction.exports.gaussian_blocks import Axes, turned
 from reconstruction.exports.spz import (
     AT_ONCE_BYTES,
     COLOR_SCALE,
@@ -49,6 +46,14 @@ MOST_AFTER = 1 << 20
 """Bytes of extensions, after the Gaussians or before the table of contents."""
 
 HOW_TO_CONVERT = "save it as version 3 or 4, for example by `splat-transform FILE OTHER.spz`"
+
+
+BACK: dict[Axes, Axes] = {"enu": "enu", "y-up": "y-down", "y-down": "y-up"}
+
+
+def turned_back(ellipsoids: Ellipsoids, axes: Axes) -> Ellipsoids:
+    """Gaussians in `axes`, told in ENU: the other axes are a quarter turn of the same size, the other way."""
+    return turned(ellipsoids, BACK[axes])
 
 
 def read_spz(path: Path, axes: Axes = "y-up") -> Ellipsoids:

@@ -53,7 +53,7 @@ def solved(curvature: float = 0.0, seed: int = 0, shown_by: Sequence[int] = (0, 
         grid = found_grid(photo, other, truth, truth, SIGMA_PX, rng)
         line = seen_line(grid, photo, truth, BRACE, rng.normal(0.0, SIGMA_PX))
         grids[i] = replace(grid, inclined=(line,)) if i in shown_by else grid
-    return solve_facade("A", told, grids, SurfaceFit(truth, of_fit, 0.05, 1000, 1.0))
+    return solve_facade("A", told, grids, SurfaceFit(truth, of_fit, 0.05, 1000))
 
 
 def true_pieces(row: int, column: int) -> list[Array]:

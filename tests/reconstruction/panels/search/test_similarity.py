@@ -8,9 +8,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from reconstruction.panels.search.grid import C1, C2, Rows, normalised_intensity, posterior, similarity_matrix, softmax
+from reconstruction.panels.search.grid import C1, C2, Rows, normalised_intensity, posterior, softmax
 
 Array = NDArray[np.float64]
+
+
+def similarity_matrix(picture: NDArray[np.generic]) -> NDArray[np.float32]:
+    """HSIM of a grey picture, shape (n, n) for n rows (Eq. 3)."""
+    rows = Rows.of(picture)
+    return rows.similarity(0, len(rows.means))
 
 
 def ssim_by_the_book(a: Array, b: Array) -> float:

@@ -59,7 +59,7 @@ def load(photo: PosedPhoto) -> NDArray[np.uint8]:
 def facade() -> Facade:
     made = photos()[0]
     surface = surface_of(made.case)
-    fit = SurfaceFit(surface, np.diag([0.02, 2e-4, 2e-4]) ** 2, 0.05, 1000, 1.0)
+    fit = SurfaceFit(surface, np.diag([0.02, 2e-4, 2e-4]) ** 2, 0.05, 1000)
     low = np.array([made.columns_m[0] - 2.0, made.rows_m[0] - 2.0])
     high = np.array([made.columns_m[-1] + 2.0, made.rows_m[-1] + 2.0])
     view = SurfaceView(posed()[0], surface, low, high, 10.0)

@@ -99,7 +99,7 @@ def test_cut_cells_come_back_cut(curvature: float, open_side: int) -> None:
     brace = InclinedLine(tuple(first), tuple(last), 6.0, 0.2, 0.9, open_side)
     cut = facade_grid("A", view, whole.rows, whole.columns, (brace,))
     record = recorded(0, cut)
-    fit = SurfaceFit(surface, 1e-4 * np.eye(5), 0.02, 100, 1.0)
+    fit = SurfaceFit(surface, 1e-4 * np.eye(5), 0.02, 100)
     facade = Facade(
         fit, low, high, Decision("curvature", bool(curvature), "user", "as made", 1.0, 0.5, "px", 0.0), (0,)
     )

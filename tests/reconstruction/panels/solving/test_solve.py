@@ -77,7 +77,7 @@ def solved(
     n = 5 if curvature else 3
     of_fit = np.diag([0.02, 2e-4, 2e-4, 2e-4, 2e-5][:n]) ** 2
     assumed = changed(truth, rng.multivariate_normal(np.zeros(n), of_fit))
-    fit = SurfaceFit(assumed, of_fit, 0.05, 1000, 1.0)
+    fit = SurfaceFit(assumed, of_fit, 0.05, 1000)
     true = [looking_at(truth, 22.0, aside, above) for aside, above in ((0, 0), (7, 2), (-6, -2), (3, 4), (-3, 3))][
         :n_photos
     ]
@@ -149,7 +149,7 @@ def test_a_line_that_one_photo_misses_and_a_false_one_are_outvoted() -> None:
     rng = np.random.default_rng(0)
     truth = surface(0.0, lean_rad=0.0)
     photos = [stated(looking_at(truth, 22.0, aside), RTK, rng) for aside in (0.0, 5.0, -5.0)]
-    fit = SurfaceFit(truth, np.diag([0.01, 1e-4, 1e-4]) ** 2, 0.05, 1000, 1.0)
+    fit = SurfaceFit(truth, np.diag([0.01, 1e-4, 1e-4]) ** 2, 0.05, 1000)
     grids = {i: found_grid(photo, photo, truth, truth, 0.3, rng) for i, photo in enumerate(photos)}
     worse = grids[0]
     without = tuple(line for i, line in enumerate(worse.columns) if i != 4)
@@ -166,7 +166,7 @@ def test_cells_that_are_no_panels_are_left_out_by_majority() -> None:
     rng = np.random.default_rng(0)
     truth = surface(0.0, lean_rad=0.0)
     photos = [stated(looking_at(truth, 22.0, aside), RTK, rng) for aside in (0.0, 5.0, -5.0)]
-    fit = SurfaceFit(truth, np.diag([0.01, 1e-4, 1e-4]) ** 2, 0.05, 1000, 1.0)
+    fit = SurfaceFit(truth, np.diag([0.01, 1e-4, 1e-4]) ** 2, 0.05, 1000)
 
     def without(grid: FacadeGrid, cells: Sequence[tuple[int, int]]) -> FacadeGrid:
         kept = tuple(panel for panel in grid.panels if (panel.row, panel.column) not in cells)
@@ -183,6 +183,6 @@ def test_cells_that_are_no_panels_are_left_out_by_majority() -> None:
 
 def test_no_grid_is_refused() -> None:
     truth = surface(0.0)
-    fit = SurfaceFit(truth, np.diag([0.01, 1e-4, 1e-4]) ** 2, 0.05, 1000, 1.0)
+    fit = SurfaceFit(truth, np.diag([0.01, 1e-4, 1e-4]) ** 2, 0.05, 1000)
     with pytest.raises(InfeasibleError, match="no photo shows a grid"):
         solve_facade("A", [looking_at(truth)], {}, fit)
