@@ -11,12 +11,12 @@ Acknowledgements of other commands, from other systems, and for other ground sta
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 from enum import Enum
 from functools import cache
 from pathlib import Path
 
+from groundstation.vehicle.repeated_request import RepeatedRequest
 from missions.mavlink.autopilots import Autopilot, mode_numbers, px4_main_and_sub
 from missions.mavlink.messages import Address, CommandAck, CommandInt, CommandLong, Message, Received
 from planning.base.json_file import read_toml
@@ -119,7 +119,7 @@ class CommandOutcome:
         return self.answer is Answer.ACCEPTED
 
 
-class CommandCall:
+class CommandCall(RepeatedRequest):
     """One command on its way.
 
     Parameters
@@ -135,20 +135,10 @@ class CommandCall:
     def __init__(
         self, what: str, command: CommandLong | CommandInt, own: Address, n_attempts: int = N_ATTEMPTS
     ) -> None:
-        self.what, self._command, self._own, self._n_attempts = what, command, own, n_attempts
+        super().__init__(n_attempts, ATTEMPT_S)
+        self.what, self._command, self._own = what, command, own
         self.outcome: CommandOutcome | None = None
         self.progress_percent: int | None = None
-        self._n_sent = 0
-        self._deadline_s = math.inf
-
-    @property
-    def next_deadline_s(self) -> float:
-        """When `tick` wants to be called; infinity once it has ended."""
-        return self._deadline_s if self.outcome is None else math.inf
-
-    def start(self, now_s: float) -> list[Message]:
-        """Send it for the first time."""
-        return self._send(now_s)
 
     def receive(self, received: Received) -> list[Message]:
         """Take a message; nothing is ever sent in answer."""
@@ -175,19 +165,9 @@ class CommandCall:
             )
         return []
 
-    def tick(self, now_s: float) -> list[Message]:
-        """Send it again when the time is up, or give up."""
-        if self.outcome is not None or now_s < self._deadline_s:
-            return []
-        if self._n_sent < self._n_attempts:
-            return self._send(now_s)
-        self.outcome = CommandOutcome(Answer.NO_ANSWER, None, say("the vehicle did not answer to {}", self.what))
-        return []
-
-    def _send(self, now_s: float) -> list[Message]:
+    def _messages(self) -> list[Message]:
         command = self._command
-        if isinstance(command, CommandLong):
-            command = replace(command, confirmation=self._n_sent)
-        self._n_sent += 1
-        self._deadline_s = now_s + ATTEMPT_S
-        return [command]
+        return [replace(command, confirmation=self._n_sent) if isinstance(command, CommandLong) else command]
+
+    def _give_up(self) -> None:
+        self.outcome = CommandOutcome(Answer.NO_ANSWER, None, say("the vehicle did not answer to {}", self.what))

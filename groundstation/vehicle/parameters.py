@@ -18,6 +18,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 
+from groundstation.vehicle.repeated_request import RepeatedRequest
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.messages import Address, Message, ParamRequestRead, ParamSet, ParamValue, Received
 
@@ -88,7 +89,7 @@ def encoded(value: float, param_type: int, autopilot: Autopilot) -> float:
     return float(carried)
 
 
-class ParameterCall:
+class ParameterCall(RepeatedRequest):
     """One parameter being read, or set.
 
     Parameters
@@ -98,21 +99,11 @@ class ParameterCall:
     """
 
     def __init__(self, name: str, new_value: float | None, autopilot: Autopilot, target: Address) -> None:
+        super().__init__(N_ATTEMPTS, ATTEMPT_S)
         self.name, self._new_value, self._autopilot, self._target = name, new_value, autopilot, target
         self.outcome: ParameterOutcome | None = None
         self._setting: ParamSet | None = None
         self._former: float | None = None
-        self._n_sent = 0
-        self._deadline_s = math.inf
-
-    @property
-    def next_deadline_s(self) -> float:
-        """When `tick` wants to be called; infinity once it has ended."""
-        return self._deadline_s if self.outcome is None else math.inf
-
-    def start(self, now_s: float) -> list[Message]:
-        """Ask for its present value and type."""
-        return self._send(now_s)
 
     def receive(self, received: Received) -> list[Message]:
         """Take a message; the first value leads to the setting of another."""
@@ -146,19 +137,12 @@ class ParameterCall:
         self._n_sent = 0
         return self._send(now_s)
 
-    def tick(self, now_s: float) -> list[Message]:
-        """Send again when the time is up, or give up."""
-        if self.outcome is not None or now_s < self._deadline_s:
-            return []
-        if self._n_sent < N_ATTEMPTS:
-            return self._send(now_s)
-        return self._end(ParameterStatus.UNKNOWN if self._setting is None else ParameterStatus.NO_ANSWER, self._former)
-
-    def _send(self, now_s: float) -> list[Message]:
-        self._n_sent += 1
-        self._deadline_s = now_s + ATTEMPT_S
+    def _messages(self) -> list[Message]:
         target = self._target
         return [self._setting or ParamRequestRead(target.system, target.component, self.name)]
+
+    def _give_up(self) -> None:
+        self._end(ParameterStatus.UNKNOWN if self._setting is None else ParameterStatus.NO_ANSWER, self._former)
 
     def _is_wanted(self, value: float) -> bool:
         """Whether a value is the one wanted, to float32."""
@@ -178,24 +162,14 @@ N_ROUNDS = 5
 """Rounds in a row in which nothing new comes, before what is missing is taken for unknown to the vehicle."""
 
 
-class ParameterReads:
+class ParameterReads(RepeatedRequest):
     """Reads; `outcome` holds the values by name, without those that the vehicle does not know."""
 
     def __init__(self, names: Sequence[str], autopilot: Autopilot, target: Address) -> None:
+        super().__init__(N_ROUNDS, ATTEMPT_S)
         self._names, self._autopilot, self._target = tuple(names), autopilot, target
         self._values: dict[str, float] = {}
         self.outcome: dict[str, float] | None = None
-        self._n_sent = 0
-        self._deadline_s = math.inf
-
-    @property
-    def next_deadline_s(self) -> float:
-        """When `tick` wants to be called; infinity once it has ended."""
-        return self._deadline_s if self.outcome is None else math.inf
-
-    def start(self, now_s: float) -> list[Message]:
-        """Ask for all."""
-        return self._send(now_s)
 
     def receive(self, received: Received) -> list[Message]:
         """Take a message; nothing is sent in answer."""
@@ -210,18 +184,10 @@ class ParameterReads:
                 self.outcome = self._values
         return []
 
-    def tick(self, now_s: float) -> list[Message]:
-        """Ask again for what is missing, or give up on it."""
-        if self.outcome is not None or now_s < self._deadline_s:
-            return []
-        if self._n_sent < N_ROUNDS:
-            return self._send(now_s)
-        self.outcome = self._values
-        return []
-
-    def _send(self, now_s: float) -> list[Message]:
-        self._n_sent += 1
-        self._deadline_s = now_s + ATTEMPT_S
+    def _messages(self) -> list[Message]:
         target = self._target
         missing = (name for name in self._names if name not in self._values)
         return [ParamRequestRead(target.system, target.component, name) for name in missing]
+
+    def _give_up(self) -> None:
+        self.outcome = self._values

@@ -11,7 +11,6 @@ from collections import OrderedDict
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from PySide6.QtCore import QObject, Qt, QTimer
 from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QDialog, QHeaderView, QLabel, QVBoxLayout, QWidget
@@ -19,6 +18,7 @@ from PySide6.QtWidgets import QDialog, QHeaderView, QLabel, QVBoxLayout, QWidget
 from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.application.translate import translated
 from groundstation.gui.camera_preview.preview import CameraPreview
+from groundstation.gui.widgets.picture_decoder import qimage_of
 from groundstation.gui.widgets.table_view import Column, RowModel, table_of
 from groundstation.services.jobs.runner import Job, JobContext, JobProgress, JobState
 from groundstation.services.scenes.preview import (
@@ -261,7 +261,7 @@ class PhotoController(QObject):
             photo = context.run_in_process(cached_photo, request_for_site)
             if photo is None:
                 photo = context.run_in_process(site_photo, model, request_for_site)
-            return photo, painted(photo.picture)
+            return photo, qimage_of(photo.picture)
 
         self._job_view, self._is_given_up = wanted.view, False
         self._job = self._context.start(
@@ -325,11 +325,3 @@ class PhotoController(QObject):
     def _show_units(self, units: UnitSystem) -> None:
         if self._effects is not None:
             self._effects.set_units(units)
-
-
-def painted(picture: NDArray[np.uint8]) -> QImage:
-    """A picture, shape (h, w, 3), blue, green, red, in the format that is painted fastest."""
-    height, width = picture.shape[:2]
-    data = np.ascontiguousarray(picture)
-    shared = QImage(data.data, width, height, 3 * width, QImage.Format.Format_BGR888)
-    return shared.convertToFormat(QImage.Format.Format_RGB32)

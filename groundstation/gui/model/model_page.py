@@ -20,12 +20,10 @@ from PySide6.QtGui import QAction, QCloseEvent, QColor, QIcon, QPixmap
 from PySide6.QtWidgets import (
     QDialog,
     QGridLayout,
-    QHBoxLayout,
     QLabel,
     QLineEdit,
     QListView,
     QPushButton,
-    QSplitter,
     QVBoxLayout,
     QWidget,
 )
@@ -39,6 +37,7 @@ from groundstation.gui.model.scene_pane import ScenePane
 from groundstation.gui.shared_view import SharedView
 from groundstation.gui.widgets.inputs import ChoiceBox
 from groundstation.gui.widgets.questions import Questions, choose_new_file, file_name
+from groundstation.gui.widgets.scrolling import padded, split
 from groundstation.services.model.export import model_exporter, with_ending
 from groundstation.services.model.panel_colours import Colouring, Computed, LegendLine
 from groundstation.services.model.scene_card import PanelRow
@@ -273,18 +272,11 @@ class ModelPage(QObject):
     # How it is put together
 
     def _make_page(self) -> QWidget:
-        page = QWidget()
-        layout = QHBoxLayout(page)
-        layout.setContentsMargins(6, 6, 6, 6)
-        self.splitter = QSplitter(Qt.Orientation.Horizontal)
-        for part in (self.side, self.pane, self.records):
+        parts = (self.side, self.pane, self.records)
+        for part in parts:
             part.setMinimumWidth(LEAST_PX)
-            self.splitter.addWidget(part)
-        self.splitter.setStretchFactor(1, 1)
-        self.splitter.setSizes([SIDE_PX, 1280 - SIDE_PX - DETAIL_PX, DETAIL_PX])
-        self.splitter.setChildrenCollapsible(False)
-        layout.addWidget(self.splitter)
-        return page
+        self.splitter = split(parts, (SIDE_PX, 1280 - SIDE_PX - DETAIL_PX, DETAIL_PX), 1)
+        return padded(self.splitter)
 
     def _connect(self) -> None:
         controller, side, records = self.controller, self.side, self.records

@@ -35,7 +35,7 @@ from groundstation.gui.photos.photos_controller import PhotosController
 from groundstation.gui.shared_view import SharedView
 from groundstation.gui.widgets.findings_list import FindingsList
 from groundstation.gui.widgets.questions import Questions
-from groundstation.gui.widgets.scrolling import scrolled
+from groundstation.gui.widgets.scrolling import scrolled, split
 from groundstation.services.jobs.runner import JobContext
 from groundstation.services.photos.found_panels import PanelDraft
 from groundstation.services.photos.grid_edits import (
@@ -296,12 +296,8 @@ class PhotosPage(QObject):
         top.addWidget(self.find)
         top.addWidget(self.folder, 1)
         top.addWidget(self.coverage, 2)
-        self.splitter = QSplitter(Qt.Orientation.Horizontal)
-        for part in (self._make_side(), self.pane, self._make_detail()):
-            self.splitter.addWidget(part)
-        self.splitter.setStretchFactor(1, 1)
-        self.splitter.setSizes([SIDE_PX, 1280 - SIDE_PX - DETAIL_PX, DETAIL_PX])
-        self.splitter.setChildrenCollapsible(False)
+        parts = self._make_side(), self.pane, self._make_detail()
+        self.splitter = split(parts, (SIDE_PX, 1280 - SIDE_PX - DETAIL_PX, DETAIL_PX), 1)
         layout.addLayout(top)
         layout.addWidget(self.splitter, 1)
         layout.addWidget(self.strip)

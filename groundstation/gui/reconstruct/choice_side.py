@@ -36,19 +36,13 @@ StatusLine = tuple[str, str]
 class MachineTexts(QObject):
     """Says it."""
 
-    def lines(
-        self,
-        machine: Machine,
-        cuda: tuple[str, ...] | None,
-        choice: TrainChoice,
-        card: DataSetCard | None,
-        forecast: Forecast | None,
-        standing: Standing,
-    ) -> list[StatusLine]:
+    def lines(self, controller: ReconstructController) -> list[StatusLine]:
         """Lines, what is most in the way first."""
-        lines = [*self._lacking(machine, forecast, standing), *self._computer(machine, cuda, choice)]
-        if card is not None and forecast is not None:
-            lines += self._photos(card, forecast)
+        machine, forecast = controller.machine, controller.forecast()
+        lines = self._lacking(machine, forecast, controller.standing)
+        lines += self._computer(machine, controller.cuda, controller.choice)
+        if controller.card is not None and forecast is not None:
+            lines += self._photos(controller.card, forecast)
         return lines
 
     def _lacking(self, machine: Machine, forecast: Forecast | None, standing: Standing) -> list[StatusLine]:
@@ -297,14 +291,7 @@ class ChoiceSide(QWidget):
         self.pause.setText(self.tr("Resume") if controller.is_paused else self.tr("Pause"))
         self.stop.setEnabled(can_stop)
         self.cancel_training.setEnabled(controller.phase in (BUSY | {Phase.ASKING}) - {Phase.ENDING})
-        lines = self._words.lines(
-            controller.machine,
-            controller.cuda,
-            controller.choice,
-            controller.card,
-            controller.forecast(),
-            controller.standing,
-        )
+        lines = self._words.lines(controller)
         self.wrong.setText("\n".join(text for role, text in lines if role == "error"))
         self.wrong.setVisible(bool(self.wrong.text()) and is_idle)
 

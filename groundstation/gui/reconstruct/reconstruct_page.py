@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from PySide6.QtCore import QObject, Qt
+from PySide6.QtCore import QObject
 from PySide6.QtGui import QAction, QCloseEvent
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QSplitter, QTabWidget, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QLabel, QTabWidget, QVBoxLayout, QWidget
 
 from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.reconstruct.choice_side import ChoiceSide, MachineTexts
@@ -16,7 +16,7 @@ from groundstation.gui.reconstruct.reconstruct_controller import Phase, Reconstr
 from groundstation.gui.reconstruct.view_pane import ViewPane
 from groundstation.gui.shared_view import SharedView
 from groundstation.gui.widgets.questions import Questions, agrees
-from groundstation.gui.widgets.scrolling import scrolled
+from groundstation.gui.widgets.scrolling import padded, scrolled, split
 from groundstation.services.reconstruct.choices import TrainChoice, method_rows
 from groundstation.services.units import UnitSystem, minutes_text
 
@@ -89,20 +89,11 @@ class ReconstructPage(QObject):
     # How it is put together
 
     def _make_page(self) -> QWidget:
-        page = QWidget()
-        layout = QHBoxLayout(page)
-        layout.setContentsMargins(6, 6, 6, 6)
-        self.splitter = QSplitter(Qt.Orientation.Horizontal)
         side, detail = scrolled(self.side), self._make_detail()
         side.setMinimumWidth(SIDE_PX)
         detail.setMinimumWidth(LEAST_DETAIL_PX)
-        for part in (side, self.pane, detail):
-            self.splitter.addWidget(part)
-        self.splitter.setStretchFactor(1, 1)
-        self.splitter.setSizes([SIDE_PX, 1280 - SIDE_PX - DETAIL_PX, DETAIL_PX])
-        self.splitter.setChildrenCollapsible(False)
-        layout.addWidget(self.splitter)
-        return page
+        self.splitter = split((side, self.pane, detail), (SIDE_PX, 1280 - SIDE_PX - DETAIL_PX, DETAIL_PX), 1)
+        return padded(self.splitter)
 
     def _make_detail(self) -> QTabWidget:
         lines = QVBoxLayout(self.machine)
@@ -195,14 +186,7 @@ class ReconstructPage(QObject):
     def _show_machine(self) -> None:
         controller, layout = self.controller, self.machine.layout()
         assert isinstance(layout, QVBoxLayout)
-        lines = self._words.lines(
-            controller.machine,
-            controller.cuda,
-            controller.choice,
-            controller.card,
-            controller.forecast(),
-            controller.standing,
-        )
+        lines = self._words.lines(controller)
         while len(self._machine_lines) < len(lines):
             label = QLabel()
             label.setWordWrap(True)

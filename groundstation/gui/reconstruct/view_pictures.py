@@ -16,6 +16,7 @@ from PySide6.QtCore import QCoreApplication, QObject, QTimer, Signal
 from PySide6.QtGui import QImage
 
 from groundstation.gui.widgets.parameter_form import choice_text
+from groundstation.gui.widgets.picture_decoder import qimage_of
 from groundstation.services.reconstruct.guided_camera import PicturePace, sized
 from groundstation.services.reconstruct.messages import Section, Subject, Tints, ViewAnswer, ViewRequest
 from planning.base.parameters import declared
@@ -260,8 +261,5 @@ class ViewPictures(QObject):
 
 
 def image_of(picture: np.typing.NDArray[np.uint8]) -> QImage:
-    """A picture, shape (h, w, 3), red, green, blue, in the format that is painted fastest."""
-    height, width = picture.shape[:2]
-    data = np.ascontiguousarray(picture)
-    shared = QImage(data.data, width, height, 3 * width, QImage.Format.Format_RGB888)
-    return shared.convertToFormat(QImage.Format.Format_RGB32)
+    """A picture, shape (h, w, 3), red, green, blue, as Qt has it."""
+    return qimage_of(picture, QImage.Format.Format_RGB888)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import threading
-from collections import OrderedDict, deque
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, Generic, TypeVar
@@ -18,12 +16,12 @@ from PySide6.QtCore import (
     QRect,
     QSize,
     Qt,
-    QTimer,
     Signal,
 )
 from PySide6.QtGui import QColor, QImage, QPainter, QPen
 from PySide6.QtWidgets import QListView, QStyle, QStyledItemDelegate, QStyleOptionViewItem, QWidget
 
+from groundstation.gui.widgets.picture_decoder import PictureDecoder, qimage_of
 from groundstation.gui.widgets.theme import colours
 from planning.base.errors import InputError
 from planning.base.files import read_input_file
@@ -32,9 +30,6 @@ from reconstruction.photos.decode import PICTURE_FILE, decoded
 # Small copies of photos for the strip, decoded on another thread, those last that were asked for first.
 
 SIDE_PX = 132
-MOST_CACHED, MOST_WANTED = 1000, 80
-LOOK_MS = 30
-"""How often it is looked what has been decoded. The thread tells nobody itself: its listener may be gone by then."""
 
 FLAGS = {1: cv2.IMREAD_COLOR, 2: cv2.IMREAD_REDUCED_COLOR_2, 4: cv2.IMREAD_REDUCED_COLOR_4}
 FLAGS |= {8: cv2.IMREAD_REDUCED_COLOR_8}
@@ -52,64 +47,23 @@ class Thumbnails(QObject):
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
-        self._cached: OrderedDict[Path, QImage | None] = OrderedDict()
-        self._wanted: OrderedDict[Path, int] = OrderedDict()
-        self._done: deque[tuple[Path, QImage | None]] = deque()
-        self._lock = threading.Lock()
-        self._worker: threading.Thread | None = None
-        self._timer = QTimer(self)
-        self._timer.timeout.connect(self._look)
+        self._decoder = PictureDecoder(_small, self.ready.emit, self)
 
     def picture(self, path: Path, longest_px: int) -> QImage | None:
         """A small picture of a file whose longest side is known; None while it is decoded, or where it is damaged."""
-        if path in self._cached:
-            self._cached.move_to_end(path)
-            return self._cached[path]
-        with self._lock:
-            self._wanted[path] = longest_px
-            self._wanted.move_to_end(path)
-            while len(self._wanted) > MOST_WANTED:
-                self._wanted.popitem(last=False)
-            if self._worker is None:
-                self._worker = threading.Thread(target=self._work, name="small pictures", daemon=True)
-                self._worker.start()
-        self._timer.start(LOOK_MS)
-        return None
+        return self._decoder.picture(path, (path, longest_px))
 
     def is_busy(self) -> bool:
         """Whether pictures are being decoded, or wait to be taken."""
-        with self._lock:
-            return self._worker is not None or bool(self._done)
+        return self._decoder.is_busy()
 
     def close(self) -> None:
         """Decode nothing more, and wait for the picture that is being decoded."""
-        with self._lock:
-            worker = self._worker
-            self._wanted.clear()
-        if worker is not None:
-            worker.join(10.0)
-
-    def _work(self) -> None:
-        while True:
-            with self._lock:
-                if not self._wanted:
-                    self._worker = None
-                    return
-                path, longest_px = self._wanted.popitem()
-            self._done.append((path, _small(path, longest_px)))
-
-    def _look(self) -> None:
-        while self._done:
-            path, picture = self._done.popleft()
-            self._cached[path] = picture
-            while len(self._cached) > MOST_CACHED:
-                self._cached.popitem(last=False)
-            self.ready.emit(path)
-        if not self.is_busy():
-            self._timer.stop()
+        self._decoder.close()
 
 
-def _small(path: Path, longest_px: int) -> QImage | None:
+def _small(photo: tuple[Path, int]) -> QImage | None:
+    path, longest_px = photo
     scale = max(each for each in FLAGS if each == 1 or longest_px // each >= SIDE_PX)
     try:
         content = read_input_file(path, PICTURE_FILE)
@@ -119,9 +73,7 @@ def _small(path: Path, longest_px: int) -> QImage | None:
     height, width = picture.shape[:2]
     share = min(1.0, SIDE_PX / max(height, width))
     size = max(1, round(share * width)), max(1, round(share * height))
-    small = np.ascontiguousarray(cv2.resize(picture, size, interpolation=cv2.INTER_AREA))
-    shared = QImage(small.data, size[0], size[1], 3 * size[0], QImage.Format.Format_BGR888)
-    return shared.convertToFormat(QImage.Format.Format_RGB32)
+    return qimage_of(np.asarray(cv2.resize(picture, size, interpolation=cv2.INTER_AREA), np.uint8))
 
 
 BAR_PX = 24

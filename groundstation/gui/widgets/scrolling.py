@@ -5,6 +5,8 @@ A window of 1280 x 720 pixels with text of 160 % has room for all of its buttons
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from PySide6.QtCore import QCoreApplication, QEvent, QObject, QPoint, QRect, QSize, Qt, Signal
 from PySide6.QtGui import QMouseEvent, QPainter, QPaintEvent, QTextLayout
 from PySide6.QtWidgets import (
@@ -15,6 +17,7 @@ from PySide6.QtWidgets import (
     QLayoutItem,
     QScrollArea,
     QSizePolicy,
+    QSplitter,
     QStackedWidget,
     QWidget,
 )
@@ -289,3 +292,28 @@ def _least_size(widget: QWidget) -> QSize:
     """What a layout would give it at least."""
     hint = widget.minimumSizeHint().expandedTo(widget.minimumSize())
     return hint.boundedTo(widget.maximumSize())
+
+
+def split(
+    widgets: Sequence[QWidget],
+    sizes_px: Sequence[int],
+    growing: int,
+    orientation: Qt.Orientation = Qt.Orientation.Horizontal,
+) -> QSplitter:
+    """Widgets beside or above each other; the `growing` one gets what the window has more than the first sizes."""
+    splitter = QSplitter(orientation)
+    for number, widget in enumerate(widgets):
+        splitter.addWidget(widget)
+        splitter.setStretchFactor(number, int(number == growing))
+    splitter.setSizes(list(sizes_px))
+    splitter.setChildrenCollapsible(False)
+    return splitter
+
+
+def padded(content: QWidget) -> QWidget:
+    """A page with room around what it shows."""
+    page = QWidget()
+    layout = QHBoxLayout(page)
+    layout.setContentsMargins(6, 6, 6, 6)
+    layout.addWidget(content)
+    return page

@@ -25,7 +25,7 @@ from groundstation.gui.application.interpreter import BackgroundImport
 from groundstation.gui.shared_view import SharedView
 from groundstation.gui.tabs import TABS, Place, Tab, TabSpec
 from groundstation.gui.widgets.job_bar import JobBar
-from groundstation.gui.widgets.scrolling import CurrentStack, scrolled
+from groundstation.gui.widgets.scrolling import CurrentStack, scrolled, split
 from groundstation.gui.widgets.tab_order import first_in, next_in_order
 from groundstation.gui.window.message_area import MessageArea
 
@@ -76,13 +76,13 @@ class MainWindow(QMainWindow):
         self._left, self._right, self._bottom = CurrentStack(), CurrentStack(), CurrentStack()
         # The left side is as high as the window: forms are long. The lists below need width more.
         beside = 1280 - SIDE_WIDTH_PX
-        self._view_and_right = _splitter(
-            Qt.Orientation.Horizontal, (self.shared_view, self._right), (beside - DETAIL_WIDTH_PX, DETAIL_WIDTH_PX), 0
-        )
-        self._over_bottom = _splitter(
-            Qt.Orientation.Vertical, (self._view_and_right, self._bottom), (450, BOTTOM_HEIGHT_PX), 0
-        )
-        self._around = _splitter(Qt.Orientation.Horizontal, (self._left, self._over_bottom), (SIDE_WIDTH_PX, beside), 1)
+        widths_px = beside - DETAIL_WIDTH_PX, DETAIL_WIDTH_PX
+        self._view_and_right = split((self.shared_view, self._right), widths_px, 0)
+        heights_px = 450, BOTTOM_HEIGHT_PX
+        self._over_bottom = split((self._view_and_right, self._bottom), heights_px, 0, Qt.Orientation.Vertical)
+        self._around = split((self._left, self._over_bottom), (SIDE_WIDTH_PX, beside), 1)
+        for splitter in (self._view_and_right, self._over_bottom, self._around):
+            splitter.setHandleWidth(6)
         self._pages = CurrentStack()
         self._pages.addWidget(self._around)
         page = QWidget()
@@ -241,20 +241,6 @@ class MainWindow(QMainWindow):
     def _show_no_more(self) -> None:
         """Bring no tab to the front any more: its menu may have gone before the row of tabs does."""
         self._bar.blockSignals(True)
-
-
-def _splitter(
-    orientation: Qt.Orientation, widgets: tuple[QWidget, ...], sizes_px: tuple[int, ...], growing: int
-) -> QSplitter:
-    """Widgets beside or above each other; the `growing` one gets what the window has more than the first sizes."""
-    splitter = QSplitter(orientation)
-    for number, widget in enumerate(widgets):
-        splitter.addWidget(widget)
-        splitter.setStretchFactor(number, int(number == growing))
-    splitter.setSizes(list(sizes_px))
-    splitter.setHandleWidth(6)
-    splitter.setChildrenCollapsible(False)
-    return splitter
 
 
 def _scroll_area_of(widget: QWidget) -> QScrollArea:

@@ -21,6 +21,7 @@ from missions.simulator.autopilot.scheduler import (
     MAX_ITEMS_IN_A_TICK,
     TAKEOFFS,
     MissionState,
+    Scheduler,
     SchedulerContext,
     is_navigation,
 )
@@ -58,26 +59,15 @@ UNSUPPORTED_IN_FLIGHT = frozenset((30, 83, 84, 85, 94))
 """Stored like any other, and then passed over by a copter."""
 
 
-class ArduPilotScheduler:
+class ArduPilotScheduler(Scheduler):
     """Goes through the mission on board as ArduCopter does."""
 
     def __init__(self, context: SchedulerContext, profile: VehicleProfile) -> None:
-        self._context, self._profile = context, profile
-        self.state = MissionState.READY
-        self.current = 0
-        self.n_dropped = 0
-        self.has_landed = False
-        self._runner: StepRunner | None = None
+        super().__init__(context, profile)
         self._waiting: deque[int] = deque()
         self._condition: tuple[int, StoredItem, float] | None = None
         self._condition_heading_rad = 0.0
-        self._jumps: dict[int, int] = {}
         self._next_start = FIRST
-
-    @property
-    def lands(self) -> bool:
-        """Touching down, or down."""
-        return self._runner is not None and self._runner.lands
 
     def refusal(self, *, is_landed: bool) -> str | None:
         """Why AUTO is refused."""
@@ -103,11 +93,6 @@ class ArduPilotScheduler:
         else:
             self._begin_navigation(self.current, item)
 
-    def pause(self) -> None:
-        """Leave the mode."""
-        if self.state is MissionState.RUNNING:
-            self.state = MissionState.READY
-
     def set_current(self, seq: int) -> bool:
         """Go on with an item: what stands before it is not done, a camera's angles among it."""
         if not FIRST <= seq < len(self._context.store):
@@ -125,22 +110,6 @@ class ArduPilotScheduler:
         self._forget()
         self.state, self._next_start = MissionState.READY, FIRST
         self._jumps = {}
-
-    def update(self) -> bool:
-        """One control step; True once the mission has ended."""
-        for _ in range(MAX_ITEMS_IN_A_TICK):
-            if self.state is MissionState.ENDED or self._runner is None:
-                return True
-            self._run_waiting()
-            if not self._runner.update():
-                return False
-            self.has_landed = self._runner.lands
-            self._context.reached(self.current)
-            if self.has_landed:
-                self.state = MissionState.ENDED
-                return True
-            self._begin(self.current + 1)
-        return False
 
     # Items
 

@@ -20,6 +20,7 @@ from missions.simulator.autopilot.scheduler import (
     MAX_ITEMS_IN_A_TICK,
     TAKEOFFS,
     MissionState,
+    Scheduler,
     SchedulerContext,
     is_navigation,
 )
@@ -31,23 +32,12 @@ SHORT_LEG_M = 0.5
 """On legs shorter than this, seen from above, the nose is not turned into the course."""
 
 
-class Px4Scheduler:
+class Px4Scheduler(Scheduler):
     """Goes through the mission on board as PX4 does."""
 
     def __init__(self, context: SchedulerContext, profile: VehicleProfile) -> None:
-        self._context, self._profile = context, profile
-        self.state = MissionState.READY
-        self.current = 0
-        self.n_dropped = 0
-        self.has_landed = False
-        self._runner: StepRunner | None = None
+        super().__init__(context, profile)
         self._revision = 0
-        self._jumps: dict[int, int] = {}
-
-    @property
-    def lands(self) -> bool:
-        """Touching down, or down."""
-        return self._runner is not None and self._runner.lands
 
     def refusal(self, *, is_landed: bool) -> str | None:
         """Why the mission is not feasible."""
@@ -86,11 +76,6 @@ class Px4Scheduler:
         self._revision = self._context.store.revision
         self._begin(self.current)
 
-    def pause(self) -> None:
-        """Leave the mode."""
-        if self.state is MissionState.RUNNING:
-            self.state = MissionState.READY
-
     def set_current(self, seq: int) -> bool:
         """Go on with an item."""
         if not 0 <= seq < len(self._context.store):
@@ -111,18 +96,7 @@ class Px4Scheduler:
         """One control step; True once the mission has ended."""
         if self._context.store.revision != self._revision:
             self._take_up_new_mission()
-        for _ in range(MAX_ITEMS_IN_A_TICK):
-            if self.state is MissionState.ENDED or self._runner is None:
-                return True
-            if not self._runner.update():
-                return False
-            self.has_landed = self._runner.lands
-            self._context.reached(self.current)
-            if self.has_landed:
-                self.state = MissionState.ENDED
-                return True
-            self._begin(self.current + 1)
-        return False
+        return super().update()
 
     def _take_up_new_mission(self) -> None:
         self._revision = self._context.store.revision

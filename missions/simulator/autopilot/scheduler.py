@@ -6,10 +6,10 @@ when that is, is the difference between the two.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum, auto
-from typing import Protocol
 
 from pymavlink.dialects.v20 import common as mavlink
 
@@ -19,6 +19,8 @@ from missions.simulator.autopilot.manoeuvres import Manoeuvres
 from missions.simulator.autopilot.mission_store import MissionStore, StoredItem
 from missions.simulator.autopilot.parameters import ParameterTable
 from missions.simulator.autopilot.payload import Actions
+from missions.simulator.autopilot.profiles import VehicleProfile
+from missions.simulator.autopilot.steps import StepRunner
 from planning.geo.frames import Vec3
 
 TAKEOFFS = (mavlink.MAV_CMD_NAV_TAKEOFF, mavlink.MAV_CMD_NAV_VTOL_TAKEOFF)
@@ -73,41 +75,73 @@ class SchedulerContext:
     is_forbidden: Callable[[Vec3], bool]
 
 
-class Scheduler(Protocol):
-    """Goes through the mission on board."""
+class Scheduler(ABC):
+    """Goes through the mission on board, as one autopilot does."""
 
-    state: MissionState
-    current: int
-    """Item that is being flown, or would be."""
-    n_dropped: int
-    """Items that were left out because their time was over."""
-    has_landed: bool
-    """It ended on the ground."""
+    def __init__(self, context: SchedulerContext, profile: VehicleProfile) -> None:
+        self._context, self._profile = context, profile
+        self._runner: StepRunner | None = None
+        self._jumps: dict[int, int] = {}
+        self.state = MissionState.READY
+        self.current = 0
+        """Item that is being flown, or would be."""
+        self.n_dropped = 0
+        """Items that were left out because their time was over."""
+        self.has_landed = False
+        """It ended on the ground."""
 
     @property
     def lands(self) -> bool:
         """It is touching down, or has."""
+        return self._runner is not None and self._runner.lands
 
+    @abstractmethod
     def refusal(self, *, is_landed: bool) -> str | None:
         """Why the mission cannot be flown from here; None where it can."""
 
+    @abstractmethod
     def arming_refusal(self) -> str | None:
         """Why the vehicle must not be armed with this mission on board; None where it may."""
 
+    @abstractmethod
     def start(self) -> None:
         """Begin, or go on."""
 
     def pause(self) -> None:
-        """Leave it as it is."""
+        """Leave the mode; the mission stays as it is."""
+        if self.state is MissionState.RUNNING:
+            self.state = MissionState.READY
 
+    @abstractmethod
     def set_current(self, seq: int) -> bool:
         """Go on with an item; False where there is none."""
 
+    @abstractmethod
     def reset(self) -> None:
         """Back to the start."""
 
     def update(self) -> bool:
         """Go on, called once for every control step while it runs; True once the mission has ended."""
+        for _ in range(MAX_ITEMS_IN_A_TICK):
+            if self.state is MissionState.ENDED or self._runner is None:
+                return True
+            self._run_waiting()
+            if not self._runner.update():
+                return False
+            self.has_landed = self._runner.lands
+            self._context.reached(self.current)
+            if self.has_landed:
+                self.state = MissionState.ENDED
+                return True
+            self._begin(self.current + 1)
+        return False
+
+    @abstractmethod
+    def _begin(self, seq: int) -> None:
+        """Go to an item, or to the first behind it that is flown to."""
+
+    def _run_waiting(self) -> None:  # noqa: B027  (most do nothing there)
+        """Do what waits for its turn beside the item that is being flown."""
 
 
 def is_navigation(item: StoredItem) -> bool:

@@ -29,9 +29,10 @@ def store(application):
 
 
 def test_small_pictures_come_later_and_no_more_are_kept_than_allowed(application, store, photos, monkeypatch):
-    from groundstation.gui.photos import photo_store
+    from groundstation.gui.photos.photo_store import THUMBNAIL_PX
+    from groundstation.gui.widgets import picture_decoder
 
-    monkeypatch.setattr(photo_store, "MAX_CACHED", 2)
+    monkeypatch.setattr(picture_decoder, "MAX_CACHED", 2)
     ready = []
     store.thumbnailReady.connect(ready.append)
     for photo in photos:
@@ -40,7 +41,7 @@ def test_small_pictures_come_later_and_no_more_are_kept_than_allowed(application
     assert set(ready) == {photo.path for photo in photos}
     kept = [store.thumbnail(photo) for photo in photos]
     assert sum(picture is not None for picture in kept) == 2
-    assert max(picture.width() for picture in kept if picture is not None) <= photo_store.THUMBNAIL_PX
+    assert max(picture.width() for picture in kept if picture is not None) <= THUMBNAIL_PX
 
 
 def test_a_large_picture_has_the_photos_own_pixels_and_only_the_last_asked_for_comes(application, store, photos):
@@ -70,7 +71,7 @@ def test_a_file_that_has_gone_is_told(application, store, photos, tmp_path):
 def test_thousands_of_photos_are_shown_at_once_and_few_of_them_decoded(application, store, photos):
     from groundstation.gui.map.place_map import PlaceMap
     from groundstation.gui.photos.photo_pane import ThumbnailStrip
-    from groundstation.gui.photos.photo_store import MAX_WANTED
+    from groundstation.gui.widgets.picture_decoder import MAX_WANTED
 
     posed = true_photos()[0]
     cards = tuple(
@@ -94,7 +95,7 @@ def test_thousands_of_photos_are_shown_at_once_and_few_of_them_decoded(applicati
     application.processEvents()
     assert time.thread_time() - started < 15.0
     turn_until(application, lambda: not store.is_busy())
-    assert len(store._cached) <= MAX_WANTED
-    assert cards[4000].path in store._cached
+    assert len(store._decoder._cached) <= MAX_WANTED
+    assert cards[4000].path in store._decoder._cached
     strip.close()
     places.close()
