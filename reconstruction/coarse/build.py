@@ -46,6 +46,7 @@ from reconstruction.coarse.cloud import (
     up_of_planes,
 )
 from reconstruction.coarse.ground_level import PICTURE_PX, level_of_ground
+from reconstruction.coarse.marks import agreeing_marks, factor_of_marks, is_in, meeting_place, scaled_marks
 from reconstruction.coarse.pairs import PairHint, PairParameters, choose_pairs, likeness_of
 from reconstruction.coarse.placing import NO_CONTROL, Control, Measured, Placed, place_model
 from reconstruction.coarse.walls import BuildingParameters, Ground, find_ground
@@ -250,7 +251,7 @@ def build_coarse(
     left_out = tuple(name for name in taken.names if name not in {photo.name for photo in posed})
     known = taken.origin is not None or stated.origin is not None or bool(stated.control)
     findings = (*taken.findings, *lately, *placed.findings, *_left_out(left_out, len(taken.names)))
-    findings += (*_about_ground(buildings), *_about_place(known))
+    findings += (*_about_ground(buildings), *_about_walls(buildings, forwards), *_about_place(known))
     n = len(taken.names)
     return CoarseModel(
         posed,
@@ -505,11 +506,17 @@ def _place(
     measured = [taken.measured[row] for row in rows]
     cloud = believed(cloud_of(model))
     up = _up(rotations, [taken.metadata[row] for row in rows], measured, cloud, parameters)
-    control, findings = _control(model, taken, stated, [image.name for image in images])
+    control, named, findings = _control(model, taken, stated, [image.name for image in images])
     n_known = max(len(control.points), sum(one.position_enu_m is not None for one in measured))
     looked = None if control.distances or n_known > 1 else taken
     eyes = _height_of_eyes(model, looked, cloud, centres, up)
     placed = place_model(centres, rotations, measured, up, control, eyes, parameters.seed)
+    off_m = np.linalg.norm(placed.control_residuals_m, axis=1)
+    for number in np.flatnonzero(~placed.is_control_used).tolist():
+        text = say(
+            "control point '{}' is {:.2f} m from where the others put it; it is not used", named[number], off_m[number]
+        )
+        findings += (Finding(Severity.WARNING, "control-point-contradicts", text, "", float(off_m[number]), None, "m"),)
     if not math.isfinite(placed.sigma_north_deg) or placed.sigma_north_deg > 90.0:
         placed = replace(placed, enu_from_model=_first_ahead(placed.enu_from_model, rotations, images))
     return placed, findings
@@ -610,8 +617,8 @@ def _small(photo: PhotoMetadata) -> NDArray[np.uint8]:
 
 def _control(
     model: ColmapModel, taken: _Taken, stated: Stated, names: Sequence[str]
-) -> tuple[Control, tuple[Finding, ...]]:
-    """Control points and distances in the model: points by the rays of the photos that show them."""
+) -> tuple[Control, tuple[str, ...], tuple[Finding, ...]]:
+    """Control points and distances in the model: points by the rays of the photos that show them; their names."""
     from planning.geo.enu import enu_from_geodetic
 
     row_of = {name: row for row, name in enumerate(names)}
@@ -623,30 +630,46 @@ def _control(
         if one in row_of and other in row_of:
             distances.append((row_of[one], row_of[other], metres))
     lenses = {photo.name: photo for photo in posed_photos(model, Similarity.identity(), Path())}
-    points, places, findings = [], [], []
-    for point in stated.control:
-        seen = [(lenses[name], x, y) for name, x, y in point.seen if name in lenses]
+    marks = [
+        [(lenses[name], x, y) for name, x, y in point.seen if name in lenses and is_in(lenses[name], x, y)]
+        for point in stated.control
+    ]
+    points, places, used, findings = [], [], [], []
+    factor = factor_of_marks(marks)
+    if factor is not None:
+        text = say(
+            "the control points were marked in photos of another size: their pixels fit when multiplied by {:.3f}",
+            factor,
+        )
+        findings.append(Finding(Severity.WARNING, "control-scaled", text, "", factor, None, ""))
+    for point, own in zip(stated.control, marks, strict=True):
+        seen = own if factor is None else scaled_marks(own, factor)
         if len(seen) < 2:
             text = say("control point '{}' is seen by fewer than two photos of the model; it is not used", point.name)
             findings.append(Finding(Severity.WARNING, "control-unseen", text))
             continue
-        points.append(_meeting(seen))
-        places.append((point.lat_deg, point.lon_deg, point.ellipsoid_height_m))
+        agreeing = agreeing_marks(seen)
+        if len(agreeing) < len(seen):
+            others = {photo.name for photo, _, _ in agreeing}
+            wrong = ", ".join(photo.name for photo, _, _ in seen if photo.name not in others)
+            text = (
+                say(
+                    "control point '{}' is elsewhere in {} than other photos show it; it is not used there",
+                    point.name,
+                    wrong,
+                )
+                if agreeing
+                else say("control point '{}' is in different places in {}; it is not used", point.name, wrong)
+            )
+            findings.append(Finding(Severity.WARNING, "control-marks", text))
+        if agreeing:
+            points.append(meeting_place(agreeing))
+            places.append((point.lat_deg, point.lon_deg, point.ellipsoid_height_m))
+            used.append(point.name)
     if not points or taken.origin is None:
-        return Control(NO_CONTROL.points, NO_CONTROL.points_enu_m, tuple(distances)), tuple(findings)
+        return Control(NO_CONTROL.points, NO_CONTROL.points_enu_m, tuple(distances)), (), tuple(findings)
     enu = enu_from_geodetic(taken.origin, *np.array(places).T)
-    return Control(np.array(points), enu, tuple(distances)), tuple(findings)
-
-
-def _meeting(seen: Sequence[tuple[PosedPhoto, float, float]]) -> Array:
-    """Where rays come nearest to each other, shape (3,)."""
-    normal, pull = np.zeros((3, 3)), np.zeros(3)
-    for photo, x, y in seen:
-        origins, directions = photo.rays(np.array([[x, y]]))
-        across = np.eye(3) - np.outer(directions[0], directions[0])
-        normal += across
-        pull += across @ origins[0]
-    return np.asarray(np.linalg.solve(normal, pull), np.float64)
+    return Control(np.array(points), enu, tuple(distances)), tuple(used), tuple(findings)
 
 
 def _origin(taken: _Taken, stated: Stated, buildings: Buildings, cloud: Cloud) -> tuple[Origin, Array]:
@@ -693,7 +716,20 @@ def _about_ground(buildings: Buildings) -> list[Finding]:
     elif ground.slope_deg > 3.0:
         text = say("the ground falls by {:.1f} degrees; heights count from the building's foot", ground.slope_deg)
         found.append(Finding(Severity.NOTE, "ground-slopes", text, "", ground.slope_deg, 3.0, "deg"))
-    found += [Finding(Severity.WARNING, "walls-missing", note) for note in buildings.notes]
+    return found
+
+
+STRAIGHT_DOWN = math.sin(math.radians(65.0))
+
+
+def _about_walls(buildings: Buildings, forwards: Array) -> list[Finding]:
+    found = [Finding(Severity.WARNING, "walls-missing", note) for note in buildings.notes]
+    if not buildings.walls and float(np.median(-forwards[:, 2])) > STRAIGHT_DOWN:
+        text = say(
+            "the photos look straight down, where walls do not show: fly around the building too, with the camera 20 "
+            "to 45 degrees below the horizon"
+        )
+        found = [Finding(Severity.WARNING, "looks-down", text)]
     guessed = [face for face in buildings.faces if face.wall is None]
     if guessed:
         share = sum(face.area_m2 for face in guessed) / max(1e-9, sum(face.area_m2 for face in buildings.faces))

@@ -280,8 +280,18 @@ ROLL_RAD = np.radians(2.0)
 PITCH_RAD = np.radians(30.0)
 """By how much they look up and down: next to nothing is known of that."""
 
-NEARLY = np.sin(np.radians(15.0))
-"""Planes so far off the vertical or the horizontal are neither walls nor floors."""
+MEDIAN_OF_SIGMA = 0.6745
+"""Median of the amount of an error, in standard deviations."""
+
+SWINGS = 2.0
+"""Times the usual roll, from which on cameras are taken to hang from something that swings."""
+
+LOOKS_DOWN = 0.5
+"""Weight of where cameras look beside that of their pictures' down axes: they look down rather than up, but people who
+stand before a house look up, by less than 60 degrees."""
+
+NEARLY_RAD, MOST_NEARLY_RAD, NEARLY_SIGMAS = np.radians(15.0), np.radians(35.0), 4.0
+"""Planes so far off the vertical or the horizontal are neither walls nor floors; first more, where up is less known."""
 
 PLANE_RAD = np.radians(0.3)
 """Walls are plumb, and floors level, to this at best; ground is left out of account where there are walls."""
@@ -309,17 +319,23 @@ def up_of_cameras(rights: Array, downs: Array) -> Up:
     """
     spread = rights.T @ rights / ROLL_RAD**2 + (np.eye(3) * len(downs) - downs.T @ downs) / PITCH_RAD**2
     direction = np.linalg.eigh(spread)[1][:, 0]
-    direction = direction if float(-(downs @ direction).sum()) >= 0.0 else -direction
+    # Upright pictures say which end is up, and so do photos that look down: those from above say nothing else of it.
+    down = downs.sum(axis=0) + LOOKS_DOWN * np.cross(rights, downs).sum(axis=0)
+    direction = direction if float(down @ direction) <= 0.0 else -direction
     values = np.sort(np.linalg.eigvalsh(rights.T @ rights))
     # Cameras that all look the same way tell a tilt about their own right axis by their pitch alone.
     sigma = ROLL_RAD / np.sqrt(max(values[1], ROLL_RAD**2 / PITCH_RAD**2 * len(downs) * 0.1, 1e-9))
+    # Below a kite or a balloon cameras swing, one like another: their number makes the mean no better.
+    swing = float(np.median(np.abs(np.arcsin(np.clip(rights @ direction, -1.0, 1.0))))) / MEDIAN_OF_SIGMA
+    sigma = sigma if swing <= SWINGS * ROLL_RAD else max(sigma, swing)
     return Up(np.asarray(direction), float(np.clip(sigma, np.radians(0.5), PITCH_RAD)))
 
 
 def up_of_planes(start: Up, planes: Sequence[FoundPlane]) -> Up:
     """Up by walls that are plumb and floors that are level, near where cameras say it is."""
     up, sigma, n_walls = start.direction, start.sigma_rad, 0
-    for nearly in (NEARLY, 0.5 * NEARLY, 0.5 * NEARLY):
+    first = float(np.clip(NEARLY_SIGMAS * start.sigma_rad, NEARLY_RAD, MOST_NEARLY_RAD))
+    for nearly in np.sin([first, 0.5 * NEARLY_RAD, 0.5 * NEARLY_RAD]):
         normal = np.eye(3) / start.sigma_rad**2
         pull = start.direction / start.sigma_rad**2
         n_walls = 0

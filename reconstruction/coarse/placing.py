@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -22,7 +22,7 @@ from planning.base.errors import InputError
 from planning.base.findings import Finding, Severity
 from planning.base.messages import say
 from reconstruction.coarse.cloud import Up, turn_upright
-from reconstruction.colmap.georeference import Similarity
+from reconstruction.colmap.georeference import MAD_TO_SIGMA, Similarity, are_on_a_line, fit_robustly
 
 Array = NDArray[np.float64]
 
@@ -30,6 +30,10 @@ ScaleFrom = Literal["control points", "positions", "stated distances", "height o
 
 EYES_M = 1.6
 """Of people who hold cameras, above the ground."""
+
+GUESSED_FACTOR = 2.0
+"""By which the size may be wrong where it is guessed: a castle whose photos were taken on a terrace came twice too
+large, since the ground was found half as far below the cameras as it is."""
 
 N_SAMPLES = 1000
 ROBUST_SIGMAS = 3.0
@@ -39,6 +43,20 @@ LEAST_SIGMA_M = 0.005
 
 CONTROL_SIGMA_M = 0.02
 """Of control points in the model: surveyed to a centimetre, and measured in photos to a pixel."""
+
+BETTER = 0.5
+"""Points that fit so much better with another direction up, in parts, say that up is not where cameras put it: they
+look straight down, or were held upright."""
+
+UPSIDE_DOWN = -0.5
+"""Cosine between both directions up: cameras that look straight down and are turned alike are wrong by 90 degrees, but
+points that want more have east and north exchanged."""
+
+LEAST_FREE = 4
+"""Points that tell more than the similarity that is fitted to them."""
+
+FAR_SHARE, LEAST_FAR_M = 0.01, 0.1
+"""Control points contradict the model if it misses them by more, in parts of the site's size, and at least."""
 
 WELL_KNOWN = 0.02
 """Standard deviation of the scale from which on it is told."""
@@ -98,6 +116,8 @@ class Placed:
         Shape (n,): positions that do not contradict the model.
     control_residuals_m
         Shape (m, 3).
+    is_control_used
+        Shape (m,): control points that do not contradict the others.
     """
 
     enu_from_model: Similarity
@@ -108,6 +128,7 @@ class Placed:
     residuals_m: Array
     is_used: NDArray[np.bool_]
     control_residuals_m: Array
+    is_control_used: NDArray[np.bool_]
     findings: tuple[Finding, ...] = ()
 
 
@@ -147,16 +168,24 @@ def place_model(
     start: Similarity | None = None
     scale_from: ScaleFrom = "control points" if len(control.points) >= 2 else "positions"
     if len(known[0]) >= 2 and _spread(known[0]) > 0.0 and spread_m > 0.0:
-        start = _sampled(*known, turn, seed)
+        start, up = _of_points(*known, up, seed)
     if start is None or (control.distances and not len(control.points)):
         start, scale_from = _stated(centres, turn, measured, rotations, control, height_of_eyes, start)
     at, jacobian = _adjusted(start, scale_from, centres, rotations, measured, up, control)
     placed = _as_similarity(at, start)
+    good = _fitting_control(placed, control)
+    if not good.all():
+        without = replace(control, points=control.points[good], points_enu_m=control.points_enu_m[good])
+        at, jacobian = _adjusted(placed, scale_from, centres, rotations, measured, up, without)
+        placed = _as_similarity(at, placed)
     residuals = placed(centres) - places
+    off_control = placed(control.points) - control.points_enu_m if len(control.points) else np.zeros((0, 3))
     used = np.zeros(len(centres), bool)
     far = np.linalg.norm(residuals[has_place], axis=1) / sigmas[has_place]
-    unit = max(1.0, float(np.median(far)) / 1.538) if len(far) else 1.0
+    unit = max(1.0, float(np.median(far)) * MAD_TO_SIGMA) if len(far) else 1.0
     used[has_place] = far <= ROBUST_SIGMAS * math.sqrt(3.0) * unit
+    if scale_from == "control points":
+        unit = max(1.0, float(np.median(np.linalg.norm(off_control, axis=1))) / CONTROL_SIGMA_M * MAD_TO_SIGMA)
     sigma = _sigmas(jacobian, unit)
     findings = _findings(scale_from, sigma, used, has_place, spread_m)
     return Placed(
@@ -167,9 +196,50 @@ def place_model(
         math.degrees(sigma[2]),
         residuals,
         used,
-        placed(control.points) - control.points_enu_m if len(control.points) else np.zeros((0, 3)),
-        findings,
+        off_control,
+        good,
+        (*findings, *_about_control(off_control[good], spread_m)),
     )
+
+
+def _of_points(a: Array, b: Array, sigmas: Array, up: Up, seed: int) -> tuple[Similarity | None, Up]:
+    """A similarity by points that are known in both frames, and what is up: they may contradict the cameras."""
+    upright = _sampled(a, b, sigmas, turn_upright(up.direction), seed)
+    if len(a) < LEAST_FREE or are_on_a_line(a) or are_on_a_line(b):
+        return upright, up
+    free = fit_robustly(a, b, sigmas, seed=seed)[0]
+    away = float(np.median(np.linalg.norm(free(a) - b, axis=1) / sigmas))
+    if float(free.rotation[2] @ up.direction) < UPSIDE_DOWN:
+        return upright, up
+    if upright is not None:
+        with_up = float(np.median(np.linalg.norm(upright(a) - b, axis=1) / sigmas))
+        if BETTER * with_up <= max(away, 1.0 / MAD_TO_SIGMA):
+            return upright, up
+    return free, Up(np.asarray(free.rotation[2]), math.radians(90.0))
+
+
+def _fitting_control(placed: Similarity, control: Control) -> NDArray[np.bool_]:
+    """Which control points the model does not miss by far more than the others, shape (m,)."""
+    if len(control.points) < LEAST_FREE:
+        return np.ones(len(control.points), bool)
+    far = np.linalg.norm(placed(control.points) - control.points_enu_m, axis=1)
+    unit_m = max(CONTROL_SIGMA_M, float(np.median(far)) * MAD_TO_SIGMA)
+    return np.asarray(far <= ROBUST_SIGMAS * math.sqrt(3.0) * unit_m)
+
+
+def _about_control(residuals_m: Array, spread_m: float) -> list[Finding]:
+    if not len(residuals_m):
+        return []
+    median_m = float(np.median(np.linalg.norm(residuals_m, axis=1)))
+    most_m = max(LEAST_FAR_M, FAR_SHARE * spread_m)
+    if median_m <= most_m:
+        return []
+    text = say(
+        "the model misses the control points by {:.2f} m in the median; a receiver without corrections measures them "
+        "no better, else look at their coordinates, the order of east and north, and their pixels",
+        median_m,
+    )
+    return [Finding(Severity.WARNING, "control-contradicts", text, "", median_m, most_m, "m")]
 
 
 def _known_points(
@@ -341,17 +411,23 @@ def _findings(
     found = []
     if scale_from == "height of eyes":
         text = say(
-            "the size is guessed: cameras are taken to be {:.1f} m above the ground; state a distance or "
-            "control points before anything is flown",
+            "the size is a guess, wrong by up to a factor of {:g}: cameras are taken to be {:.1f} m above the "
+            "lowest ground that was found, as people hold them. Before anything is flown, measure how far apart two "
+            "photos were taken (--distance) or survey control points (--gcp)",
+            GUESSED_FACTOR,
             EYES_M,
         )
-        found.append(Finding(Severity.WARNING, "scale-guessed", text))
+        found.append(Finding(Severity.WARNING, "scale-guessed", text, "", GUESSED_FACTOR, None, ""))
     elif sigma[1] > WELL_KNOWN:
-        text = say(
-            "the size of the model is known to {:.0f} % only: the receivers are off by too much for photos that are "
-            "{:.0f} m apart; state a distance or control points",
-            100.0 * sigma[1],
-            2.0 * spread_m,
+        text = (
+            say("the control points say the size of the model to {:.0f} % only", 100.0 * sigma[1])
+            if scale_from == "control points"
+            else say(
+                "the size of the model is known to {:.0f} % only: the receivers are off by too much for photos that "
+                "are {:.0f} m apart; state a distance or control points",
+                100.0 * sigma[1],
+                2.0 * spread_m,
+            )
         )
         found.append(Finding(Severity.WARNING, "scale-unsure", text, "", 100.0 * sigma[1], 100.0 * WELL_KNOWN, "%"))
     if not math.isfinite(sigma[2]) or sigma[2] > math.radians(90.0):

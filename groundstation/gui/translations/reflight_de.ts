@@ -6264,8 +6264,20 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Fotos werden verglichen</translation>
     </message>
     <message>
+        <source>control point &apos;{0}&apos; is elsewhere in {1} than other photos show it; it is not used there</source>
+        <translation>Passpunkt „{0}“ liegt in {1} anderswo, als andere Fotos ihn zeigen; er wird dort nicht verwendet</translation>
+    </message>
+    <message>
+        <source>control point &apos;{0}&apos; is in different places in {1}; it is not used</source>
+        <translation>Passpunkt „{0}“ liegt in {1} an verschiedenen Stellen; er wird nicht verwendet</translation>
+    </message>
+    <message>
         <source>control point &apos;{0}&apos; is seen by fewer than two photos of the model; it is not used</source>
         <translation>Passpunkt &apos;{0}&apos; ist in weniger als zwei Fotos des Modells zu sehen; er wird nicht verwendet</translation>
+    </message>
+    <message>
+        <source>control point &apos;{0}&apos; is {1} m from where the others put it; it is not used</source>
+        <translation>Passpunkt „{0}“ liegt {1} m von da, wo die anderen ihn hinlegen; er wird nicht verwendet</translation>
     </message>
     <message>
         <source>cost</source>
@@ -7602,6 +7614,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>der Cluster antwortet nicht mehr ({0}); fertige Fotos bleiben in {1}: noch einmal starten, um weiterzumachen</translation>
     </message>
     <message>
+        <source>the control points say the size of the model to {0} % only</source>
+        <translation>die Passpunkte sagen die Größe des Modells nur auf {0} %</translation>
+    </message>
+    <message>
+        <source>the control points were marked in photos of another size: their pixels fit when multiplied by {0}</source>
+        <translation>die Passpunkte wurden in Fotos einer anderen Größe markiert: ihre Pixel passen, wenn man sie mit {0} malnimmt</translation>
+    </message>
+    <message>
         <source>the convex facade alone, with everything else far away</source>
         <translation>die konvexe Fassade allein, alles andere weit weg</translation>
     </message>
@@ -7674,6 +7694,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>die untere Schranke</translation>
     </message>
     <message>
+        <source>the model misses the control points by {0} m in the median; a receiver without corrections measures them no better, else look at their coordinates, the order of east and north, and their pixels</source>
+        <translation>das Modell verfehlt die Passpunkte im Median um {0} m; ein Empfänger ohne Korrekturen misst sie nicht besser, sonst sehen Sie Koordinaten, Reihenfolge von Ost und Nord und Pixel nach</translation>
+    </message>
+    <message>
         <source>the nearest neighbour ends where there is no leg back; take another method</source>
         <translation>der nächste Nachbar endet, wo keine Strecke zurückführt; ein anderes Verfahren nehmen</translation>
     </message>
@@ -7700,6 +7724,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the photos do not say where they were taken, so the COLMAP model counts as one in the frame of the site</source>
         <translation>die Fotos sagen nicht, wo sie aufgenommen wurden, deshalb gilt das COLMAP-Modell als eines im System des Standorts</translation>
+    </message>
+    <message>
+        <source>the photos look straight down, where walls do not show: fly around the building too, with the camera 20 to 45 degrees below the horizon</source>
+        <translation>die Fotos blicken senkrecht hinab, wo man keine Wände sieht: umfliegen Sie das Gebäude auch, mit der Kamera 20 bis 45 Grad unter dem Horizont</translation>
     </message>
     <message>
         <source>the photos of this coarse model were in {0}, which is not there</source>
@@ -7780,10 +7808,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the site would be written over the file it is imported from; name another file</source>
         <translation>der Standort würde über die Datei geschrieben, aus der er importiert wird; eine andere Datei nennen</translation>
-    </message>
-    <message>
-        <source>the size is guessed: cameras are taken to be {0} m above the ground; state a distance or control points before anything is flown</source>
-        <translation>die Größe ist geraten: Kameras werden {0} m über dem Boden angenommen; geben Sie eine Strecke oder Passpunkte an, bevor geflogen wird</translation>
     </message>
     <message>
         <source>the size of the model is known to {0} % only: the receivers are off by too much for photos that are {1} m apart; state a distance or control points</source>
@@ -9556,6 +9580,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>sections seen only with pixels larger than {0} mm: {1} of {2} covered</source>
         <translation>Sektoren, nur mit Pixeln über {0} mm gesehen: {1} von {2} abgedeckten</translation>
+    </message>
+    <message>
+        <source>the size is a guess, wrong by up to a factor of {0}: cameras are taken to be {1} m above the lowest ground that was found, as people hold them. Before anything is flown, measure how far apart two photos were taken (--distance) or survey control points (--gcp)</source>
+        <translation>die Größe ist geraten und kann um den Faktor {0} falsch sein: Kameras gelten als {1} m über dem tiefsten gefundenen Boden, wie Menschen sie halten. Messen Sie, bevor geflogen wird, wie weit zwei Fotos auseinander aufgenommen wurden (--distance), oder Passpunkte (--gcp)</translation>
     </message>
     <message>
         <source>the tour does not fit {0}: expected each of its {1} points once, found {2}, missing {3}, unknown {4}</source>

@@ -29,6 +29,7 @@ from planning.site.importing.source import SourceModel
 from planning.site.records import NoFlyZone, Obstacle, Site, SiteModel
 from reconstruction.coarse.build import CoarseModel, CoarseParameters, Stated, build_coarse, write_sparse
 from reconstruction.coarse.control_and_camera import read_control_points, read_lens
+from reconstruction.coarse.placing import GUESSED_FACTOR
 from reconstruction.photos.lens import CameraKind
 
 Array = NDArray[np.float64]
@@ -265,6 +266,7 @@ def coarse_report(coarse: CoarseModel) -> dict[str, Any]:
         "reprojection_px": round(coarse.reprojection_px, 4),
         "scale_from": placed.scale_from,
         "scale_sigma": _finite(placed.sigma_scale),
+        "scale_guessed_within_factor": GUESSED_FACTOR if placed.scale_from == "height of eyes" else None,
         "tilt_sigma_deg": _finite(placed.sigma_tilt_deg),
         "north_sigma_deg": _finite(placed.sigma_north_deg),
         "position_residual_m": {"median": _finite(np.median(lengths)), "largest": _finite(lengths.max())}

@@ -74,6 +74,68 @@ def test_control_points_go_before_receivers():
     assert np.abs(placed.control_residuals_m).max() < 0.01
 
 
+def looking_down(n=20, side_m=40.0):
+    """Cameras over a field that look straight down, all turned alike: nothing but places says what is up."""
+    x, y = np.meshgrid(np.linspace(0.0, side_m, 5), np.linspace(0.0, side_m, n // 5))
+    places = np.column_stack([x.ravel(), y.ravel(), np.full(x.size, 25.0)])
+    return places, np.repeat(cam_from_enu(30.0, -90.0)[None], x.size, axis=0)
+
+
+@pytest.mark.parametrize("by_control", [False, True])
+def test_photos_that_look_straight_down_are_placed_by_what_is_known_of_places(by_control):
+    places, turns = looking_down()
+    centres, rotations = as_model(places, turns)
+    up = up_of_cameras(rotations[:, 0], rotations[:, 1])
+    off_deg = math.degrees(math.acos(float((TRUTH.rotation @ up.direction)[2])))
+    assert off_deg > 45.0  # the pictures' own upper edge
+    if by_control:
+        points = np.array([[0.0, 0.0, 0.0], [40.0, 3.0, 0.5], [38.0, 35.0, 0.2], [2.0, 38.0, 0.1], [20.0, 20.0, 0.4]])
+        control = Control(TRUTH.inverse()(points), points)
+        placed = place_model(centres, rotations, [Measured()] * len(centres), up, control)
+        assert np.abs(placed.control_residuals_m).max() < 0.01
+    else:
+        placed = place_model(centres, rotations, noisy(places, 0.5, wild=(4,)), up)
+    off = np.linalg.norm(placed.enu_from_model(centres) - places, axis=1)
+    assert np.median(off) < (0.02 if by_control else 0.6)
+    assert not {"control-contradicts", "scale-unsure"} & {found.code for found in placed.findings}
+
+
+def test_photos_that_look_down_in_all_directions_are_above_the_ground():
+    turns = np.array([cam_from_enu(heading, -90.0) for heading in (0.0, 90.0, 180.0, 270.0)])
+    up = up_of_cameras(turns[:, 0], turns[:, 1])
+    np.testing.assert_allclose(up.direction, [0.0, 0.0, 1.0], atol=1e-9)
+
+
+def test_people_who_look_up_at_a_house_do_not_stand_on_their_heads():
+    turns = np.array([cam_from_enu(heading, 50.0) for heading in (0.0, 15.0, 30.0)])
+    up = up_of_cameras(turns[:, 0], turns[:, 1])
+    assert up.direction[2] > 0.5
+
+
+def test_a_control_point_that_contradicts_the_others_is_left_out():
+    places, turns = orbit()
+    centres, rotations = as_model(places, turns)
+    points = np.array(
+        [[-10.0, -8.0, 0.0], [10.0, -8.0, 0.5], [10.0, 8.0, 0.0], [-10.0, 8.0, 12.0], [0.0, -8.0, 3.0], [0.0, 8.0, 6.0]]
+    )
+    wrong = points.copy()
+    wrong[4] += (0.0, 9.0, -35.0)
+    placed = place_model(
+        centres, rotations, [Measured()] * len(centres), up_in_model(), Control(TRUTH.inverse()(points), wrong)
+    )
+    assert placed.is_control_used.tolist() == [True, True, True, True, False, True]
+    assert np.linalg.norm(placed.enu_from_model(centres) - places, axis=1).max() < 0.01
+
+
+def test_control_points_with_east_and_north_exchanged_are_told():
+    places, turns = orbit()
+    centres, rotations = as_model(places, turns)
+    points = np.array([[-10.0, -8.0, 0.0], [10.0, -8.0, 0.5], [11.0, 8.0, 0.0], [-10.0, 8.0, 12.0], [30.0, 1.0, 2.0]])
+    control = Control(TRUTH.inverse()(points), points[:, [1, 0, 2]])
+    placed = place_model(centres, rotations, [Measured()] * len(centres), up_in_model(), control)
+    assert "control-contradicts" in {found.code for found in placed.findings}
+
+
 def test_a_stated_distance_gives_the_size_and_north_is_said_to_be_unknown():
     places, turns = orbit()
     centres, rotations = as_model(places, turns)
@@ -131,3 +193,16 @@ def test_turning_upright(up):
     np.testing.assert_allclose(turn @ up, [0.0, 0.0, 1.0], atol=1e-12)
     np.testing.assert_allclose(turn @ turn.T, np.eye(3), atol=1e-12)
     assert np.linalg.det(turn) == pytest.approx(1.0)
+
+
+def test_cameras_that_swing_below_a_kite_leave_up_to_the_ground():
+    rng = np.random.default_rng(2)
+    turns = []
+    for heading, roll in zip(rng.uniform(0.0, 60.0, 30), rng.normal(20.0, 12.0, 30), strict=True):
+        turns.append(Rotation.from_euler("z", roll, degrees=True).as_matrix() @ cam_from_enu(heading, -45.0))
+    swinging = np.array(turns)
+    start = up_of_cameras(swinging[:, 0], swinging[:, 1])
+    assert math.degrees(math.acos(float(start.direction[2]))) > 10.0
+    ground = FoundPlane(np.array([0.0, 0.0, 1.0]), 0.0, np.arange(500), 1e-3)
+    up = up_of_planes(start, [ground] * 4)
+    assert math.degrees(math.acos(float(up.direction[2]))) < 3.0
