@@ -25,10 +25,10 @@ from planning.base.findings import Finding, Severity
 from planning.base.json_file import read_json, write_atomically
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
-from planning.geo.enu import geodetic_from_enu
+from planning.geo.enu import enu_from_geodetic, geodetic_from_enu
 from planning.geo.frames import Origin, Vec3
 from planning.photos.jpeg import PHOTO_FILE
-from planning.photos.places import PhotoHeights, absolute_height_m, photo_places, photos_near
+from planning.photos.places import MAX_DISTANCE_M, PhotoHeights, absolute_height_m, photo_places
 from planning.photos.record import PhotoMetadata
 from reconstruction.base.cameras import Intrinsics, PosedPhoto
 from reconstruction.coarse.buildings import Buildings, make_buildings, moved
@@ -48,7 +48,7 @@ from reconstruction.coarse.cloud import (
 from reconstruction.coarse.ground_level import PICTURE_PX, level_of_ground
 from reconstruction.coarse.marks import agreeing_marks, factor_of_marks, is_in, meeting_place, scaled_marks
 from reconstruction.coarse.pairs import PairHint, PairParameters, choose_pairs, likeness_of
-from reconstruction.coarse.placing import NO_CONTROL, Control, Measured, Placed, place_model
+from reconstruction.coarse.placing import NO_CONTROL, Above, Control, Measured, Placed, place_model
 from reconstruction.coarse.walls import BuildingParameters, Ground, find_ground
 from reconstruction.colmap.folder import Frame, write_frame, write_model
 from reconstruction.colmap.georeference import Similarity, in_enu, posed_photos
@@ -66,7 +66,7 @@ from reconstruction.colmap.pycolmap_run import (
 from reconstruction.colmap.receivers import Receiver, placed_by_receivers
 from reconstruction.colmap.record import ColmapModel
 from reconstruction.photos.decode import Scale, grey_picture
-from reconstruction.photos.lens import CameraKind, lens_of, of_camera
+from reconstruction.photos.lens import CameraKind, camera_kind, lens_of, of_camera
 from reconstruction.photos.poses import DEFAULT_ACCURACY, measured_pose
 
 Array = NDArray[np.float64]
@@ -216,7 +216,7 @@ def build_coarse(
     clock = _Clock()
     taken = _taken(folder, photos, stated)
     if len(taken.names) < LEAST_PHOTOS:
-        raise InputError(say("a coarse model needs at least {} photos, got {}", LEAST_PHOTOS, len(taken.names)))
+        raise InputError(_too_few(photos, taken))
     colmap = load_colmap()
     _prepare_folder(kept, taken, parameters)
     run = _run(colmap, kept, folder, taken, parameters, monitor)
@@ -266,6 +266,21 @@ def build_coarse(
         (len(pairs), n * (n - 1) // 2),
         clock.laps,
         findings,
+    )
+
+
+def _too_few(photos: Sequence[PhotoMetadata], taken: _Taken) -> Any:
+    n_others = len(photos) - len(taken.names)
+    if n_others == 0:
+        return say("a coarse model needs at least {} photos, got {}", LEAST_PHOTOS, len(taken.names))
+    kind = (camera_kind(taken.metadata[0]) or CameraKind.WIDE) if taken.metadata else CameraKind.WIDE
+    return say(
+        "a coarse model needs at least {} photos of one camera; of {} photos, {} are of the {} camera; choose "
+        "another camera",
+        LEAST_PHOTOS,
+        len(photos),
+        len(taken.names),
+        str(kind),
     )
 
 
@@ -349,7 +364,7 @@ def _measured(
     lon = float(np.median([photo.lon_deg for photo in placed if photo.lon_deg is not None]))
     heights = [height for photo in placed if (height := absolute_height_m(photo)) is not None]
     place = _Provisional(label, Origin(lat, lon, float(np.clip(np.median(heights or [0.0]), -900.0, 9000.0))))
-    near, findings = photos_near(placed, place, label)
+    near, findings = _near_each_other(placed, place)
     where = photo_places(near, place, stated.heights, label)
     n_turned = sum(_is_turned(photo) for photo in near)
     found = {}
@@ -362,6 +377,32 @@ def _measured(
         found[photo.path] = Measured(pose.position_enu_m, pose.covariance[:3, :3], turn, information)
     notes = tuple(finding for finding in where.findings if finding.code != "height-disagreement")
     return place.origin, tuple(found.get(photo.path, Measured()) for photo in photos), (*findings, *notes)
+
+
+def _near_each_other(photos: list[PhotoMetadata], place: _Provisional) -> tuple[list[PhotoMetadata], list[Finding]]:
+    """Photos whose receivers say that they are of the same place as most."""
+    lat, lon = (np.array([getattr(photo, name) for photo in photos], float) for name in ("lat_deg", "lon_deg"))
+    away_m = np.linalg.norm(enu_from_geodetic(place.origin, lat, lon, place.origin.ellipsoid_height_m), axis=1)
+    near = [photo for photo, far in zip(photos, away_m.tolist(), strict=True) if far <= MAX_DISTANCE_M]
+    if 2 * len(near) < len(photos):
+        raise InputError(
+            say(
+                "the photos were taken at places up to {:.0f} km apart; put those of one building into a folder of "
+                "their own",
+                2.0 * float(away_m.max()) / 1000.0,
+                place=place.name,
+            )
+        )
+    if len(near) == len(photos):
+        return near, []
+    n = len(photos) - len(near)
+    text = say(
+        "the positions of {} of {} photos are more than {:g} km from the others: they are not used",
+        n,
+        len(photos),
+        MAX_DISTANCE_M / 1000.0,
+    )
+    return near, [Finding(Severity.WARNING, "photos-elsewhere", text, "", float(n), 0.0, "photos")]
 
 
 def _is_turned(photo: PhotoMetadata) -> bool:
@@ -509,8 +550,8 @@ def _place(
     control, named, findings = _control(model, taken, stated, [image.name for image in images])
     n_known = max(len(control.points), sum(one.position_enu_m is not None for one in measured))
     looked = None if control.distances or n_known > 1 else taken
-    eyes = _height_of_eyes(model, looked, cloud, centres, up)
-    placed = place_model(centres, rotations, measured, up, control, eyes, parameters.seed)
+    above = _above_ground(model, looked, cloud, centres, rotations, up)
+    placed = place_model(centres, rotations, measured, up, control, above, parameters.seed)
     off_m = np.linalg.norm(placed.control_residuals_m, axis=1)
     for number in np.flatnonzero(~placed.is_control_used).tolist():
         text = say(
@@ -573,8 +614,14 @@ def _upright_axes(photo: PhotoMetadata) -> tuple[Array, Array]:
     return np.array([a, b, 0.0]), np.array([c, d, 0.0])
 
 
-def _height_of_eyes(model: ColmapModel, looked: _Taken | None, cloud: Cloud, centres: Array, up: Up) -> float | None:
-    """Of the usual camera above the ground, in the model's unit; None where no ground was seen.
+LOOKS_DOWN_RAD = math.radians(20.0)
+"""Below the horizon, from which on the usual camera is a drone's: people look ahead, or up."""
+
+
+def _above_ground(
+    model: ColmapModel, looked: _Taken | None, cloud: Cloud, centres: Array, rotations: Array, up: Up
+) -> Above | None:
+    """The usual camera above the ground, or else above the lowest points; None where no point is below it.
 
     Photos are looked at where they are given: where the size hangs on it.
     """
@@ -585,8 +632,14 @@ def _height_of_eyes(model: ColmapModel, looked: _Taken | None, cloud: Cloud, cen
     cell = extent_of(points) / 100.0
     upright = in_enu(model, Similarity(1.0, turn, np.zeros(3)))
     ground = find_ground(points, cell) if looked is None else _ground(upright, looked, points, points, cell, 0.0)
-    height = float(np.median((centres @ turn.T)[:, 2])) - ground.z_m
-    return height if ground.is_seen and height > 0.0 else None
+    lowest = ground.z_m if ground.is_seen else float(np.percentile(points[:, 2], LOWEST_PERCENT))
+    height = float(np.median((centres @ turn.T)[:, 2])) - lowest
+    is_flown = float(np.median(-rotations[:, 2] @ up.direction)) > math.sin(LOOKS_DOWN_RAD)
+    return Above(height, is_flown, ground.is_seen) if height > 0.0 else None
+
+
+LOWEST_PERCENT = 2.0
+"""Of points that may lie below the ground where it was not seen: mismatches."""
 
 
 def _ground(
@@ -619,8 +672,6 @@ def _control(
     model: ColmapModel, taken: _Taken, stated: Stated, names: Sequence[str]
 ) -> tuple[Control, tuple[str, ...], tuple[Finding, ...]]:
     """Control points and distances in the model: points by the rays of the photos that show them; their names."""
-    from planning.geo.enu import enu_from_geodetic
-
     row_of = {name: row for row, name in enumerate(names)}
     distances = []
     for one, other, metres in stated.distances:

@@ -26,14 +26,50 @@ from reconstruction.colmap.georeference import MAD_TO_SIGMA, Similarity, are_on_
 
 Array = NDArray[np.float64]
 
-ScaleFrom = Literal["control points", "positions", "stated distances", "height of eyes"]
+ScaleFrom = Literal["control points", "positions", "stated distances", "height of eyes", "height of flight"]
 
-EYES_M = 1.6
-"""Of people who hold cameras, above the ground."""
+GUESSED = ("height of eyes", "height of flight")
+"""Where a size is from that nothing says."""
 
-GUESSED_FACTOR = 2.0
-"""By which the size may be wrong where it is guessed: a castle whose photos were taken on a terrace came twice too
-large, since the ground was found half as far below the cameras as it is."""
+
+@dataclass(frozen=True, slots=True)
+class Above:
+    """The usual camera above the ground, in the model's unit: what gives a size where nothing else does.
+
+    Parameters
+    ----------
+    is_flown
+        Whether it looks down like a drone's, and not ahead like a person's.
+    is_ground_seen
+        Else the lowest points count as ground.
+    """
+
+    height: float
+    is_flown: bool = False
+    is_ground_seen: bool = True
+
+    @property
+    def scale_from(self) -> ScaleFrom:
+        """What the size is from."""
+        return "height of flight" if self.is_flown else "height of eyes"
+
+    @property
+    def metres(self) -> float:
+        """What the height is taken to be."""
+        return FLOWN_M if self.is_flown else EYES_M
+
+    @property
+    def factor(self) -> float:
+        """By which the size may be wrong."""
+        return GUESSED_FACTOR if self.is_ground_seen and not self.is_flown else LOOSE_FACTOR
+
+
+EYES_M, FLOWN_M = 1.6, 40.0
+"""Of people who hold cameras, and of drones around buildings, above the ground."""
+
+GUESSED_FACTOR, LOOSE_FACTOR = 2.0, 4.0
+"""By which the size may be wrong where it is guessed: a castle came twice too large, since the ground was found half as
+far below the cameras as it is. Drones fly between 10 and 120 m."""
 
 N_SAMPLES = 1000
 ROBUST_SIGMAS = 3.0
@@ -118,6 +154,8 @@ class Placed:
         Shape (m, 3).
     is_control_used
         Shape (m,): control points that do not contradict the others.
+    guessed_factor
+        By which the size may be wrong where nothing says it.
     """
 
     enu_from_model: Similarity
@@ -129,6 +167,7 @@ class Placed:
     is_used: NDArray[np.bool_]
     control_residuals_m: Array
     is_control_used: NDArray[np.bool_]
+    guessed_factor: float | None = None
     findings: tuple[Finding, ...] = ()
 
 
@@ -138,7 +177,7 @@ def place_model(
     measured: Sequence[Measured],
     up: Up,
     control: Control = NO_CONTROL,
-    height_of_eyes: float | None = None,
+    above: Above | None = None,
     seed: int = 0,
 ) -> Placed:
     """Fit a model to all that is known of it.
@@ -151,8 +190,8 @@ def place_model(
         Of each of them.
     up
         In the model.
-    height_of_eyes
-        Of the usual camera above the ground, in the model's unit: what gives a size where nothing else does.
+    above
+        The ground; None where it is not known.
 
     Raises
     ------
@@ -170,7 +209,7 @@ def place_model(
     if len(known[0]) >= 2 and _spread(known[0]) > 0.0 and spread_m > 0.0:
         start, up = _of_points(*known, up, seed)
     if start is None or (control.distances and not len(control.points)):
-        start, scale_from = _stated(centres, turn, measured, rotations, control, height_of_eyes, start)
+        start, scale_from = _stated(centres, turn, measured, rotations, control, above, start)
     at, jacobian = _adjusted(start, scale_from, centres, rotations, measured, up, control)
     placed = _as_similarity(at, start)
     good = _fitting_control(placed, control)
@@ -187,17 +226,18 @@ def place_model(
     if scale_from == "control points":
         unit = max(1.0, float(np.median(np.linalg.norm(off_control, axis=1))) / CONTROL_SIGMA_M * MAD_TO_SIGMA)
     sigma = _sigmas(jacobian, unit)
-    findings = _findings(scale_from, sigma, used, has_place, spread_m)
+    findings = _findings(scale_from, above, sigma, used, has_place, spread_m)
     return Placed(
         placed,
         scale_from,
-        sigma[1] if scale_from != "height of eyes" else math.inf,
+        sigma[1] if scale_from not in GUESSED else math.inf,
         math.degrees(sigma[0]),
         math.degrees(sigma[2]),
         residuals,
         used,
         off_control,
         good,
+        above.factor if above is not None and scale_from in GUESSED else None,
         (*findings, *_about_control(off_control[good], spread_m)),
     )
 
@@ -288,20 +328,20 @@ def _stated(
     measured: Sequence[Measured],
     rotations: Array,
     control: Control,
-    height_of_eyes: float | None,
+    above: Above | None,
     by_places: Similarity | None,
 ) -> tuple[Similarity, ScaleFrom]:
-    """A similarity whose size is that of stated distances, or else of people; north by gimbals where they say so."""
+    """A similarity whose size is that of stated distances, or else a guess; north by gimbals where they say so."""
     if control.distances:
         parts = [metres / float(np.linalg.norm(centres[i] - centres[j])) for i, j, metres in control.distances]
         scale, scale_from = float(np.median(parts)), "stated distances"
-    elif height_of_eyes is not None and height_of_eyes > 0.0:
-        scale, scale_from = EYES_M / height_of_eyes, "height of eyes"
+    elif above is not None and above.height > 0.0:
+        scale, scale_from = above.metres / above.height, above.scale_from
     else:
         raise InputError(
             say(
-                "nothing says how large the model is: the photos have no positions, and no ground was found below "
-                "them; state a distance or control points"
+                "nothing says how large the model is: the photos have no positions, and nothing was found below them; "
+                "measure how far apart two photos were taken, or survey control points, and state it"
             )
         )
     turns = [
@@ -367,7 +407,7 @@ def _adjusted(
             length = now.scale * float(np.linalg.norm(centres[i] - centres[j]))
             parts.append(np.array([math.log(length / metres) / 0.005]))
         parts.append((now.rotation @ up.direction)[:2] / up.sigma_rad)
-        if scale_from == "height of eyes":
+        if scale_from in GUESSED:
             parts.append(np.array([at[3] / 1e-3]))
         # What nothing fixes stays where it is.
         parts.append(1e-6 * at)
@@ -403,21 +443,22 @@ def _sigmas(jacobian: Array, unit: float) -> tuple[float, float, float]:
 
 def _findings(
     scale_from: ScaleFrom,
+    above: Above | None,
     sigma: tuple[float, float, float],
     used: NDArray[np.bool_],
     has_place: NDArray[np.bool_],
     spread_m: float,
 ) -> tuple[Finding, ...]:
     found = []
-    if scale_from == "height of eyes":
+    if scale_from in GUESSED and above is not None:
         text = say(
-            "the size is a guess, wrong by up to a factor of {:g}: cameras are taken to be {:.1f} m above the "
-            "lowest ground that was found, as people hold them. Before anything is flown, measure how far apart two "
-            "photos were taken (--distance) or survey control points (--gcp)",
-            GUESSED_FACTOR,
-            EYES_M,
+            "the size is a guess, wrong by up to a factor of {:g}: cameras are taken to be {:.1f} m above the lowest "
+            "ground that was found. Before anything is flown, measure how far apart two photos were taken, or survey "
+            "control points, and state it",
+            above.factor,
+            above.metres,
         )
-        found.append(Finding(Severity.WARNING, "scale-guessed", text, "", GUESSED_FACTOR, None, ""))
+        found.append(Finding(Severity.WARNING, "scale-guessed", text, "", above.factor, None, ""))
     elif sigma[1] > WELL_KNOWN:
         text = (
             say("the control points say the size of the model to {:.0f} % only", 100.0 * sigma[1])

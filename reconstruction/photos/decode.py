@@ -122,6 +122,8 @@ def decoded(content: bytes, flags: int, place: str, max_pixels: int = MAX_PIXELS
     _check_size(size_wh, place, max_pixels)
     if content.startswith(PNG_START) and not _is_whole_png(content):
         raise InputError(say("the picture is cut off or damaged; copy the file again", place=place))
+    if content.startswith(JPEG_START):
+        content = _without_stray_bytes(content)
     try:
         picture = cv2.imdecode(np.frombuffer(content, np.uint8), flags)
     except cv2.error as error:
@@ -170,6 +172,23 @@ def picture_size(content: bytes) -> tuple[int, int] | None:
             return width, height
         place += 2 + int(struct.unpack(">H", content[place + 2 : place + 4])[0])
     return None
+
+
+def _without_stray_bytes(content: bytes) -> bytes:
+    """A JPEG file without bytes that belong to none of its header's parts: its decoder prints a complaint of them."""
+    parts, place, begin, n_stray = [], 2, 0, 0
+    while place + 4 <= len(content) and n_stray <= MAX_STRAY_BYTES:
+        marker = content[place + 1]
+        if content[place] != 0xFF or marker in (0x00, 0xFF):
+            if content[place] != 0xFF and begin <= place:
+                parts.append(content[begin:place])
+                begin = place + 1
+            place, n_stray = place + 1, n_stray + 1
+            continue
+        if marker == 0xDA or marker == 0xD9:
+            break
+        place += 2 + int(struct.unpack(">H", content[place + 2 : place + 4])[0])
+    return content if begin == 0 else b"".join((*parts, content[begin:]))
 
 
 def _is_whole_png(content: bytes) -> bool:

@@ -6100,6 +6100,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>ein Cluster ({0}) braucht Dask: pip install &apos;reflight-groundstation[cluster]&apos;</translation>
     </message>
     <message>
+        <source>a coarse model needs at least {0} photos of one camera; of {1} photos, {2} are of the {3} camera; choose another camera</source>
+        <translation>ein Grobmodell braucht mindestens {0} Fotos einer Kamera; von {1} Fotos sind {2} von der Kamera {3}; wählen Sie eine andere Kamera</translation>
+    </message>
+    <message>
         <source>a coarse model needs at least {0} photos, got {1}</source>
         <translation>ein Grobmodell braucht mindestens {0} Fotos, es sind {1}</translation>
     </message>
@@ -7194,10 +7198,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>nichts fehlt</translation>
     </message>
     <message>
-        <source>nothing says how large the model is: the photos have no positions, and no ground was found below them; state a distance or control points</source>
-        <translation>nichts sagt, wie groß das Modell ist: die Fotos haben keine Positionen, und unter ihnen wurde kein Boden gefunden; geben Sie eine Strecke oder Passpunkte an</translation>
-    </message>
-    <message>
         <source>nothing says where north is: it is taken to be ahead of the first photo</source>
         <translation>nichts sagt, wo Norden ist: es wird in Blickrichtung des ersten Fotos angenommen</translation>
     </message>
@@ -7738,6 +7738,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>die Fotos zeigen {0} der {1} Sektoren, die der Plan versprach ({2} %)</translation>
     </message>
     <message>
+        <source>the photos were taken at places up to {0} km apart; put those of one building into a folder of their own</source>
+        <translation>die Fotos wurden an Orten aufgenommen, die bis zu {0} km auseinander liegen; legen Sie die eines Gebäudes in einen eigenen Ordner</translation>
+    </message>
+    <message>
         <source>the photos were taken from the ground: what stands behind their cameras is not known, look around</source>
         <translation>die Fotos wurden vom Boden aus gemacht: was hinter ihren Kameras steht, ist nicht bekannt; vor dem Flug umsehen</translation>
     </message>
@@ -7768,6 +7772,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the points do not determine a polynomial of degree {0}: they are in line</source>
         <translation>die Punkte bestimmen kein Polynom vom Grad {0}: sie liegen auf einer Linie</translation>
+    </message>
+    <message>
+        <source>the positions of {0} of {1} photos are more than {2} km from the others: they are not used</source>
+        <translation>die Positionen von {0} von {1} Fotos liegen mehr als {2} km von den anderen: sie werden nicht verwendet</translation>
     </message>
     <message>
         <source>the positions of {0} of {1} photos contradict the model</source>
@@ -7808,6 +7816,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the site would be written over the file it is imported from; name another file</source>
         <translation>der Standort würde über die Datei geschrieben, aus der er importiert wird; eine andere Datei nennen</translation>
+    </message>
+    <message>
+        <source>the size is a guess, wrong by up to a factor of {0}: cameras are taken to be {1} m above the lowest ground that was found. Before anything is flown, measure how far apart two photos were taken, or survey control points, and state it</source>
+        <translation>die Größe ist geraten und kann um den Faktor {0} falsch sein: Kameras gelten als {1} m über dem tiefsten gefundenen Boden. Messen Sie, bevor geflogen wird, wie weit zwei Fotos auseinander aufgenommen wurden, oder Passpunkte, und geben Sie es an</translation>
     </message>
     <message>
         <source>the size of the model is known to {0} % only: the receivers are off by too much for photos that are {1} m apart; state a distance or control points</source>
@@ -8664,6 +8676,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>jumps are not followed: each item counts once</source>
         <translation>Sprüngen wird nicht gefolgt: Jedes Element zählt einmal</translation>
+    </message>
+    <message>
+        <source>nothing says how large the model is: the photos have no positions, and nothing was found below them; measure how far apart two photos were taken, or survey control points, and state it</source>
+        <translation>nichts sagt, wie groß das Modell ist: die Fotos haben keine Positionen, und unter ihnen wurde nichts gefunden; messen Sie, wie weit zwei Fotos auseinander aufgenommen wurden, oder Passpunkte, und geben Sie es an</translation>
     </message>
     <message>
         <source>{0}; no top-up is needed, and none was written</source>
@@ -9580,10 +9596,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>sections seen only with pixels larger than {0} mm: {1} of {2} covered</source>
         <translation>Sektoren, nur mit Pixeln über {0} mm gesehen: {1} von {2} abgedeckten</translation>
-    </message>
-    <message>
-        <source>the size is a guess, wrong by up to a factor of {0}: cameras are taken to be {1} m above the lowest ground that was found, as people hold them. Before anything is flown, measure how far apart two photos were taken (--distance) or survey control points (--gcp)</source>
-        <translation>die Größe ist geraten und kann um den Faktor {0} falsch sein: Kameras gelten als {1} m über dem tiefsten gefundenen Boden, wie Menschen sie halten. Messen Sie, bevor geflogen wird, wie weit zwei Fotos auseinander aufgenommen wurden (--distance), oder Passpunkte (--gcp)</translation>
     </message>
     <message>
         <source>the tour does not fit {0}: expected each of its {1} points once, found {2}, missing {3}, unknown {4}</source>

@@ -29,7 +29,7 @@ from planning.site.importing.source import SourceModel
 from planning.site.records import NoFlyZone, Obstacle, Site, SiteModel
 from reconstruction.coarse.build import CoarseModel, CoarseParameters, Stated, build_coarse, write_sparse
 from reconstruction.coarse.control_and_camera import read_control_points, read_lens
-from reconstruction.coarse.placing import GUESSED_FACTOR
+from reconstruction.coarse.placing import GUESSED
 from reconstruction.photos.lens import CameraKind
 
 Array = NDArray[np.float64]
@@ -179,7 +179,7 @@ def site_of_coarse(coarse: CoarseModel, name: str) -> tuple[SiteModel, dict[str,
     if near:
         site = replace(site, obstacles=(Obstacle("standing-beside", mesh=OBSTACLES_FILE),))
         meshes[OBSTACLES_FILE] = others
-    if not coarse.is_origin_known or coarse.placed.scale_from == "height of eyes":
+    if not coarse.is_origin_known or coarse.placed.scale_from in GUESSED:
         site = replace(site, place_from=PLACE_UNKNOWN)
     return SiteModel(site, buildings.mesh, (others,) if near else ()), meshes
 
@@ -266,7 +266,7 @@ def coarse_report(coarse: CoarseModel) -> dict[str, Any]:
         "reprojection_px": round(coarse.reprojection_px, 4),
         "scale_from": placed.scale_from,
         "scale_sigma": _finite(placed.sigma_scale),
-        "scale_guessed_within_factor": GUESSED_FACTOR if placed.scale_from == "height of eyes" else None,
+        "scale_guessed_within_factor": placed.guessed_factor,
         "tilt_sigma_deg": _finite(placed.sigma_tilt_deg),
         "north_sigma_deg": _finite(placed.sigma_north_deg),
         "position_residual_m": {"median": _finite(np.median(lengths)), "largest": _finite(lengths.max())}

@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 from planning.base.errors import InputError
 from reconstruction.base.cameras import cam_from_enu
 from reconstruction.coarse.cloud import FoundPlane, Up, turn_upright, up_of_cameras, up_of_planes
-from reconstruction.coarse.placing import Control, Measured, place_model
+from reconstruction.coarse.placing import Above, Control, Measured, place_model
 from reconstruction.colmap.georeference import Similarity
 
 TRUTH = Similarity(3.7, Rotation.from_euler("zyx", [0.7, 0.4, -1.1]).as_matrix(), np.array([12.0, -5.0, 30.0]))
@@ -153,11 +153,29 @@ def test_a_guessed_size_is_told_and_no_size_is_refused():
     places, turns = orbit()
     centres, rotations = as_model(places, turns)
     nothing = [Measured()] * len(centres)
-    placed = place_model(centres, rotations, nothing, up_in_model(), height_of_eyes=1.6 / TRUTH.scale)
+    placed = place_model(centres, rotations, nothing, up_in_model(), above=Above(1.6 / TRUTH.scale))
     assert placed.enu_from_model.scale == pytest.approx(TRUTH.scale)
     assert "scale-guessed" in {found.code for found in placed.findings}
-    with pytest.raises(InputError, match="state a distance"):
+    with pytest.raises(InputError, match="how far apart two photos"):
         place_model(centres, rotations, nothing, up_in_model())
+
+
+def test_a_guess_for_drones_is_another_one_and_less_sure():
+    places, turns = orbit()
+    centres, rotations = as_model(places, turns)
+    nothing = [Measured()] * len(centres)
+    held, flown, unseen = (
+        place_model(centres, rotations, nothing, up_in_model(), above=Above(10.0, *kind))
+        for kind in ((False, True), (True, True), (False, False))
+    )
+    assert [placed.scale_from for placed in (held, flown, unseen)] == [
+        "height of eyes",
+        "height of flight",
+        held.scale_from,
+    ]
+    assert flown.enu_from_model.scale == pytest.approx(25.0 * held.enu_from_model.scale)
+    assert held.guessed_factor < flown.guessed_factor == unseen.guessed_factor
+    assert "4: cameras are taken to be 40.0 m" in str(flown.findings[0].message)
 
 
 def test_telephones_near_each_other_say_little_of_the_size():

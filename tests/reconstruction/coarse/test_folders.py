@@ -1,0 +1,31 @@
+"""Folders of photos that no coarse model can be made of: what is said of them."""
+
+from __future__ import annotations
+
+import pytest
+
+from groundstation.services.photos.coarse import CoarseRequest, coarse_files
+from planning.base.errors import InputError
+from tests.planning.photos.photo_writer import exif_part, gps_tags, jpeg, packet, save
+
+
+def write(folder, name, lat_deg=48.0, **properties):
+    folder.mkdir(exist_ok=True)
+    exif = exif_part({0x010F: "DJI", 0x0110: "M3T"}, {}, gps_tags(lat_deg, 11.0, 500.0))
+    save(folder / name, jpeg(exif, packet(properties)))
+
+
+def test_photos_of_places_far_apart_are_told_without_a_word_of_a_site(tmp_path):
+    for number, lat_deg in enumerate((40.0, 45.0, 50.0)):
+        write(tmp_path / "card", f"{number}.jpg", lat_deg)
+    with pytest.raises(InputError, match=r"up to \d+ km apart; put those of one building into a folder") as refused:
+        coarse_files(CoarseRequest(tmp_path / "card", tmp_path / "out"))
+    assert "site" not in str(refused.value)
+
+
+def test_too_few_photos_of_a_camera_are_told_with_the_others(tmp_path):
+    for number in range(4):
+        write(tmp_path / "card", f"{number}.jpg", ImageSource="InfraredCamera")
+    write(tmp_path / "card", "4.jpg", ImageSource="WideCamera")
+    with pytest.raises(InputError, match=r"of 5 photos, 1 are of the wide camera; choose another camera"):
+        coarse_files(CoarseRequest(tmp_path / "card", tmp_path / "out"))
