@@ -28,8 +28,9 @@ from planning.base.progress import QUIET, Monitor
 from planning.geo.enu import enu_from_geodetic, geodetic_from_enu
 from planning.geo.frames import Origin, Vec3
 from planning.photos.jpeg import PHOTO_FILE
-from planning.photos.places import MAX_DISTANCE_M, PhotoHeights, absolute_height_m, photo_places
+from planning.photos.places import PhotoHeights, absolute_height_m, photo_places
 from planning.photos.record import PhotoMetadata
+from planning.site.records import MAX_DISTANCE_M
 from reconstruction.base.cameras import Intrinsics, PosedPhoto
 from reconstruction.coarse.buildings import Buildings, make_buildings, moved
 from reconstruction.coarse.cloud import (

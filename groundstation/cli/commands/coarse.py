@@ -111,6 +111,11 @@ def run(options: argparse.Namespace) -> int:
     residual = report["position_residual_m"]
     if residual is not None:
         tell("receivers are off by {:.2f} m in the middle, {:.2f} m at most", residual["median"], residual["largest"])
+    control = report["control_residual_m"]
+    if control is not None:
+        tell(
+            "control points are off by {:.2f} m in the middle, {:.2f} m at most", control["median"], control["largest"]
+        )
     tell(
         "{} walls, {} roofs; {:.0f} m2 of walls, of them {:.0f} m2 holes that were closed and {:.0f} m2 guessed",
         len(report["walls"]),
@@ -122,5 +127,8 @@ def run(options: argparse.Namespace) -> int:
     print_findings(result.findings)
     tell("written", place=result.site)
     out = options.out
+    if report["scale_guessed_within_factor"] is not None:
+        print_next("coarse", options.photos, "-o", out, "--distance", "ONE.JPG,OTHER.JPG,METRES")
+        return 0
     print_next("panels", options.photos, result.site, "-o", out / "panels.site.json", "--colmap", out / SPARSE)
     return 0

@@ -6284,6 +6284,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Passpunkt „{0}“ liegt {1} m von da, wo die anderen ihn hinlegen; er wird nicht verwendet</translation>
     </message>
     <message>
+        <source>control points are off by {0} m in the middle, {1} m at most</source>
+        <translation>die Passpunkte liegen im Mittel um {0} m daneben, höchstens um {1} m</translation>
+    </message>
+    <message>
         <source>cost</source>
         <translation>Kosten</translation>
     </message>
