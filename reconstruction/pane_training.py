@@ -144,7 +144,7 @@ def main() -> None:
     wanted = parser.add_mutually_exclusive_group(required=True)
     wanted.add_argument("--out", type=Path, help="learn, and write the weights to this file")
     wanted.add_argument("--confidence", type=Path, help="fit confidences to the weights that are there; their file")
-    parser.add_argument("--pool", type=Path, help="folder that made pictures are kept in")
+    parser.add_argument("--pool", type=Path, help="folder that synthetic pictures are kept in")
     parser.add_argument("--pictures", type=int, default=3000, help="how many of them")
     parser.add_argument("--processes", type=int, default=2, help="that make them side by side")
     parser.add_argument("--gathered", type=Path, help="file that keeps traced facades and photos")

@@ -65,7 +65,7 @@ def compile_kernels() -> None:
 
 
 def _draw_splats() -> None:
-    """Colours, raster and sky of a few splats and an environment map, there and back."""
+    """Colours, raster and sky of a few splats and an environment map, forward and backward."""
     view = View(16, 16, 16.0, 16.0, 8.0, 8.0, torch.eye(4, dtype=torch.float64))
     means = torch.tensor([[0.0, 0.0, 2.0], [0.1, 0.0, 3.0]])
     quats, panels = torch.tensor([[1.0, 0.0, 0.0, 0.0]]).expand(2, 4), torch.zeros(2, dtype=torch.int32)
@@ -89,7 +89,7 @@ def _choose_details() -> None:
 
 
 def _march_grid() -> None:
-    """A few rays through a radiance grid, there and back, with and without gradients of the rays."""
+    """A few rays through a radiance grid, forward and backward, with and without gradients of the rays."""
     grid = RadianceGrid(GridBox(0.0, (0.0, 0.0, 0.0), (1.0, 1.0, 1.0), (4, 4, 4), 0.5, 1.0), 0.5, 0, 4)
     points, directions = torch.zeros(4, 3), torch.tensor([[0.0, 0.0, 1.0]]).repeat(4, 1)
     for is_moved in (False, True):
@@ -98,7 +98,7 @@ def _march_grid() -> None:
 
 
 def _shade_panes() -> None:
-    """A few rays of one pane, there and back: met, mirrored, with what is behind the glass, and their colours."""
+    """A few rays of one pane, forward and backward: met, mirrored, with what is behind the glass, and their colours."""
     corners = np.array([[[-1.0, 5.0, -1.0], [1.0, 5.0, -1.0], [1.0, 5.0, 1.0], [-1.0, 5.0, 1.0]]])
     planes = PanelPlanes(corners)
     photo = PosedPhoto("", Path(), Intrinsics(32, 24, 20.0, 20.0, 16.0, 12.0), Pose.looking(np.zeros(3), 0.0, 0.0))
@@ -110,7 +110,7 @@ def _shade_panes() -> None:
 
 
 def _shade_by_cubes() -> None:
-    """Lookups in an environment cube and in a grid of features, there and back."""
+    """Lookups in an environment cube and in a grid of features, forward and backward."""
     directions = torch.tensor([[0.0, 0.6, 0.8], [1.0, 0.0, 0.0]], requires_grad=True)
     roughness = torch.tensor([0.2, 0.7], requires_grad=True)
     light = CubeMap(8)(directions, roughness).sum() + SphMip(8, 2, 16)(directions, roughness).sum()

@@ -405,4 +405,21 @@ def _corners_in_picture(
     return np.asarray(inside.all(axis=1))
 
 
-__all__ = ["CoverageModel", "Elements", "LineOfSight", "exact_coverage", "exact_sections", "in_picture", "sections_of"]
+def element_weights(model: CoverageModel, by_solid_angle: bool) -> NDArray[np.float64]:
+    """Weight of each element: 1, or its section's solid angle relative to the mean."""
+    if not by_solid_angle:
+        return np.ones(model.n_elements)
+    solid_angles = model.grid.solid_angles_sr()
+    return np.tile(solid_angles / solid_angles.mean(), len(model.frames))
+
+
+__all__ = [
+    "CoverageModel",
+    "Elements",
+    "LineOfSight",
+    "element_weights",
+    "exact_coverage",
+    "exact_sections",
+    "in_picture",
+    "sections_of",
+]

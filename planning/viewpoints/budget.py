@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from planning.base.errors import InfeasibleError
 from planning.base.messages import say
 from planning.base.progress import Monitor, Stop, Trace
-from planning.coverage.model import CoverageModel, Elements
+from planning.coverage.model import CoverageModel, Elements, element_weights
 from planning.parameters import FlightRules, GreedyParameters
 from planning.plan import Aircraft, ViewpointArrays
 from planning.routing.flights import Flight, FlightTimes, flight_times
@@ -23,7 +23,7 @@ from planning.routing.orienteering import solve_orienteering
 from planning.routing.sorties import Sorties, plan_sorties
 from planning.viewpoints import cover_kernel as kernel
 from planning.viewpoints.candidates import Pool, candidate_pool, join_pools, keep
-from planning.viewpoints.greedy import Choice, element_weights
+from planning.viewpoints.greedy import Choice
 from planning.viewpoints.improve import cover_state
 from planning.viewpoints.problem import NONE_LOCKED, ViewProblem, covered_by, take
 from planning.viewpoints.spacing import ANYWHERE, SpacingRule, rounding_spacing_m, spacing_rule

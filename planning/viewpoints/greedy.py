@@ -18,7 +18,7 @@ from scipy.spatial.distance import cdist
 from planning.base.jit import kernel
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor, Stop, Trace, never
-from planning.coverage.model import CoverageModel, Elements
+from planning.coverage.model import CoverageModel, Elements, element_weights
 from planning.coverage.sections import SectionGrid
 from planning.parameters import GreedyParameters
 from planning.plan import ViewpointArrays
@@ -384,14 +384,6 @@ def _fewest_views(choice: Choice, pool: Pool, target: float, parameters: GreedyP
                 break
             chosen = exchange.chosen.copy()
     return take(pool.views, chosen)
-
-
-def element_weights(model: CoverageModel, by_solid_angle: bool) -> Array:
-    """Weight of each element: 1, or its section's solid angle relative to the mean."""
-    if not by_solid_angle:
-        return np.ones(model.n_elements)
-    solid_angles = model.grid.solid_angles_sr()
-    return np.tile(solid_angles / solid_angles.mean(), len(model.frames))
 
 
 def spend_spare_views(

@@ -82,7 +82,7 @@ class GridSettings:
         Rays learned from, for each vertex, at least. With 43 photos 0.9 scored 0.3 to 0.4 dB more than 1.75 in as much
         time, 1.3 about as much as 0.9.
     cell
-        Side of a cell that is wished for, of what a pixel covers half way to `reach_m`.
+        Target side of a cell, of what a pixel covers half way to `reach_m`.
     reach_m
         From the glass, up to which cells are equally large; None for 1.25 times the longest side of the box around all
         panels, which is about how far apart the cameras are, and so how far away parallax can be told well. What is

@@ -100,7 +100,7 @@ def box_around(
     reach
         Rescaled distance from the glass.
     cell
-        Rescaled side of a cell that is wished for; larger where that would take more than `most_cells`.
+        Rescaled target side of a cell; larger where that would take more than `most_cells`.
     """
     mean = normals.double().mean(dim=0)
     heading = math.atan2(float(mean[0]), float(mean[1])) if float(mean[:2].norm()) > 0.1 else 0.0

@@ -1,4 +1,4 @@
-"""Sets of photos with truth: made facades, annotated real ones, or a folder of the user's own."""
+"""Sets of photos with truth: synthetic facades, annotated real ones, or a folder of the user's own."""
 
 from __future__ import annotations
 
@@ -306,7 +306,7 @@ def synthetic_set(
 
 
 def scored(facade_photo: SyntheticFacade, extent_margin_m: float | None = EXTENT_MARGIN_M) -> ScoredPhoto:
-    """A made facade as a photo to score, with what its stated pose shows of the wall's surface as its view.
+    """A synthetic facade as a photo to score, with what its stated pose shows of the wall's surface as its view.
 
     Parameters
     ----------
@@ -324,7 +324,7 @@ def scored(facade_photo: SyntheticFacade, extent_margin_m: float | None = EXTENT
 
 
 def _beside(case: Case, view: Rectification, number: int) -> tuple[NDArray[np.uint8], SurfaceView]:
-    """Another photo of a made facade and its view of the window that `view` shows."""
+    """Another photo of a synthetic facade and its view of the window that `view` shows."""
     if not isinstance(view, SurfaceView):
         raise TypeError(f"expected a view of a surface, got {type(view).__name__}")
     aside, above = BESIDE_DEG[number % len(BESIDE_DEG)]

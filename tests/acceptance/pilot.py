@@ -35,7 +35,7 @@ from groundstation.services.settings import Language
 from tests.gui.driving import LOOK_MS, click_on, scroll_to, turn_until, turn_until_idle, type_into
 
 PICTURES = os.environ.get("REFLIGHT_ACCEPTANCE_PICTURES", "")
-"""Folder into which the window is photographed at each stage; none unless it is wished for."""
+"""Folder into which the window is photographed at each stage; none unless one is named."""
 
 GERMAN = Path(__file__).resolve().parents[2] / "groundstation/gui/translations/reflight_de.ts"
 

@@ -60,7 +60,7 @@ def measure(context: Context) -> Iterator[Row]:
 def _coarse(flight: Flight, photos: Path, size_px: int, points: list[_Point]) -> Iterator[Row]:
     out = photos.with_name(f"{photos.name}-{size_px}")
     n_photos = len(list(photos.iterdir()))
-    scene = f"made flight, {n_photos} photos, {size_px} px"
+    scene = f"synthetic flight, {n_photos} photos, {size_px} px"
     try:
         done = run_command(["coarse", photos, "-o", out, "--size", str(size_px)])
     except RuntimeError as refused:

@@ -37,7 +37,7 @@ class Row:
     ratio, against
         Value as a multiple of another one, and which.
     target, met
-        What was wished for in words, and whether it was reached.
+        The target in words, and whether it was reached.
     seeds
         Number of seeds behind the value.
     """

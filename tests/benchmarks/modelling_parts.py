@@ -113,9 +113,11 @@ def _kept_memory(n: int) -> Iterator[Row]:
     with freed_memory_retained():
         kept_ms = _mean_ms(there_and_back, N_STEPS)
     name = f"{n} rays, Reflection MLP {SHAPE.layers} x {SHAPE.width}"
-    yield Row(name, "there and back, memory given back to the system", round(plain_ms, 2), "ms")
+    yield Row(name, "forward and backward, memory given back to the system", round(plain_ms, 2), "ms")
     ratio = round(kept_ms / plain_ms, 4)
-    yield Row(name, "there and back, memory kept", round(kept_ms, 2), "ms", ratio, "given back", "less", ratio < 1.0)
+    yield Row(
+        name, "forward and backward, memory kept", round(kept_ms, 2), "ms", ratio, "given back", "less", ratio < 1.0
+    )
 
 
 def _mean_ms(work: Callable[[], None], n: int) -> float:

@@ -65,8 +65,10 @@ def measure(context: Context) -> Iterator[Row]:
 def _of_rasterisers(scene: Scene, name: str) -> Iterator[Row]:
     there = Scene(tuple(t.detach().cuda().requires_grad_() for t in scene.inputs), scene.view, _moved(scene.wanted))
     here_ms, there_ms = _both_ms(scene, lambda: None), _both_ms(there, torch.cuda.synchronize)
-    yield Row(name, "there and back, processor", round(here_ms, 1), "ms")
-    yield Row(name, "there and back, CUDA", round(there_ms, 2), "ms", here_ms / there_ms, "as fast as the processor")
+    yield Row(name, "forward and backward, processor", round(here_ms, 1), "ms")
+    yield Row(
+        name, "forward and backward, CUDA", round(there_ms, 2), "ms", here_ms / there_ms, "as fast as the processor"
+    )
     torch.cuda.reset_peak_memory_stats()
     before = torch.cuda.memory_allocated()
     _there_and_back(there)

@@ -69,25 +69,27 @@ def measure(context: Context) -> Iterator[Row]:
         found[size, n] = times
         is_main = (size, n) == MAIN
         yield Row(name, "there", round(times.there, 1), "ms")
-        yield Row(name, "there and back", round(times.both, 1), "ms")
+        yield Row(name, "forward and backward", round(times.both, 1), "ms")
         target = (f"2 x {MOST_MS:g} ms at most", times.processor <= 2.0 * MOST_MS) if is_main else ("", None)
-        yield Row(name, "there and back, processor time", round(times.processor, 1), "ms", None, "", *target)
+        yield Row(name, "forward and backward, processor time", round(times.processor, 1), "ms", None, "", *target)
         yield Row(name, "memory from there to back", round(_peak_mib(scene), 1), "MiB")
         if is_main:
             one = _compiled_times(scene, 1, repeats)
-            yield Row(name, "there and back, one thread", round(one.both, 1), "ms", one.both / times.both, "all cores")
+            yield Row(
+                name, "forward and backward, one thread", round(one.both, 1), "ms", one.both / times.both, "all cores"
+            )
         if is_main or context.is_quick:
             solid = _compiled_times(as_ellipsoids(scene), 0, repeats)
             ratio = solid.processor / times.processor
             is_met = (f"{MOST_AGAINST_DISCS:g} times as long at most", ratio <= MOST_AGAINST_DISCS)
-            what = "3-D Gaussians there and back, processor time"
+            what = "3-D Gaussians forward and backward, processor time"
             against = is_met if is_main else ("", None)
             yield Row(name, what, round(solid.processor, 1), "ms", ratio, "discs", *against)
             antialiased = _compiled_times(scene, 0, repeats, is_antialiased=True)
             ratio = antialiased.processor / times.processor
             is_met = (f"{MOST_AGAINST_PLAIN:g} times as long at most", ratio <= MOST_AGAINST_PLAIN)
             against = is_met if is_main else ("", None)
-            what = "antialiased there and back, processor time"
+            what = "antialiased forward and backward, processor time"
             yield Row(name, what, round(antialiased.processor, 1), "ms", ratio, "plain discs", *against)
         if context.is_quick or (size, n) in AGAINST_TORCH:
             yield from _against_torch(name, scene, times, is_main)
@@ -169,7 +171,7 @@ def _against_torch(name: str, scene: Scene, compiled: Times, is_main: bool) -> I
     yield Row(name, "largest difference between the two pictures", off, "", None, "of 1")
     ratio, least = times.processor / compiled.processor, LEAST_RATIO
     target = (f"at least {least:g} times as long", ratio >= least) if is_main else ("", None)
-    what = "there and back, torch by squares, processor time"
+    what = "forward and backward, torch by squares, processor time"
     yield Row(name, what, round(times.processor), "ms", ratio, "compiled", *target)
 
 
@@ -201,7 +203,7 @@ def _draw(found: dict[tuple[Size, int], Times], path: Path) -> None:
     axes.set_xticks([], minor=True)
     axes.set_xlabel("splats")
     axes.set_ylabel("ms")
-    axes.set_title(f"{N_CHANNELS} channels there and back: processor time; dotted: time on all cores")
+    axes.set_title(f"{N_CHANNELS} channels forward and backward: processor time; dotted: time on all cores")
     axes.grid(color="#dddddd", which="both")
     axes.legend()
     figure.savefig(path, dpi=110)

@@ -1,7 +1,7 @@
-"""Models of photos that are not as made ones are: real sets of photos, and made photos with one fault each.
+"""Models of photos that are not as synthetic ones are: real sets of photos, and synthetic photos with one fault each.
 
 What goes wrong with real photos goes wrong together: light that changes, few photos, white that is clipped, poses that
-are off. On made photos each is there alone, so that it can be told which of them costs what.
+are off. On synthetic photos each is there alone, so that it can be told which of them costs what.
 """
 
 from __future__ import annotations

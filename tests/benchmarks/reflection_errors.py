@@ -37,7 +37,7 @@ class Case:
     Parameters
     ----------
     told_only
-        Whether they move the world as a whole, so that views can be scored only where they are told to be.
+        Whether they move the world as a whole, so that views can be scored only where they are stated to be.
     """
 
     name: str
@@ -192,7 +192,7 @@ def rays_of(folder: Path) -> Rays:
 def psnr_with(rays: Rays, learner: Learner, case: Case | None) -> tuple[float, float]:
     """PSNR, dB, of all unseen glass pixels together, learned with errors.
 
-    With views scored where they are told to be, which is as wrong, and where they truly were.
+    With views scored where they are stated to be, which is as wrong, and where they truly were.
     """
     learned, told, planes = rays.learned, rays.unseen, rays.source.panels
     if case is not None:
@@ -210,9 +210,9 @@ BENCHMARK = Benchmark(
     "reflection-errors",
     "Errors of poses and panels",
     f"Models of reflections learned from {N_VIEWS} rendered photos of {WIDTH_PX} x 96 pixels of the bundled planar "
-    "scene, where cameras are told to be off by normal errors (this much on each axis, drawn anew for each photo, or "
+    "scene, where stated camera positions are off by normal errors (this much on each axis, drawn for each photo, or "
     "all alike), or panels are. What is lost is that of unseen glass pixels, which ones being known. Views are scored "
-    "where they are told to be, with errors of their own, as users must; beside it where they truly were. A pixel is "
+    "where they are stated to be, with errors of their own, as users must; beside it where they truly were. A pixel is "
     "0.63 degrees, and 18 cm on glass that is 16.6 m along the ray, as it is on average. Poses that are corrected are "
     "so for views learned from. Trained shorter than by default, one seed.",
     measure,

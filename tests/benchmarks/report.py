@@ -17,7 +17,7 @@ from tests.benchmarks.harness import Benchmark, Outcome, Row
 
 HEADER = """# Benchmarks
 
-Written by `make benchmark` (`python -m tests.benchmarks`); do not edit by hand. `--only NAME` measures one part anew
+Written by `make benchmark` (`python -m tests.benchmarks`); do not edit by hand. `--only NAME` measures one part again
 and keeps the others, `--quick` takes two minutes and writes elsewhere. Sites are those of `planning.site.bundled`;
 camera and aircraft the DJI M3E; 10 m distance, sections of 30 degrees and float32 unless something else is said.
 

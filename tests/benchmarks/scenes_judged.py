@@ -150,7 +150,7 @@ BENCHMARK = Benchmark(
     f"Photos of {SIZE_PX[0]} x {SIZE_PX[1]} pixels of every bundled scene by the embedded renderer, 14 m before a "
     f"pane, against those of Mitsuba's path tracer with {2 * N_RAYS} rays a pixel: peak signal-to-noise ratio for "
     "numbers of rays and resolutions, and what leaving out each effect loses. Rooms are one mean light each and the "
-    "sun's disc is not seen, since Mitsuba's scene has neither. Mitsuba's own noise, told by two seeds, bounds what "
-    "can be scored.",
+    "sun's disc is not seen, since Mitsuba's scene has neither. Mitsuba's own noise, measured with two seeds, bounds "
+    "what can be scored.",
     measure,
 )

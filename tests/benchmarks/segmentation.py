@@ -1,4 +1,4 @@
-"""How well and how fast glass panels are found: made facades with truth, and real annotated ones as they are."""
+"""How well and how fast glass panels are found: synthetic facades with truth, and real annotated ones as they are."""
 
 from __future__ import annotations
 
@@ -202,7 +202,7 @@ def _counting() -> Iterator[Row]:
     layout = replace(case.layout, n_rows=20, n_columns=30)
     with stopwatch() as making:
         made = render_facade(replace(case, layout=layout))
-    yield Row("5280 x 3956", "rendering a made photo", making(), "s")
+    yield Row("5280 x 3956", "rendering a synthetic photo", making(), "s")
     found = np.roll(made.index, 2, axis=1)
     pixel_overlaps(made.index, found, made.facade, made.facade)
     with stopwatch() as one_pass:
@@ -222,7 +222,7 @@ def _counting() -> Iterator[Row]:
 BENCHMARK = Benchmark(
     "segmentation",
     "Glass panels in photos",
-    "Scores as in the paper's Table 1, on made facades of 1600 x 1200 pixels whose every panel is known: strong "
+    "Scores as in the paper's Table 1, on synthetic facades of 1600 x 1200 pixels whose every panel is known: strong "
     "mirror images that differ from pane to pane, blinds, glare, shadows, clutter, missing profiles and panels; the "
     "camera's pose and the wall's surface are given, and the wall's extent with its masonry to 2 m, but not where in "
     "it the glass begins. Then real facades with annotated "

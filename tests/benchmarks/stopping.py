@@ -41,7 +41,7 @@ def measure(context: Context) -> Iterator[Row]:
             gained = f"{settled - at_stop:+.2f} dB on the model at the stop"
             yield Row("planar", f"stopped after {n} steps", round(at_stop, 2), "dB")
             yield Row("planar", f"{more} steps later", round(going_on, 2), "dB")
-            yield Row("planar", f"settled for {more} steps", round(settled, 2), "dB", None, gained, *wished)
+            yield Row("planar", f"cooled down for {more} steps", round(settled, 2), "dB", None, gained, *wished)
 
 
 def stopped(folder: Path, config: TrainConfig, n: int, step_s: float) -> float:

@@ -15,7 +15,7 @@ from tests.services.photos.test_poses import refinement
 
 @pytest.fixture(scope="module")
 def flight(tmp_path_factory):
-    """Three made photos, a coarse model, and the folder where refined poses of the photos are looked for."""
+    """Three synthetic photos, a coarse model, and the folder where refined poses of the photos are looked for."""
     folder = tmp_path_factory.mktemp("refine")
     made = made_photos(0.0, (0.0, 12.0, -10.0))
     write_flight(folder / "photos", made)

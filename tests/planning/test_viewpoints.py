@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from planning.aircraft.catalogue import profile
 from planning.base.errors import InfeasibleError, OperationCancelled
 from planning.base.progress import QUIET, TimeLimit, Trace, never
-from planning.coverage.model import CoverageModel, Elements, exact_coverage
+from planning.coverage.model import CoverageModel, Elements, element_weights, exact_coverage
 from planning.coverage.reachability import find_reachable
 from planning.coverage.sections import SectionGrid, panel_frames
 from planning.parameters import GreedyParameters
@@ -21,7 +21,7 @@ from planning.site.free_space import free_space
 from planning.site.records import Airspace, panel_corners
 from planning.viewpoints import cover_kernel as kernel
 from planning.viewpoints.candidates import candidate_pool
-from planning.viewpoints.greedy import choose_greedily, dual_bound, element_weights, greedy
+from planning.viewpoints.greedy import choose_greedily, dual_bound, greedy
 from planning.viewpoints.improve import Exchange, cover_state, refine_views
 from planning.viewpoints.noto import noto
 from planning.viewpoints.orbit import orbit

@@ -164,8 +164,8 @@ def _more_photos(scale: Scale) -> Table:
     return Table(
         "3d",
         "What more photos bring",
-        f"Not in the paper. Methods of Table 3 with {MORE_PHOTOS} times as many photos, planned and flown anew; steps, "
-        "times and the unseen views are those of Table 3.",
+        f"Not in the paper. Methods of Table 3 with {MORE_PHOTOS} times as many photos, planned and flown again; "
+        "steps, times and the unseen views are those of Table 3.",
         (ST, UST),
         cases,
         _first(cases),

@@ -109,9 +109,9 @@ def _rows(path: Path) -> Rows:
 def _panels(rows: Rows) -> Iterator[str]:
     yield "## Table 1: Segmentation of panels\n"
     yield (
-        "Photos of made facades whose every panel is known. The networks that the paper compares with were not run: "
-        "what the best of them reaches on the paper's photos stands in the last column. More detectors, sizes and real "
-        "photos: [benchmarks.md](benchmarks.md#glass-panels-in-photos), "
+        "Photos of synthetic facades whose every panel is known. The networks that the paper compares with were not "
+        "run: what the best of them reaches on the paper's photos stands in the last column. More detectors, sizes and "
+        "real photos: [benchmarks.md](benchmarks.md#glass-panels-in-photos), "
         "`python -m tests.benchmarks --only segmentation`\n"
     )
     for scene, made in MADE.items():

@@ -133,7 +133,7 @@ cmp, ecp and offices are photos of real facades with annotated windows, in the f
 photos in --images, and in --truth index images of the same names (PNG, 8 or 16 bit: 0 no panel, else its number).
 
 With --masks the masks that another method wrote are scored (EBLNet, GhostingNet, GlassSemNet ...): one picture for each
-photo, named like it; white is glass, or grey the probability of glass. The names of made photos are made-planar's
+photo, named like it; white is glass, or grey the probability of glass. The names of synthetic photos are made-planar's
 planar-000, planar-001 and so on; --save-photos writes the photos of a set, for other methods to work on.
 
 examples:
@@ -205,10 +205,10 @@ def add_set_arguments(parser: Any) -> None:
     """Photos with truth; shared with other commands that need them."""
     add = parser.add_argument_group("photos with truth").add_argument
     add("--set", dest="set_name", choices=SETS, default=SETS[0], help="default: %(default)s")
-    add("--seeds", type=int, default=10, metavar="N", help="photos of a made set (default %(default)s)")
-    add("--first-seed", type=int, default=0, metavar="N", help="of a made set (default %(default)s)")
-    add("--width", type=int, default=1600, metavar="PX", help="of photos of a made set (default %(default)s)")
-    add("--extent-unknown", action="store_true", help="do not tell where the walls of a made set end")
+    add("--seeds", type=int, default=10, metavar="N", help="photos of a synthetic set (default %(default)s)")
+    add("--first-seed", type=int, default=0, metavar="N", help="of a synthetic set (default %(default)s)")
+    add("--width", type=int, default=1600, metavar="PX", help="of photos of a synthetic set (default %(default)s)")
+    add("--extent-unknown", action="store_true", help="do not tell where the walls of a synthetic set end")
     add("--data", type=Path, metavar="DIR", help="folder of cmp, ecp or offices")
     add("--images", type=Path, metavar="DIR", help="your photos")
     add("--truth", type=Path, metavar="DIR", help="your index images")

@@ -431,14 +431,18 @@ def _add_segment(kinds: Any) -> None:
     )
     varied("--detectors", type=words, default=(), metavar="LIST", help="such as gradient,hough,lsd (default: none)")
     varied(
-        "--views", type=counts, default=(), metavar="LIST", help="photos searched together, such as 1,3,5; made sets"
+        "--views",
+        type=counts,
+        default=(),
+        metavar="LIST",
+        help="photos searched together, such as 1,3,5; synthetic sets",
     )
     varied(
         "--rectified-by",
         type=words,
         default=(),
         metavar="LIST",
-        help="such as exact,tangent,polynomial (default: none); made sets",
+        help="such as exact,tangent,polynomial (default: none); synthetic sets",
     )
 
 

@@ -5984,7 +5984,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>--take-off, --set-parameters, --raise und --overrule sind für --link URL; hier bewegt sich nichts Echtes</translation>
     </message>
     <message>
-        <source>--views, --rectified-by: the photos of &apos;{0}&apos; have no poses, which both need; take a made set: {1}</source>
+        <source>--views, --rectified-by: the photos of &apos;{0}&apos; have no poses, which both need; take a synthetic set: {1}</source>
         <translation>--views, --rectified-by: die Fotos von &apos;{0}&apos; haben keine Posen, die beide brauchen; einen erzeugten Satz nehmen: {1}</translation>
     </message>
     <message>

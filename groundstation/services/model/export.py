@@ -178,7 +178,7 @@ class ModelToExport:
     monitor: Monitor
 
     def degree(self, usual: int) -> int:
-        """That was wished for, else the format's own."""
+        """The one asked for, else the format's own."""
         return usual if self.wanted.degree is None else self.wanted.degree
 
 

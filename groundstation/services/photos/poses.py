@@ -263,7 +263,7 @@ def refined_summary(outcome: RefinedOutcome) -> dict[str, Any]:
 
 
 def _stored_refinement(where: Path, photos: Sequence[PosedPhoto], request: RefineRequest) -> StoredRefinement | None:
-    """What was computed before of the same photos, and in the size that is wished for."""
+    """What was computed before of the same photos, and in the size asked for."""
     if not is_refined_folder(where):
         return None
     try:

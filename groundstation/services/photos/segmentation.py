@@ -110,9 +110,9 @@ class ScoreRequest:
     set_name
         One of `reconstruction.metrics.sets.SET_NAMES`.
     n_seeds, width_px
-        Number and width of the photos of a made set; 4 : 3.
+        Number and width of the photos of a synthetic set; 4 : 3.
     is_extent_known
-        Whether the search is told where the walls of a made set end, to 2 m, as by a coarse model.
+        Whether the search is told where the walls of a synthetic set end, to 2 m, as by a coarse model.
     data
         Folder of an annotated set.
     images, truth
@@ -122,7 +122,7 @@ class ScoreRequest:
     masks
         Another method's masks, to be scored instead of what Reflight finds.
     first_seed
-        Of a made set.
+        Of a synthetic set.
     """
 
     set_name: str
@@ -188,7 +188,7 @@ def photo_set(request: ScoreRequest, n_beside: int = 0) -> PhotoSet:
     Parameters
     ----------
     n_beside
-        More photos of each facade; made sets only.
+        More photos of each facade; synthetic sets only.
 
     Raises
     ------
@@ -226,7 +226,7 @@ def segment_tradeoff(
     if request.set_name not in SYNTHETIC_SETS and (variants.n_views or variants.view_kinds):
         raise InputError(
             say(
-                "--views, --rectified-by: the photos of '{}' have no poses, which both need; take a made set: {}",
+                "--views, --rectified-by: the photos of '{}' have no poses, which both need; take a synthetic set: {}",
                 request.set_name,
                 ", ".join(SYNTHETIC_SETS),
             )

@@ -223,7 +223,7 @@ def render_photos(
     ------
     InputError
         A file cannot be read or belongs to another site, there is no such scene, no cluster answers, Mitsuba is
-        wished for and not installed, or as `render_photo_folder` says.
+        asked for and not installed, or as `render_photo_folder` says.
     InfeasibleError
         Views were to be planned, and none is possible.
     """

@@ -187,7 +187,7 @@ def as_written(model: SiteModel) -> tuple[SiteModel, dict[str, bytes]]:
 
 
 def scene_views(request: SceneRequest, scene: Scene, written: SiteModel, folder: Path, monitor: Monitor) -> SceneViews:
-    """The views that are wished for: a plan's, a flight's, square ones, or some that are planned here.
+    """The views asked for: a plan's, a flight's, square ones, or some that are planned here.
 
     Parameters
     ----------

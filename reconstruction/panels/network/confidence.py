@@ -1,10 +1,10 @@
 """How probably panes are there: by what all sizes of a photo say of each, and by what stands beside it.
 
-Two logistic regressions, fitted to real and made photos (`calibration`). The first weighs what the places say, in the
-size in which the pane was found and in the others: of candidates that cover one another the most probable one stays,
-its corners the mean of those that name the same pane. The second weighs the neighbours as well: panes of a facade
-have equals beside, above and below them. What it tells is a calibrated probability: of panes found with 0.9, nine in
-ten are there.
+Two logistic regressions are fitted to real and synthetic photos (`calibration`). The first weighs what the places say,
+in the size in which the pane was found and in the others: of candidates that cover one another the most probable one
+stays, its corners the mean of those that name the same pane. The second weighs the neighbours as well: panes of a
+facade have equals beside, above and below them. It gives a calibrated probability: of panes found with 0.9, nine in ten
+are there.
 """
 
 from __future__ import annotations

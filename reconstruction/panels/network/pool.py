@@ -24,7 +24,7 @@ MADE_PX = 448
 
 
 class Pool:
-    """A folder of made pictures; those that are missing are made by processes of its own while others are learned.
+    """A folder of synthetic pictures; those that are missing are made by processes of its own while others are learned.
 
     Use it in a `with` block: what is not made when that ends, is left.
 

@@ -1,4 +1,4 @@
-"""How the network for panes learns: made pictures and photos in crops, each pane by lot in a size by lot.
+"""How the network for panes learns: synthetic pictures and photos in crops, each pane by lot in a size by lot.
 
 `python -m reconstruction.pane_training` gathers what it learns from and begins.
 """

@@ -18,7 +18,7 @@ from planning.base.messages import say
 Array = NDArray[np.float64]
 
 
-# What every rectification of a photo is: a map there and back.
+# What every rectification of a photo is: a map in both directions.
 
 
 class Rectification(Protocol):

@@ -14,7 +14,7 @@ from planning.geo.frames import aim
 from reconstruction.base.cameras import Array, Intrinsics, Pose, PosedPhoto
 from reconstruction.scenes.facades.record import BraceEnds, Case, Disturbances, Layout, Opposite, Top, Wall, Widths
 
-# Lines and panels of a made facade along its wall.
+# Lines and panels of a synthetic facade along its wall.
 
 LEAST_PIECE = 0.04
 """Of a cell's area: smaller pieces that inclined profiles leave are closed, no panels. Nobody builds such panes."""

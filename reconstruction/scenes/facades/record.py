@@ -1,4 +1,4 @@
-"""What a made facade is: its layout, what disturbs the photo of it, the camera, and the photo with its truth."""
+"""What a synthetic facade is: its layout, what disturbs the photo of it, the camera, and the photo with its truth."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from reconstruction.base.cameras import Array, PosedPhoto
 
-# The wall of a made facade: a vertical plane or cylinder with coordinates along it.
+# The wall of a synthetic facade: a vertical plane or cylinder with coordinates along it.
 #
 # Two frames are used. ENU is the site's. The *wall frame* has its origin on the wall, in its middle and at its base:
 # x to
@@ -230,7 +230,7 @@ def _check_shares(**shares: float) -> None:
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """Everything that a made photo depends on.
+    """Everything that a synthetic photo depends on.
 
     Parameters
     ----------
@@ -271,7 +271,7 @@ class TruePanel:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SyntheticFacade:
-    """A made photo and the truth about it.
+    """A synthetic photo and the truth about it.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Rendering a made facade by asking, for places in the photo, what is seen there.
+"""Rendering a synthetic facade by asking, for places in the photo, what is seen there.
 
 One sample a pixel, nine where the pixel or a neighbour of it lies on an edge. The geometry is exact but for one thing:
 panes on a cylinder are bent with it, while they mirror as flat ones.

@@ -13,7 +13,7 @@ from reconstruction.base.cameras import Array
 from reconstruction.scenes.facades.cases import Grid
 from reconstruction.scenes.facades.record import Array32, Case, Opposite, first_hits
 
-# What stands behind and across the street of a made facade, painted on a picture that hangs upright there.
+# What stands behind and across the street of a synthetic facade, painted on a picture that hangs upright there.
 
 HALF_WIDTH_M, BOTTOM_M, TOP_M = 90.0, -20.0, 70.0
 """Extent of a picture: to both sides of the wall's middle, and above its base. Beyond, its rim goes on."""

@@ -116,7 +116,7 @@ def rasterise_gsplat(
 ) -> Raster:
     """See `rasteriser.rasterise`; all float32 on one CUDA device.
 
-    Weights take one more pass there and back over one channel, labels one more for every 32 different ones.
+    Weights take one more pass forward and backward over one channel, labels one more for every 32 different ones.
 
     Raises
     ------

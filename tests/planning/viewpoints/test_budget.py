@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from planning.aircraft.catalogue import profile
 from planning.base.errors import InfeasibleError, OperationCancelled
 from planning.base.progress import QUIET, Monitor, Stop, TimeLimit, Trace, never
-from planning.coverage.model import CoverageModel
+from planning.coverage.model import CoverageModel, element_weights
 from planning.coverage.reachability import find_reachable
 from planning.coverage.sections import SectionGrid, panel_frames
 from planning.motion.timing import usable_battery_s
@@ -30,7 +30,6 @@ from planning.site.free_space import free_space
 from planning.site.records import panel_corners
 from planning.viewpoints.budget import best_flights, views_within_budget
 from planning.viewpoints.candidates import Pool, candidate_pool, keep
-from planning.viewpoints.greedy import element_weights
 from planning.viewpoints.problem import ViewProblem, take
 from tests.planning.plan_cases import kiosk
 from tests.slow import slow

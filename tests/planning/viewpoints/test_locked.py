@@ -16,6 +16,7 @@ from planning.base.findings import is_flyable
 from planning.base.progress import QUIET, Trace
 from planning.checks import check_plan
 from planning.coverage.evaluate import coverage_counts
+from planning.coverage.model import element_weights
 from planning.parameters import GreedyParameters
 from planning.plan import Plan, Viewpoint, ViewpointArrays, viewpoint_arrays
 from planning.planner import as_written, first_reusable, plan_flight
@@ -24,7 +25,7 @@ from planning.routing.flights import Flight
 from planning.routing.orienteering import solve_orienteering
 from planning.viewpoints.budget import best_flights, with_fewer_views
 from planning.viewpoints.candidates import Pool, candidate_pool
-from planning.viewpoints.greedy import choose_greedily, element_weights, necessary_views
+from planning.viewpoints.greedy import choose_greedily, necessary_views
 from planning.viewpoints.improve import improve_views, refine_views
 from planning.viewpoints.problem import concatenate, covered_by, locked_views, take
 from planning.viewpoints.spacing import spacing_rule

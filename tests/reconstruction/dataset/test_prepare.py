@@ -1,4 +1,4 @@
-"""The whole data set of made photos: read back by other means, effects both ways, nothing left behind on failure."""
+"""A whole data set of synthetic photos: read back by other means, effects both ways, nothing left after a failure."""
 
 from __future__ import annotations
 

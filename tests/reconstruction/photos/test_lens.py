@@ -1,4 +1,4 @@
-"""Which camera took a photo, and what its focal length is, on real and made photos."""
+"""Which camera took a photo, and what its focal length is, on real and synthetic photos."""
 
 from __future__ import annotations
 

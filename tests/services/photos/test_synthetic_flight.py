@@ -1,4 +1,4 @@
-"""The made flight of the pictures: photos over a building, read like real ones."""
+"""The synthetic flight of the pictures: photos over a building, read like real ones."""
 
 import numpy as np
 import pytest

@@ -52,7 +52,7 @@ GLASS_EVERYWHERE = PhotoPrediction(
 
 
 def true_votes(seed: int, noise: float) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.uint16]]:
-    """What a network would say that knows a made picture, with corners off by a share of the pane's size."""
+    """What a network would say that knows a synthetic picture, with corners off by a share of the pane's size."""
     made = synthetic_picture(seed, 256)
     index = made.index[STRIDE // 2 :: STRIDE, STRIDE // 2 :: STRIDE]
     corners = np.concatenate([np.zeros((1, 4, 2), np.float32), made.corners_px])[index]

@@ -1,4 +1,4 @@
-"""Inclined lines of made facades: found where there are profiles, and nowhere else."""
+"""Inclined lines of synthetic facades: found where there are profiles, and nowhere else."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whole pictures: made facades with truth, the hard cases, and pictures that are none."""
+"""Whole pictures: synthetic facades with truth, the hard cases, and pictures that are none."""
 
 from __future__ import annotations
 

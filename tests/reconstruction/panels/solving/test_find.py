@@ -1,4 +1,4 @@
-"""From made photos and a dented coarse model to panels in 3-D."""
+"""From synthetic photos and a dented coarse model to panels in 3-D."""
 
 from __future__ import annotations
 

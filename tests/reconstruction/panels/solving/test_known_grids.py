@@ -40,7 +40,7 @@ def named(curvature: float = 0.0) -> list[PosedPhoto]:
 
 
 def whole_grid(number: int, curvature: float = 0.0) -> FacadeGrid:
-    """The true grid of a made photo."""
+    """The true grid of a synthetic photo."""
     photo = made(curvature)[number]
     view = surface_view(named(curvature)[number], surface_of(photo.case))
     columns = tuple(
@@ -59,7 +59,7 @@ def recorded(number: int, grid: FacadeGrid) -> PanelsFile:
 
 
 def drawn_by_hand(number: int, curvature: float = 0.0) -> PanelsFile:
-    """What a careful hand would write of a made photo."""
+    """What a careful hand would write of a synthetic photo."""
     return recorded(number, whole_grid(number, curvature))
 
 
