@@ -35,9 +35,9 @@ def _analyse() -> None:
     frames, camera = prepared.problem.model.frames, prepared.problem.model.camera
     panel_sampling(frames, camera, frames.centroids + frames.normals, np.zeros((len(frames), len(frames)), np.int16))
     space = prepared.problem.space
-    things = obstructions_of(model, space)
-    route_clearance(Sortie((), ((0.0, -20.0, 5.0), (5.0, -20.0, 5.0)), 5.0, 5.0), space, things)
-    first_obstructions_hit(space.solids, things.solid_owner, space.home_enu_m[None], space.column_top_enu_m[None])
+    obstructions = obstructions_of(model, space)
+    route_clearance(Sortie((), ((0.0, -20.0, 5.0), (5.0, -20.0, 5.0)), 5.0, 5.0), space, obstructions)
+    first_obstructions_hit(space.solids, obstructions.solid_owner, space.home_enu_m[None], space.column_top_enu_m[None])
 
 
 LONG_ENOUGH_S = 60.0

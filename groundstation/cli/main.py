@@ -154,7 +154,7 @@ def _make_streams_safe() -> None:
             stream.reconfigure(errors="backslashreplace")
 
 
-def _tell_of_plugins() -> None:
+def _report_plugin_problems() -> None:
     for problem in new_plugin_problems():
         print(f"{worded('warning')}: {_in_one_line(GroundStationError(str(problem)))}", file=sys.stderr)
 
@@ -164,7 +164,7 @@ def _run(arguments: Sequence[str], open_window: OpenWindow) -> int:
         try:
             return _outcome(arguments, open_window, stack)
         finally:
-            _tell_of_plugins()
+            _report_plugin_problems()
 
 
 def _language_of(arguments: Sequence[str]) -> str:

@@ -440,7 +440,7 @@ class _Tour(QObject):
             return self._page("reconstruct", ReconstructPage)
 
         def rest() -> None:
-            self._wait_for(lambda: page().pane.looks.is_at_rest() and not page().pane.pictures.is_busy())
+            self._wait_for(lambda: page().pane.pictures_in_view.is_at_rest() and not page().pane.pictures.is_busy())
             self._wait_for(lambda: not self._context.jobs())
 
         def has_learned() -> bool:
@@ -503,7 +503,7 @@ class _Tour(QObject):
             return self._page("model", ModelPage)
 
         def rest() -> None:
-            self._wait_for(lambda: page().pane.looks.is_at_rest() and not self._context.jobs())
+            self._wait_for(lambda: page().pane.pictures_in_view.is_at_rest() and not self._context.jobs())
 
         def colour_by(attribute: Computed) -> None:
             page().side.colour.setCurrentIndex(page().side.colour.findData(str(attribute)))

@@ -33,17 +33,17 @@ class Clearance:
     ----------
     clearance_m
         Distance to the nearest skin, negative inside a solid, shape (q,).
-    thing
+    obstruction
         Number of the nearest thing in `Obstructions.all`, shape (q,).
-    leg_minimum_m, leg_thing
+    leg_minimum_m, leg_obstruction
         Least clearance of each leg and the nearest thing, shape (k - 1,). To a micrometre where the leg stays outside
         of solids; inside, the depth is that of the samples.
     """
 
     clearance_m: Array
-    thing: NDArray[np.int64]
+    obstruction: NDArray[np.int64]
     leg_minimum_m: Array
-    leg_thing: NDArray[np.int64]
+    leg_obstruction: NDArray[np.int64]
 
     @property
     def smallest_m(self) -> float:
@@ -77,7 +77,7 @@ class RouteClearance:
 
 
 def route_clearance(
-    sortie: Sortie, space: FreeSpace, things: Obstructions, spacing_m: float = SPACING_M
+    sortie: Sortie, space: FreeSpace, obstructions: Obstructions, spacing_m: float = SPACING_M
 ) -> RouteClearance:
     """Clearances along a sortie's path, sampled every `spacing_m` or closer; empty where the sortie has no path."""
     if not spacing_m > 0.0:
@@ -86,9 +86,9 @@ def route_clearance(
     if len(path) == 1:
         path = np.repeat(path, 2, axis=0)
     a, b = path[:-1], path[1:]
-    bodies = [(space.solids, things.solid_owner)]
+    bodies = [(space.solids, obstructions.solid_owner)]
     if len(space.no_fly.part):
-        bodies.append((space.no_fly, things.no_fly_owner))
+        bodies.append((space.no_fly, obstructions.no_fly_owner))
     lengths_m = np.linalg.norm(b - a, axis=1)
     leg, along = _even_samples(lengths_m, spacing_m)
     triangles = [nearest_triangles(solids, owner, a, b) for solids, owner in bodies]
@@ -120,12 +120,12 @@ def _clearance(
     owner: NDArray[np.int64],
     points: Array,
     leg: NDArray[np.int64],
-    leg_thing: NDArray[np.int64],
+    leg_obstruction: NDArray[np.int64],
 ) -> Clearance:
     clearance_m = solids.clearance_m(points)
-    leg_minimum_m = np.full(len(leg_thing), np.inf)
+    leg_minimum_m = np.full(len(leg_obstruction), np.inf)
     np.minimum.at(leg_minimum_m, leg, clearance_m)
-    return Clearance(clearance_m, nearest_obstructions(solids, owner, points), leg_minimum_m, leg_thing)
+    return Clearance(clearance_m, nearest_obstructions(solids, owner, points), leg_minimum_m, leg_obstruction)
 
 
 @kernel

@@ -197,10 +197,10 @@ def _quality_rows(
     yield Row("gsd-worst", say("coarsest pixel"), "m/px", Better.LOWER, worst)
     yield Row("gsd-worst-panel", say("finest pixel on the worst panel"), "m/px", Better.LOWER, coarsest)
     space = prepared.problem.space
-    things = obstructions_of(site_model, space)
+    obstructions = obstructions_of(site_model, space)
     smallest: list[float | None] = []
     for plan in plans:
-        on_way = [route_clearance(sortie, space, things).solids.clearance_m for sortie in plan.sorties]
+        on_way = [route_clearance(sortie, space, obstructions).solids.clearance_m for sortie in plan.sorties]
         smallest.append(_extreme(np.concatenate([*on_way, np.zeros(0)]), np.fmin))
     yield Row("clearance", say("smallest clearance"), "m", Better.HIGHER, tuple(smallest))
 

@@ -363,22 +363,22 @@ class BrokenRule:
     ----------
     amount
         In the unit of the rule; 0 where it has none.
-    thing
+    obstruction
         What is too close, entered or in the way; None for other rules.
     inside
-        The place lies inside `thing`: no smaller minimum distance would do.
+        The place lies inside `obstruction`: no smaller minimum distance would do.
     """
 
     rule: Rule
     amount: float
-    thing: Obstruction | None = None
+    obstruction: Obstruction | None = None
     inside: bool = False
 
     def __str__(self) -> str:
         """What is wrong with the place, in the pilot's words."""
-        amount, thing = f"{self.amount:.3g}", self.thing
+        amount, obstruction = f"{self.amount:.3g}", self.obstruction
         if self.rule in (Rule.DISTANCE, Rule.NO_FLY):
-            return say("inside {}", thing) if self.inside else say("{} m too close to {}", amount, thing)
+            return say("inside {}", obstruction) if self.inside else say("{} m too close to {}", amount, obstruction)
         return {
             Rule.GIMBAL_UP: say("{} degrees above what the camera sees with the gimbal at its limit", amount),
             Rule.GIMBAL_DOWN: say("{} degrees below what the camera sees with the gimbal at its limit", amount),
@@ -387,7 +387,7 @@ class BrokenRule:
             Rule.SIDES: say("{} m beyond the sides of the airspace", amount),
             Rule.RANGE: say("{} m too far away for the largest distance or pixel size allowed", amount),
             Rule.GROUND: say("below the ground"),
-            Rule.HIDDEN: say("hidden by {}", thing),
+            Rule.HIDDEN: say("hidden by {}", obstruction),
             Rule.UNFLYABLE: say("no way to it was found from home"),
         }[self.rule]
 
@@ -417,11 +417,11 @@ class SectionReasons:
         order of how little would have to give (metres and degrees count alike); what cannot give comes last.
     masks
         Rules broken, shape (q,): bit r for `RULES[r]`.
-    amounts, things
+    amounts, obstructions
         By how much, and the number of the thing, shape (q, len(RULES)); 0 and -1 where there is none.
     places_enu_m
         Shape (q, 3).
-    all_things
+    all_obstructions
         Names of the things.
     min_distance_m, no_fly_distance_m
         Kept from solids and no-fly volumes, with margin: what breaks the rule by more lies inside.
@@ -431,9 +431,9 @@ class SectionReasons:
     elements: NDArray[np.int64]
     masks: NDArray[np.int64]
     amounts: Array
-    things: NDArray[np.int64]
+    obstructions: NDArray[np.int64]
     places_enu_m: Array
-    all_things: tuple[Obstruction, ...]
+    all_obstructions: tuple[Obstruction, ...]
     min_distance_m: float
     no_fly_distance_m: float
 
@@ -462,9 +462,11 @@ class SectionReasons:
 
     def _broken(self, row: int, rule: Rule) -> BrokenRule:
         number = RULES.index(rule)
-        amount, thing = float(self.amounts[row, number]), int(self.things[row, number])
+        amount, obstruction = float(self.amounts[row, number]), int(self.obstructions[row, number])
         kept = {Rule.DISTANCE: self.min_distance_m, Rule.NO_FLY: self.no_fly_distance_m}.get(rule, np.inf)
-        return BrokenRule(rule, amount, self.all_things[thing] if thing >= 0 else None, amount >= kept)
+        return BrokenRule(
+            rule, amount, self.all_obstructions[obstruction] if obstruction >= 0 else None, amount >= kept
+        )
 
 
 def rules_of(mask: int) -> tuple[Rule, ...]:
@@ -489,7 +491,7 @@ def section_reasons(
     """
     problem = prepared.problem
     model, space = problem.model, problem.space
-    things = obstructions_of(site_model, space)
+    obstructions = obstructions_of(site_model, space)
     shape = problem.reachability.verdicts.shape
     verdicts = np.full(shape, UNDECIDED, np.int8)
     panel_rows = slice(None) if panels is None else panels
@@ -500,7 +502,7 @@ def section_reasons(
     elements, places = np.concatenate([elements, cut_off]), np.concatenate([places, cut_off_places])
     masks = np.concatenate([masks, np.full(len(cut_off), 1 << RULES.index(Rule.UNFLYABLE))])
     amounts = np.pad(amounts, ((0, len(cut_off)), (0, len(RULES) - N_RULES)))
-    named = _name_things(model, space, things, elements // shape[1], masks, places)
+    named = _name_things(model, space, obstructions, elements // shape[1], masks, places)
     limits = reach_limits(model, space)
     immovable = (masks >> GROUND > 0) | (amounts[:, DISTANCE] >= limits.need_distance)
     order = np.lexsort([masks, amounts.sum(axis=1), immovable, elements])
@@ -511,7 +513,7 @@ def section_reasons(
         amounts[order],
         named[order],
         places[order],
-        things.all,
+        obstructions.all,
         limits.need_distance,
         limits.need_no_fly,
     )
@@ -552,7 +554,7 @@ def _explain(
 def _name_things(
     model: CoverageModel,
     space: FreeSpace,
-    things: Obstructions,
+    obstructions: Obstructions,
     panel: NDArray[np.int64],
     masks: NDArray[np.int64],
     places: Array,
@@ -560,8 +562,8 @@ def _name_things(
     """Number of the thing that each row's rules are about, shape (q, len(RULES)); -1 for none."""
     named = np.full((len(masks), len(RULES)), -1, np.int64)
     near, zone, hidden = (masks >> rule & 1 == 1 for rule in (DISTANCE, NO_FLY, HIDDEN))
-    named[near, DISTANCE] = nearest_obstructions(space.solids, things.solid_owner, places[near])
-    named[zone, NO_FLY] = nearest_obstructions(space.no_fly, things.no_fly_owner, places[zone])
+    named[near, DISTANCE] = nearest_obstructions(space.solids, obstructions.solid_owner, places[near])
+    named[zone, NO_FLY] = nearest_obstructions(space.no_fly, obstructions.no_fly_owner, places[zone])
     targets = model.targets_enu_m[panel[hidden]]
-    named[hidden, HIDDEN] = first_obstructions_hit(space.solids, things.solid_owner, targets, places[hidden])
+    named[hidden, HIDDEN] = first_obstructions_hit(space.solids, obstructions.solid_owner, targets, places[hidden])
     return named

@@ -174,7 +174,9 @@ def training(dataset: Path, out: Path) -> dict[str, Any]:
     _turn_for(application, 0.5 * TRAINING_S)
     watched_ms = gaps.gaps_ms
     came: list[bytes] = []
-    page.pane.looks.pictureCame.connect(lambda _place, _image, seen: came.append(_place_of(seen.look.camera)))
+    page.pane.pictures_in_view.pictureCame.connect(
+        lambda _place, _image, seen: came.append(_place_of(seen.look.camera))
+    )
     waits_ms = []
     gaps.restart()
     end_s = time.perf_counter() + 0.5 * TRAINING_S

@@ -104,7 +104,7 @@ class ApplicationContext(QObject):
     selectionChanged(Item or None), lookAtRequested(Item)
         What is selected; what the 3-D view and the map should show now.
     unitsChanged(UnitSystem)
-    messageShown(Message), messageSettled(str)
+    messageShown(Message), messageWithdrawn(str)
         Something was told; what was said about a topic holds no more.
     jobsChanged()
         A job was queued or ended.
@@ -115,7 +115,7 @@ class ApplicationContext(QObject):
     lookAtRequested = Signal(object)  # noqa: N815
     unitsChanged = Signal(object)  # noqa: N815
     messageShown = Signal(object)  # noqa: N815
-    messageSettled = Signal(str)  # noqa: N815
+    messageWithdrawn = Signal(str)  # noqa: N815
     jobsChanged = Signal()  # noqa: N815
 
     def __init__(self, session: Session, runner: JobRunner, parent: QObject | None = None) -> None:
@@ -179,18 +179,18 @@ class ApplicationContext(QObject):
         """Tell the user something; with a topic, it is shown until it is settled or said otherwise."""
         self.messageShown.emit(Message(severity, shortened(with_fields(text)), item, about))
 
-    def settle(self, about: str) -> None:
+    def withdraw(self, about: str) -> None:
         """What was said about a topic does not hold any more; one that ends in a dot stands for all below it."""
-        self.messageSettled.emit(about)
+        self.messageWithdrawn.emit(about)
 
-    def words(self, text: str) -> str:
+    def localized(self, text: str) -> str:
         """What a part without Qt says, an error or a finding, in the user's language and units."""
         return translated(shortened(text), self._units)
 
-    def tell_of_plugins(self) -> None:
+    def report_plugin_problems(self) -> None:
         """Say which plug-ins are left out of a list that was just filled, each once."""
         for problem in new_plugin_problems():
-            self.say(Severity.WARNING, self.words(str(problem)))
+            self.say(Severity.WARNING, self.localized(str(problem)))
 
     def start(
         self, name: str, work: Work, when_done: Done | None = None, when_failed: Failed | None = None
@@ -200,7 +200,7 @@ class ApplicationContext(QObject):
         `work` runs on another thread and must touch neither widgets nor the session. `when_done` gets its result, in
         the window's thread. An error is shown as a message, and passed to `when_failed`; a cancelled job calls neither.
         """
-        self.settle(f"job.{name}")
+        self.withdraw(f"job.{name}")
         job = self._runner.submit(name, work)
         self._waiting[job.id] = _Waiting(job, when_done, when_failed)
         self.jobsChanged.emit()
@@ -261,7 +261,7 @@ class ApplicationContext(QObject):
 
     def _say_error(self, name: str, error: BaseException) -> None:
         if isinstance(error, (GroundStationError, OSError)):
-            text = self.tr("{0}: {1}").format(name, self.words(str(error)))
+            text = self.tr("{0}: {1}").format(name, self.localized(str(error)))
         else:
             text = self.tr("{0}: Reflight failed where it should not ({1}: {2}); please report it").format(
                 name, type(error).__name__, error

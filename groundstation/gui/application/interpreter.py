@@ -51,7 +51,7 @@ class GarbageCollector(QObject):
         gc.disable()
         self._timer.start(INTERVAL_MS)
 
-    def settle(self) -> None:
+    def freeze(self) -> None:
         """What has been imported until now stays."""
         if self._may_leave_out:
             gc.freeze()
@@ -69,7 +69,7 @@ class GarbageCollector(QObject):
         if self._round >= FULL_EVERY and not self._is_busy():
             self._round = 0
             gc.collect()
-            self.settle()
+            self.freeze()
         elif gc.get_count()[0] > gc.get_threshold()[0]:
             # What outlives a round waits for the next long search: rounds that look at it again, as Python's own do,
             # took up to 40 ms once a plan was there.

@@ -282,7 +282,7 @@ class PhotoController(QObject):
     def _failed(self, error: BaseException) -> None:
         self._refused = self._job_view
         if self._wanted is not None and self._wanted.view == self._refused:
-            words = self._context.words(str(error))
+            words = self._context.localized(str(error))
             self._preview.show_note(self.tr("The photo could not be rendered: {0}").format(words))
 
     def _jobs_changed(self) -> None:
@@ -316,7 +316,7 @@ class PhotoController(QObject):
     def _show_progress(self, event: JobProgress) -> None:
         if self._job is None or event.job_id != self._job.id or self._job.cancel_requested:
             return
-        words = self._context.words(event.stage)
+        words = self._context.localized(event.stage)
         if event.total > 1:
             words = self.tr("{0} ({1:.0f} %)").format(words, 100.0 * event.done / event.total)
         warning = "" if self._shown is None or not self._shown.is_walled_in else self._note(self._shown) + "\n"

@@ -194,7 +194,7 @@ class AfterFlight(QObject):
         def done(result: tuple[TopUp, tuple[Finding, ...]]) -> None:
             found, findings = result
             for finding in findings:
-                self._context.say(finding.severity, self._context.words(finding.message))
+                self._context.say(finding.severity, self._context.localized(finding.message))
             if found.wanted == 0:
                 self._context.say(Severity.OK, self.tr("Nothing is missing: the photos show all that was planned."))
             elif found.is_negligible and found.plan is not None:
@@ -515,7 +515,7 @@ class FlyController(QObject):
         charge = self.after.charge(plan, sortie.orders.number)
         self._flight_id = flight_id = next(self._ids)
         for topic in ("link", "flight."):
-            self._context.settle(topic)
+            self._context.withdraw(topic)
         self.active = ActiveFlight(sortie)
         self._flight = LiveFlight(
             sortie,
@@ -554,14 +554,14 @@ class FlyController(QObject):
             case Answered():
                 self._note(Severity.OK if event.is_accepted else Severity.ERROR, self._words(event.text))
                 if event.is_accepted:
-                    self._context.settle("order")
+                    self._context.withdraw("order")
                 else:
                     self._say(Severity.ERROR, event.text, "order")
             case WarningRaised():
                 self._note(event.warning.severity, self._words(event.warning.text))
                 self._say(event.warning.severity, event.warning.text, f"flight.warning.{event.warning.code}")
             case WarningCleared():
-                self._context.settle(f"flight.warning.{event.code}")
+                self._context.withdraw(f"flight.warning.{event.code}")
             case LinkProblem():
                 active.link_problem = event.text
                 self._note(Severity.ERROR, self._words(event.text))
@@ -587,14 +587,14 @@ class FlyController(QObject):
         if event.link is LinkState.LOST:
             self._note(Severity.ERROR, self.tr("link lost") if not text else self.tr("link lost: {0}").format(text))
         elif event.link is LinkState.ALIVE:
-            self._context.settle("link")
+            self._context.withdraw("link")
             self._note(
                 Severity.OK, self.tr("link alive") if before is not LinkState.LOST else self.tr("link found again")
             )
         elif event.link is LinkState.CLOSED:
             self._note(Severity.NOTE, self.tr("disconnected"))
             for topic in ("order", "flight.warning.", "flight.log"):
-                self._context.settle(topic)
+                self._context.withdraw(topic)
             if text:
                 self._say(Severity.ERROR, event.text, "link")
             self._flight = None
@@ -628,5 +628,5 @@ class FlyController(QObject):
         self._context.say(severity, self._words(text), about=about)
 
     def _words(self, text: str) -> str:
-        words: str = self._context.words(text)
+        words: str = self._context.localized(text)
         return words

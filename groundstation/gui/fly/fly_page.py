@@ -77,7 +77,7 @@ class FlightTexts(QObject):
             return self.tr("The link is being opened ...")
         if active.link is LinkState.SILENT:
             if active.link_problem:
-                return str(self._context.words(active.link_problem))
+                return str(self._context.localized(active.link_problem))
             return self.tr("The link is open; no vehicle was heard yet.")
         return self._phase_text(active.view)
 
@@ -98,7 +98,7 @@ class FlightTexts(QObject):
             return self.tr("This connection is for another plan. Disconnect, and connect for the plan that is shown.")
         what, done, total = view.doing
         if view.phase is Phase.UPLOADING and total > 0.0:
-            return self.tr("{0} {1} ({2:.0f} of {3:.0f})").format(text, self._context.words(what), done, total)
+            return self.tr("{0} {1} ({2:.0f} of {3:.0f})").format(text, self._context.localized(what), done, total)
         if view.phase is Phase.FLYING and view.state.mode is not None:
             return self.tr("{0} Mode: {1}").format(text, view.state.mode.value)
         return text
@@ -425,7 +425,7 @@ class FlyPage(QObject):
                 if ask.plan_from_here(window):
                     controller.plan_from_here()
             case Remedy.OVERRULE:
-                if ask.overrule(window, self._context.words(check.text), check.code.upper()):
+                if ask.overrule(window, self._context.localized(check.text), check.code.upper()):
                     controller.overrule(check.code)
 
     def _connect_vehicle(self) -> None:

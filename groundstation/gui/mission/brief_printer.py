@@ -365,7 +365,7 @@ class BriefDialog(QDialog):
         try:
             write_pdf(self._fresh(), path, bool(self._paper.currentData()))
         except InputError as error:
-            self._context.say(Severity.ERROR, self._context.words(str(error)))
+            self._context.say(Severity.ERROR, self._context.localized(str(error)))
             return False
         self._context.say(Severity.OK, self.tr("Written: {0}").format(path))
         return True
@@ -390,7 +390,7 @@ class BriefDialog(QDialog):
             return
         self._pictures, objection = result
         if objection:
-            self._context.say(Severity.WARNING, self._context.words(objection))
+            self._context.say(Severity.WARNING, self._context.localized(objection))
         self._lay_out()
 
     def _let_go(self) -> None:
@@ -432,7 +432,7 @@ class BriefDialog(QDialog):
             try:
                 print_pages(self._fresh(), printer, printer.printerName())
             except InputError as error:
-                self._context.say(Severity.ERROR, self._context.words(str(error)))
+                self._context.say(Severity.ERROR, self._context.localized(str(error)))
 
 
 def is_letter_usual(units: UnitSystem) -> bool:

@@ -318,7 +318,7 @@ class ExportDialog(QDialog):
 
     def _when_failed(self, error: BaseException) -> None:
         self._is_writing = False
-        text = self.tr("Not written: {0}").format(self._context.words(str(error)))
+        text = self.tr("Not written: {0}").format(self._context.localized(str(error)))
         if self.isVisible():
             self._say("error", text)
         else:

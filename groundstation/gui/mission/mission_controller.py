@@ -129,13 +129,13 @@ class MissionController(QObject):
 
     def _say_findings(self, names: str, findings: Sequence[Finding]) -> None:
         """Say what there is to say of the files of these names; what holds of several sorties once."""
-        self._context.settle("plan.file.")
+        self._context.withdraw("plan.file.")
         by_message = {found.message: found for found in reversed(findings) if found.severity is not Severity.OK}
         for found in list(reversed(by_message.values()))[:MAX_SAID]:
             item = item_of_place(found.place, self._context.document)
             self._context.say(
                 found.severity,
-                self.tr("{0}: {1}").format(names, self._context.words(found.message)),
+                self.tr("{0}: {1}").format(names, self._context.localized(found.message)),
                 item,
                 f"plan.file.{found.message}",
             )

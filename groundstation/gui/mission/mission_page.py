@@ -302,7 +302,7 @@ class MissionPage(QObject):
         if plan is None or site_model is None:
             return None
         dialog = ExportDialog(self._context, plan, site_model, self._export_folder(), self._shared_view.window())
-        self._context.tell_of_plugins()
+        self._context.report_plugin_problems()
         dialog.written.connect(self._note_folder)
         dialog.open()
         return dialog
@@ -485,7 +485,9 @@ class MissionPage(QObject):
     def _go_to(self, place: str) -> None:
         item = item_of_place(place, self._context.document)
         if item is None:
-            self._context.say(Severity.NOTE, self.tr("{0} is not shown in the view").format(self._context.words(place)))
+            self._context.say(
+                Severity.NOTE, self.tr("{0} is not shown in the view").format(self._context.localized(place))
+            )
         else:
             self._context.jump_to(item)
 

@@ -120,7 +120,7 @@ class ModelController(QObject):
         if scene.folder is not None:
             self._read(scene.folder)
             return
-        self._context.say(Severity.ERROR, self._context.words(scene.problem))
+        self._context.say(Severity.ERROR, self._context.localized(scene.problem))
         self._not_opened(None)
 
     def _opened(self, found: tuple[SceneCard, tuple[Path, ...]]) -> None:
@@ -152,7 +152,7 @@ class ModelController(QObject):
 
     # Pictures
 
-    def look(self, look: ViewRequest) -> None:
+    def request_view(self, look: ViewRequest) -> None:
         """Ask for a picture."""
         self._process.send(look)
 
@@ -191,7 +191,7 @@ class ModelController(QObject):
 
     def _exported(self, done: WrittenModel) -> None:
         text = self.tr("The model is written: {0}, {1} MB").format(done.path, f"{done.n_bytes / 1e6:.3g}")
-        notes = [str(self._context.words(note)) for note in done.notes]
+        notes = [str(self._context.localized(note)) for note in done.notes]
         self._context.say(Severity.NOTE, "; ".join([text, *notes]))
 
     # Panels
@@ -393,4 +393,4 @@ class ModelController(QObject):
                 self.viewAnswered.emit(None)
 
     def _say(self, error: GroundStationError) -> None:
-        self._context.say(Severity.ERROR, self._context.words(str(error)))
+        self._context.say(Severity.ERROR, self._context.localized(str(error)))

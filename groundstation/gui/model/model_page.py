@@ -246,7 +246,7 @@ class ModelPage(QObject):
         self._context, self._shared_view = context, shared_view
         self.controller, self.questions = ModelController.of(context), Questions()
         self.side, self.pane = PanelSide(), ScenePane(context, self.controller)
-        self.records, self.report = RecordSide(context.words), ReportMaker(self.controller, self)
+        self.records, self.report = RecordSide(context.localized), ReportMaker(self.controller, self)
         self.left = self._make_page()
         self.right: QWidget | None = None
         self.bottom: QWidget | None = None
@@ -337,7 +337,7 @@ class ModelPage(QObject):
         if card is None:
             return
         dialog = ExportDialog(tuple(dict.fromkeys(panel.facade for panel in card.panels)), self._shared_view.window())
-        self._context.tell_of_plugins()
+        self._context.report_plugin_problems()
         if dialog.exec() == QDialog.DialogCode.Accepted:
             out = self._place_for(dialog.wanted().format, card.name)
             if out is not None:
@@ -394,7 +394,7 @@ class ModelPage(QObject):
         self._context.say(Severity.NOTE, self.tr("The report is written: {0}").format(path))
 
     def _report_failed(self, problem: str) -> None:
-        self._context.say(Severity.ERROR, self._context.words(problem))
+        self._context.say(Severity.ERROR, self._context.localized(problem))
 
     def _window_closing(self, event: QCloseEvent) -> None:
         if event.isAccepted():

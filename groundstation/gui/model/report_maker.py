@@ -123,7 +123,7 @@ class ReportMaker(QObject):
             return
         self._number = next(NUMBERS)
         camera = sized(view_of(self._left[0][1]), WIDTH_PX, HEIGHT_PX)
-        self._controller.look(ViewRequest(REPORT, self._number, Subject("model", card.folder), camera))
+        self._controller.request_view(ViewRequest(REPORT, self._number, Subject("model", card.folder), camera))
 
     def _read(self) -> None:
         """Read the files that records name."""

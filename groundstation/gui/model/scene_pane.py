@@ -58,8 +58,8 @@ class ScenePane(QWidget):
         self.axis, self.cut, self.turn_over = ChoiceBox(), QSlider(Qt.Orientation.Horizontal), QCheckBox()
         calm(self.cut)
         self.cut_at = QLabel()
-        self.looks = ViewPictures(controller.look, self._size_px, self)
-        self.led = GuidedCamera(self.view, self)
+        self.pictures_in_view = ViewPictures(controller.request_view, self._size_px, self)
+        self.guided = GuidedCamera(self.view, self)
         self._images: dict[str, QImage | None] = {"left": None, "right": None}
         self._problem = ""
         self._pointed = -1
@@ -77,7 +77,7 @@ class ScenePane(QWidget):
 
     def camera(self) -> PosedPhoto | None:
         """Where the view is from."""
-        return self.led.camera
+        return self.guided.camera
 
     def picture(self) -> QImage:
         """What is shown now, with what is drawn over it."""
@@ -92,8 +92,8 @@ class ScenePane(QWidget):
         for folder in self._controller.others:
             self.compare.addItem(folder.name, str(folder))
         self.axis.setCurrentIndex(0)
-        self.led.camera = None if card is None else card.first_view
-        self.led.distance_m = USUAL_DISTANCE_M
+        self.guided.camera = None if card is None else card.first_view
+        self.guided.distance_m = USUAL_DISTANCE_M
         for widget in (self.layer, self.compare, self.home, self.measure, self.axis, self.save):
             widget.setEnabled(card is not None)
         self.show_view()
@@ -101,9 +101,9 @@ class ScenePane(QWidget):
     def show_view(self) -> None:
         """Show what is chosen, from where the camera is."""
         card = self._controller.card
-        if self.led.camera is None or card is None:
+        if self.guided.camera is None or card is None:
             self._images = {"left": None, "right": None}
-            self.looks.show(None)
+            self.pictures_in_view.show(None)
             self._say()
             return
         left, right = self._subjects()
@@ -113,7 +113,7 @@ class ScenePane(QWidget):
         tints, right_tints = (
             (self._controller.tints, self._controller.comparison_tints) if layer == PICTURE else ((), ())
         )
-        self.looks.show(View(self.led.camera, left, right, layer, "", tints, self.section(), right_tints))
+        self.pictures_in_view.show(View(self.guided.camera, left, right, layer, "", tints, self.section(), right_tints))
         self._say()
 
     def section(self) -> Section | None:
@@ -176,12 +176,12 @@ class ScenePane(QWidget):
         self.home.clicked.connect(self.go_home)
         self.front.clicked.connect(self.face_panel)
         self.save.clicked.connect(self.saveRequested)
-        self.led.led.connect(self._led)
+        self.guided.cameraMoved.connect(self._camera_moved)
         view.homeRequested.connect(self.go_home)
         view.resized.connect(self.show_view)
         view.clicked.connect(self._clicked)
         view.pointed.connect(self._point_at)
-        self.looks.pictureCame.connect(self._show_picture)
+        self.pictures_in_view.pictureCame.connect(self._show_picture)
         controller.viewAnswered.connect(self._take)
         controller.probed.connect(self._take_probe)
         controller.selectionChanged.connect(self._say)
@@ -201,10 +201,10 @@ class ScenePane(QWidget):
             self._look_from(view_of((panel,)))
 
     def _look_from(self, camera: PosedPhoto) -> None:
-        self.led.camera = camera
+        self.guided.camera = camera
         self.show_view()
 
-    def _led(self) -> None:
+    def _camera_moved(self) -> None:
         self.show_view()
 
     def _set_beside(self) -> None:
@@ -215,17 +215,17 @@ class ScenePane(QWidget):
     def _clicked(self, x: float, y: float) -> None:
         """Ask which panel or place it is; the process of models answers, as it knows what stands before it."""
         left, _ = self._subjects()
-        if self.led.camera is None or left is None:
+        if self.guided.camera is None or left is None:
             return
-        lens = self.led.camera.intrinsics
+        lens = self.guided.camera.intrinsics
         what = MEASURE if self.measure.isChecked() else PICK
         self._asked[what] = next(NUMBERS)
         at = (x * lens.width_px, y * lens.height_px)
-        self._controller.probe(Probe(what, self._asked[what], left, self.led.camera, at, self.section()))
+        self._controller.probe(Probe(what, self._asked[what], left, self.guided.camera, at, self.section()))
 
     def _point_at(self, x: float, y: float) -> None:
         """Mark the panel under the mouse, as far as its edges tell."""
-        card, camera = self._controller.card, self.led.camera
+        card, camera = self._controller.card, self.guided.camera
         number = -1
         if card is not None and camera is not None and card.panels and 0.0 <= x <= 1.0 and 0.0 <= y <= 1.0:
             lens = camera.intrinsics
@@ -253,9 +253,9 @@ class ScenePane(QWidget):
 
     def _take(self, answer: ViewAnswer | None) -> None:
         if answer is None:
-            self.looks.forget()
+            self.pictures_in_view.forget()
         else:
-            self.looks.take(answer)
+            self.pictures_in_view.take(answer)
 
     def _take_probe(self, found: Probed) -> None:
         card, probe = self._controller.card, found.probe
@@ -277,7 +277,7 @@ class ScenePane(QWidget):
         self._images[place] = image
         self._problem = answer.problem
         if place == "left" and answer.depth_m is not None:
-            self.led.distance_m = answer.depth_m
+            self.guided.distance_m = answer.depth_m
         self._say()
 
     def _say(self) -> None:
@@ -296,7 +296,7 @@ class ScenePane(QWidget):
         if self._controller.card is None:
             return self.tr("Open a model: the folder of a training that is finished.")
         if self._problem:
-            return str(self._context.words(self._problem))
+            return str(self._context.localized(self._problem))
         if not self.measure.isChecked():
             return ""
         return self._length_words() or self.tr("Click two places.")
@@ -337,10 +337,10 @@ class ScenePane(QWidget):
 
     def _places(self, points_enu_m: tuple[Vec3, ...] | list[Vec3]) -> tuple[tuple[float, float], ...] | None:
         """Where points are in the picture, in shares of it; None where one is beside or behind the camera."""
-        found = None if self.led.camera is None else places_in(self.led.camera, points_enu_m)
-        if self.led.camera is None or found is None:
+        found = None if self.guided.camera is None else places_in(self.guided.camera, points_enu_m)
+        if self.guided.camera is None or found is None:
             return None
-        lens = self.led.camera.intrinsics
+        lens = self.guided.camera.intrinsics
         return tuple((place.x() / lens.width_px, place.y() / lens.height_px) for place in found)
 
     def _cut_m(self) -> float:

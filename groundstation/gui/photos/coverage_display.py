@@ -87,7 +87,7 @@ class CoverageScene(QWidget):
         """The 3-D view; None while it is not seen."""
         return self._scene
 
-    def let_open(self) -> None:
+    def allow_opening(self) -> None:
         """From now on the view may be made.
 
         With the first one of a window Qt makes the whole window anew, which is left to the view that all tabs share.

@@ -148,7 +148,7 @@ class PhotosController(QObject):
         def done(result: tuple[CoarseFiles, SiteModel]) -> None:
             files, model = result
             for found in files.findings:
-                self._context.say(found.severity, self._context.words(found.message))
+                self._context.say(found.severity, self._context.localized(found.message))
             document = with_new_site(self._context.document, model)
             self._context.change(self.tr("Make a coarse model"), document)
             self._context.select(None)
@@ -201,7 +201,7 @@ class PhotosController(QObject):
 
         def done(prepared: PreparedData) -> None:
             for found in prepared.findings:
-                self._context.say(found.severity, f"{found.place}: {self._context.words(found.message)}")
+                self._context.say(found.severity, f"{found.place}: {self._context.localized(found.message)}")
             text = self.tr("The data set is written, photos: {0}. Train a model of it on the Reconstruct tab: {1}")
             self._context.say(Severity.OK, text.format(len(prepared.photos), folder))
 
@@ -282,7 +282,7 @@ class PhotosController(QObject):
         try:
             draft = edit(self._history.value)
         except GroundStationError as error:
-            self._context.say(Severity.ERROR, self._context.words(str(error)))
+            self._context.say(Severity.ERROR, self._context.localized(str(error)))
             return
         self._history.change(label, draft)
         self._changed()
@@ -307,7 +307,7 @@ class PhotosController(QObject):
         try:
             model = with_found_panels(document.site, draft)
         except GroundStationError as error:
-            self._context.say(Severity.ERROR, self._context.words(str(error)))
+            self._context.say(Severity.ERROR, self._context.localized(str(error)))
             return False
         facades = found_facades(draft.found, draft.photos)
         self._context.change(self.tr("Use found panels"), replace(document, site=model, found_facades=facades))

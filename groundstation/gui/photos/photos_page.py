@@ -359,7 +359,7 @@ class PhotosPage(QObject):
         controller.trialsChanged.connect(self._show_trials)
         self.tools.undo.clicked.connect(controller.undo)
         self.tools.redo.clicked.connect(controller.redo)
-        self.pane.refused.connect(lambda text: context.say(Severity.ERROR, context.words(text)))
+        self.pane.refused.connect(lambda text: context.say(Severity.ERROR, context.localized(text)))
         self.pane.placeChanged.connect(self._show_state)
         self.corrections = Corrections(controller, self.pane, self)
         controller.photosChanged.connect(self._show_photos)
@@ -367,7 +367,7 @@ class PhotosPage(QObject):
         controller.stateChanged.connect(self._show_state)
         context.unitsChanged.connect(self._units_changed)
         context.documentChanged.connect(self._document_changed)
-        self._shared_view.with_scene(lambda _scene: self.pane.scene.let_open())
+        self._shared_view.with_scene(lambda _scene: self.pane.scene.allow_opening())
         self._shared_view.closing.connect(self._window_closing)
 
     # What the user does

@@ -187,7 +187,7 @@ class PlanController(QObject):
             request = replace(document.request, locked=locked)
         except ValueError as error:
             self.refused.emit(
-                self.tr("{0}; release some, or ask for more views").format(self._context.words(str(error)))
+                self.tr("{0}; release some, or ask for more views").format(self._context.localized(str(error)))
             )
             return
         prepared = self._plan_cache.prepared_for(request, site)
@@ -298,7 +298,7 @@ class PlanController(QObject):
         try:
             edited = active.with_revision(edit(active.revision))
         except (GroundStationError, ValueError) as error:
-            self.refused.emit(self._context.words(str(error)))
+            self.refused.emit(self._context.localized(str(error)))
             return False
         self._plan_cache.keep(edited.plan, edited)
         done, effect = label.format(viewpoint_id), edit_effect(active.revision, edited.revision)
@@ -310,7 +310,7 @@ class PlanController(QObject):
         for finding in effect.problems:
             self._context.say(
                 finding.severity,
-                self._context.words(finding.message),
+                self._context.localized(finding.message),
                 item_of_place(finding.place, self._context.document),
                 f"plan.{finding.code}.{finding.place}",
             )
@@ -355,7 +355,7 @@ class PlanController(QObject):
         )
         for finding in planned.findings:
             about = f"plan.{finding.code}.{finding.place}"
-            self._context.say(finding.severity, self._context.words(finding.message), about=about)
+            self._context.say(finding.severity, self._context.localized(finding.message), about=about)
 
     def _planning_over(self) -> None:
         self._planning = None
@@ -365,7 +365,7 @@ class PlanController(QObject):
         plan_before = None if before.current is None else before.current.plan
         plan_after = None if after.current is None else after.current.plan
         if plan_before is not plan_after or before.site is not after.site:
-            self._context.settle("plan.")
+            self._context.withdraw("plan.")
             self._take_current()
 
     def _take_current(self) -> None:
@@ -396,7 +396,7 @@ class PlanController(QObject):
             self.tr("Look at the plan"),
             lambda context: activate(site, plan, prepared_site, context),
             taken,
-            lambda error: self._give_up(self._context.words(str(error))) if self._is_current(plan) else None,
+            lambda error: self._give_up(self._context.localized(str(error))) if self._is_current(plan) else None,
         )
 
     def _is_current(self, plan: Plan) -> bool:

@@ -95,7 +95,7 @@ class CompareWindow(QDialog):
             self.tr("Compare plans"),
             lambda context: compare(site, plans, names, monitor=context),
             self._compared,
-            lambda error: self._words.setText(context.words(str(error))),
+            lambda error: self._words.setText(context.localized(str(error))),
         )
 
     def _lay_out(self) -> None:
@@ -148,7 +148,7 @@ class CompareWindow(QDialog):
             length_unit(self._context.units).text(constraints.min_distance_m),
             settings[constraints.occlusion],
         )
-        self._words.setText(" ".join([words, *map(self._context.words, comparison.notes)]))
+        self._words.setText(" ".join([words, *map(self._context.localized, comparison.notes)]))
         self._fill_table(comparison)
         self._show_pictures()
 
@@ -565,7 +565,7 @@ class PlanLists(QTabWidget):
         }[group.state]
         if group.rules:
             words = self.tr(" and ").join(self._rule_text(rule) for rule in group.rules)
-        example = "" if group.reason is None else self._context.words(str(group.reason))
+        example = "" if group.reason is None else self._context.localized(str(group.reason))
         panel_id = insight.panel_ids[group.panel]
         return ReasonRow(words, group.n_sections, group.n_panels, example, panel_id, group.section)
 

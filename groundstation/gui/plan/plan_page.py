@@ -328,7 +328,9 @@ class PlanPage(QObject):
             self._say_verdict(self.tr("Ready to fly; warnings: {0}").format(warned), "warning" if warned else "ok")
         else:
             self._say_verdict(
-                self.tr("NOT ready to fly; errors: {0}. {1}").format(len(wrong), self._context.words(wrong[0].message)),
+                self.tr("NOT ready to fly; errors: {0}. {1}").format(
+                    len(wrong), self._context.localized(wrong[0].message)
+                ),
                 "error",
             )
         coverage, units = plan.coverage, self._context.units

@@ -407,7 +407,7 @@ class ViewpointPage(QWidget):
         if active is None or viewpoint is None or viewpoint.id not in active.insight.view_ids:
             return
         wrong = [
-            self._context.words(finding.message)
+            self._context.localized(finding.message)
             for finding in active.revision.findings
             if finding.severity is Severity.ERROR and viewpoint.id in finding.place
         ]

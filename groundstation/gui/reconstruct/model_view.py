@@ -436,11 +436,11 @@ class GuidedCamera(QObject):
 
     Signals
     -------
-    led()
+    cameraMoved()
         It was turned or moved.
     """
 
-    led = Signal()
+    cameraMoved = Signal()  # noqa: N815
 
     def __init__(self, view: ModelView, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -472,4 +472,4 @@ class GuidedCamera(QObject):
 
     def _lead(self, camera: PosedPhoto) -> None:
         self.camera = camera
-        self.led.emit()
+        self.cameraMoved.emit()

@@ -133,17 +133,17 @@ class FolderController(QObject):
     def choose_out(self, folder: Path) -> None:
         """Take a folder for the model; an interrupted training's own data set is taken with it."""
         self.out = folder
-        self.look_at_out()
+        self.check_output_folder()
         dataset = noted_data_set(folder) if self.standing.is_interrupted else None
         if dataset is not None and (self.card is None or real_path(self.card.folder) != real_path(dataset)):
             self.read(dataset)
         self.placeChanged.emit()
         self.stateChanged.emit()
 
-    def look_around(self) -> None:
+    def check_folders(self) -> None:
         """See what has changed on the disk, and what memory is free."""
         self.machine = this_machine()
-        self.look_at_out()
+        self.check_output_folder()
         self.placeChanged.emit()
         self.stateChanged.emit()
 
@@ -153,7 +153,7 @@ class FolderController(QObject):
         if not self.standing.is_interrupted or (noted is not None and real_path(noted) != real_path(card.folder)):
             self._propose()
         site = self._context.document.site
-        self._context.settle("training.data")
+        self._context.withdraw("training.data")
         if site is not None and site.site.n_panels > 0 and not card.shows(site.site):
             self._context.say(
                 Severity.WARNING,
@@ -174,10 +174,10 @@ class FolderController(QObject):
         if self.card is not None and not self.is_busy:
             project = self._context.session.folder
             self.out = proposed_folder(self.card.folder, self.choice.method, project)
-            self.look_at_out()
+            self.check_output_folder()
             self.placeChanged.emit()
 
-    def look_at_out(self) -> None:
+    def check_output_folder(self) -> None:
         """See what stands in the folder, and beside it."""
         self.standing = standing(self.out) if self.out.name else Standing()
         self._look_for_others()
@@ -366,7 +366,7 @@ class ReconstructController(FolderController):
             self._process.send(CancelTraining())
             self._to(Phase.ENDING if self.phase in BUSY else Phase.ASKING)
 
-    def look(self, look: ViewRequest) -> None:
+    def request_view(self, look: ViewRequest) -> None:
         """Ask for a picture."""
         self._process.send(look)
 
@@ -431,7 +431,7 @@ class ReconstructController(FolderController):
             self.training.ended = ended
         if ended.error is not None:
             self._say_error(ended.error)
-        self.look_at_out()
+        self.check_output_folder()
         if ended.outcome == "kept" and was in BUSY:
             words = (
                 self.tr("The training was cancelled; resume it whenever you like.")
@@ -451,7 +451,7 @@ class ReconstructController(FolderController):
         self.training.stepped, self.cuda = None, None
         if was in BUSY:
             self.training.ended = Ended("failed")
-        self.look_at_out()
+        self.check_output_folder()
         if was is not Phase.IDLE:
             why = (
                 self.tr("the system ended it, mostly because memory ran out")
@@ -472,7 +472,7 @@ class ReconstructController(FolderController):
 
     def _say_error(self, error: BaseException) -> None:
         if isinstance(error, (GroundStationError, OSError)):
-            self._context.say(Severity.ERROR, self._context.words(str(error)))
+            self._context.say(Severity.ERROR, self._context.localized(str(error)))
         else:
             text = self.tr("Training: Reflight failed where it should not ({0}: {1}); please report it")
             self._context.say(Severity.ERROR, text.format(type(error).__name__, error))

@@ -77,7 +77,7 @@ class ReconstructPage(QObject):
         folder = self.controller.usual_data_set()
         if self.controller.card is None and folder is not None:
             self.controller.read(folder)
-        self.controller.look_around()
+        self.controller.check_folders()
 
     def hidden(self) -> None:
         """A training goes on."""
@@ -209,7 +209,7 @@ class ReconstructPage(QObject):
         stage, stepped = controller.training.stage, controller.training.stepped
         words, share = "", None
         if controller.phase is not Phase.IDLE and stage is not None:
-            words = self._context.words(stage.stage)
+            words = self._context.localized(stage.stage)
             share = -1.0 if stage.total <= 0 else stage.done / stage.total
         elif controller.phase is not Phase.IDLE:
             words, share = self.tr("starting"), -1.0

@@ -277,9 +277,9 @@ class ViewPane(QWidget):
         self.bar, self.view, self.strip = ViewBar(), ModelView(), ErrorStrip(self.pictures)
         self.line, self.worst = QSlider(Qt.Orientation.Horizontal), QPushButton(self.tr("Worst first"))
         calm(self.line)
-        self.looks = ViewPictures(controller.look, self._size_px, self)
+        self.pictures_in_view = ViewPictures(controller.request_view, self._size_px, self)
         self._photo: PosedPhoto | None = None
-        self.led = GuidedCamera(self.view, self)
+        self.guided = GuidedCamera(self.view, self)
         self._images: dict[str, QImage | None] = {"left": None, "right": None}
         self._scale: tuple[float, float] | None = None
         self._problem = ""
@@ -299,7 +299,7 @@ class ViewPane(QWidget):
 
     def camera(self) -> PosedPhoto | None:
         """Where the view is from."""
-        return self.led.camera
+        return self.guided.camera
 
     def close_pictures(self) -> None:
         """The window goes."""
@@ -310,7 +310,7 @@ class ViewPane(QWidget):
         card = self._controller.card
         photos = () if card is None else card.source.photos
         self.strip.set_photos(photos, self._controller.unseen())
-        self._photo = self.led.camera = None
+        self._photo = self.guided.camera = None
         self.offer_models()
         self._show_errors()
         if photos:
@@ -333,9 +333,9 @@ class ViewPane(QWidget):
 
     def show_view(self) -> None:
         """Show what is chosen, from where the camera is."""
-        if self.led.camera is None:
+        if self.guided.camera is None:
             self._images = {"left": None, "right": None}
-            self.looks.show(None)
+            self.pictures_in_view.show(None)
             self._say()
             return
         _, layer, _ = self.bar.value()
@@ -344,7 +344,7 @@ class ViewPane(QWidget):
             if subject is None:
                 self._images[place] = None
         name = "" if self._photo is None else self._photo.name
-        self.looks.show(View(self.led.camera, left, right, layer, name))
+        self.pictures_in_view.show(View(self.guided.camera, left, right, layer, name))
         self.line.setVisible(left is not None and right is not None)
         self._say()
 
@@ -353,7 +353,7 @@ class ViewPane(QWidget):
         if self._has_model != self._controller.has_model:
             self.show_training()
         is_learning = self._controller.phase in (Phase.PREPARING, Phase.TRAINING, Phase.SETTLING)
-        self.looks.set_learning(is_learning and not self._controller.is_paused)
+        self.pictures_in_view.set_learning(is_learning and not self._controller.is_paused)
 
     # How it is put together
 
@@ -382,12 +382,12 @@ class ViewPane(QWidget):
         self.bar.homeRequested.connect(self._go_home)
         self.worst.toggled.connect(self.strip.set_worst_first)
         self.strip.chosen.connect(self._choose_photo)
-        self.led.led.connect(self._led)
+        self.guided.cameraMoved.connect(self._camera_moved)
         view.homeRequested.connect(self._go_home)
         view.resized.connect(self.show_view)
         view.valueChanged.connect(self._line_moved)
         self.line.valueChanged.connect(self._slider_moved)
-        self.looks.pictureCame.connect(self._show_picture)
+        self.pictures_in_view.pictureCame.connect(self._show_picture)
         controller.viewAnswered.connect(self._take)
         controller.errorsChanged.connect(self._errors_changed)
         self._judged.timeout.connect(self._show_errors)
@@ -404,10 +404,10 @@ class ViewPane(QWidget):
     def _go_home(self) -> None:
         if self._photo is not None:
             lens = self._photo.intrinsics
-            self.led.camera, self._is_at_home = sized(self._photo, lens.width_px, lens.height_px), True
+            self.guided.camera, self._is_at_home = sized(self._photo, lens.width_px, lens.height_px), True
             self.show_view()
 
-    def _led(self) -> None:
+    def _camera_moved(self) -> None:
         self._is_at_home = False
         self.show_view()
 
@@ -447,9 +447,9 @@ class ViewPane(QWidget):
 
     def _take(self, answer: ViewAnswer | None) -> None:
         if answer is None:
-            self.looks.forget()
+            self.pictures_in_view.forget()
         else:
-            self.looks.take(answer)
+            self.pictures_in_view.take(answer)
 
     def _show_picture(self, place: str, image: QImage | None, answer: ViewAnswer) -> None:
         left, right = self._subjects()
@@ -459,13 +459,13 @@ class ViewPane(QWidget):
         if place == "left":
             self._scale, self._problem = answer.scale, answer.problem
             if answer.depth_m is not None:
-                self.led.distance_m = answer.depth_m
+                self.guided.distance_m = answer.depth_m
         elif answer.problem:
             self._problem = answer.problem
         self._say()
 
     def _say(self) -> None:
-        left, right = self._subjects() if self.led.camera is not None else (None, None)
+        left, right = self._subjects() if self.guided.camera is not None else (None, None)
         self.view.set_pictures(self._images["left"], self._images["right"])
         self.view.set_words(self._words(left), self._words(right))
         self.view.set_note(self._note(left))
@@ -493,7 +493,7 @@ class ViewPane(QWidget):
         if left is None:
             return self.tr("A photo of the data set. The model is shown here once it learns.")
         if self._problem:
-            return str(self._context.words(self._problem))
+            return str(self._context.localized(self._problem))
         if self.bar.value()[2] == PHOTO and not self._is_at_home:
             return self.tr("The photo is seen from its own place only; 0 goes back there.")
         return ""

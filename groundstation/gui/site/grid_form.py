@@ -303,12 +303,12 @@ class GridController(QObject):
         if isinstance(result, InputError):
             self._added = None
             self._form.show_error(
-                result.field if isinstance(result, PanelGridError) else None, self._context.words(str(result))
+                result.field if isinstance(result, PanelGridError) else None, self._context.localized(str(result))
             )
             self._show_site(base)
             return
         self._base, self._added = base, result
-        text = "\n".join(map(self._context.words, result.notes)) or self.tr(
+        text = "\n".join(map(self._context.localized, result.notes)) or self.tr(
             "The panels lie on the building and look outwards."
         )
         self._form.show_state(text, is_good=True)

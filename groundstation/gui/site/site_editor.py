@@ -57,7 +57,7 @@ class SiteEditor(QObject):
         try:
             model = edit(document.site)
         except InputError as error:
-            return self._context.words(str(error))
+            return self._context.localized(str(error))
         if model is not document.site:
             self._context.change(label, replace(document, site=model))
         if select is not None:

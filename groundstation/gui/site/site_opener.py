@@ -424,7 +424,7 @@ class ImportDialog(QDialog):
 
     def _show_progress(self, event: JobProgress) -> None:
         if self._job is not None and event.job_id == self._job.id:
-            self._say(self.tr("Reading {0}: {1} ...").format(self._path.name, self._context.words(event.stage)))
+            self._say(self.tr("Reading {0}: {1} ...").format(self._path.name, self._context.localized(event.stage)))
 
     def _show_result(self, result: ImportPreview | InputError) -> None:
         self._job = None
@@ -458,7 +458,7 @@ class ImportDialog(QDialog):
 
     def _words(self, text: str) -> str:
         """A message of the import in words of the window, without the folder."""
-        return self._context.words(without_place(text, self._path))
+        return self._context.localized(without_place(text, self._path))
 
     def _pick(self) -> None:
         request = self.grid.value()
@@ -483,10 +483,10 @@ class ImportDialog(QDialog):
             if self._is_done or self.grid.value() != request or self._preview is not preview:
                 return
             if isinstance(result, PanelGridError):
-                self.grid.show_error(result.field, self._context.words(str(result)))
+                self.grid.show_error(result.field, self._context.localized(str(result)))
             else:
                 good = self.tr("The panels lie on the building and look outwards.")
-                self.grid.show_state("\n".join(map(self._context.words, result)) or good, is_good=True)
+                self.grid.show_state("\n".join(map(self._context.localized, result)) or good, is_good=True)
 
         self._context.start(self.tr("Check the panel grid"), work, checked)
 

@@ -85,7 +85,7 @@ class JobBar(QWidget):
         jobs = self._context.jobs()
         if not jobs or jobs[0].id != event.job_id or jobs[0].cancel_requested:
             return
-        self._label.setText(f"{event.name}: {self._context.words(event.stage)}")
+        self._label.setText(f"{event.name}: {self._context.localized(event.stage)}")
         self._bar.setRange(0, 1000 if event.total > 0 else 0)
         if event.total > 0:
             self._bar.setValue(int(1000 * min(1.0, event.done / event.total)))

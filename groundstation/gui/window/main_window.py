@@ -145,7 +145,7 @@ class MainWindow(QMainWindow):
         if self._shown is not None:
             self._tabs[self._shown.name].hidden()
         tab = self.tab(spec.name)
-        self._context.tell_of_plugins()
+        self._context.report_plugin_problems()
         self._shown = spec
         if spec.place is Place.WHOLE_PAGE:
             self._pages.setCurrentWidget(tab.left)

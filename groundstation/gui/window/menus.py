@@ -362,7 +362,7 @@ class Menus(QObject):
         for row in plugin_rows():
             line = escape(f"{row.plugin.name}: {kinds[row.plugin.group]} ({row.plugin.package})")
             if row.problem is not None:
-                line += "<br>" + escape(self._context.words(str(row.problem)))
+                line += "<br>" + escape(self._context.localized(str(row.problem)))
             lines.append(f"<li>{line}</li>")
         title = self.tr("Plug-ins")
         return f"<p>{title}</p><ul>{''.join(lines)}</ul>" if lines else ""

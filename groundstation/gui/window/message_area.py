@@ -91,7 +91,7 @@ class MessageArea(QWidget):
         self._timer = QTimer(self, interval=LOOK_MS)
         self._timer.timeout.connect(self.look)
         context.messageShown.connect(self.add)
-        context.messageSettled.connect(self.settle)
+        context.messageWithdrawn.connect(self.withdraw)
         context.documentChanged.connect(self._document_changed)
         self._show()
 
@@ -109,7 +109,7 @@ class MessageArea(QWidget):
         self._timer.start()
         self._show()
 
-    def settle(self, about: str) -> None:
+    def withdraw(self, about: str) -> None:
         """What was said about something does not hold any more; a topic that ends in a dot is all that begin so."""
         is_over = about.endswith(".")
         self._standing = [

@@ -94,12 +94,12 @@ class ProjectController(QObject):
         QTimer.singleShot(0, self._after_first_paint)
 
     def _scene_is_ready(self) -> None:
-        self._garbage.settle()
+        self._garbage.freeze()
         threading.Thread(target=self._worker.start, name="start-worker", daemon=True).start()
 
     def _after_first_paint(self) -> None:
         for problem in self._settings_problems:
-            self.context.say(Severity.WARNING, self.context.words(problem), about=f"settings.{problem}")
+            self.context.say(Severity.WARNING, self.context.localized(problem), about=f"settings.{problem}")
         if self._settings.map_tiles:
             self.window.shared_view.set_tiles(Path(self._settings.map_tiles))
         if self.context.session.folder is None:
@@ -178,11 +178,11 @@ class ProjectController(QObject):
         except InputError as error:
             self.context.say(
                 Severity.WARNING,
-                self.tr("The settings could not be kept: {0}").format(self.context.words(str(error))),
+                self.tr("The settings could not be kept: {0}").format(self.context.localized(str(error))),
                 about="settings.kept",
             )
         else:
-            self.context.settle("settings.kept")
+            self.context.withdraw("settings.kept")
 
     def _layout_key(self) -> str:
         size = self._application.primaryScreen().availableGeometry()
@@ -217,7 +217,7 @@ class ProjectController(QObject):
         """Open a project, after asking about what is not saved."""
 
         def open_it() -> None:
-            take = self.project_session.taking(folder)
+            take = self.project_session.opening_job(folder)
             self.context.start(self.tr("Open project"), lambda _context: take(), self._opened)
 
         self._leave(open_it)
@@ -264,9 +264,9 @@ class ProjectController(QObject):
 
         def done(written: Document) -> None:
             if is_new:
-                self._or_warn(lambda: self.project_session.take_saved(folder))
+                self._or_warn(lambda: self.project_session.switch_to_saved(folder))
             self.context.session.saved(document, written, folder)
-            self.context.settle("project.copy")
+            self.context.withdraw("project.copy")
             if self.context.session.is_saved:
                 self.project_session.drop_copy()
             self._remember(folder)
@@ -284,7 +284,7 @@ class ProjectController(QObject):
         if opened.problem:
             self._warn(opened.problem, "project.lock")
         for note in project.notes:
-            text = self.context.words(note.message)
+            text = self.context.localized(note.message)
             self.context.say(note.severity, text, about=f"project.note.{text}")
         self._remember(project.folder)
         site = project.document.site
@@ -298,9 +298,9 @@ class ProjectController(QObject):
             self._offer(found)
 
     def _put_on_controller(self, document: Document, folder: Path | None, lock: ProjectLock | None = None) -> None:
-        self.project_session.hold(lock)
+        self.project_session.switch_to(lock)
         for topic in ("project.", "plan.", "job."):
-            self.context.settle(topic)
+            self.context.withdraw(topic)
         self.context.session.open(document, folder)
         self._show_title()
         self.opened.emit()
@@ -316,7 +316,7 @@ class ProjectController(QObject):
 
     def _warn(self, text: str, about: str = "") -> None:
         """Show what a part without Qt warns of."""
-        self.context.say(Severity.WARNING, self.context.words(text), about=about)
+        self.context.say(Severity.WARNING, self.context.localized(text), about=about)
 
     def _remember(self, folder: Path) -> None:
         self._settings = self._settings.with_recent(folder)
@@ -346,7 +346,7 @@ class ProjectController(QObject):
             self._discard(found)
             return False
         when = "" if found.saved_at is None else f"{found.saved_at.astimezone():%Y-%m-%d %H:%M}"
-        changes = tuple(map(self.context.words, found.changes)) if found.was_saved else ()
+        changes = tuple(map(self.context.localized, found.changes)) if found.was_saved else ()
         answer = self._questions.recover(self.window, when, changes, found.is_of_saved_state)
         if answer is Answer.YES:
             self._take_over(found)
@@ -359,7 +359,7 @@ class ProjectController(QObject):
         """Go on with unsaved work; its copy stays until it is saved."""
         document = replace(recover(found).document, site_source=None)
         folder = self.context.session.folder
-        if folder is None and not self._or_warn(lambda: self.project_session.adopt(found.folder)):
+        if folder is None and not self._or_warn(lambda: self.project_session.switch_to_recovered(found.folder)):
             return
         self.context.session.open(document, folder, saved=False)
         self._show_title()

@@ -30,14 +30,14 @@ from groundstation.services.project.store import (
     PROJECT_FILE,
     current_content,
     digest,
+    finish_interrupted_save,
     has_digest,
     holds,
-    in_words,
     leftovers,
     may_replace,
     remove,
     replace_together,
-    settle,
+    system_errors_as_input_errors,
 )
 from planning.base.errors import InputError
 from planning.base.files import read_input_file, real_path
@@ -317,7 +317,7 @@ def write_project(
     unused = [] if present is None else _unused(folder, present, record, meshes)
     if present is not None and 0 < present.version < VERSION:
         created[_backup_name(folder, present)] = present.written
-    with in_words(folder):
+    with system_errors_as_input_errors(folder):
         for file in (*files, *created):
             (folder / file).parent.mkdir(parents=True, exist_ok=True)
     replace_together(folder, files, content, created)
@@ -490,7 +490,7 @@ def create_project(folder: Path, document: Document, *, name: str = "", site_sou
         raise InputError(say("expected a folder for the project, found a file; name another folder", place=folder))
     new_folders = [path for path in (folder, *(folder / part for part in FOLDERS)) if not path.exists()]
     try:
-        with in_words(folder):
+        with system_errors_as_input_errors(folder):
             for path in new_folders:
                 path.mkdir(parents=True, exist_ok=True)
         return save_project(folder, document, name=name, site_source=site_source)
@@ -531,7 +531,7 @@ def save_project(folder: Path, document: Document, *, name: str = "", site_sourc
     """
     present = _present(folder)
     if present is not None:
-        settle(folder, present.record.checksums())
+        finish_interrupted_save(folder, present.record.checksums())
     before = ProjectRecord() if present is None else present.record
     sources = [source for source in (site_source, document.site_source) if source is not None]
     site = None if document.site is None else site_to_write(folder, document.site, before, sources)

@@ -19,7 +19,7 @@ from groundstation.services.project.folder import OpenedProject, open_project, s
 from groundstation.services.project.lock import ProjectInUse, ProjectLock, lock_holder, lock_project
 from groundstation.services.project.project_file import is_project, json_bytes, project_name, read_index
 from groundstation.services.project.site import same_site
-from groundstation.services.project.store import in_words
+from groundstation.services.project.store import system_errors_as_input_errors
 from groundstation.services.settings import data_folder
 from planning.base.errors import GroundStationError, InputError
 from planning.base.json_file import plain_values, read_json, to_record, write_atomically
@@ -77,7 +77,7 @@ def lock_unsaved_folder() -> ProjectLock:
         It cannot be made.
     """
     folder = data_folder() / UNSAVED_FOLDER / f"{utc_now():%Y%m%d-%H%M%S-%f}-{os.getpid()}"
-    with in_words(folder):
+    with system_errors_as_input_errors(folder):
         folder.mkdir(parents=True)
     return lock_project(folder)
 
@@ -178,7 +178,7 @@ class Autosave:
             index = read_index(self._folder)
             source = self._folder / index.record.site if index.record.site else None
             based_on, name = index.sha256, project_name(self._folder)
-        with in_words(self._place):
+        with system_errors_as_input_errors(self._place):
             self._place.mkdir(exist_ok=True)
         save_project(self._place, document, name=name, site_source=source)
         header = AutosaveHeader(based_on, self._clock().isoformat(timespec="seconds"), os.getpid(), platform.node())
@@ -327,7 +327,7 @@ def discard_recovery(recovery: Recovery) -> None:
         The folder cannot be written.
     """
     place = recovery.folder / AUTOSAVE_FOLDER
-    with _held(recovery.folder), in_words(place):
+    with _held(recovery.folder), system_errors_as_input_errors(place):
         if recovery.problem:
             shutil.rmtree(recovery.folder / DAMAGED_FOLDER, ignore_errors=True)
             place.replace(recovery.folder / DAMAGED_FOLDER)

@@ -204,7 +204,7 @@ class ProjectSession:
         """Whether the project is locked for this window, so that it may be written."""
         return self._lock is not None
 
-    def taking(self, folder: Path) -> Callable[[], LockedProject]:
+    def opening_job(self, folder: Path) -> Callable[[], LockedProject]:
         """Work for a job: lock a project and read it. Without the lock it can still be looked at.
 
         Raises
@@ -215,7 +215,7 @@ class ProjectSession:
         held = self._lock if self._lock is not None and self._lock.folder.samefile(folder) else None
         return lambda: _take(folder, held)
 
-    def hold(self, lock: ProjectLock | None) -> None:
+    def switch_to(self, lock: ProjectLock | None) -> None:
         """Go on with another project, locked or not, or with none."""
         if lock is None or lock is not self._lock:
             self.release()
@@ -223,7 +223,7 @@ class ProjectSession:
             if lock is not None:
                 self._autosave = self._copies(lock.folder)
 
-    def take_saved(self, folder: Path) -> None:
+    def switch_to_saved(self, folder: Path) -> None:
         """Go on with a project that was just written.
 
         Raises
@@ -232,9 +232,9 @@ class ProjectSession:
             It cannot be locked.
         """
         self.release()
-        self.hold(lock_project(folder))
+        self.switch_to(lock_project(folder))
 
-    def adopt(self, folder: Path) -> None:
+    def switch_to_recovered(self, folder: Path) -> None:
         """Go on with work that never had a project, whose copy is in this folder; it stays there.
 
         Raises

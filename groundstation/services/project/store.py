@@ -80,7 +80,7 @@ def current_content(folder: Path, file: str, sha256: str) -> tuple[Path, bytes]:
     return path, read_input_file(path, JSON_FILE)
 
 
-def settle(folder: Path, checksums: Mapping[str, str]) -> None:
+def finish_interrupted_save(folder: Path, checksums: Mapping[str, str]) -> None:
     """Finish a save that was broken off after `project.json` was replaced.
 
     Parameters
@@ -93,7 +93,7 @@ def settle(folder: Path, checksums: Mapping[str, str]) -> None:
     InputError
         The folder cannot be written.
     """
-    with in_words(folder):
+    with system_errors_as_input_errors(folder):
         for file, sha256 in checksums.items():
             path = folder / file
             if current_path(folder, file, sha256) != path:
@@ -127,7 +127,7 @@ def replace_together(
         for file, content in files.items():
             written.append(_staged(folder / file))
             write_atomically(written[-1], content)
-        with in_words(folder):
+        with system_errors_as_input_errors(folder):
             _sync(path.parent for path in written)
         write_atomically(folder / PROJECT_FILE, project)
     except BaseException:
@@ -136,7 +136,7 @@ def replace_together(
     # From here on the project is the new one; what cannot be renamed now is read where it is, and renamed at the next
     # save.
     with contextlib.suppress(InputError):
-        settle(folder, {file: digest(content) for file, content in files.items()})
+        finish_interrupted_save(folder, {file: digest(content) for file, content in files.items()})
 
 
 def leftovers(folder: Path, parts: Iterable[str], checksums: Mapping[str, str]) -> list[Path]:
@@ -166,7 +166,7 @@ def remove(paths: Iterable[Path]) -> None:
 
 
 @contextlib.contextmanager
-def in_words(place: Path) -> Iterator[None]:
+def system_errors_as_input_errors(place: Path) -> Iterator[None]:
     """Turn the system's refusal to write into an `InputError` that names file or folder."""
     try:
         yield

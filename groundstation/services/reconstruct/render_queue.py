@@ -367,7 +367,7 @@ class RenderQueue:
         self._sources.clear()
         self._photos.clear()
 
-    def keep_visit(self, visit: TrainingSnapshot) -> None:
+    def keep_snapshot(self, visit: TrainingSnapshot) -> None:
         """The model in training, as it is now."""
         learned, moves = visit.record.get("learned", ()), visit.record.get("moves", ())
         gains = {name: visit.exposures(number) for number, name in enumerate(learned)}

@@ -198,7 +198,7 @@ class _Server:
             self._look()
 
     def _visit(self, visit: TrainingSnapshot) -> None:
-        self._render_queue.keep_visit(visit)
+        self._render_queue.keep_snapshot(visit)
         if not self._is_joint:
             self._is_joint = True
             self._tell(Chosen(*self._render_queue.chosen(visit)))

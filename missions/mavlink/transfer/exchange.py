@@ -300,18 +300,18 @@ class Download:
     timing: Timing = DEFAULT_TIMING
     state: DownloadState = field(init=False, default=DownloadState.READY)
     outcome: DownloadOutcome | None = field(init=False, default=None)
-    _patience: RetryTimer = field(init=False)
+    _retry: RetryTimer = field(init=False)
     _items: list[MissionItemInt] = field(init=False, default_factory=list)
     _count: int | None = field(init=False, default=None)
     _restarts: int = field(init=False, default=0)
 
     def __post_init__(self) -> None:
-        self._patience = RetryTimer(self.timing)
+        self._retry = RetryTimer(self.timing)
 
     @property
     def next_deadline_s(self) -> float:
         """When to repeat or to give up; never once it has ended."""
-        return self._patience.next_deadline_s if self.outcome is None else math.inf
+        return self._retry.next_deadline_s if self.outcome is None else math.inf
 
     @property
     def progress(self) -> tuple[str, float, float]:
@@ -322,14 +322,14 @@ class Download:
         """Ask how many there are."""
         if self.state is not DownloadState.READY:
             raise ValueError("a download starts once")
-        self._patience.begin(now_s)
+        self._retry.begin(now_s)
         return self._list(now_s)
 
     def _list(self, now_s: float) -> list[Message]:
         self.state = DownloadState.LISTING
         self._items.clear()
         self._count = None
-        self._patience.ask(now_s)
+        self._retry.ask(now_s)
         return [self._question()]
 
     def _question(self) -> Message:
@@ -352,10 +352,10 @@ class Download:
         return []
 
     def _counted(self, count: int, now_s: float) -> list[Message]:
-        self._patience.hear(now_s)
+        self._retry.hear(now_s)
         if self.state is DownloadState.FETCHING:
             return [] if count == self._count else self._anew(now_s, Ending.OUT_OF_STEP)
-        self._patience.advance(now_s)
+        self._retry.advance(now_s)
         self._count = count
         self.state = DownloadState.FETCHING
         return self._next(now_s)
@@ -363,7 +363,7 @@ class Download:
     def _came(self, item: MissionItemInt, now_s: float) -> list[Message]:
         if self.state is not DownloadState.FETCHING or item.seq != len(self._items):
             return []
-        self._patience.advance(now_s)
+        self._retry.advance(now_s)
         self._items.append(item)
         return self._next(now_s)
 
@@ -371,18 +371,18 @@ class Download:
         if len(self._items) == self._count:
             self._end(Ending.DONE)
             return [self.route.ack(Result.ACCEPTED)]
-        self._patience.ask(now_s)
+        self._retry.ask(now_s)
         return [self._question()]
 
     def _acknowledged(self, result: int, now_s: float) -> list[Message]:
         if result == Result.ACCEPTED:
             return []
-        self._patience.hear(now_s)
+        self._retry.hear(now_s)
         is_fetching = self.state is DownloadState.FETCHING
         if is_fetching and result in (Result.INVALID_SEQUENCE, Result.ERROR, Result.OPERATION_CANCELLED):
             return self._anew(now_s, Ending.REFUSED, result)
         may_come = result in (Result.DENIED, Result.ERROR) or (not is_fetching and result in NOT_YET)
-        if may_come and self._patience.asks_again(now_s):
+        if may_come and self._retry.asks_again(now_s):
             return []
         if result in (Result.INVALID_SEQUENCE, Result.OPERATION_CANCELLED):
             # Of an upload before this.
@@ -402,11 +402,11 @@ class Download:
         """Ask again, or give up."""
         if self.outcome is not None or now_s < self.next_deadline_s:
             return []
-        ending = self._patience.gave_up(now_s)
+        ending = self._retry.gave_up(now_s)
         if ending is not None:
             self._end(ending)
             return []
-        self._patience.repeat(now_s)
+        self._retry.repeat(now_s)
         return [self._question()]
 
     def cancel(self) -> list[Message]:

@@ -89,15 +89,15 @@ class Clear:
     timing: Timing = DEFAULT_TIMING
     state: ClearState = field(init=False, default=ClearState.READY)
     outcome: ClearOutcome | None = field(init=False, default=None)
-    _patience: RetryTimer = field(init=False)
+    _retry: RetryTimer = field(init=False)
 
     def __post_init__(self) -> None:
-        self._patience = RetryTimer(self.timing)
+        self._retry = RetryTimer(self.timing)
 
     @property
     def next_deadline_s(self) -> float:
         """When to repeat or to give up; never once it has ended."""
-        return self._patience.next_deadline_s if self.outcome is None else math.inf
+        return self._retry.next_deadline_s if self.outcome is None else math.inf
 
     @property
     def progress(self) -> tuple[str, float, float]:
@@ -109,8 +109,8 @@ class Clear:
         if self.state is not ClearState.READY:
             raise ValueError("clearing starts once")
         self.state = ClearState.ASKED
-        self._patience.begin(now_s)
-        self._patience.ask(now_s)
+        self._retry.begin(now_s)
+        self._retry.ask(now_s)
         return [self._question()]
 
     def _question(self) -> Message:
@@ -124,8 +124,8 @@ class Clear:
             if message.type == Result.ACCEPTED:
                 self._end(Ending.DONE, message.type)
             elif message.type in (Result.INVALID_SEQUENCE, Result.OPERATION_CANCELLED):
-                self._patience.hear(received.time_s)
-            elif message.type not in {Result.DENIED, *NOT_YET} or not self._patience.asks_again(received.time_s):
+                self._retry.hear(received.time_s)
+            elif message.type not in {Result.DENIED, *NOT_YET} or not self._retry.asks_again(received.time_s):
                 self._end(Ending.REFUSED, message.type)
         return []
 
@@ -133,11 +133,11 @@ class Clear:
         """Ask again, or give up."""
         if self.outcome is not None or now_s < self.next_deadline_s:
             return []
-        ending = self._patience.gave_up(now_s)
+        ending = self._retry.gave_up(now_s)
         if ending is not None:
             self._end(ending)
             return []
-        self._patience.repeat(now_s)
+        self._retry.repeat(now_s)
         return [self._question()]
 
     def cancel(self) -> list[Message]:
@@ -222,7 +222,7 @@ class Upload:
     timing: Timing = DEFAULT_TIMING
     state: UploadState = field(init=False, default=UploadState.READY)
     outcome: UploadOutcome | None = field(init=False, default=None)
-    _patience: RetryTimer = field(init=False)
+    _retry: RetryTimer = field(init=False)
     _seq: int = field(init=False, default=-1)
     _answered_s: dict[int, float] = field(init=False, default_factory=dict)
     _may_guess: bool = field(init=False, default=False)
@@ -238,12 +238,12 @@ class Upload:
             replace(item, seq=seq, target_system=vehicle.system, target_component=vehicle.component, mission_type=kind)
             for seq, item in enumerate(self.items)
         )
-        self._patience = RetryTimer(self.timing)
+        self._retry = RetryTimer(self.timing)
 
     @property
     def next_deadline_s(self) -> float:
         """When to repeat or to give up; never once it has ended."""
-        return self._patience.next_deadline_s if self.outcome is None else math.inf
+        return self._retry.next_deadline_s if self.outcome is None else math.inf
 
     @property
     def progress(self) -> tuple[str, float, float]:
@@ -254,7 +254,7 @@ class Upload:
         """Announce the items."""
         if self.state is not UploadState.READY:
             raise ValueError("an upload starts once")
-        self._patience.begin(now_s)
+        self._retry.begin(now_s)
         return self._announce(now_s)
 
     def _announce(self, now_s: float) -> list[Message]:
@@ -262,7 +262,7 @@ class Upload:
         self.state = UploadState.ANNOUNCED if self.items else UploadState.CLOSING
         self._seq = -1
         self._answered_s.clear()
-        self._patience.ask(now_s)
+        self._retry.ask(now_s)
         return [self._count()]
 
     def _count(self) -> MissionCount:
@@ -284,7 +284,7 @@ class Upload:
         if seq >= len(self.items):
             self._strays += 1
             return self._end(Ending.OUT_OF_STEP) if self._strays > STRAYS else []
-        self._patience.hear(now_s)
+        self._retry.hear(now_s)
         is_anew = seq == 0 and self._seq > 0
         if is_anew:
             self._restarts += 1
@@ -292,11 +292,11 @@ class Upload:
                 return self._end(Ending.OUT_OF_STEP)
             self._answered_s.clear()
         if seq > self._seq or is_anew:
-            self._patience.advance(now_s)
-            self._patience.ask(now_s, is_new=seq not in self._answered_s)
+            self._retry.advance(now_s)
+            self._retry.ask(now_s, is_new=seq not in self._answered_s)
             self._seq = self._furthest = seq
             self.state = UploadState.SENDING
-        is_copy = now_s < self._answered_s.get(seq, -math.inf) + self._patience.repeat_gap_s
+        is_copy = now_s < self._answered_s.get(seq, -math.inf) + self._retry.repeat_gap_s
         return [] if is_copy else self._send(seq, 1, now_s)
 
     def _send(self, first: int, n: int, now_s: float) -> list[Message]:
@@ -311,7 +311,7 @@ class Upload:
         if result == Result.ACCEPTED:
             return self._end(Ending.DONE, result) if self.state is UploadState.CLOSING else []
         if result == Result.INVALID_SEQUENCE:
-            self._patience.hear(now_s)
+            self._retry.hear(now_s)
             if self._may_guess and self.state is UploadState.SENDING:
                 self._may_guess = False
                 return self._send(self._seq + 1, 1, now_s)
@@ -325,29 +325,29 @@ class Upload:
         """The vehicle is not receiving any more: begin anew, unless it has had everything."""
         if self.state is UploadState.CLOSING:
             return self._end(Ending.UNCONFIRMED, result)
-        if self.state is UploadState.ANNOUNCED and self._patience.asks_again(now_s):
+        if self.state is UploadState.ANNOUNCED and self._retry.asks_again(now_s):
             return []
         self._restarts += 1
         if self.state is UploadState.ANNOUNCED or self._restarts > self.timing.restarts:
             return self._end(Ending.REFUSED, result)
-        self._patience.hear(now_s)
+        self._retry.hear(now_s)
         return self._announce(now_s)
 
     def tick(self, now_s: float) -> list[Message]:
         """Repeat what is open, or give up."""
         if self.outcome is not None or now_s < self.next_deadline_s:
             return []
-        ending = self._patience.gave_up(now_s)
+        ending = self._retry.gave_up(now_s)
         is_closing = self.state is UploadState.CLOSING
-        if is_closing and (ending or self._patience.repeats >= self.timing.acknowledgement_repeats):
+        if is_closing and (ending or self._retry.repeats >= self.timing.acknowledgement_repeats):
             return self._end(Ending.UNCONFIRMED)
         if ending is not None:
             return self._end(ending)
-        self._patience.repeat(now_s)
+        self._retry.repeat(now_s)
         if self._seq < 0:
             return [self._count()]
         self._may_guess = True
-        return self._send(self._seq, 2 if self._patience.repeats > 1 else 1, now_s)
+        return self._send(self._seq, 2 if self._retry.repeats > 1 else 1, now_s)
 
     def cancel(self) -> list[Message]:
         """Tell the vehicle that no more items come."""

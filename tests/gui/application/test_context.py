@@ -208,7 +208,7 @@ def test_a_warning_stays_until_it_is_no_longer_true_whatever_else_is_told(contex
     passes(centre, 3600.0)
     assert centre.line() == "Warning: the copy could not be written"
     assert "\u26a0 1" in centre._all.text()
-    context.settle("project.copy")
+    context.withdraw("project.copy")
     assert centre.line() == ""
     assert centre._all.text() == "Messages"
     assert "the copy could not be written" in centre.texts(), "the list keeps it"
@@ -220,9 +220,9 @@ def test_the_gravest_of_what_holds_is_shown_and_the_next_when_it_goes(context, c
     context.say(Severity.WARNING, "the battery is low", about="flight.warning.battery")
     assert centre.line() == "Error: the link is lost"
     assert centre.standing()[0].text == "the link is lost"
-    context.settle("link")
+    context.withdraw("link")
     assert centre.line().startswith("Warning: ")
-    context.settle("flight.warning.")
+    context.withdraw("flight.warning.")
     assert centre.line() == ""
 
 

@@ -38,7 +38,7 @@ def test_a_job_that_makes_garbage_searches_for_none(application, collections):
     gc.enable()
     collector = GarbageCollector()
     try:
-        collector.settle()
+        collector.freeze()
         collections.clear()  # Python may have searched here before the collector took over
         worker = threading.Thread(target=litter)
         worker.start()
@@ -71,7 +71,7 @@ def test_what_others_left_out_stays_left_out_and_what_the_window_made_is_freed(a
     collector = GarbageCollector()
     thing = Cycle()
     gone = weakref.ref(thing)
-    collector.settle()
+    collector.freeze()
     collector.close()
     assert gc.get_freeze_count() == before
     del thing
@@ -87,7 +87,7 @@ def test_a_window_that_left_things_out_gives_them_back(application):
     gc.unfreeze()
     try:
         collector = GarbageCollector()
-        collector.settle()
+        collector.freeze()
         assert gc.get_freeze_count() > 0
         collector.close()
         assert gc.get_freeze_count() == 0

@@ -207,7 +207,7 @@ def test_panels_are_coloured_by_what_their_records_say(opened):
     assert opened.side.colour.findData("maker") >= 0
     opened.side.colour.setCurrentIndex(opened.side.colour.findData(str(Computed.DEFECTS)))
     assert dict(opened.controller.tints) == {0: (128, 0, 38)}
-    opened.pane.looks.forget()
+    opened.pane.pictures_in_view.forget()
     opened.pane.show_view()
     assert looks(opened)[-1].tints == opened.controller.tints
     assert opened.side.without.text() == "3 without a value"
@@ -221,7 +221,7 @@ def test_a_section_is_asked_for_with_the_picture(opened):
     opened.pane.axis.setCurrentIndex(1)
     opened.pane.cut.setValue(500)
     assert opened.pane.section() == Section(2, pytest.approx(1.9), True)
-    opened.pane.looks.forget()
+    opened.pane.pictures_in_view.forget()
     opened.pane.turn_over.click()
     assert looks(opened)[-1].section == Section(2, pytest.approx(1.9), False)
     assert probe(opened).section == opened.pane.section()
@@ -268,7 +268,7 @@ def test_panels_have_their_colours_beside_too_where_they_have_other_numbers(appl
     turn_until(application, lambda: opened.controller.beside is not None)
     assert dict(opened.controller.tints) == {2: (128, 0, 38)}
     assert dict(opened.controller.comparison_tints) == {3: (128, 0, 38)}
-    opened.pane.looks.forget()
+    opened.pane.pictures_in_view.forget()
     opened.pane.show_view()
     left, right = looks(opened)[-2:]
     assert (left.place, right.place) == ("left", "right")

@@ -165,7 +165,7 @@ def test_what_stands_in_the_folder_is_said(chosen, tmp_path):
     chosen.controller.choose_out(other)
     assert "something else" in chosen.side.there.text()
     (other / "model.json").write_text("{}")
-    chosen.controller.look_around()
+    chosen.controller.check_folders()
     assert "finished model" in chosen.side.there.text()
 
 
@@ -263,7 +263,7 @@ def test_a_photo_that_is_judged_later_takes_its_place_among_the_worst(applicatio
 def test_when_it_pauses_it_is_looked_at_once_more(application, chosen):
     begin(chosen)
     take(chosen, STEP)
-    turn_until(application, lambda: answered(chosen) and chosen.pane.looks.is_at_rest())
+    turn_until(application, lambda: answered(chosen) and chosen.pane.pictures_in_view.is_at_rest())
     n_looks = len(chosen.told.of(ViewRequest))
     chosen.side.pause.click()
     assert len(chosen.told.of(ViewRequest)) == n_looks + 1
@@ -356,7 +356,7 @@ def test_finished_models_of_the_data_set_are_compared(application, chosen, tmp_p
         (tmp_path / name).mkdir()
         content = {"format": "reflight-model/1", "method": "2dgs", "n_splats": 5, "site": {"panels": panels}}
         (tmp_path / name / "model.json").write_text(json.dumps(content))
-    chosen.controller.look_around()
+    chosen.controller.check_folders()
     turn_until(application, lambda: len(chosen.controller.others) == 2)
     bar = chosen.pane.bar
     assert "2DGS" in bar.model.itemText(0)
@@ -443,11 +443,11 @@ def test_as_a_user_trains_looks_around_and_stops(application, controller, data, 
     turn(lambda: page.controller.training.stepped is not None and page.controller.training.stepped.step > 5)
     for _ in range(20):
         page.pane.view.orbited.emit(0.02, 0.01)
-        turn(lambda: page.pane.looks._on_way == {} or True)
+        turn(lambda: page.pane.pictures_in_view._on_way == {} or True)
     turn(lambda: page.pane.view.pictures()[0] is not None and len(page.controller.errors) == 6)
     page.side.stop.click()
     turn(lambda: page.controller.phase.name == "IDLE")
     assert (tmp_path / "model" / "model.json").is_file()
-    turn(page.pane.looks.is_at_rest)
+    turn(page.pane.pictures_in_view.is_at_rest)
     assert page.pane.view.note() == ""
     assert longest < 0.05

@@ -127,14 +127,14 @@ def test_flight_is_as_fast_in_every_direction_and_never_leaps(held, seconds, is_
 
 
 def test_what_is_flown_to_stays_as_far_away(view):
-    led = GuidedCamera(view)
+    guided = GuidedCamera(view)
     lens = Intrinsics(640, 480, 500.0, 500.0, 320.0, 240.0)
-    led.camera, led.distance_m = PosedPhoto("a", Path("a"), lens, Pose(np.zeros(3), np.eye(3))), 10.0
+    guided.camera, guided.distance_m = PosedPhoto("a", Path("a"), lens, Pose(np.zeros(3), np.eye(3))), 10.0
     view.flown.emit(0.1, 0.2, 0.3)
-    assert np.allclose(led.camera.pose.position_enu_m, [1.0, -2.0, 3.0])
-    assert led.distance_m == 10.0
+    assert np.allclose(guided.camera.pose.position_enu_m, [1.0, -2.0, 3.0])
+    assert guided.distance_m == 10.0
     view.moved.emit(0.0, 0.0, 0.5)
-    assert led.distance_m == 5.0
+    assert guided.distance_m == 5.0
 
 
 def test_shift_and_arrows_shift(view):

@@ -14,11 +14,11 @@ from tests.planning.plan_cases import dense_points, distances, kiosk, solid_tria
 
 MODEL = kiosk()
 SPACE = unchecked_space(MODEL, 5.0)
-THINGS = obstructions_of(MODEL, SPACE)
+OBSTRUCTIONS = obstructions_of(MODEL, SPACE)
 
 
 def along(*points, spacing_m=0.5):
-    return route_clearance(Sortie((), tuple(points), 0.0, 0.0), SPACE, THINGS, spacing_m)
+    return route_clearance(Sortie((), tuple(points), 0.0, 0.0), SPACE, OBSTRUCTIONS, spacing_m)
 
 
 point = st.tuples(st.floats(-38, 38), st.floats(-38, -0.5), st.floats(0.5, 30))
@@ -63,10 +63,10 @@ def test_a_flight_past_the_tree_names_it_and_the_place_where_it_is_nearest():
     found = along((-10.0, -20.0, 5.0), (30.0, -20.0, 5.0))
     # The tree reaches from x 18 to 21 and to y -14: 6 m away.
     assert found.solids.leg_minimum_m == pytest.approx([6.0])
-    assert THINGS.all[found.solids.leg_thing[0]].id == "tree"
+    assert OBSTRUCTIONS.all[found.solids.leg_obstruction[0]].id == "tree"
     nearest = int(np.argmin(found.solids.clearance_m))
     assert 28.0 - 1e-6 <= found.distance_m[nearest] <= 31.0 + 1e-6
-    assert {THINGS.all[i].kind for i in found.solids.thing} == {"panel", "obstacle"}
+    assert {OBSTRUCTIONS.all[i].kind for i in found.solids.obstruction} == {"panel", "obstacle"}
 
 
 def test_a_leg_that_slants_past_an_edge_has_a_sample_at_its_nearest_point():
@@ -84,7 +84,7 @@ def test_legs_into_the_building_and_the_no_fly_volume_have_negative_clearance():
     assert found.solids.smallest_m < -3.9
     # The zone reaches from the ground up: 4 m below the path.
     assert found.no_fly.leg_minimum_m[1] == pytest.approx(-4.0, abs=1e-6)
-    assert {THINGS.all[i].id for i in found.no_fly.thing} == {"road"}
+    assert {OBSTRUCTIONS.all[i].id for i in found.no_fly.obstruction} == {"road"}
     assert (found.no_fly.clearance_m[found.leg == 0] > 0.0).all()
 
 
@@ -99,7 +99,7 @@ def test_sites_without_no_fly_volumes_have_no_clearance_from_them():
 @pytest.mark.slow
 def test_the_smallest_clearance_of_a_plan_is_the_one_its_check_measures():
     for sortie in plan("kiosk").sorties:
-        found = route_clearance(sortie, SPACE, THINGS)
+        found = route_clearance(sortie, SPACE, OBSTRUCTIONS)
         path = np.array(sortie.path_enu_m)
         expected = SPACE.solids.segment_distances_m(path[:-1], path[1:])
         np.testing.assert_allclose(found.solids.leg_minimum_m, expected, atol=1e-6)

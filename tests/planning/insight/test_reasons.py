@@ -212,7 +212,7 @@ def test_no_fly_volumes_are_named():
     site = prepare(model, CAMERA, Constraints(4.0))
     found = section_reasons(model, site)
     broken = [b for key in unreachable(site) for r in found.of(*key) for b in r.broken if b.rule is Rule.NO_FLY]
-    assert {(b.thing, b.inside) for b in broken} == {(Obstruction("no-fly", "east"), True)}
+    assert {(b.obstruction, b.inside) for b in broken} == {(Obstruction("no-fly", "east"), True)}
     for key in unreachable(site):
         for reason in found.of(*key):
             check_place(model, site, *key, reason)
@@ -231,7 +231,7 @@ def test_a_wall_in_front_of_the_panel_is_named_as_what_hides_it():
     found = section_reasons(model, replace(open_site, problem=problem, constraints=constraints))
     seen = found.of(0, 0)
     assert [str(r) for r in seen if r.broken[0].rule is Rule.HIDDEN] == ["hidden by obstacle 'wall'"]
-    assert Obstruction("obstacle", "wall") in {b.thing for r in seen for b in r.broken}
+    assert Obstruction("obstacle", "wall") in {b.obstruction for r in seen for b in r.broken}
 
 
 def test_a_gimbal_that_cannot_look_up_is_named_with_the_angle_that_is_missing():

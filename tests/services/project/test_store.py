@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from groundstation.services.project.document import PlanEntry
 from groundstation.services.project.folder import create_project, open_project, save_project
-from groundstation.services.project.store import current_path, digest, replace_together, settle
+from groundstation.services.project.store import current_path, digest, finish_interrupted_save, replace_together
 from planning.base.errors import InputError
 from planning.geo.mesh import box_mesh
 from tests.services.project_cases import Crash, document, documents, edited, failing_disk, is_same, plan, small_disk
@@ -162,9 +162,9 @@ def test_what_is_still_beside_its_place_is_read_only_with_the_right_checksum(tmp
     assert current_path(tmp_path, "a.json", digest(b"old")).name == "a.json"
     assert current_path(tmp_path, "a.json", "").name == "a.json"
     assert current_path(tmp_path, "a.json", digest(b"new")).name == "a.json.saving"
-    settle(tmp_path, {"a.json": digest(b"old")})
+    finish_interrupted_save(tmp_path, {"a.json": digest(b"old")})
     assert (tmp_path / "a.json").read_bytes() == b"old"
-    settle(tmp_path, {"a.json": digest(b"new")})
+    finish_interrupted_save(tmp_path, {"a.json": digest(b"new")})
     assert (tmp_path / "a.json").read_bytes() == b"new"
     assert [path.name for path in tmp_path.iterdir()] == ["a.json"]
 
