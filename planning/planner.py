@@ -237,7 +237,7 @@ def plan_flight(
     _check_method(request)
     spent_s = 0.0 if started_s is None else time.perf_counter() - started_s
     limit = TimeLimit(request.time_budget_s - spent_s)
-    watch = _StopWatch()
+    watch = _Timer()
     prepared = first_reusable(() if prepared is None else (prepared,), site_model, request)
     if prepared is None:
         proving = any_of(stop, TimeLimit(REACHABILITY_SHARE * limit.remaining_s()))
@@ -454,7 +454,7 @@ def resplit_sorties(plan: Plan, site_model: SiteModel, max_views: int, monitor: 
     return replace(plan, sorties=sorties)
 
 
-class _StopWatch:
+class _Timer:
     """Wall time by stage."""
 
     def __init__(self) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import groundstation.api as api
-from tests.reconstruction.training.made_data_set import write_data_set
+from tests.reconstruction.training.synthetic_data_set import write_data_set
 
 ROOT = Path(__file__).parents[1]
 EXAMPLES = ROOT / "docs" / "reference" / "examples"

@@ -15,7 +15,7 @@ import pytest
 from planning.geo.frames import Origin
 from planning.plan import Plan, read_plan
 from planning.site.file import read_site
-from tests.reconstruction.coarse.made_flight import (
+from tests.reconstruction.coarse.synthetic_flight import (
     HALF_EAST_M,
     HALF_NORTH_M,
     HEIGHT_M,

@@ -17,7 +17,7 @@ from planning.viewpoints.candidates import spread_candidates
 from planning.viewpoints.greedy import dual_bound
 from planning.viewpoints.improve import Exchange, cover_state
 from planning.viewpoints.prepare import prepare
-from tests.benchmarks.harness import Benchmark, Context, Row, stopwatch
+from tests.benchmarks.harness import Benchmark, Context, Row, timer
 from tests.planning.viewpoints.exact_optimum import exact_optimum
 
 CASES = ((100, 20), (100, 25), (200, 25), (400, 30))
@@ -40,16 +40,16 @@ def measure(context: Context) -> Iterator[Row]:
     for n_candidates, n_views in CASES[:2] if context.is_quick else CASES:
         elements = problem.model.elements(spread_candidates(problem, n_candidates, np.random.default_rng(0)))
         scene = f"{len(problem.model.frames)} panels, {n_views} of {len(elements.starts) - 1} candidates"
-        with stopwatch() as seconds:
+        with timer() as seconds:
             optimum, _, proven = exact_optimum(elements, weights, n_views, 10.0 if context.is_quick else EXACT_S)
         remark = "" if proven - optimum < 0.5 else f" (out of time; not above {proven:.0f})"
         yield Row(scene, f"integer programme{remark}, {seconds():.1f} s", optimum, "sections")
         state, chosen = cover_state(elements, weights), np.zeros(n_views, np.int64)
-        with stopwatch() as seconds:
+        with timer() as seconds:
             kernel.greedy_steps(state, chosen, 0, n_views, np.inf)
         value = float(kernel.objective(state))
         yield Row(scene, f"greedy, {1e3 * seconds():.2g} ms", value, "sections", value / optimum, "the optimum")
-        with stopwatch() as seconds:
+        with timer() as seconds:
             exchange = Exchange(elements, weights, chosen, 0)
             exchange.run(never)
         better = exchange.value()
@@ -57,7 +57,7 @@ def measure(context: Context) -> Iterator[Row]:
         yield Row(scene, what, better, "sections", better / optimum, "the optimum")
         simple = value + float(np.sort(state.gains)[-n_views:].sum())
         yield Row(scene, "bound from marginal gains", simple, "sections", simple / optimum, "the optimum")
-        with stopwatch() as seconds:
+        with timer() as seconds:
             dual = dual_bound(elements, weights, n_views, better)
         what = f"dual bound (the certificate), {1e3 * seconds():.2g} ms"
         yield Row(scene, what, dual, "sections", dual / optimum, "the optimum")

@@ -13,7 +13,7 @@ import numpy as np
 
 from tests.benchmarks.fresh_process import run_command, run_measured
 from tests.benchmarks.harness import Benchmark, Context, Row, Skipped
-from tests.reconstruction.coarse.made_flight import (
+from tests.reconstruction.coarse.synthetic_flight import (
     Flight,
     fly_around,
     from_the_corner,

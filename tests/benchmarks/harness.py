@@ -148,7 +148,7 @@ def load_average() -> float:
 
 
 @contextmanager
-def stopwatch() -> Iterator[Callable[[], float]]:
+def timer() -> Iterator[Callable[[], float]]:
     """Seconds since the start, as a function; after the block it keeps its last value."""
     started = time.perf_counter()
     ended: list[float] = []

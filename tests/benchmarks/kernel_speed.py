@@ -14,7 +14,7 @@ from planning.parameters import Precision
 from planning.plan import ViewpointArrays
 from planning.viewpoints.candidates import spread_candidates
 from planning.viewpoints.problem import take
-from tests.benchmarks.harness import Benchmark, Context, Row, stopwatch
+from tests.benchmarks.harness import Benchmark, Context, Row, timer
 from tests.benchmarks.problems import prepared
 
 CHUNK = 1000
@@ -71,9 +71,9 @@ def _fastest(work: Callable[[], object], model: CoverageModel, n_views: int, wan
     """Pairs per second of the fastest of many repetitions: what else the machine does only makes some slower."""
     work()
     fastest_s = np.inf
-    with stopwatch() as total:
+    with timer() as total:
         while total() < wanted_s:
-            with stopwatch() as once:
+            with timer() as once:
                 work()
             fastest_s = min(fastest_s, once())
     return n_views * len(model.frames) / fastest_s

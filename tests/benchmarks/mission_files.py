@@ -18,7 +18,7 @@ from planning.planner import plan_flight
 from planning.request import PlanRequest
 from planning.site.bundled import write_scene
 from planning.site.file import read_site
-from tests.benchmarks.harness import Benchmark, Context, Row, stopwatch
+from tests.benchmarks.harness import Benchmark, Context, Row, timer
 from tests.benchmarks.problems import PLANAR_VIEWS
 
 FORMATS = {
@@ -43,9 +43,9 @@ def measure(context: Context) -> Iterator[Row]:
         write_plan(plan_path, plan)
         errors = []
         for file_format, suffix in FORMATS.items():
-            with stopwatch() as writing:
+            with timer() as writing:
                 paths, _ = export_plan(plan_path, file_format, folder / f"mission{suffix}", site_path)
-            with stopwatch() as reading:
+            with timer() as reading:
                 read = [mission for path in paths for mission in read_missions(path)]
                 parts = viewpoints_and_sorties(read, model.site.origin, model.site.home_enu_m, plan.rules)
             sent, back = viewpoint_arrays(plan.viewpoints), viewpoint_arrays(parts.viewpoints)

@@ -11,8 +11,8 @@ from missions.mavlink.transfer.exchange import MissionType
 from missions.mavlink.transfer.verified import Verified, VerifiedUpload
 from missions.mavlink.transfer.wire_items import to_wire
 from tests.benchmarks.harness import Benchmark, Context, Row
+from tests.missions.mavlink.transfer.fake_vehicle import Air, route
 from tests.missions.mavlink.transfer.test_simulated_vehicle import Stores, planned
-from tests.missions.mavlink.transfer.twins import Air, route
 
 N_ITEMS = 200
 LOSSES = (0.0, 0.05, 0.1, 0.2, 0.3, 0.4)

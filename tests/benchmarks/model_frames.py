@@ -26,7 +26,7 @@ from reconstruction.training.config import ANTIALIASED
 from reconstruction.training.model.joint_model import SceneModel
 from reconstruction.training.model.render import render_view
 from tests.benchmarks.harness import Benchmark, Context, Row
-from tests.reconstruction.objects.made_scene import pane
+from tests.reconstruction.objects.synthetic_scene import pane
 
 WALL_M, GROUND_M = (60.0, 40.0), 120.0
 COLUMNS, ROWS = 40, 20

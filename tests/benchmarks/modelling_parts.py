@@ -26,7 +26,7 @@ from reconstruction.training.losses import dssim, dssim_torch
 from reconstruction.training.photos.decoded_photo import Decoding, decoded_bytes
 from reconstruction.training.train import freed_memory_retained
 from tests.benchmarks.harness import Benchmark, Context, Row
-from tests.reconstruction.light.made_folder import cameras, corners_of
+from tests.reconstruction.light.synthetic_folder import cameras, corners_of
 from tests.reconstruction.splats.learned_scenes import random_splats
 
 SIZES = ((256, 192), (1024, 768))
@@ -63,12 +63,12 @@ def _dssim(is_quick: bool) -> Iterator[Row]:
         found, truth = torch.rand(2, height, width, 3, generator=torch.Generator().manual_seed(0))
         found.requires_grad_()
         ms = _least_ms(lambda a=found, b=truth: dssim(a, b).backward(), REPEATS)
-        ratio, wished = None, ("", None)
+        ratio, target = None, ("", None)
         if (width, height) == SIZES[0]:
             ratio = round(ms / _least_ms(lambda a=found, b=truth: dssim_torch(a, b).backward(), 3), 4)
-            wished = f"under {MOST_MS:g} ms", ms < MOST_MS
+            target = f"under {MOST_MS:g} ms", ms < MOST_MS
         against = "torch's operations" if ratio else ""
-        yield Row(f"{width} x {height}", "D-SSIM, value and gradient", round(ms, 2), "ms", ratio, against, *wished)
+        yield Row(f"{width} x {height}", "D-SSIM, value and gradient", round(ms, 2), "ms", ratio, against, *target)
 
 
 def _features(n: int) -> Iterator[Row]:
@@ -93,9 +93,9 @@ def _features(n: int) -> Iterator[Row]:
     ms = _least_ms(there_and_back(lambda: splats.features(eye), given), REPEATS)
     ratio = round(ms / _least_ms(there_and_back(in_torch, given), REPEATS), 4)
     yield Row(f"{n} discs", "light by direction, value and gradient", round(light_ms, 2), "ms")
-    wished = "under half of torch's", ratio < 0.5
+    target = "under half of torch's", ratio < 0.5
     yield Row(
-        f"{n} discs", "all features, value and gradient", round(ms, 2), "ms", ratio, "torch's operations", *wished
+        f"{n} discs", "all features, value and gradient", round(ms, 2), "ms", ratio, "torch's operations", *target
     )
 
 
@@ -154,8 +154,8 @@ def _stream(is_quick: bool) -> Iterator[Row]:
     found = json.loads(done.stdout)
     one_mib = decoded_bytes(LENS, Decoding(with_normals=True), NORMAL_STEP) / 2**20
     yield Row(scene, "one photo, decoded, with its layers", round(one_mib, 1), "MiB")
-    wished = f"at most {limit_mib} MiB", found["peak_mib"] <= limit_mib
-    yield Row(scene, "memory of a stream, largest", round(found["peak_mib"]), "MiB", None, "", *wished)
+    target = f"at most {limit_mib} MiB", found["peak_mib"] <= limit_mib
+    yield Row(scene, "memory of a stream, largest", round(found["peak_mib"]), "MiB", None, "", *target)
     per_read = n_samples / found["n_read"]
     yield Row(scene, "samples of 1024 x 768 for each photo that is read", round(per_read, 2), "")
     yield Row(scene, "processor time for each photo that is read", round(found["cpu_s"] / found["n_read"], 2), "s")

@@ -19,7 +19,7 @@ from reconstruction.records.entries import global_id_of
 from reconstruction.splats.ply import read_splats, write_splats
 from reconstruction.splats.splats import Splats
 from tests.benchmarks.harness import Benchmark, Context, Row
-from tests.reconstruction.objects.made_scene import ORIGIN, gaussians, pane
+from tests.reconstruction.objects.synthetic_scene import ORIGIN, gaussians, pane
 
 N_FACADES = 4
 FULL, QUICK = (1_000_000, 5_000), (20_000, 100)

@@ -19,8 +19,8 @@ from reconstruction.tradeoff.train_tradeoff import Setting, Trial, run_settings
 from reconstruction.training.config import TrainConfig
 from reconstruction.training.presets import preset
 from reconstruction.training.ranks import cuda_devices
+from tests.benchmarks.experiments import rendered
 from tests.benchmarks.harness import Benchmark, Context, Row, Skipped
-from tests.benchmarks.lessons import rendered
 from tests.benchmarks.rasteriser import N_CHANNELS, Scene, made_scene
 
 CASES = (((256, 192), 20_000), ((1024, 768), 100_000), ((2048, 1536), 1_000_000))

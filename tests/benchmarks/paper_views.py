@@ -9,7 +9,7 @@ from planning.base.progress import TimeLimit
 from planning.viewpoints.greedy import greedy
 from planning.viewpoints.problem import ViewProblem
 from planning.viewpoints.pso import PsoParameters, pso
-from tests.benchmarks.harness import Benchmark, Context, Row, stopwatch
+from tests.benchmarks.harness import Benchmark, Context, Row, timer
 from tests.benchmarks.problems import CURVED_VIEWS, PLANAR_VIEWS, choose, covered, prepared
 
 GREEDY_S = 30.0
@@ -27,7 +27,7 @@ def measure(context: Context) -> Iterator[Row]:
         best = 0
         for name, parameters in list(USUAL_SETTINGS.items())[: 1 if context.is_quick else None]:
             results = []
-            with stopwatch() as seconds:
+            with timer() as seconds:
                 for seed in range(n_seeds):
                     views, _ = choose(partial(pso, parameters=parameters), problem, n_all, seed)
                     results.append(covered(problem, views))
@@ -36,7 +36,7 @@ def measure(context: Context) -> Iterator[Row]:
             text = f"PSO, {n_all} views, {name}: mean (best {max(results)}), {seconds() / n_seeds:.1f} s"
             yield Row(scene, text, mean, "sections", mean / bound, "the bound", seeds=n_seeds)
         yield from _greedy(scene, problem, n_few, n_seeds, best, 8.0 if context.is_quick else GREEDY_S)
-        with stopwatch() as seconds:
+        with timer() as seconds:
             views, _ = choose(greedy, problem, n_all, 0, TimeLimit(GREEDY_S))
         found = covered(problem, views)
         yield Row(
@@ -55,7 +55,7 @@ def _greedy(
     scene: str, problem: ViewProblem, n_views: int, n_seeds: int, swarm: int, longest_s: float
 ) -> Iterator[Row]:
     results = []
-    with stopwatch() as seconds:
+    with timer() as seconds:
         for seed in range(n_seeds):
             views, trace = choose(greedy, problem, n_views, seed, TimeLimit(longest_s))
             results.append(covered(problem, views))

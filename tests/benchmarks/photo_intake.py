@@ -14,7 +14,7 @@ from planning.photos.folder import read_photos
 from reconstruction.photos.decode import Scale, grey_picture
 from reconstruction.photos.quality import DEFAULT_LIMITS, photo_quality
 from tests.benchmarks.fresh_process import run_measured
-from tests.benchmarks.harness import Benchmark, Context, Row, stopwatch
+from tests.benchmarks.harness import Benchmark, Context, Row, timer
 from tests.reconstruction.photos.pictures import facade, moved, write
 
 SCALES: tuple[Scale, ...] = (1, 2, 4, 8)
@@ -38,10 +38,10 @@ def measure(context: Context) -> Iterator[Row]:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         _write_small(folder / "small", n)
-        with stopwatch() as reading:
+        with timer() as reading:
             photos = read_photos(folder / "small").photos
         yield Row(f"{n} photos", "metadata read", reading(), "s")
-        with stopwatch() as plainly:
+        with timer() as plainly:
             for photo in photos:
                 photo_quality(photo)
         yield Row(f"{n} photos of 0.3 MP", "checked one after the other", plainly(), "s")
@@ -75,10 +75,10 @@ def _large(folder: Path, n: int) -> Iterator[Row]:
     photos = [write(folder / f"{i}.jpg", np.tile(facade(i, (989, 1320)), (4, 4)), 92) for i in range(n)]
     seconds = {}
     for scale in SCALES:
-        with stopwatch() as decoding:
+        with timer() as decoding:
             for photo in photos:
                 grey_picture(photo, scale)
-        with stopwatch() as whole:
+        with timer() as whole:
             for photo in photos:
                 photo_quality(photo, scale=scale)
         seconds[scale] = whole() / n

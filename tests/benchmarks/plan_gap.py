@@ -17,8 +17,8 @@ from reconstruction.light.glass_rays import glass_rays
 from reconstruction.light.photo_set import read_photo_set
 from reconstruction.light.reflective_panels import ModelName
 from reconstruction.light.training import score_views, train_reflections
+from tests.benchmarks.experiments import QUICK, QUICK_N_VIEWS, QUICK_WIDTH_PX
 from tests.benchmarks.harness import Benchmark, Context, Row
-from tests.benchmarks.lessons import QUICK, QUICK_N_VIEWS, QUICK_WIDTH_PX
 from tests.tables.photos import Photos, Planner, photos_in
 
 SCENE, N_VIEWS, N_UNSEEN = "planar", 200, 40

@@ -17,7 +17,7 @@ from planning.routing.flights import flight_times
 from planning.routing.sorties import SortieProblem, Sorties, plan_sorties, solve_sorties, sortie_durations_s
 from planning.routing.vrp import _problem_data, _recorder, _run, _scale, _visits
 from planning.viewpoints.greedy import greedy
-from tests.benchmarks.harness import Benchmark, Context, Row, stopwatch
+from tests.benchmarks.harness import Benchmark, Context, Row, timer
 from tests.benchmarks.problems import PLANAR_VIEWS, choose, prepared
 
 
@@ -26,7 +26,7 @@ def measure(context: Context) -> Iterator[Row]:
     seconds = 2.0 if context.is_quick else 8.0
     problem, aircraft = prepared("office").problem, profile("m3e").aircraft
     views = as_written(problem, choose(greedy, problem, PLANAR_VIEWS, 0)[0])
-    with stopwatch() as elapsed:
+    with timer() as elapsed:
         times = flight_times(problem.roadmap, views, aircraft, FlightRules())
     n = len(views.heading_rad)
     yield Row("office", f"table of legs around the building, {n} views", elapsed(), "s")

@@ -10,8 +10,8 @@ from pathlib import Path
 from reconstruction.tradeoff.train_tradeoff import Setting
 from reconstruction.training.presets import preset
 from tests.benchmarks import presets
+from tests.benchmarks.experiments import rendered
 from tests.benchmarks.harness import Benchmark, Context, Row
-from tests.benchmarks.lessons import rendered
 
 HOUR_S = 3600.0
 

@@ -18,8 +18,8 @@ from reconstruction.tradeoff.scene_tradeoff import ERROR_AXIS
 from reconstruction.tradeoff.train_tradeoff import BASE, Setting, Trial, run_settings, settings_of, trial_panels
 from reconstruction.training.config import TrainConfig
 from reconstruction.training.presets import preset
+from tests.benchmarks.experiments import rendered
 from tests.benchmarks.harness import Benchmark, Context, Row
-from tests.benchmarks.lessons import rendered
 
 N_VIEWS, WIDTH_PX = 100, 256
 QUICK_N_VIEWS, QUICK_WIDTH_PX = 10, 48

@@ -9,7 +9,7 @@ from planning.coverage.reachability import MAX_CELLS, find_reachable
 from planning.parameters import Constraints
 from planning.site.bundled import SCENES
 from planning.viewpoints.prepare import prepare
-from tests.benchmarks.harness import Benchmark, Context, Row, stopwatch
+from tests.benchmarks.harness import Benchmark, Context, Row, timer
 from tests.benchmarks.problems import prepared
 
 EFFORTS = (10, 100, 1000, MAX_CELLS)
@@ -19,7 +19,7 @@ def measure(context: Context) -> Iterator[Row]:
     """Bound, undecided sections and time; then undecided sections against effort."""
     scenes = ("office", "roof") if context.is_quick else tuple(SCENES)
     for scene in scenes:
-        with stopwatch() as seconds:
+        with timer() as seconds:
             found = prepare(SCENES[scene](), profile("m3e").camera, Constraints()).problem
         reach = found.reachability
         of_all = reach.upper_bound / found.model.n_elements

@@ -12,7 +12,7 @@ from reconstruction.base.cameras import Intrinsics, Pose, PosedPhoto
 from reconstruction.colmap.georeference import angle_between_deg, fit
 from reconstruction.colmap.record import NO_POINTS, ColmapImage, ColmapModel, camera_of, quaternion_of
 from reconstruction.colmap.refine import RefineParameters, pose_covariances, refine_poses
-from tests.benchmarks.harness import Benchmark, Context, Row, Skipped, stopwatch
+from tests.benchmarks.harness import Benchmark, Context, Row, Skipped, timer
 from tests.reconstruction.colmap.models import covariance
 from tests.reconstruction.colmap.test_refine import SIGMA_DEG, SIGMA_M, start
 
@@ -37,7 +37,7 @@ def _accuracy(rows: int, columns: int) -> Iterator[Row]:
     photos = _wall_photos(rows, columns)
     model = _wall_model(photos)
     n_seen = sum(len(image.point_ids) for image in model.images.values())
-    with stopwatch() as seconds:
+    with timer() as seconds:
         found = pose_covariances(model, {photo.name: photo for photo in photos})
     usual_m = float(np.median([np.sqrt(np.trace(known[:3, :3])) for known in found.values()]))
     scene = f"made wall, {len(photos)} photos, {n_seen} image points"
@@ -96,7 +96,7 @@ def _lund(context: Context) -> Iterator[Row]:
     scene = f"12 photos, positions to {100 * SIGMA_M:g} cm, angles to {SIGMA_DEG:g} degrees"
     yield Row(scene, "angle to the reference before", float(np.mean(before_deg)), "degrees")
     for size in (400,) if context.is_quick else (400, 600, 1000, 1936):
-        with stopwatch() as seconds:
+        with timer() as seconds:
             found = refine_poses(given, folder, RefineParameters(max_image_size_px=size))
         pairs = list(zip(found.photos, truth, strict=True))
         ours, theirs = (

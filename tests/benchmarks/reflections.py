@@ -12,18 +12,18 @@ from reconstruction.light.config import ReflectionConfig
 from reconstruction.light.glass_rays import glass_rays
 from reconstruction.light.photo_set import read_photo_set
 from reconstruction.light.reflective_panels import ModelName
-from tests.benchmarks.harness import Benchmark, Context, Row
-from tests.benchmarks.lessons import (
+from tests.benchmarks.experiments import (
     QUICK,
     QUICK_N_VIEWS,
     QUICK_WIDTH_PX,
-    Course,
-    School,
+    Experiment,
+    Results,
     courses,
     gain_row,
-    lesson_rows,
     rendered,
+    result_rows,
 )
+from tests.benchmarks.harness import Benchmark, Context, Row
 
 WIDTH_PX, N_VIEWS = 128, 100
 SEEDS, QUICK_SEEDS = (0, 1, 2), (0,)
@@ -44,7 +44,7 @@ def measure(context: Context) -> Iterator[Row]:
         folders = [rendered(scene, Path(place) / scene, n_views, width) for scene in (*NEAR, *FAR)]
         for folder, found in zip(folders, courses(course, folders, seeds), strict=True):
             scene = folder.name
-            yield from lesson_rows(scene, found)
+            yield from result_rows(scene, found)
             if scene in NEAR:
                 least = None if is_quick else BETTER_DB
                 yield gain_row(scene, "grid with half of both above the mlp", found, HALF, ["mlp"], least)
@@ -55,21 +55,21 @@ def measure(context: Context) -> Iterator[Row]:
             yield _choice(folder, is_quick)
 
 
-def full_course(folder: Path, seed: int) -> Course:
+def full_course(folder: Path, seed: int) -> Results:
     """All models of light, as they are by default."""
     return _course(folder, seed, ReflectionConfig())
 
 
-def quick_course(folder: Path, seed: int) -> Course:
+def quick_course(folder: Path, seed: int) -> Results:
     """The same for seconds."""
     return _course(folder, seed, QUICK)
 
 
-def _course(folder: Path, seed: int, config: ReflectionConfig) -> Course:
-    school = School(folder, seed)
-    found = {name: school.lesson(name, config) for name in LIGHTS}
+def _course(folder: Path, seed: int, config: ReflectionConfig) -> Results:
+    experiment = Experiment(folder, seed)
+    found = {name: experiment.run(name, config) for name in LIGHTS}
     if folder.name in NEAR:
-        found[HALF] = school.lesson("radiance-grid", config, 0.5, 0.5 * found["mlp"].seconds)
+        found[HALF] = experiment.run("radiance-grid", config, 0.5, 0.5 * found["mlp"].seconds)
     return found
 
 
@@ -81,9 +81,9 @@ def _choice(folder: Path, is_quick: bool) -> Row:
     name, decisions = choose_light(rays, source.panels, QUICK if is_quick else ReflectionConfig())
     seconds = time.process_time() - begun_s
     right = "radiance-grid" if folder.name in NEAR else "environment-map"
-    wished = ("", None) if is_quick else (right, name == right)
+    target = ("", None) if is_quick else (right, name == right)
     beside = f"{name}: {decisions[-1].reason}" if decisions else name
-    return Row(folder.name, "choice of a model", round(seconds, 1), "s", None, beside, *wished)
+    return Row(folder.name, "choice of a model", round(seconds, 1), "s", None, beside, *target)
 
 
 BENCHMARK = Benchmark(

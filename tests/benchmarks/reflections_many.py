@@ -8,18 +8,18 @@ from pathlib import Path
 
 from reconstruction.light.config import ReflectionConfig
 from reconstruction.light.reflection_mlp import MlpShape
-from tests.benchmarks.harness import Benchmark, Context, Row
-from tests.benchmarks.lessons import (
+from tests.benchmarks.experiments import (
     QUICK,
     QUICK_N_VIEWS,
     QUICK_WIDTH_PX,
-    Course,
-    School,
+    Experiment,
+    Results,
     courses,
     gain_row,
-    lesson_rows,
     rendered,
+    result_rows,
 )
+from tests.benchmarks.harness import Benchmark, Context, Row
 
 SCENES, WIDTH_PX, N_VIEWS = ("planar", "curved"), 128, 600
 SEEDS, QUICK_SEEDS = (0, 1, 2), (0,)
@@ -43,31 +43,31 @@ def measure(context: Context) -> Iterator[Row]:
             folders, courses(quick_course if is_quick else full_course, folders, seeds), strict=True
         ):
             scene = folder.name
-            yield from lesson_rows(scene, found)
+            yield from result_rows(scene, found)
             others = ("environment-map", LONGER, "harmonics")
             yield gain_row(scene, "mlp above all others", found, "mlp", others, None if is_quick else MLP_DB)
             longest = max(each.seconds for course in found for each in course.values())
-            wished = ("", None) if is_quick else (f"under {LONGEST_S:g} s", longest < LONGEST_S)
-            yield Row(scene, "longest training", round(longest), "s", None, "", *wished, seeds=len(seeds))
+            target = ("", None) if is_quick else (f"under {LONGEST_S:g} s", longest < LONGEST_S)
+            yield Row(scene, "longest training", round(longest), "s", None, "", *target, seeds=len(seeds))
 
 
-def full_course(folder: Path, seed: int) -> Course:
+def full_course(folder: Path, seed: int) -> Results:
     """Longer than by default."""
     return _course(folder, seed, FULL, ReflectionConfig())
 
 
-def quick_course(folder: Path, seed: int) -> Course:
+def quick_course(folder: Path, seed: int) -> Results:
     """The same for seconds."""
     return _course(folder, seed, QUICK, QUICK)
 
 
-def _course(folder: Path, seed: int, config: ReflectionConfig, short: ReflectionConfig) -> Course:
-    school = School(folder, seed)
+def _course(folder: Path, seed: int, config: ReflectionConfig, short: ReflectionConfig) -> Results:
+    experiment = Experiment(folder, seed)
     return {
-        "harmonics": school.lesson("harmonics", short),
-        "environment-map": school.lesson("environment-map", short),
-        LONGER: school.lesson("environment-map", config),
-        "mlp": school.lesson("mlp", config),
+        "harmonics": experiment.run("harmonics", short),
+        "environment-map": experiment.run("environment-map", short),
+        LONGER: experiment.run("environment-map", config),
+        "mlp": experiment.run("mlp", config),
     }
 
 

@@ -14,7 +14,7 @@ from planning.request import PlanRequest
 from planning.revision import Revision, add, delete, lock, move, revise
 from planning.site.bundled import SCENES
 from planning.site.records import SiteModel
-from tests.benchmarks.harness import Benchmark, Context, Row, stopwatch
+from tests.benchmarks.harness import Benchmark, Context, Row, timer
 from tests.benchmarks.problems import PLANAR_VIEWS
 
 CASES = {"office": PLANAR_VIEWS, "tower": 1000, "canyon": 300}
@@ -31,9 +31,9 @@ def measure(context: Context) -> Iterator[Row]:
     """Percentiles of the edits, what measuring from scratch takes in the same run, and what a prepared site saves."""
     for scene in ("office",) if context.is_quick else CASES:
         site_model, request = SCENES[scene](), PlanRequest(n_views=CASES[scene], time_budget_s=30.0)
-        with stopwatch() as first_s:
+        with timer() as first_s:
             planned = plan_flight(site_model, request)
-        with stopwatch() as again_s:
+        with timer() as again_s:
             plan_flight(site_model, request, prepared=planned.prepared)
         what = f"{CASES[scene]} views: planning again with the prepared site"
         yield Row(scene, what, again_s(), "s", again_s() / first_s(), "the first plan")
@@ -77,14 +77,14 @@ def _edits(start: Revision) -> dict[str, Edit]:
 
 
 def _time_ms(edit: Edit, number: int) -> float:
-    with stopwatch() as elapsed_s:
+    with timer() as elapsed_s:
         edit(number)
     return 1e3 * elapsed_s()
 
 
 def _scratch_ms(revision: Revision, site_model: SiteModel) -> float:
     problem = revision.prepared.problem
-    with stopwatch() as elapsed_s:
+    with timer() as elapsed_s:
         check_plan(revision.plan, site_model)
         coverage(problem.model, revision.plan.viewpoints, problem.reachability)
     return 1e3 * elapsed_s()

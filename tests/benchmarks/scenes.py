@@ -17,7 +17,7 @@ from reconstruction.scenes.photos.renderer import Renderer
 from reconstruction.scenes.record import Scene
 from reconstruction.scenes.world.bundled import SCENES, bundled_scene
 from tests.benchmarks.fresh_process import run_measured
-from tests.benchmarks.harness import Benchmark, Context, Row, stopwatch
+from tests.benchmarks.harness import Benchmark, Context, Row, timer
 
 SIZE_PX, QUICK_SIZE_PX = (512, 384), (96, 72)
 QUICK_SCENES = ("planar", "planar-far")
@@ -47,14 +47,14 @@ def _samples(name: str, scene: Scene, photo: PosedPhoto, truth: NDArray[np.float
         settings = RenderSettings(samples=samples, effects=decided.effects)  # type: ignore[arg-type]
         renderer = Renderer(scene, settings)
         renderer.render(photo)
-        with stopwatch() as seconds:
+        with timer() as seconds:
             taken = renderer.render(photo)
         error = _psnr_db(grey_levels(_exposed(taken.linear, scene, photo)), truth)
         what = "rays where detail calls for them" if samples == "auto" else f"{samples} x {samples} rays a pixel"
         is_target = samples == "auto" and photo.intrinsics.width_px == SIZE_PX[0]
-        wished = (f"under {A_SECOND:g} s", seconds() < A_SECOND) if is_target else ("", None)
+        target = (f"under {A_SECOND:g} s", seconds() < A_SECOND) if is_target else ("", None)
         yield Row(
-            name, what, seconds(), "s", None, f"{error:.1f} dB against {TRUTH_SAMPLES} x {TRUTH_SAMPLES}", *wished
+            name, what, seconds(), "s", None, f"{error:.1f} dB against {TRUTH_SAMPLES} x {TRUTH_SAMPLES}", *target
         )
 
 

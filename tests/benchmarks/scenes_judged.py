@@ -31,7 +31,7 @@ from reconstruction.scenes.photos.lens_effects import MIDDLE_GREY, grey_levels
 from reconstruction.scenes.photos.renderer import RenderedPhoto, Renderer
 from reconstruction.scenes.record import Scene
 from reconstruction.scenes.world.bundled import SCENES, bundled_scene
-from tests.benchmarks.harness import Benchmark, Context, Row, Skipped, stopwatch
+from tests.benchmarks.harness import Benchmark, Context, Row, Skipped, timer
 from tests.benchmarks.scenes import facing_photo
 
 Picture = NDArray[np.float64]
@@ -81,7 +81,7 @@ def measure(context: Context) -> Iterator[Row]:
             renderer = MitsubaRenderer(scene, JUDGED, n_rays)
         except InputError as error:
             raise Skipped(str(error)) from error
-        with stopwatch() as seconds:
+        with timer() as seconds:
             one, two = (renderer.render(photo, seed).linear.astype(np.float64) for seed in (1, 2))
         judged = 0.5 * (one + two)
         case = _Case(name, scene, photo, judged, MIDDLE_GREY / float(judged.mean()))
@@ -126,9 +126,9 @@ def _embedded(case: _Case) -> Iterator[Row]:
 def _taken(case: _Case, settings: RenderSettings) -> tuple[RenderedPhoto, float, float]:
     """A photo, and seconds for it as the first and as another one."""
     renderer = Renderer(case.scene, settings)
-    with stopwatch() as first_s:
+    with timer() as first_s:
         renderer.render(case.photo)
-    with stopwatch() as again_s:
+    with timer() as again_s:
         taken = renderer.render(case.photo)
     return taken, first_s(), again_s()
 

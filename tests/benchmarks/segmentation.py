@@ -27,7 +27,7 @@ from reconstruction.tradeoff.search_tradeoff import (
     run_variants,
     variants_panel,
 )
-from tests.benchmarks.harness import Benchmark, Context, Row, stopwatch
+from tests.benchmarks.harness import Benchmark, Context, Row, timer
 
 SEEDS, FEW_SEEDS, QUICK_SEEDS = 50, 20, 3
 LARGE = wide_camera(5280, 3956)
@@ -89,14 +89,14 @@ def _scores(scene: str, scores: SetScores, seeds: int, has_targets: bool = False
     ):
         worst = f"worst {spread.worst:.4f} ({spread.worst_photo})"
         least, met = f"at least {target} on average", spread.mean >= target
-        wished = (least, met) if has_targets else ("", None)
-        yield Row(scene, what, round(spread.mean, 4), "", None, worst, *wished, seeds)
+        goal = (least, met) if has_targets else ("", None)
+        yield Row(scene, what, round(spread.mean, 4), "", None, worst, *goal, seeds)
     percentiles = ", ".join(f"{percent} %: {share:.4f}" for percent, share in scores.coverage.items())
-    wished = ("5 % percentile of 1", scores.coverage[5] >= 1.0) if has_targets else ("", None)
-    yield Row(scene, "coverage percentiles", percentiles, "", None, "", *wished, seeds)
+    goal = ("5 % percentile of 1", scores.coverage[5] >= 1.0) if has_targets else ("", None)
+    yield Row(scene, "coverage percentiles", percentiles, "", None, "", *goal, seeds)
     missed = f"{scores.n_missed} missed, {scores.n_false} false"
-    wished = ("none missed", scores.n_missed == 0) if has_targets else ("", None)
-    yield Row(scene, f"of {scores.n_panels} panels", missed, "", None, "", *wished, seeds)
+    goal = ("none missed", scores.n_missed == 0) if has_targets else ("", None)
+    yield Row(scene, f"of {scores.n_panels} panels", missed, "", None, "", *goal, seeds)
     yield Row(scene, "time for a photo", scores.seconds.mean, "s", None, f"at most {scores.seconds.worst:.2f} s",
               seeds=seeds)  # fmt: skip
 
@@ -200,15 +200,15 @@ def _counting() -> Iterator[Row]:
     """One pass over both index images against a loop over masks, on the largest photo."""
     case = random_case("planar", 0, LARGE)
     layout = replace(case.layout, n_rows=20, n_columns=30)
-    with stopwatch() as making:
+    with timer() as making:
         made = render_facade(replace(case, layout=layout))
     yield Row("5280 x 3956", "rendering a synthetic photo", making(), "s")
     found = np.roll(made.index, 2, axis=1)
     pixel_overlaps(made.index, found, made.facade, made.facade)
-    with stopwatch() as one_pass:
+    with timer() as one_pass:
         overlaps = pixel_overlaps(made.index, found, made.facade, made.facade)
     few = 6
-    with stopwatch() as looping:
+    with timer() as looping:
         for number in range(1, few + 1):
             mask = made.index == number
             for other in range(1, few + 1):

@@ -11,7 +11,7 @@ from planning.aircraft.catalogue import profile
 from planning.motion.speed_profile import fastest_profile
 from planning.motion.timing import FlightPath, flight_path, motion_limits, stopping_times_s
 from planning.parameters import FlightRules
-from tests.benchmarks.harness import Benchmark, Context, Row, stopwatch
+from tests.benchmarks.harness import Benchmark, Context, Row, timer
 
 RADIUS_M, HEIGHT_M, SPACING_M = 45.0, 25.0, 8.0
 SOLVERS: tuple[Literal["sweep", "nlp"], ...] = ("sweep", "nlp")
@@ -37,13 +37,13 @@ def measure(context: Context) -> Iterator[Row]:
         path = ring_flight(n_rounds, photo_every)
         n_legs = len(path.is_stop) - 1
         scene = f"{n_legs} legs, a photo every {photo_every}"
-        with stopwatch() as seconds:
+        with timer() as seconds:
             stopping_s = float(stopping_times_s(path, limits)[-1] + path.hover_s[-1])
         yield Row(scene, f"stopping at every vertex, {1e3 * seconds():.2g} ms", stopping_s, "s")
         durations_s = {}
         for solver in SOLVERS:
             fastest_profile(path, limits, solver=solver)
-            with stopwatch() as seconds:
+            with timer() as seconds:
                 found = fastest_profile(path, limits, solver=solver)
             durations_s[solver] = found.duration_s
             what = f"{solver} ({len(found.distance_m)} nodes, {found.iterations} iterations), {1e3 * seconds():.2g} ms"

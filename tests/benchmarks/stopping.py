@@ -15,8 +15,8 @@ from reconstruction.training.presets import preset
 from reconstruction.training.timer import Timer
 from reconstruction.training.train import train_model
 from reconstruction.training.trainer import SHARE
+from tests.benchmarks.experiments import rendered
 from tests.benchmarks.harness import Benchmark, Context, Row
-from tests.benchmarks.lessons import rendered
 
 N_VIEWS, WIDTH_PX, STOPS = 40, 192, (150, 600)
 QUICK_N_VIEWS, QUICK_WIDTH_PX, QUICK_STOPS = 10, 48, (40,)
@@ -37,11 +37,11 @@ def measure(context: Context) -> Iterator[Row]:
             more = max(1, round(SHARE * n))
             at_stop, going_on = (stopped(folder, config, steps, 0.0) for steps in (n, n + more))
             settled = stopped(folder, config, n, 1.0)
-            wished = (f"at most {LOST_DB:g} dB below going on", settled >= going_on - LOST_DB)
+            target = (f"at most {LOST_DB:g} dB below going on", settled >= going_on - LOST_DB)
             gained = f"{settled - at_stop:+.2f} dB on the model at the stop"
             yield Row("planar", f"stopped after {n} steps", round(at_stop, 2), "dB")
             yield Row("planar", f"{more} steps later", round(going_on, 2), "dB")
-            yield Row("planar", f"cooled down for {more} steps", round(settled, 2), "dB", None, gained, *wished)
+            yield Row("planar", f"cooled down for {more} steps", round(settled, 2), "dB", None, gained, *target)
 
 
 def stopped(folder: Path, config: TrainConfig, n: int, step_s: float) -> float:

@@ -9,7 +9,7 @@ from planning.base.progress import TimeLimit
 from planning.viewpoints.greedy import greedy
 from planning.viewpoints.problem import Optimiser
 from planning.viewpoints.pso import pso
-from tests.benchmarks.harness import Benchmark, Context, Row, stopwatch
+from tests.benchmarks.harness import Benchmark, Context, Row, timer
 from tests.benchmarks.problems import choose, covered, prepared
 
 GREEDY_S = 8.0
@@ -34,7 +34,7 @@ def measure(context: Context) -> Iterator[Row]:
         for n_views in (*few, *counts):
             methods: dict[str, Optimiser] = {"greedy": greedy} if n_views in few else {"PSO": pso, "greedy": greedy}
             for name, method in methods.items():
-                with stopwatch() as seconds:
+                with timer() as seconds:
                     found = []
                     for seed in range(n_seeds):
                         limit = TimeLimit(GREEDY_S if name == "greedy" else 600.0)

@@ -55,5 +55,5 @@ def gap_row(scene: str, what: str, gaps_ms: Sequence[float], idle_ms: Sequence[f
     """The longest of some gaps of the window's thread against an idle window's; None sets no target."""
     longest, idle = max(gaps_ms), max(idle_ms)
     name = f"{what} (99 %: {np.percentile(gaps_ms, 99):.1f} ms; idle: {idle:.1f} ms)"
-    wished = ("", None) if longest_ms is None else (f"under {longest_ms:g} ms", longest < longest_ms)
-    return Row(scene, name, longest, "ms", longest / idle, "the idle window", *wished)
+    target = ("", None) if longest_ms is None else (f"under {longest_ms:g} ms", longest < longest_ms)
+    return Row(scene, name, longest, "ms", longest / idle, "the idle window", *target)

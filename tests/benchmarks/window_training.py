@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
+from tests.benchmarks.experiments import QUICK_N_VIEWS, QUICK_WIDTH_PX, rendered
 from tests.benchmarks.harness import Benchmark, Context, Row
-from tests.benchmarks.lessons import QUICK_N_VIEWS, QUICK_WIDTH_PX, rendered
 from tests.benchmarks.window_process import GAP_TARGET_MS, gap_row, need_screen, run_window
 
 N_VIEWS, WIDTH_PX = 60, 256

@@ -19,7 +19,7 @@ from planning.plan import read_plan
 from planning.site.bundled import write_scene
 from planning.site.file import read_site
 from tests.cli.conftest import ROOT
-from tests.reconstruction.training.made_data_set import write_data_set
+from tests.reconstruction.training.synthetic_data_set import write_data_set
 from tests.slow import slow
 
 
@@ -31,8 +31,8 @@ def test_version_is_told(reflight):
 
 def test_without_a_command_the_window_opens():
     wishes = []
-    assert main([], lambda wish: wishes.append(wish) or 7) == 7
-    assert main(["--screenshots", "shots", "--site", "a.json"], lambda wish: wishes.append(wish) or 0) == 0
+    assert main([], lambda request: wishes.append(request) or 7) == 7
+    assert main(["--screenshots", "shots", "--site", "a.json"], lambda request: wishes.append(request) or 0) == 0
     assert wishes == [WindowOptions(), WindowOptions(None, Path("shots"), Path("a.json"))]
     assert main(["--site", "a.json"], lambda _wish: 0) == 2
     assert main(["--open", "project", "demo"], lambda _wish: 0) == 2

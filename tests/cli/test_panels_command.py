@@ -9,7 +9,7 @@ import pytest
 
 from groundstation.cli.main import main
 from planning.site.file import read_site
-from tests.reconstruction.made_photos import ORIGIN, made_photos, write_flight, write_model
+from tests.reconstruction.synthetic_photos import ORIGIN, made_photos, write_flight, write_model
 
 AT = f"--origin={ORIGIN.lat_deg},{ORIGIN.lon_deg},{ORIGIN.ellipsoid_height_m}"
 

@@ -9,7 +9,7 @@ from reconstruction.colmap.pycolmap_run import RefineParameters
 from reconstruction.colmap.refined_folder import write_refined
 from reconstruction.photos.poses import pose_photos
 from tests.cli.test_panels_command import AT
-from tests.reconstruction.made_photos import made_photos, write_flight, write_model
+from tests.reconstruction.synthetic_photos import made_photos, write_flight, write_model
 from tests.services.photos.test_poses import refinement
 
 

@@ -6,7 +6,7 @@ import cv2
 import pytest
 
 from tests.cli.test_panels_command import AT
-from tests.reconstruction.made_photos import made_photos, write_flight, write_model
+from tests.reconstruction.synthetic_photos import made_photos, write_flight, write_model
 
 
 @pytest.fixture(scope="module")

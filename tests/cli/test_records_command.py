@@ -9,7 +9,7 @@ import pytest
 
 from planning.site.bundled import write_scene
 from reconstruction.objects.store import write_scene as write_objects
-from tests.reconstruction.objects.made_scene import made_scene
+from tests.reconstruction.objects.synthetic_scene import made_scene
 
 
 @pytest.fixture

@@ -9,7 +9,7 @@ import pytest
 from reconstruction.scenes.facades.cases import wide_camera
 from reconstruction.scenes.facades.record import Layout
 from reconstruction.scenes.facades.render import render_facade
-from tests.reconstruction.made_photos import simple_case
+from tests.reconstruction.synthetic_photos import simple_case
 
 
 @pytest.fixture(scope="module")

@@ -13,7 +13,7 @@ from planning.site.bundled import write_scene
 from planning.site.file import read_site, write_site
 from tests.missions.flight.photo_files import write_photos
 from tests.planning.revision.cases import QUICK
-from tests.reconstruction.made_photos import ORIGIN, made_photos, write_flight, write_model
+from tests.reconstruction.synthetic_photos import ORIGIN, made_photos, write_flight, write_model
 
 AT = f"--origin={ORIGIN.lat_deg},{ORIGIN.lon_deg},{ORIGIN.ellipsoid_height_m}"
 

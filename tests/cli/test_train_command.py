@@ -14,7 +14,7 @@ from reconstruction.base.cameras import Intrinsics
 from reconstruction.light.photo_set import held_out_names
 from reconstruction.training.layers import LAYERS
 from tests.reconstruction.metrics.test_lpips import ALEX, package
-from tests.reconstruction.training.made_data_set import write_data_set
+from tests.reconstruction.training.synthetic_data_set import write_data_set
 
 SETTINGS = "n_splats = 150\nmax_splats = 200\n"
 

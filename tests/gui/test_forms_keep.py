@@ -243,10 +243,12 @@ def test_corners_of_polygons_and_extents_are_kept(application, corners, units):
 def test_a_grid_of_panels_is_kept(application, n_rows, n_columns, gap_m, tolerance_m):
     from groundstation.gui.site.grid_form import GridForm, GridRequest
 
-    wish = GridRequest(((0.1, 0.2, 0.3), (1e4, 0.0, 0.0), (0.0, 0.0, 7.77777)), n_rows, n_columns, gap_m, tolerance_m)
+    request = GridRequest(
+        ((0.1, 0.2, 0.3), (1e4, 0.0, 0.0), (0.0, 0.0, 7.77777)), n_rows, n_columns, gap_m, tolerance_m
+    )
     form = GridForm(IMPERIAL)
-    form.setValue(wish)
-    assert form.value() == wish
+    form.setValue(request)
+    assert form.value() == request
 
 
 @pytest.mark.slow

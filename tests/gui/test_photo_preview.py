@@ -88,7 +88,7 @@ def plan() -> Plan:
 
 @pytest.fixture
 def hands(application, monkeypatch):
-    photo_preview._KEPT.clear()
+    photo_preview._LAST.clear()
     # Small pictures, and still a coarse one before each fine one.
     monkeypatch.setattr(photo_preview, "QUICK_WIDTHS_PX", (32, 64))
     runner = JobRunner()
@@ -96,7 +96,7 @@ def hands(application, monkeypatch):
     yield hands
     hands.close()
     runner.shutdown()
-    photo_preview._KEPT.clear()
+    photo_preview._LAST.clear()
 
 
 def east_of(photo):

@@ -188,13 +188,13 @@ def test_grid_form_gives_back_its_wish_and_reckons_the_panels_size(application):
 
     form = GridForm(METRIC)
     assert form.value() == GridRequest()
-    wish = GridRequest(((0.0, 0.0, 0.0), (36.0, 0.0, 0.0), (0.0, 0.0, 42.0)), 14, 20, 0.1, 1.5)
-    form.setValue(wish)
-    assert form.value() == wish
+    request = GridRequest(((0.0, 0.0, 0.0), (36.0, 0.0, 0.0), (0.0, 0.0, 42.0)), 14, 20, 0.1, 1.5)
+    form.setValue(request)
+    assert form.value() == request
     assert "Panels: 280, each 1.7 m × 2.9 m" in form._size.text()
     told = heard(form.valueChanged)
     form._rows.setValue(7)
-    assert told == [replace(wish, n_rows=7)]
+    assert told == [replace(request, n_rows=7)]
     form.show_state("good", is_good=True)
     assert form.can_accept()
     form.show_error(GridField.GAP, "no glass")

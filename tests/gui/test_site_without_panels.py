@@ -16,7 +16,7 @@ from planning.request import PlanRequest
 from planning.site.bundled import roof
 from tests.gui.driving import choose, clicked, close_controller, turn_until, turn_until_idle
 from tests.planning.revision.cases import QUICK
-from tests.reconstruction.made_photos import ORIGIN, made_photos, write_flight, write_model
+from tests.reconstruction.synthetic_photos import ORIGIN, made_photos, write_flight, write_model
 
 TABS = ("site", "plan", "mission", "fly", "photos")
 

@@ -340,7 +340,7 @@ def _models() -> None:
     from safetensors.torch import save_file
 
     from tests.reconstruction.metrics.test_lpips import arrays_of, heads_file, random_weights
-    from tests.reconstruction.training.made_data_set import write_data_set
+    from tests.reconstruction.training.synthetic_data_set import write_data_set
 
     write_data_set(Path("data"), n=8)
     Path("data/scene.json").write_text('{"exposure": 1.0, "captures": {"p00.png": {"exposure": 1.1}}}')
@@ -391,9 +391,9 @@ def _checkpoint() -> None:
             if self.left < 0:
                 raise OperationCancelled("enough")
 
-    wish = model_training.TrainRequest("smoke", "2dgs", iterations=4, settings=Path("quick.toml"))
+    request = model_training.TrainRequest("smoke", "2dgs", iterations=4, settings=Path("quick.toml"))
     with contextlib.suppress(OperationCancelled):
-        model_training.train_files(Path("data"), Path("state"), wish, monitor=Stopping())
+        model_training.train_files(Path("data"), Path("state"), request, monitor=Stopping())
     assert Path("state/checkpoint.safetensors").is_file(), list(Path("state").iterdir())
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.reconstruction.training.made_data_set import write_data_set
+from tests.reconstruction.training.synthetic_data_set import write_data_set
 
 HERE = Path(__file__).parent
 ROOT = HERE.parents[1]

@@ -17,10 +17,10 @@ from reconstruction.base.cameras import PosedPhoto
 from reconstruction.panels.rectify.fit import SurfaceFit
 from reconstruction.panels.solving.find import FoundPanels
 from reconstruction.panels.solving.solve import solve_facade
-from tests.reconstruction.made_photos import ORIGIN, write_flight
 from tests.reconstruction.panels.rectify.scenes import looking_at
 from tests.reconstruction.panels.rectify.test_surface import surface
 from tests.reconstruction.panels.solving.test_solve import RTK, found_grid, stated
+from tests.reconstruction.synthetic_photos import ORIGIN, write_flight
 
 FLAT = Decision("facade curvature", False, "scene", "it is flat", 0.0, 1.0, "px", 0.0)
 PLACES = ((0.0, 0.0), (7.0, 2.0), (-6.0, -2.0))

@@ -85,10 +85,10 @@ def photos_in(work: Path, photos: Photos) -> Path:
         scene = str(_bare_site_file(work, photos.scene))
         look.write_text(f"street_m = {photos.street_m}\n" if math.isfinite(photos.street_m) else "near = false\n")
     n_points = 0 if flight_path is None else DEFAULT_POINTS
-    wish = SceneRequest(
+    request = SceneRequest(
         scene, plan=plan_path, flight=flight_path, look=look, width_px=photos.width_px, n_points=n_points
     )
-    render_photos(wish, folder, 1)
+    render_photos(request, folder, 1)
     return folder
 
 

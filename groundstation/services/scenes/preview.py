@@ -138,8 +138,8 @@ def cached_photo(
     request: PhotoRequest, *, stop: Stop = never, trace: Trace | None = None, monitor: Monitor = QUIET
 ) -> PreviewPhoto | None:
     """The photo, if this process still has its scene; None if not."""
-    studio = next((kept for kept in _KEPT if kept.key == request.scene_key), None)
-    return None if studio is None else studio.photo(request, monitor)
+    preview_scene = next((kept for kept in _LAST if kept.key == request.scene_key), None)
+    return None if preview_scene is None else preview_scene.photo(request, monitor)
 
 
 def site_photo(
@@ -153,12 +153,12 @@ def site_photo(
         The site has no panels, or more than a photo can number.
     """
     monitor.report(say("building the scene"), 0, 1)
-    _KEPT.clear()
-    _KEPT.append(_Studio(model, request))
-    return _KEPT[0].photo(request, monitor)
+    _LAST.clear()
+    _LAST.append(_PreviewScene(model, request))
+    return _LAST[0].photo(request, monitor)
 
 
-class _Studio:
+class _PreviewScene:
     """A scene, with renderers for quick and for fine pictures. What renders takes a second to import."""
 
     def __init__(self, model: SiteModel, request: PhotoRequest) -> None:
@@ -209,7 +209,7 @@ class _Studio:
         return self._fine[1], tuple(decisions)
 
 
-_KEPT: list[_Studio] = []
+_LAST: list[_PreviewScene] = []
 """The studio of the last photo, at most one."""
 
 

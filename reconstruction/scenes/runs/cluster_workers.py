@@ -57,8 +57,8 @@ def program_sha256() -> str:
 class RenderPlugin(WorkerPlugin):  # type: ignore[misc]  # Dask is not typed
     """What a worker has of a run: how its photographer is made, and, from the first photo on, the photographer."""
 
-    def __init__(self, photographer: Callable[[], RenderWorker], folder: Path, token: bytes, program: str) -> None:
-        self._make, self._folder, self._token, self._program = photographer, folder, token, program
+    def __init__(self, make_worker: Callable[[], RenderWorker], folder: Path, token: bytes, program: str) -> None:
+        self._make, self._folder, self._token, self._program = make_worker, folder, token, program
 
     def setup(self, worker: Any) -> None:
         """Begin; called by Dask in the worker."""
@@ -104,7 +104,7 @@ def _take(run: str, number: int) -> RenderedFiles:
 
 def render_on_cluster(
     client: Any,
-    photographer: Callable[[], RenderWorker],
+    make_worker: Callable[[], RenderWorker],
     job: PhotoJob,
     folder: Path,
     numbers: Sequence[int],
@@ -120,7 +120,7 @@ def render_on_cluster(
         A photo cannot be rendered, or the cluster is gone.
     """
     n_all, left, waiting = len(job.photos), list(numbers), dict[Any, int]()
-    with _in_words(folder), _studios(client, photographer, folder.absolute(), monitor) as run:
+    with _in_words(folder), _installed_plugin(client, make_worker, folder.absolute(), monitor) as run:
         try:
             while left or waiting:
                 rendered = [(future, waiting.pop(future)) for future in list(waiting) if future.done()]
@@ -157,7 +157,9 @@ def _files(future: Any, name: str, folder: Path) -> dict[str, str]:
 
 
 @contextmanager
-def _studios(client: Any, photographer: Callable[[], RenderWorker], folder: Path, monitor: Monitor) -> Iterator[str]:
+def _installed_plugin(
+    client: Any, make_worker: Callable[[], RenderWorker], folder: Path, monitor: Monitor
+) -> Iterator[str]:
     """Name of a run that all workers know of."""
     for place, program in client.run(program_sha256, on_error="return").items():
         if program != program_sha256():
@@ -166,7 +168,7 @@ def _studios(client: Any, photographer: Callable[[], RenderWorker], folder: Path
     write_atomically(folder / TOKEN_FILE, token)
     try:
         monitor.report("giving the scene to the cluster", 0, 1)
-        client.register_plugin(RenderPlugin(photographer, folder, token, program_sha256()), run)
+        client.register_plugin(RenderPlugin(make_worker, folder, token, program_sha256()), run)
         yield run
     finally:
         (folder / TOKEN_FILE).unlink(missing_ok=True)

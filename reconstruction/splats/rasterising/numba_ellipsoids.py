@@ -236,7 +236,7 @@ def gradients_of_ellipsoids(
     g_features: Floats,
     g_offsets: Floats,
 ) -> None:
-    """Add up the slots of ellipsoids `start` to `stop`, and take them back; see `numba_splat_gradients`."""
+    """Add up the slots of ellipsoids `start` to `stop`, and take them back; see `numba_gradients`."""
     n_features, width = g_features.shape[1], slots.shape[1]
     sums, g = np.empty(width, np.float32), np.empty(N_LANES)
     for i in range(start, stop):

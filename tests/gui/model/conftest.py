@@ -5,7 +5,7 @@ import pytest
 from reconstruction.objects.store import write_scene
 from tests.gui.driving import close_controller, turn_until
 from tests.gui.reconstruct.conftest import RecordedProcess
-from tests.reconstruction.objects.made_scene import made_scene
+from tests.reconstruction.objects.synthetic_scene import made_scene
 
 
 @pytest.fixture(scope="module")

@@ -27,7 +27,7 @@ from reconstruction.objects.store import write_scene
 from reconstruction.records.book import FILE
 from reconstruction.records.entries import Attribute, Defect, Document, Inspection, Maintenance
 from tests.gui.driving import choose, clicked, escape, press, shut, turn_until, type_into
-from tests.reconstruction.objects.made_scene import made_scene
+from tests.reconstruction.objects.synthetic_scene import made_scene
 
 
 def looks(page):

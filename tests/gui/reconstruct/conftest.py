@@ -3,7 +3,7 @@
 import pytest
 
 from tests.gui.driving import close_controller, turn_until
-from tests.reconstruction.training.made_data_set import write_data_set
+from tests.reconstruction.training.synthetic_data_set import write_data_set
 
 
 @pytest.fixture(scope="module")

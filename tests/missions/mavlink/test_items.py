@@ -16,7 +16,7 @@ from missions.mission.build import missions_from_plan
 from missions.mission.model import HeightReference, Mission, altitude_amsl_m
 from planning.parameters import FlightRules
 from planning.plan import Plan, Viewpoint
-from tests.missions.mavlink.autopilot_twins import ArduPilotTwin, Px4Twin, Shot
+from tests.missions.mavlink.reference_autopilots import Px4Twin, ReferenceArduPilot, Shot
 from tests.missions.plans import HONG_KONG, example_plan, make_plan, plans, ring
 
 ABOVE = HeightReference.ABOVE_TAKEOFF
@@ -47,10 +47,10 @@ def check_photos(shots: list[Shot], mission: Mission, plan: Plan) -> None:
 @settings(max_examples=40)
 def test_ardupilot_takes_every_photo_in_its_place_and_turned_to_it(plan: Plan, two_axis: bool) -> None:
     for mission in missions_from_plan(plan):
-        twin = ArduPilotTwin(mission.origin, home_of(mission), two_axis=two_axis)
-        shots = twin.run(mission_items(mission, ARDUPILOT, ABOVE))
+        reference = ReferenceArduPilot(mission.origin, home_of(mission), two_axis=two_axis)
+        shots = reference.run(mission_items(mission, ARDUPILOT, ABOVE))
         check_photos(shots, mission, plan)
-        assert twin.n_dropped == 0
+        assert reference.n_dropped == 0
 
 
 @pytest.mark.slow
@@ -67,8 +67,8 @@ def test_hard_turns_on_short_legs_are_waited_for() -> None:
     views = [Viewpoint(f"v{i}", (10.0 + i, 0.0, 25.0), 180.0 * (i % 2), -40.0 + 60.0 * (i % 2)) for i in range(8)]
     plan = make_plan([(views, {})], rules=FlightRules(settle_s=0.0))
     (mission,) = missions_from_plan(plan)
-    twin = ArduPilotTwin(mission.origin, home_of(mission))
-    check_photos(twin.run(mission_items(mission, ARDUPILOT, ABOVE)), mission, plan)
+    reference = ReferenceArduPilot(mission.origin, home_of(mission))
+    check_photos(reference.run(mission_items(mission, ARDUPILOT, ABOVE)), mission, plan)
     check_photos(Px4Twin(mission.origin, home_of(mission)).run(mission_items(mission, PX4, ABOVE)), mission, plan)
 
 
@@ -82,10 +82,10 @@ class TestTheTwinSeesWhatWasMeasured:
     def ours(self) -> list[MissionItem]:
         return list(mission_items(self.mission(), ARDUPILOT, ABOVE))
 
-    def run(self, items: list[MissionItem], two_axis: bool = False) -> ArduPilotTwin:
-        twin = ArduPilotTwin(HONG_KONG, home_of(self.mission()), two_axis=two_axis)
-        twin.run(items)
-        return twin
+    def run(self, items: list[MissionItem], two_axis: bool = False) -> ReferenceArduPilot:
+        reference = ReferenceArduPilot(HONG_KONG, home_of(self.mission()), two_axis=two_axis)
+        reference.run(items)
+        return reference
 
     def test_naive_order_loses_nearly_all_photos_on_short_legs(self) -> None:
         items = self.ours()
@@ -101,8 +101,8 @@ class TestTheTwinSeesWhatWasMeasured:
                 naive.append(item)
             if item.command == 16 and len(naive) > 4:
                 naive += [held, plain(203, 0, 0, 0, 0, 1)]
-        twin = self.run(naive)
-        assert twin.n_dropped >= 6
+        reference = self.run(naive)
+        assert reference.n_dropped >= 6
 
     def test_mount_after_yaw_turns_photos_of_the_south_to_the_north_on_a_gimbal_without_pan(self) -> None:
         items = self.ours()

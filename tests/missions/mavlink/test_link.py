@@ -26,7 +26,7 @@ from missions.mavlink.transfer.exchange import Ending, Route
 from missions.mavlink.transfer.verified import Clear, Verified, VerifiedUpload
 from planning.base.errors import InputError, LinkError, LinkTimeout, OperationCancelled
 from tests.missions.mavlink.driving import drive
-from tests.missions.mavlink.transfer.twins import ARDUPILOT, OWN, TwinVehicle, waypoints
+from tests.missions.mavlink.transfer.fake_vehicle import ARDUPILOT, OWN, FakeVehicle, waypoints
 
 WAIT_S = 60.0
 """Longest wait for what comes at once; a test that fails takes it."""
@@ -262,10 +262,10 @@ def test_serial_line_that_is_not_there_is_an_error() -> None:
 
 
 @dataclass
-class TwinLink:
+class FakeLink:
     """A link to a twin in a time that `receive` lets pass."""
 
-    vehicle: TwinVehicle
+    vehicle: FakeVehicle
     address: Address = OWN
     now_s: float = 0.0
     sent: list[Message] = field(default_factory=list)
@@ -301,7 +301,7 @@ ROUTE = Route(OWN, VEHICLE)
 
 
 def test_drive_runs_to_the_outcome_with_progress_and_shows_all_that_comes() -> None:
-    link, progress, seen = TwinLink(TwinVehicle(ARDUPILOT)), Progress(), list[Received]()
+    link, progress, seen = FakeLink(FakeVehicle(ARDUPILOT)), Progress(), list[Received]()
     outcome = drive(VerifiedUpload(ROUTE, waypoints(20), ARDUPILOT), link, lambda: link.now_s, progress, seen.append)
     assert isinstance(outcome, Verified)
     assert {stage for stage, _, _ in progress.reports} == {"uploading", "reading back"}
@@ -312,7 +312,7 @@ def test_drive_runs_to_the_outcome_with_progress_and_shows_all_that_comes() -> N
 
 
 def test_drive_sends_a_heartbeat_each_second() -> None:
-    link = TwinLink(TwinVehicle(ARDUPILOT))
+    link = FakeLink(FakeVehicle(ARDUPILOT))
     link.vehicle.receive = lambda received: []  # type: ignore[method-assign]
     outcome = drive(Clear(ROUTE), link, lambda: link.now_s)
     assert outcome.ending is Ending.SILENT
@@ -320,7 +320,7 @@ def test_drive_sends_a_heartbeat_each_second() -> None:
 
 
 def test_cancelled_drive_tells_the_vehicle() -> None:
-    link = TwinLink(TwinVehicle(ARDUPILOT))
+    link = FakeLink(FakeVehicle(ARDUPILOT))
     with pytest.raises(OperationCancelled):
         drive(VerifiedUpload(ROUTE, waypoints(20), ARDUPILOT), link, lambda: link.now_s, Progress(limit=5))
     assert link.sent[-1] == MissionAck(1, 1, 15, 0)
@@ -328,7 +328,7 @@ def test_cancelled_drive_tells_the_vehicle() -> None:
 
 def test_drive_over_a_real_socket_ends_verified(pair: tuple[ChannelLink, ChannelLink]) -> None:
     ground, vehicle_link = pair
-    vehicle, is_over = TwinVehicle(ARDUPILOT), threading.Event()
+    vehicle, is_over = FakeVehicle(ARDUPILOT), threading.Event()
 
     def serve() -> None:
         while not is_over.is_set():

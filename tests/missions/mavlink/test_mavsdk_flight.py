@@ -14,7 +14,7 @@ from missions.mavlink.transfer.wire_items import to_wire
 from missions.mission.build import missions_from_plan
 from missions.mission.model import HeightReference
 from missions.simulator.vehicle import SimulatedVehicle
-from tests.missions.mavlink.transfer.twins import ARDUPILOT, PX4
+from tests.missions.mavlink.transfer.fake_vehicle import ARDUPILOT, PX4
 from tests.missions.plans import make_plan, ring
 from tests.missions.simulator.ground import PointMass
 from tests.slow import slow

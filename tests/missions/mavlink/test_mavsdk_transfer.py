@@ -27,8 +27,8 @@ from missions.mission.model import GeoPoint, HeightReference
 from missions.simulator.server import serve
 from missions.simulator.vehicle import SimulatedVehicle
 from tests.missions.mavlink.driving import drive
+from tests.missions.mavlink.transfer.fake_vehicle import ARDUPILOT, PX4
 from tests.missions.mavlink.transfer.test_simulated_vehicle import planned
-from tests.missions.mavlink.transfer.twins import ARDUPILOT, PX4
 from tests.missions.plans import example_plan
 from tests.missions.simulator.ground import ORIGIN, PointMass
 from tests.slow import slow

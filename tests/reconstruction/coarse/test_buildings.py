@@ -12,7 +12,7 @@ from reconstruction.base.ray_casting import RayCaster
 from reconstruction.coarse.buildings import make_buildings, moved, prism
 from reconstruction.coarse.cloud import in_ring
 from reconstruction.coarse.walls import BuildingParameters, find_ground
-from tests.reconstruction.coarse.made_clouds import LOW, TALL, cameras, made_cloud
+from tests.reconstruction.coarse.synthetic_clouds import LOW, TALL, cameras, made_cloud
 
 SIZES = BuildingParameters(cell_m=0.35, tolerance_m=0.08)
 

@@ -8,12 +8,12 @@ import numpy as np
 from planning.base.errors import OperationCancelled
 from reconstruction.exports.component_parts import Ellipsoids, ellipsoids_of_all
 from reconstruction.exports.gaussian_blocks import morton_order, turned
-from tests.reconstruction.objects.made_scene import made_scene
+from tests.reconstruction.objects.synthetic_scene import synthetic_scene
 
 
 def scene_with(n=40, **columns):
     """A background whose Gaussians have numbers of a test's own."""
-    scene = made_scene(((1,),), n)
+    scene = synthetic_scene(((1,),), n)
     for name, value in columns.items():
         for component in scene.components:
             component.gaussians.values[name][:] = value

@@ -16,7 +16,7 @@ from reconstruction.splats.harmonic_colour import display_colours, light_of_disp
 from reconstruction.training.config import TrainConfig
 from reconstruction.training.photos.photo_stream import PhotoStream
 from reconstruction.training.train import train_model
-from tests.reconstruction.training.made_data_set import write_data_set
+from tests.reconstruction.training.synthetic_data_set import write_data_set
 
 LIGHT = ReflectionConfig(environment_rows=8, steps=30, batch=512)
 CONFIG = TrainConfig(

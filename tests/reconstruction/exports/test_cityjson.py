@@ -17,14 +17,14 @@ from reconstruction.objects.gs_scene import GsElement
 from reconstruction.records.entries import global_id_of
 from tests.planning.facade_shapes import SHAPES, facades, normal
 from tests.reconstruction.exports.hard_scenes import Interrupted
-from tests.reconstruction.objects.made_scene import ORIGIN, made_scene
+from tests.reconstruction.objects.synthetic_scene import ORIGIN, synthetic_scene
 
 EAST = ((12.0, 3.0, 0.5), (12.0, 5.5, 0.5), (12.0, 5.5, 2.25), (12.0, 3.0, 2.25))
 
 
 def scene_at(origin=ORIGIN, name="made"):
     """Two facades, to the south and to the east."""
-    scene = made_scene(((1, 0, 1), (1,)), 1, name=name)
+    scene = synthetic_scene(((1, 0, 1), (1,)), 1, name=name)
     south, east, rest = scene.components
     east = replace(east, elements=(replace(east.elements[0], corners_enu_m=EAST),))
     return replace(scene, components=(south, east, rest), origin=origin)
@@ -64,8 +64,8 @@ def test_imported_again_panels_are_the_same(tmp_path, origin, epsg):
 
 def scene_of(shape):
     """A model of a shape's panes, without Gaussians."""
-    scene = made_scene(((),), 0, name=shape)
-    template, components, panel = made_scene().components[0], [], 0
+    scene = synthetic_scene(((),), 0, name=shape)
+    template, components, panel = synthetic_scene().components[0], [], 0
     for facade in facades(shape):
         elements = []
         for each in facade.panels:
@@ -149,7 +149,7 @@ def test_without_a_place_on_earth_coordinates_are_local(tmp_path):
 @pytest.mark.parametrize(
     ("scene", "attributes", "message"),
     [
-        (made_scene(((),), 3), {}, "there are no panels"),
+        (synthetic_scene(((),), 3), {}, "there are no panels"),
         (scene_at(Origin(84.5, 0.0, 0.0)), {}, r"latitude is 84.5°, and UTM has -80° to 84°"),
         (scene_at(Origin(-81.0, 0.0, 0.0)), {}, r"latitude is -81.0°"),
         (scene_at(), {scene_at().global_id: {"U": float("nan")}}, "attribute 'U': expected finite numbers"),

@@ -13,7 +13,7 @@ from reconstruction.exports.tiles3d import branches_of, coarser_part, part_of_br
 from reconstruction.splats.merged_splats import FEWEST
 from reconstruction.splats.rasterising.raster_types import RasterSettings
 from reconstruction.splats.splats import Splats
-from tests.reconstruction.objects.made_scene import made_scene, pane
+from tests.reconstruction.objects.synthetic_scene import pane, synthetic_scene
 from tests.reconstruction.splats.test_merged_splats import drawn, from_south
 
 
@@ -24,7 +24,7 @@ def halves_of(component, at_most):
 
 def facade_of(sizes, seed=0):
     """A facade whose Gaussians lie on its panels, which are 1.35 m x 1.8 m."""
-    scene = made_scene((sizes,), 0, seed=seed)
+    scene = synthetic_scene((sizes,), 0, seed=seed)
     facade, rng = scene.components[0], np.random.default_rng(seed)
     for column, element in enumerate(facade.elements):
         corners = np.array(pane(column, 0))
@@ -110,7 +110,7 @@ def test_what_cannot_be_merged_has_none(sizes):
 
 
 def test_backgrounds_have_no_panels():
-    background = made_scene((), 4000).components[-1]
+    background = synthetic_scene((), 4000).components[-1]
     found = coarser_part(halves_of(background, 2000), 500)
     assert found is not None
     assert found.component.kind == "background"

@@ -10,7 +10,7 @@ from hypothesis.extra import numpy as hnp
 from reconstruction.exports.component_parts import THICKNESS_M, ellipsoids_of, ellipsoids_of_all, unit_quaternions
 from reconstruction.splats.harmonic_colour import display_colours
 from reconstruction.splats.splats import normals_of
-from tests.reconstruction.objects.made_scene import made_scene
+from tests.reconstruction.objects.synthetic_scene import synthetic_scene
 
 
 def standard_harmonics(directions):
@@ -42,7 +42,7 @@ def standard_harmonics(directions):
 
 
 def test_colours_are_those_of_the_model_from_any_side():
-    scene = made_scene()
+    scene = synthetic_scene()
     for component in scene.components:
         found = ellipsoids_of(component)
         values = {name: torch.from_numpy(value.copy()) for name, value in component.gaussians.values.items()}
@@ -55,7 +55,7 @@ def test_colours_are_those_of_the_model_from_any_side():
 
 
 def test_discs_are_thin_along_their_normals_and_know_their_panels():
-    scene = made_scene()
+    scene = synthetic_scene()
     found = ellipsoids_of_all(scene.components)
     assert len(found) == scene.n_gaussians
     assert (found.scales_m[:, 2] == np.float32(THICKNESS_M)).all()
@@ -81,7 +81,7 @@ def test_quaternions_of_any_length_become_unit_ones(quats):
 
 @pytest.mark.parametrize("logit", [-1e4, -80.0, 0.0, 80.0, 1e4])
 def test_opacities_of_any_logit_are_shares(logit):
-    scene = made_scene()
+    scene = synthetic_scene()
     scene.components[0].gaussians.values["opacity_logits"][:] = logit
     found = ellipsoids_of(scene.components[0]).opacities
     np.testing.assert_allclose(found, 0.5 * (1.0 + np.tanh(0.5 * logit)), atol=1e-7)

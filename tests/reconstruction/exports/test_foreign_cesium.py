@@ -10,7 +10,7 @@ from reconstruction.exports.tiles3d import DEFAULT, TilesOptions, write_tiles
 from reconstruction.splats.harmonic_colour import display_colours
 from tests import foreign
 from tests.reconstruction.exports.web_browser import chromium
-from tests.reconstruction.objects.made_scene import made_scene
+from tests.reconstruction.objects.synthetic_scene import synthetic_scene
 
 pytestmark = pytest.mark.slow
 
@@ -46,7 +46,7 @@ def serve(tmp_path, browser):
 
 def scene_of(places_m, colours, bands=None, size_m=0.4):
     """Balls on no panel, around the scene's origin, and two panels of a facade that looks south."""
-    scene = made_scene(((1, 1),), len(places_m))
+    scene = synthetic_scene(((1, 1),), len(places_m))
     values = scene.components[-1].gaussians.values
     values["means"][:] = places_m
     values["quats"][:] = (1.0, 0.0, 0.0, 0.0)

@@ -13,7 +13,7 @@ from reconstruction.exports.tiles3d import TilesOptions, write_tiles
 from tests.foreign import run_node
 from tests.reconstruction.exports.glb_reader import Glb
 from tests.reconstruction.exports.test_gltf import HOSTILE
-from tests.reconstruction.objects.made_scene import made_scene
+from tests.reconstruction.objects.synthetic_scene import synthetic_scene
 
 pytestmark = pytest.mark.slow
 
@@ -46,7 +46,7 @@ def attributes_for(scene):
 @pytest.mark.parametrize("gaussians", ["numbers", "spz"])
 @pytest.mark.parametrize(("sizes", "rest", "degree"), [(((3, 0, 5), (2,)), 4, 3), (((0, 0),), 0, 1), ((), 1, 0)])
 def test_khronos_validator_finds_nothing(tmp_path, sizes, rest, degree, gaussians):
-    scene = made_scene(sizes, rest)
+    scene = synthetic_scene(sizes, rest)
     path = tmp_path / "model.glb"
     write_gltf(scene, path, GltfOptions(sh_degree=degree, gaussians=gaussians), attributes_for(scene)[0])
     issues = run_node("validate_gltf.js", renamed(path))["issues"]
@@ -64,7 +64,7 @@ def test_khronos_validator_finds_nothing(tmp_path, sizes, rest, degree, gaussian
 
 
 def test_babylon_finds_gaussians_and_panels(tmp_path):
-    scene = made_scene(((30, 0, 50), (2,)), 40)
+    scene = synthetic_scene(((30, 0, 50), (2,)), 40)
     path = tmp_path / "model.glb"
     write_gltf(scene, path)
     found = run_node("read_babylon.js", path)
@@ -86,7 +86,7 @@ def test_babylon_finds_gaussians_and_panels(tmp_path):
 
 
 def test_loaders_gl_finds_the_records_of_panels(tmp_path):
-    scene = made_scene(((3, 0, 5), (2,)))
+    scene = synthetic_scene(((3, 0, 5), (2,)))
     attributes, ids = attributes_for(scene)
     path = tmp_path / "model.glb"
     write_gltf(scene, path, GltfOptions(), attributes)
@@ -102,14 +102,14 @@ def test_loaders_gl_finds_the_records_of_panels(tmp_path):
 
 
 def test_loaders_gl_walks_the_tileset(tmp_path):
-    scene = made_scene(((30, 0, 50, 9), (2,)), 100, name=HOSTILE[0])
+    scene = synthetic_scene(((30, 0, 50, 9), (2,)), 100, name=HOSTILE[0])
     write_tiles(scene, tmp_path, TilesOptions(gaussians_per_tile=25))
     found = run_node("read_tileset.js", tmp_path / "tileset.json")
     assert (found["type"], found["version"]) == ("TILES3D", "1.1")
     urls = [tile["url"] for tile in found["tiles"] if tile["type"] == "scenegraph"]
     assert sorted(urls) == sorted(str(path) for path in tmp_path.glob("*.glb"))
     assert all((tile["type"] == "scenegraph") == (tile["error"] == 0.0) for tile in found["tiles"])
-    write_tiles(made_scene(((900, 800),), 3000), tmp_path, TilesOptions(gaussians_per_tile=1000))
+    write_tiles(synthetic_scene(((900, 800),), 3000), tmp_path, TilesOptions(gaussians_per_tile=1000))
     coarser = [tile for tile in run_node("read_tileset.js", tmp_path / "tileset.json")["tiles"] if tile["n_children"]]
     assert {(tile["type"], tile.get("refine")) for tile in coarser} == {
         ("empty", 1),

@@ -26,7 +26,7 @@ from tests.reconstruction.exports.hard_scenes import antialiased, in_order
 from tests.reconstruction.exports.sog.reading import read_sog
 from tests.reconstruction.exports.spz.reading import read_spz
 from tests.reconstruction.exports.test_turned_axes import covariances
-from tests.reconstruction.objects.made_scene import made_scene
+from tests.reconstruction.objects.synthetic_scene import synthetic_scene
 
 pytestmark = pytest.mark.slow
 
@@ -50,7 +50,7 @@ writeFileSync(out, JSON.stringify(found));
 @pytest.fixture(scope="module")
 def scene():
     """With opacities that have finite logits in 8 bits."""
-    scene = made_scene(((120, 0, 60), (70,)), 50)
+    scene = synthetic_scene(((120, 0, 60), (70,)), 50)
     for component in scene.components:
         logits = component.gaussians.values["opacity_logits"]
         np.clip(logits, -5.0, 5.0, out=logits)

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from reconstruction.exports.component_parts import Ellipsoids, ellipsoids_of_all
 from reconstruction.exports.web import COLOUR_RANGE, FAINTEST, FLAT, N_AT_ONCE, packed
-from tests.reconstruction.objects.made_scene import made_scene
+from tests.reconstruction.objects.synthetic_scene import synthetic_scene
 
 
 def some(n, seed=0, **changes):
@@ -89,5 +89,5 @@ def test_no_gaussians_and_huge_ones_are_packed_too():
 
 
 def test_scenes_of_discs_keep_their_thickness():
-    found = unpacked(packed(ellipsoids_of_all(made_scene().components), np.full(14, -1, np.int32), 0).words)
+    found = unpacked(packed(ellipsoids_of_all(synthetic_scene().components), np.full(14, -1, np.int32), 0).words)
     np.testing.assert_allclose(found["scales_m"][:, 2], 1e-6, atol=6e-8)

@@ -17,7 +17,7 @@ from reconstruction.exports.gltf import GltfOptions, write_gltf
 from reconstruction.objects.gs_scene import GsGaussian
 from tests.reconstruction.exports.glb_reader import FEATURES, SPLATTING, Glb
 from tests.reconstruction.exports.spz.reading import read_spz
-from tests.reconstruction.objects.made_scene import gaussians, made_scene
+from tests.reconstruction.objects.synthetic_scene import gaussians, synthetic_scene
 
 IDENTIFIER = re.compile(r"[a-zA-Z_][a-zA-Z0-9_]*")
 
@@ -62,7 +62,7 @@ def component_with(scene, number, **values):
 
 @pytest.mark.parametrize("degree", [0, 1, 2, 3])
 def test_gaussians_have_the_numbers_of_the_scene(tmp_path, degree):
-    scene = made_scene()
+    scene = synthetic_scene()
     found = written(scene, tmp_path, GltfOptions(sh_degree=degree))
     for component in scene.components:
         expected, values = ellipsoids_of(component), found.attributes(f"{component.name}: Gaussians")
@@ -81,7 +81,7 @@ def test_gaussians_have_the_numbers_of_the_scene(tmp_path, degree):
 
 
 def test_points_alone_are_the_same_points(tmp_path):
-    scene = made_scene()
+    scene = synthetic_scene()
     whole = written(scene, tmp_path).attributes("A: Gaussians")
     found = written(scene, tmp_path, GltfOptions(gaussians="points"))
     points = found.attributes("A: Gaussians")
@@ -92,7 +92,7 @@ def test_points_alone_are_the_same_points(tmp_path):
 
 @pytest.mark.parametrize("degree", [0, 1, 3])
 def test_compressed_gaussians_are_those_of_the_file_within_the_file(tmp_path, degree):
-    scene = made_scene(((300, 0, 5), (2,)), 40)
+    scene = synthetic_scene(((300, 0, 5), (2,)), 40)
     options = GltfOptions(sh_degree=degree, gaussians="spz", compression=PRESETS["fine"])
     found = written(scene, tmp_path, options)
     assert found.json["extensionsRequired"] == [SPLATTING, SPZ]
@@ -126,7 +126,7 @@ def test_compressed_gaussians_are_those_of_the_file_within_the_file(tmp_path, de
 
 
 def test_compressed_gaussians_that_nobody_sees_stay_so_that_no_file_is_without_any(tmp_path):
-    scene = made_scene(((3,),), 0)
+    scene = synthetic_scene(((3,),), 0)
     for component in scene.components:
         component.gaussians.values["opacity_logits"][:] = -20.0
     found = written(scene, tmp_path, GltfOptions(gaussians="spz"))
@@ -134,7 +134,7 @@ def test_compressed_gaussians_that_nobody_sees_stay_so_that_no_file_is_without_a
 
 
 def test_points_of_viewers_without_gaussians_have_the_diffuse_colour(tmp_path):
-    scene = made_scene()
+    scene = synthetic_scene()
     values = written(scene, tmp_path).attributes("background: Gaussians")
     display = np.clip(0.5 + values[f"{SPLATTING}:SH_DEGREE_0_COEF_0"] / (2.0 * np.sqrt(np.pi)), 0.0, 1.0)
     light = values["COLOR_0"][:, :3]
@@ -144,7 +144,7 @@ def test_points_of_viewers_without_gaussians_have_the_diffuse_colour(tmp_path):
 
 
 def test_the_root_turns_east_north_up_into_y_up_at_the_place_in_the_site(tmp_path):
-    scene = made_scene()
+    scene = synthetic_scene()
     found = written(scene, tmp_path)
     (root,) = found.json["scenes"][0]["nodes"]
     node = found.json["nodes"][root]
@@ -161,7 +161,7 @@ def test_the_root_turns_east_north_up_into_y_up_at_the_place_in_the_site(tmp_pat
 
 
 def test_another_reader_finds_points_and_panels_where_they_are(tmp_path):
-    scene = made_scene(((300, 0, 5), (2,)), 40)
+    scene = synthetic_scene(((300, 0, 5), (2,)), 40)
     write_gltf(scene, tmp_path / "model.glb")
     read = trimesh.load(tmp_path / "model.glb")
     turn = np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]])
@@ -183,7 +183,7 @@ def test_another_reader_finds_points_and_panels_where_they_are(tmp_path):
 
 
 def test_rows_of_the_table_are_those_that_gaussians_and_quads_name(tmp_path):
-    scene = made_scene(((3, 0, 5), (2, 1)))
+    scene = synthetic_scene(((3, 0, 5), (2, 1)))
     found = written(scene, tmp_path)
     rows = found.table
     for component in scene.components[:-1]:
@@ -210,7 +210,7 @@ def test_rows_of_the_table_are_those_that_gaussians_and_quads_name(tmp_path):
 
 
 def test_quads_are_not_seen_and_not_passed_through(tmp_path):
-    (material,) = written(made_scene(), tmp_path).json["materials"]
+    (material,) = written(synthetic_scene(), tmp_path).json["materials"]
     opacity = material["pbrMetallicRoughness"]["baseColorFactor"][3]
     # Less than half a step of 8 bits, and more than nothing: viewers discard fragments of opacity 0 when picking.
     assert 0.0 < opacity * 255 < 0.5
@@ -235,7 +235,7 @@ VALUES = st.one_of(
     st.booleans(),
 )
 def test_attributes_come_back_as_they_were(tmp_path_factory, given_attributes, is_named):
-    scene = made_scene(((1, 0, 2),), 0)
+    scene = synthetic_scene(((1, 0, 2),), 0)
     ids = [element.global_id for _, element in scene.elements]
     attributes = dict(zip(ids, given_attributes, strict=True)) | ({"unknown": {"a": 1}} if is_named else {})
     found = written(scene, tmp_path_factory.mktemp("glb"), GltfOptions(0), attributes)
@@ -253,7 +253,7 @@ def test_attributes_come_back_as_they_were(tmp_path_factory, given_attributes, i
 
 
 def test_columns_have_the_narrowest_type_that_holds_all(tmp_path):
-    scene = made_scene(((1, 1, 1),), 0)
+    scene = synthetic_scene(((1, 1, 1),), 0)
     columns = {
         "few": (1, -2, 3),
         "some missing": (-(2**31), None, 0),
@@ -285,7 +285,7 @@ def test_columns_have_the_narrowest_type_that_holds_all(tmp_path):
 
 
 def test_hostile_names_stay_data(tmp_path):
-    scene = made_scene(((1,) * len(HOSTILE), (2,)), 1)
+    scene = synthetic_scene(((1,) * len(HOSTILE), (2,)), 1)
     component = scene.components[0]
     elements = tuple(replace(element, name=name) for element, name in zip(component.elements, HOSTILE, strict=True))
     named = replace(component, name='../"A"\0', elements=elements)
@@ -305,7 +305,7 @@ def test_hostile_names_stay_data(tmp_path):
     [((), 0, 0), (((0, 0),), 0, 1), ((), 1, 1), (((),), 2, 1), (((1,), ()), 0, 2)],
 )
 def test_scenes_may_lack_anything(tmp_path, sizes, n_background, n_meshes):
-    scene = replace(made_scene(sizes, n_background), origin=None)
+    scene = replace(synthetic_scene(sizes, n_background), origin=None)
     found = written(scene, tmp_path)
     assert len(found.json.get("meshes", [])) == n_meshes
     assert found.json["asset"]["extras"]["origin_wgs84"] is None
@@ -315,7 +315,7 @@ def test_scenes_may_lack_anything(tmp_path, sizes, n_background, n_meshes):
 
 
 def test_sizes_may_be_as_good_as_none(tmp_path):
-    scene = made_scene((), 5)
+    scene = synthetic_scene((), 5)
     scene = component_with(scene, 0, log_scales=np.full((5, 3), -200.0, np.float32))
     scales = written(scene, tmp_path).attributes("background: Gaussians")[f"{SPLATTING}:SCALE"]
     assert (scales == 0.0).all()
@@ -324,7 +324,7 @@ def test_sizes_may_be_as_good_as_none(tmp_path):
 @pytest.mark.parametrize("number", [np.nan, np.inf, -np.inf])
 @pytest.mark.parametrize("column", ["means", "quats", "log_scales", "opacity_logits", "sh"])
 def test_numbers_that_are_none_are_refused_and_the_old_file_stays(tmp_path, column, number):
-    scene = made_scene()
+    scene = synthetic_scene()
     write_gltf(scene, tmp_path / "model.glb")
     before = (tmp_path / "model.glb").read_bytes()
     values = scene.components[1].gaussians.values[column].copy()
@@ -335,7 +335,7 @@ def test_numbers_that_are_none_are_refused_and_the_old_file_stays(tmp_path, colu
 
 
 def test_attributes_sizes_and_origins_must_be_numbers(tmp_path):
-    scene = made_scene()
+    scene = synthetic_scene()
     path = tmp_path / "model.glb"
     first = scene.components[0].elements[0]
     with pytest.raises(InputError, match="attribute 'u': expected finite numbers, got nan"):
@@ -356,22 +356,22 @@ def test_attributes_sizes_and_origins_must_be_numbers(tmp_path):
 
 
 def test_a_cancelled_export_leaves_the_old_file(tmp_path):
-    scene = made_scene()
+    scene = synthetic_scene()
     write_gltf(scene, tmp_path / "model.glb")
     before = (tmp_path / "model.glb").read_bytes()
     with pytest.raises(OperationCancelled):
-        write_gltf(made_scene(seed=1), tmp_path / "model.glb", monitor=Cancelling(after=1))
+        write_gltf(synthetic_scene(seed=1), tmp_path / "model.glb", monitor=Cancelling(after=1))
     assert (tmp_path / "model.glb").read_bytes() == before
     assert len(list(tmp_path.iterdir())) == 1
 
 
 def test_places_that_cannot_be_written_are_refused(tmp_path):
     with pytest.raises(InputError, match="no folder"):
-        write_gltf(made_scene(), tmp_path / "none" / "model.glb")
+        write_gltf(synthetic_scene(), tmp_path / "none" / "model.glb")
     with pytest.raises(InputError, match="folder"):
-        write_gltf(made_scene(), tmp_path)
+        write_gltf(synthetic_scene(), tmp_path)
     with pytest.raises(InputError, match="no file"):
-        write_gltf(made_scene(), type(tmp_path)("/dev/null"))
+        write_gltf(synthetic_scene(), type(tmp_path)("/dev/null"))
 
 
 def test_more_than_four_gigabytes_are_refused(tmp_path):
@@ -383,14 +383,14 @@ def test_more_than_four_gigabytes_are_refused(tmp_path):
 
 
 def test_the_same_scene_makes_the_same_bytes(tmp_path):
-    attributes = {made_scene().components[0].elements[0].global_id: {"b": 1, "a": "x"}}
+    attributes = {synthetic_scene().components[0].elements[0].global_id: {"b": 1, "a": "x"}}
     for name in ("one.glb", "two.glb"):
-        write_gltf(made_scene(), tmp_path / name, attributes=attributes)
+        write_gltf(synthetic_scene(), tmp_path / name, attributes=attributes)
     assert (tmp_path / "one.glb").read_bytes() == (tmp_path / "two.glb").read_bytes()
 
 
 def test_blocks_are_those_of_the_whole(tmp_path):
-    scene = made_scene(((AT_ONCE - 1, 0, 3), (5,)), 2)
+    scene = synthetic_scene(((AT_ONCE - 1, 0, 3), (5,)), 2)
     found = written(scene, tmp_path, GltfOptions(0))
     expected, values = ellipsoids_of(scene.components[0]), found.attributes("A: Gaussians")
     assert np.array_equal(values["POSITION"], expected.means_m)
@@ -401,7 +401,7 @@ def test_blocks_are_those_of_the_whole(tmp_path):
 
 @given(st.lists(st.integers(0, 4), max_size=5), st.integers(0, 12), st.integers(0, 12))
 def test_parts_keep_the_elements_of_their_rows(sizes, start, length):
-    component = made_scene((tuple(sizes),), 0).components[0]
+    component = synthetic_scene((tuple(sizes),), 0).components[0]
     n = len(component.gaussians)
     start, stop = min(start, n), min(start + length, n)
     part = part_of(component, start, stop)
@@ -418,7 +418,7 @@ def test_names_become_different_identifiers(names):
 
 def test_gaussians_of_three_sizes_keep_the_third(tmp_path):
     rng = np.random.default_rng(0)
-    scene = made_scene((), 4)
+    scene = synthetic_scene((), 4)
     sizes = rng.normal(-3.0, 1.0, (4, 3)).astype(np.float32)
     scene = component_with(scene, 0, **gaussians(4, rng).values | {"log_scales": sizes})
     scales = written(scene, tmp_path).attributes("background: Gaussians")[f"{SPLATTING}:SCALE"]

@@ -16,7 +16,7 @@ from reconstruction.splats.sky import Sky
 from reconstruction.splats.splats import Splats
 from reconstruction.training.model.joint_model import SceneModel
 from tests.reconstruction.exports.hard_scenes import Interrupted
-from tests.reconstruction.objects.made_scene import made_scene
+from tests.reconstruction.objects.synthetic_scene import synthetic_scene
 
 ORIGIN_M = np.array([1.0, 2.0, 3.0])
 SOUTH = ((0.0, 0.0, 0.0), (1.5, 0.0, 0.0), (1.5, 0.0, 2.0), (0.0, 0.0, 2.0))
@@ -28,7 +28,7 @@ OPTIONS = MeshOptions(px_per_m=40.0, page_px=256)
 
 
 def scene_and_model():
-    scene = made_scene(((1,), (1,)), 1)
+    scene = synthetic_scene(((1,), (1,)), 1)
     corners = (SOUTH, EAST)
     components = [
         replace(component, elements=(replace(component.elements[0], corners_enu_m=corners[number]),))

@@ -9,9 +9,9 @@ import pytest
 
 from planning.base.errors import InputError
 from reconstruction.exports.page_records import LONGEST_PX, by_object, columns_of, size_m, small_jpeg
-from tests.reconstruction.objects.made_scene import made_scene
+from tests.reconstruction.objects.synthetic_scene import synthetic_scene
 
-ELEMENTS = [element for _, element in made_scene().elements]
+ELEMENTS = [element for _, element in synthetic_scene().elements]
 A, B = ELEMENTS[0].global_id, ELEMENTS[1].global_id
 KNOWN = frozenset({A, B})
 

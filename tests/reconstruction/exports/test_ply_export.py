@@ -9,7 +9,7 @@ from reconstruction.exports.gaussian_blocks import turned
 from reconstruction.exports.ply_export import write_ply
 from reconstruction.splats.ply import ODD, read_blocks, read_header, read_splats
 from tests.reconstruction.exports.hard_scenes import Interrupted, antialiased, quaternion_errors, scene_with
-from tests.reconstruction.objects.made_scene import made_scene
+from tests.reconstruction.objects.synthetic_scene import synthetic_scene
 
 START = ["x", "y", "z", "nx", "ny", "nz", "f_dc_0", "f_dc_1", "f_dc_2"]
 
@@ -18,7 +18,7 @@ START = ["x", "y", "z", "nx", "ny", "nz", "f_dc_0", "f_dc_1", "f_dc_2"]
 @pytest.mark.parametrize("degree", [0, 3])
 def test_columns_stand_in_the_order_that_programs_go_by(tmp_path, kind, n_sizes, degree):
     path = tmp_path / "наш вид.ply"
-    done = write_ply(made_scene(), path, kind, degree=degree, least_opacity=0.0)
+    done = write_ply(synthetic_scene(), path, kind, degree=degree, least_opacity=0.0)
     header = read_header(path)
     rest = [f"f_rest_{i}" for i in range(3 * ((degree + 1) ** 2 - 1))]
     sizes = [f"scale_{i}" for i in range(n_sizes)]
@@ -32,13 +32,13 @@ def test_columns_stand_in_the_order_that_programs_go_by(tmp_path, kind, n_sizes,
 
 @pytest.mark.parametrize("is_on", [True, False])
 def test_a_file_says_whether_it_is_to_be_drawn_antialiased(tmp_path, is_on):
-    write_ply(antialiased(made_scene(), is_on), tmp_path / "model.ply", "3dgs")
+    write_ply(antialiased(synthetic_scene(), is_on), tmp_path / "model.ply", "3dgs")
     assert ("SplatRenderMode: mip" in read_header(tmp_path / "model.ply").comments) == is_on
 
 
 @pytest.mark.parametrize("axes", ["y-up", "y-down", "enu"])
 def test_numbers_are_those_of_the_scene(tmp_path, axes):
-    scene, path = made_scene(), tmp_path / "model.ply"
+    scene, path = synthetic_scene(), tmp_path / "model.ply"
     write_ply(scene, path, "2dgs", axes, least_opacity=0.0)
     truth = turned(ellipsoids_of_all(scene.components), axes)
     found = read_splats(path).splats
@@ -62,10 +62,10 @@ def test_opacities_of_0_and_1_have_finite_logits(tmp_path, logit):
 def test_what_cannot_be_written_is_refused(tmp_path):
     path = tmp_path / "model.ply"
     with pytest.raises(InputError, match="no Gaussian that could be seen"):
-        write_ply(made_scene(((0,),), 0), path)
+        write_ply(synthetic_scene(((0,),), 0), path)
     with pytest.raises(InputError, match="sh: holds numbers that are not finite"):
         write_ply(scene_with(sh=np.nan), path)
-    scene = made_scene()
+    scene = synthetic_scene()
     for component in scene.components:
         component.gaussians.values["log_scales"] = np.zeros((len(component.gaussians), 3), np.float32)
     with pytest.raises(ValueError, match="expected '3dgs' for ellipsoids"):
@@ -77,9 +77,9 @@ def test_what_cannot_be_written_is_refused(tmp_path):
 
 def test_an_interrupted_write_leaves_the_old_file(tmp_path):
     path = tmp_path / "model.ply"
-    write_ply(made_scene(), path)
+    write_ply(synthetic_scene(), path)
     before = path.read_bytes()
     with pytest.raises(OperationCancelled):
-        write_ply(made_scene(seed=5), path, monitor=Interrupted(5))
+        write_ply(synthetic_scene(seed=5), path, monitor=Interrupted(5))
     assert path.read_bytes() == before
     assert [each.name for each in tmp_path.iterdir()] == ["model.ply"]

@@ -23,7 +23,7 @@ from tests.reconstruction.exports.hard_scenes import (
     spread,
 )
 from tests.reconstruction.exports.sog.reading import read_sog
-from tests.reconstruction.objects.made_scene import made_scene
+from tests.reconstruction.objects.synthetic_scene import synthetic_scene
 
 ALL = Compression(palette=65_536, gaussians_each=1, least_opacity=0.0)
 
@@ -80,7 +80,7 @@ def by_hand(path):
 
 def test_a_file_holds_what_the_specification_says(tmp_path):
     path = tmp_path / "model.sog"
-    write_sog(made_scene(((70, 9),)), path, ALL, "enu")
+    write_sog(synthetic_scene(((70, 9),)), path, ALL, "enu")
     found, read = by_hand(path), read_sog(path, "enu")
     np.testing.assert_allclose(read.means_m, found["means_m"], rtol=1e-6, atol=1e-7)
     assert quaternion_errors(found["quats"], read.quats).max() < 1e-6
@@ -93,7 +93,7 @@ def test_a_file_holds_what_the_specification_says(tmp_path):
 
 @pytest.mark.parametrize(("is_on", "model"), [(True, "antialiased"), (False, "2dgs")])
 def test_a_file_says_whether_it_is_to_be_drawn_antialiased(tmp_path, is_on, model):
-    write_sog(antialiased(made_scene(), is_on), tmp_path / "model.sog")
+    write_sog(antialiased(synthetic_scene(), is_on), tmp_path / "model.sog")
     assert json.loads(members(tmp_path / "model.sog")["meta.json"])["model"] == model
 
 
@@ -105,7 +105,7 @@ def test_a_file_says_whether_it_is_to_be_drawn_antialiased(tmp_path, is_on, mode
     furthest_m=st.sampled_from([1e-3, 1.0, 137.0, 2e4]),
 )
 def test_what_is_read_differs_by_the_format_s_steps_only(tmp_path_factory, n, seed, axes, furthest_m):
-    scene = spread(made_scene(((n,),), n, seed), furthest_m, seed)
+    scene = spread(synthetic_scene(((n,),), n, seed), furthest_m, seed)
     path = tmp_path_factory.mktemp("sog") / "model.sog"
     done, truth = write_sog(scene, path, ALL, axes), in_order(scene, axes)
     read = read_sog(path, axes)
@@ -119,7 +119,7 @@ def test_what_is_read_differs_by_the_format_s_steps_only(tmp_path_factory, n, se
 
 
 def test_a_larger_palette_is_nearer_and_larger(tmp_path):
-    scene, errors, sizes = made_scene(((600,),), 200), [], []
+    scene, errors, sizes = synthetic_scene(((600,),), 200), [], []
     truth = in_order(scene, "y-down")
     for size in (16, 64, 512):
         compression = Compression(palette=size, gaussians_each=1, least_opacity=0.0)
@@ -132,7 +132,7 @@ def test_a_larger_palette_is_nearer_and_larger(tmp_path):
 
 @pytest.mark.parametrize("degree", [0, 1, 2])
 def test_lower_degrees_have_no_higher_ones(tmp_path, degree):
-    done = write_sog(made_scene(), tmp_path / "model.sog", Compression(degree, least_opacity=0.0))
+    done = write_sog(synthetic_scene(), tmp_path / "model.sog", Compression(degree, least_opacity=0.0))
     read = read_sog(done.path)
     assert not read.sh[:, (degree + 1) ** 2 :].any()
     assert ("shN" in json.loads(members(done.path)["meta.json"])) == (degree > 0)
@@ -156,7 +156,7 @@ def test_palettes_grow_with_the_model_up_to_the_preset_s_size(n, preset, size):
 
 
 def test_the_same_scene_makes_the_same_bytes_and_tells_where_it_belongs(tmp_path):
-    scene = made_scene(((30,),), 30, name="Ämter & <b>")
+    scene = synthetic_scene(((30,),), 30, name="Ämter & <b>")
     for name in ("one", "two"):
         write_sog(scene, tmp_path / name)
     assert (tmp_path / "one").read_bytes() == (tmp_path / "two").read_bytes()
@@ -197,10 +197,10 @@ def test_numbers_at_the_ends_come_back(tmp_path, columns):
 
 
 def test_one_gaussian_and_none(tmp_path):
-    assert len(read_sog(write_sog(made_scene(((1,),), 0), tmp_path / "one.sog", ALL).path)) == 1
+    assert len(read_sog(write_sog(synthetic_scene(((1,),), 0), tmp_path / "one.sog", ALL).path)) == 1
     with pytest.raises(InputError, match="no Gaussian that could be seen"):
-        write_sog(made_scene(((0,),), 0), tmp_path / "none.sog")
-    scene = made_scene()
+        write_sog(synthetic_scene(((0,),), 0), tmp_path / "none.sog")
+    scene = synthetic_scene()
     scene.components[0].gaussians.values["sh"][0, 3, 1] = np.nan
     with pytest.raises(InputError, match="component 'A': sh: holds numbers that are not finite"):
         write_sog(scene, tmp_path / "none.sog")
@@ -210,10 +210,10 @@ def test_one_gaussian_and_none(tmp_path):
 @pytest.mark.parametrize("n", [0, 4, 7, 10])
 def test_an_interrupted_write_leaves_the_old_file(tmp_path, n):
     path = tmp_path / "model.sog"
-    write_sog(made_scene(), path)
+    write_sog(synthetic_scene(), path)
     before = path.read_bytes()
     with pytest.raises(OperationCancelled):
-        write_sog(made_scene(seed=5), path, monitor=Interrupted(n))
+        write_sog(synthetic_scene(seed=5), path, monitor=Interrupted(n))
     assert path.read_bytes() == before
     assert [each.name for each in tmp_path.iterdir()] == ["model.sog"]
 
@@ -221,7 +221,7 @@ def test_an_interrupted_write_leaves_the_old_file(tmp_path, n):
 @pytest.fixture(scope="module")
 def files(tmp_path_factory):
     path = tmp_path_factory.mktemp("sog") / "model.sog"
-    write_sog(made_scene(), path)
+    write_sog(synthetic_scene(), path)
     return members(path)
 
 

@@ -25,7 +25,7 @@ from tests.reconstruction.exports.hard_scenes import (
     spread,
 )
 from tests.reconstruction.exports.spz.reading import read_spz
-from tests.reconstruction.objects.made_scene import made_scene
+from tests.reconstruction.objects.synthetic_scene import synthetic_scene
 
 ALL = Compression(first_bits=8, further_bits=8, least_opacity=0.0)
 
@@ -80,7 +80,7 @@ def by_hand(path):
 @pytest.mark.parametrize("version", [3, 4])
 @pytest.mark.parametrize("is_on", [True, False])
 def test_a_file_says_whether_it_is_to_be_drawn_antialiased(tmp_path, is_on, version):
-    write_spz(antialiased(made_scene(), is_on), tmp_path / "model.spz", ALL, version=version)
+    write_spz(antialiased(synthetic_scene(), is_on), tmp_path / "model.spz", ALL, version=version)
     flags = as_version_3(tmp_path / "model.spz")[14]
     assert flags == int(is_on)
     assert len(read_spz(tmp_path / "model.spz")) > 0
@@ -89,7 +89,7 @@ def test_a_file_says_whether_it_is_to_be_drawn_antialiased(tmp_path, is_on, vers
 @pytest.mark.parametrize("version", [3, 4])
 def test_a_file_holds_what_the_specification_says(tmp_path, version):
     path = tmp_path / "model.spz"
-    write_spz(made_scene(), path, ALL, "enu", version=version)
+    write_spz(synthetic_scene(), path, ALL, "enu", version=version)
     found, read = by_hand(path), read_spz(path, "enu")
     assert np.array_equal(found["means_m"].astype(np.float32), read.means_m)
     assert quaternion_errors(found["quats"], read.quats).max() < 1e-6
@@ -107,7 +107,7 @@ def test_a_file_holds_what_the_specification_says(tmp_path, version):
     furthest_m=st.sampled_from([1e-3, 1.0, 137.0, 2e4]),
 )
 def test_what_is_read_differs_by_the_format_s_steps_only(tmp_path_factory, n, seed, axes, furthest_m):
-    scene = spread(made_scene(((n,),), n, seed), furthest_m, seed)
+    scene = spread(synthetic_scene(((n,),), n, seed), furthest_m, seed)
     path = tmp_path_factory.mktemp("spz") / "model.spz"
     done, truth = write_spz(scene, path, ALL, axes), in_order(scene, axes)
     read = read_spz(path, axes)
@@ -128,7 +128,7 @@ def test_what_is_read_differs_by_the_format_s_steps_only(tmp_path_factory, n, se
 
 @pytest.mark.parametrize("degree", [0, 1, 2, 3])
 def test_both_versions_hold_the_same_bytes(tmp_path, degree):
-    scene, wanted = made_scene(((300,),), 50), Compression(degree)
+    scene, wanted = synthetic_scene(((300,),), 50), Compression(degree)
     done = [write_spz(scene, tmp_path / f"{version}.spz", wanted, version=version) for version in (3, 4)]
     assert as_version_3(done[0].path) == as_version_3(done[1].path)
     assert done[0].n_gaussians == done[1].n_gaussians == len(read_spz(done[1].path))
@@ -138,7 +138,7 @@ def test_both_versions_hold_the_same_bytes(tmp_path, degree):
 
 @pytest.mark.parametrize("degree", [0, 1, 2, 3])
 def test_fewer_degrees_and_bits_make_smaller_files_and_larger_errors(tmp_path, degree):
-    scene = made_scene(((500,),), 100)
+    scene = synthetic_scene(((500,),), 100)
     path = tmp_path / "model.spz"
     sizes, errors = [], []
     for bits in (8, 5, 2):
@@ -152,7 +152,7 @@ def test_fewer_degrees_and_bits_make_smaller_files_and_larger_errors(tmp_path, d
 
 
 def test_what_nobody_sees_is_left_out(tmp_path):
-    scene = made_scene()
+    scene = synthetic_scene()
     logits = scene.components[-1].gaussians.values["opacity_logits"]
     logits[:] = [-10.0, -5.55, -5.53, 4.0]
     done = write_spz(scene, tmp_path / "model.spz", PRESETS["balanced"])
@@ -161,7 +161,7 @@ def test_what_nobody_sees_is_left_out(tmp_path):
 
 
 def test_the_same_scene_makes_the_same_bytes_and_keeps_to_itself(tmp_path):
-    scene = made_scene(((30,),), 30)
+    scene = synthetic_scene(((30,),), 30)
     before = {name: value.copy() for name, value in scene.components[0].gaussians.values.items()}
     for name in ("one", "two"):
         write_spz(scene, tmp_path / name)
@@ -195,17 +195,17 @@ def test_all_at_one_place(tmp_path, place_m):
 
 
 def test_one_gaussian_and_none(tmp_path):
-    done = write_spz(made_scene(((1,),), 0), tmp_path / "наш вид ☀.spz", ALL)
+    done = write_spz(synthetic_scene(((1,),), 0), tmp_path / "наш вид ☀.spz", ALL)
     assert len(read_spz(done.path)) == 1
     with pytest.raises(InputError, match="no Gaussian that could be seen"):
-        write_spz(made_scene(((0,),), 0), tmp_path / "none.spz")
+        write_spz(synthetic_scene(((0,),), 0), tmp_path / "none.spz")
     assert not (tmp_path / "none.spz").exists()
 
 
 @pytest.mark.parametrize("name", ["means", "quats", "log_scales", "opacity_logits", "sh"])
 @pytest.mark.parametrize("number", [np.nan, np.inf])
 def test_numbers_that_are_none_are_refused(tmp_path, name, number):
-    scene = made_scene()
+    scene = synthetic_scene()
     scene.components[1].gaussians.values[name][0] = number
     with pytest.raises(InputError, match=f"component 'B': {name}: holds numbers that are not finite"):
         write_spz(scene, tmp_path / "model.spz")
@@ -221,10 +221,10 @@ def test_places_further_than_the_format_can_tell_are_refused(tmp_path):
 @pytest.mark.parametrize("n", [0, 3, 6, 7])
 def test_an_interrupted_write_leaves_the_old_file(tmp_path, n, version):
     path = tmp_path / "model.spz"
-    write_spz(made_scene(), path, version=version)
+    write_spz(synthetic_scene(), path, version=version)
     before = path.read_bytes()
     with pytest.raises(OperationCancelled):
-        write_spz(made_scene(seed=5), path, monitor=Interrupted(n), version=version)
+        write_spz(synthetic_scene(seed=5), path, monitor=Interrupted(n), version=version)
     assert path.read_bytes() == before
     assert [each.name for each in tmp_path.iterdir()] == ["model.spz"]
 
@@ -362,13 +362,13 @@ def test_missing_files_and_folders_are_told(tmp_path):
     with pytest.raises(InputError, match="found a folder"):
         read_spz(tmp_path)
     with pytest.raises(InputError, match="there is no folder"):
-        write_spz(made_scene(), tmp_path / "absent" / "model.spz")
+        write_spz(synthetic_scene(), tmp_path / "absent" / "model.spz")
 
 
 @pytest.fixture(scope="module")
 def unpacked(tmp_path_factory):
     path = tmp_path_factory.mktemp("damaged") / "b.spz"
-    write_spz(made_scene(), path)
+    write_spz(synthetic_scene(), path)
     return path, gzip.decompress(path.read_bytes())
 
 
@@ -376,7 +376,7 @@ def unpacked(tmp_path_factory):
 @given(at=st.floats(0.0, 1.0), value=st.integers(0, 255), kept=st.sampled_from([0.1, 0.5, 0.99, 1.0, 1.0, 1.0]))
 def test_a_damaged_file_of_version_4_is_read_or_refused_and_nothing_else(tmp_path_factory, at, value, kept):
     path = tmp_path_factory.mktemp("damaged") / "b.spz"
-    write_spz(made_scene(), path, version=4)
+    write_spz(synthetic_scene(), path, version=4)
     content = bytearray(path.read_bytes())
     content[min(int(at * len(content)), len(content) - 1)] = value
     path.write_bytes(content[: round(kept * len(content))])

@@ -16,7 +16,7 @@ from reconstruction.exports.glb import SPZ
 from reconstruction.exports.tiles3d import CONTENT, TilesOptions, branches_of, part_of_branch, write_tiles
 from tests.reconstruction.exports.glb_reader import SPLATTING, Glb
 from tests.reconstruction.exports.test_gltf import HOSTILE, Cancelling, component_with, rotation_of
-from tests.reconstruction.objects.made_scene import made_scene
+from tests.reconstruction.objects.synthetic_scene import synthetic_scene
 
 SIZES = ((30, 0, 50, 9), (2,))
 
@@ -57,7 +57,7 @@ def contents_of(folder):
 
 
 def test_tiles_lie_on_earth_where_the_site_is(tmp_path):
-    scene = made_scene()
+    scene = synthetic_scene()
     write_tiles(scene, tmp_path)
     transform = np.array(read(tmp_path)["root"]["transform"]).reshape(4, 4).T
     points = np.array([[0.0, 0.0, 0.0], [100.0, -50.0, 20.0], [-300.0, 10.0, 5.0], [0.0, 0.0, 80.0]])
@@ -69,7 +69,7 @@ def test_tiles_lie_on_earth_where_the_site_is(tmp_path):
 
 
 def test_a_site_without_a_place_has_tiles_in_its_own_frame_only(tmp_path):
-    scene = replace(made_scene(), origin=None)
+    scene = replace(synthetic_scene(), origin=None)
     with pytest.raises(InputError, match="set the site's origin"):
         write_tiles(scene, tmp_path / "tiles")
     assert not (tmp_path / "tiles").exists()
@@ -78,7 +78,7 @@ def test_a_site_without_a_place_has_tiles_in_its_own_frame_only(tmp_path):
 
 
 def test_each_gaussian_is_in_one_tile_inside_its_box(tmp_path):
-    scene = made_scene(SIZES, 100)
+    scene = synthetic_scene(SIZES, 100)
     write_tiles(scene, tmp_path, TilesOptions(gaussians_per_tile=25, gaussians="numbers"))
     means = []
     for tile in tiles_of(read(tmp_path)["root"]):
@@ -110,7 +110,7 @@ def test_each_gaussian_is_in_one_tile_inside_its_box(tmp_path):
 
 
 def test_boxes_of_panels_are_around_their_corners(tmp_path):
-    scene = made_scene()
+    scene = synthetic_scene()
     write_tiles(scene, tmp_path)
     root = read(tmp_path, "panels.json")["root"]
     tiles = [tile for tile in tiles_of(root) if "content" in tile]
@@ -124,7 +124,7 @@ def test_boxes_of_panels_are_around_their_corners(tmp_path):
 
 
 def test_extents_are_those_of_three_standard_deviations():
-    found = ellipsoids_of(made_scene().components[0])
+    found = ellipsoids_of(synthetic_scene().components[0])
     for quat, scales, extents in zip(found.quats, found.scales_m, extents_m(found), strict=True):
         turn = rotation_of(quat[[1, 2, 3, 0]].astype(float))
         covariance = turn @ np.diag(scales.astype(float) ** 2) @ turn.T
@@ -132,7 +132,7 @@ def test_extents_are_those_of_three_standard_deviations():
 
 
 def test_boxes_and_errors_of_children_are_within_those_of_parents(tmp_path):
-    write_tiles(made_scene(SIZES, 100), tmp_path, TilesOptions(gaussians_per_tile=25))
+    write_tiles(synthetic_scene(SIZES, 100), tmp_path, TilesOptions(gaussians_per_tile=25))
     tileset = read(tmp_path)
     assert tileset["asset"]["version"] == "1.1"
     assert tileset["root"]["refine"] == "ADD"
@@ -152,7 +152,7 @@ def test_boxes_and_errors_of_children_are_within_those_of_parents(tmp_path):
 
 
 def test_tiles_that_are_shared_out_show_fewer_gaussians_of_all_their_panels(tmp_path):
-    scene = made_scene(((2000, 0, 1500, 1800, 900), (20,)), 3000)
+    scene = synthetic_scene(((2000, 0, 1500, 1800, 900), (20,)), 3000)
     write_tiles(scene, tmp_path, TilesOptions(gaussians_per_tile=1000, gaussians="numbers"))
     root, n_inner = read(tmp_path)["root"], 0
     for tile in tiles_of(root):
@@ -179,7 +179,7 @@ def test_tiles_that_are_shared_out_show_fewer_gaussians_of_all_their_panels(tmp_
 
 
 def test_without_coarser_ones_each_gaussian_is_in_the_folder_once(tmp_path):
-    scene = made_scene(((2000, 1500),), 3000)
+    scene = synthetic_scene(((2000, 1500),), 3000)
     write_tiles(scene, tmp_path, TilesOptions(gaussians_per_tile=1000, has_coarser=False))
     for tile in tiles_of(read(tmp_path)["root"]):
         assert ("content" in tile) != ("children" in tile)
@@ -190,7 +190,7 @@ def test_without_coarser_ones_each_gaussian_is_in_the_folder_once(tmp_path):
 
 
 def test_three_tilesets_share_the_files(tmp_path):
-    write_tiles(made_scene(SIZES, 10), tmp_path)
+    write_tiles(synthetic_scene(SIZES, 10), tmp_path)
     everything = files_of(tmp_path)
     gaussians, panels = files_of(tmp_path, "gaussians.json"), files_of(tmp_path, "panels.json")
     assert sorted(gaussians + panels) == sorted(everything)
@@ -201,7 +201,7 @@ def test_three_tilesets_share_the_files(tmp_path):
 
 
 def test_a_tileset_of_compressed_gaussians_says_what_its_files_need(tmp_path):
-    write_tiles(made_scene(SIZES, 10), tmp_path)
+    write_tiles(synthetic_scene(SIZES, 10), tmp_path)
     needed = read(tmp_path, "gaussians.json")
     assert needed["extensionsUsed"] == [CONTENT]
     assert needed["extensions"][CONTENT]["extensionsRequired"] == [SPLATTING, SPZ]
@@ -213,12 +213,12 @@ def test_a_tileset_of_compressed_gaussians_says_what_its_files_need(tmp_path):
         # CesiumJS looks at the first node of the scene alone.
         (root,) = found["scenes"][0]["nodes"]
         assert found["nodes"][root].keys() >= {"mesh", "matrix"}
-    write_tiles(made_scene(SIZES, 10), tmp_path, TilesOptions(gaussians="numbers"))
+    write_tiles(synthetic_scene(SIZES, 10), tmp_path, TilesOptions(gaussians="numbers"))
     assert "extensions" not in read(tmp_path, "gaussians.json")
 
 
 def test_tiles_say_what_they_are(tmp_path):
-    scene = made_scene()
+    scene = synthetic_scene()
     facade, panel = scene.components[0], scene.components[0].elements[0]
     attributes = {facade.global_id: {"wall": "Süd"}, panel.global_id: {"maker": "Glaswerk"}}
     write_tiles(scene, tmp_path, TilesOptions(sh_degree=0), attributes)
@@ -245,15 +245,15 @@ def test_tiles_say_what_they_are(tmp_path):
 
 
 def test_new_tiles_take_the_place_of_old_ones_and_of_nothing_else(tmp_path):
-    write_tiles(made_scene(), tmp_path)
+    write_tiles(synthetic_scene(), tmp_path)
     (tmp_path / "photo.png").write_bytes(b"mine")
     (tmp_path / "other-0123456789ab.glb").write_bytes(b"mine, too")
-    write_tiles(made_scene(seed=1), tmp_path)
+    write_tiles(synthetic_scene(seed=1), tmp_path)
     on_disk = {path.name for path in tmp_path.iterdir()}
     mine = {"photo.png", "other-0123456789ab.glb"}
     assert on_disk == {*files_of(tmp_path), "tileset.json", "gaussians.json", "panels.json", *mine}
     first = contents_of(tmp_path)
-    write_tiles(made_scene(seed=1), tmp_path)
+    write_tiles(synthetic_scene(seed=1), tmp_path)
     assert contents_of(tmp_path) == first
 
 
@@ -263,9 +263,9 @@ def test_a_tileset_of_somebody_else_has_no_say_in_what_is_removed(tmp_path):
     (tmp_path / "a-0123456789ab.glb").write_bytes(b"mine")
     uris = [{"uri": "../a-0123456789ab.glb"}, {"uri": 3}, {"uri": "tileset.json"}]
     (folder / "tileset.json").write_text(json.dumps(uris))
-    write_tiles(made_scene(), folder)
+    write_tiles(synthetic_scene(), folder)
     (folder / "tileset.json").write_text("[" * 100_000)
-    write_tiles(made_scene(), folder)
+    write_tiles(synthetic_scene(), folder)
     assert (tmp_path / "a-0123456789ab.glb").read_bytes() == b"mine"
     assert len(files_of(folder)) == 5
 
@@ -273,29 +273,29 @@ def test_a_tileset_of_somebody_else_has_no_say_in_what_is_removed(tmp_path):
 @pytest.mark.parametrize("after", [0, 1, 3])
 def test_an_export_that_ends_early_leaves_the_old_tiles(tmp_path, after):
     options = TilesOptions(gaussians_per_tile=4)
-    write_tiles(made_scene(), tmp_path, options)
+    write_tiles(synthetic_scene(), tmp_path, options)
     before = contents_of(tmp_path)
     with pytest.raises(OperationCancelled):
-        write_tiles(made_scene(seed=1), tmp_path, options, monitor=Cancelling(after))
+        write_tiles(synthetic_scene(seed=1), tmp_path, options, monitor=Cancelling(after))
     assert contents_of(tmp_path) == before
-    bad = component_with(made_scene(), 1, means=np.full((2, 3), np.nan, np.float32))
+    bad = component_with(synthetic_scene(), 1, means=np.full((2, 3), np.nan, np.float32))
     with pytest.raises(InputError, match="train again"):
         write_tiles(bad, tmp_path, options)
     assert contents_of(tmp_path) == before
 
 
 def test_scenes_of_nothing_are_refused(tmp_path):
-    for scene in (made_scene((), 0), made_scene(((),), 0)):
+    for scene in (synthetic_scene((), 0), synthetic_scene(((),), 0)):
         with pytest.raises(InputError, match="neither Gaussians nor panels"):
             write_tiles(scene, tmp_path)
     assert not list(tmp_path.iterdir())
-    write_tiles(made_scene(((0,),), 0), tmp_path)
+    write_tiles(synthetic_scene(((0,),), 0), tmp_path)
     assert len(files_of(tmp_path)) == 1
     assert not files_of(tmp_path, "gaussians.json")
 
 
 def test_hostile_names_make_harmless_files(tmp_path):
-    scene = made_scene(((1,),) * len(HOSTILE[:7]), 1)
+    scene = synthetic_scene(((1,),) * len(HOSTILE[:7]), 1)
     components = [replace(one, name=name) for one, name in zip(scene.components, HOSTILE[:7], strict=False)]
     folder = tmp_path / "tiles"
     write_tiles(replace(scene, components=(*components, scene.components[-1]), name=HOSTILE[4]), folder)
@@ -316,7 +316,7 @@ def test_wrong_options_are_wrong_calls():
 
 @given(st.lists(st.integers(0, 9), max_size=12), st.integers(0, 40), st.integers(1, 12), st.booleans())
 def test_branches_share_out_all_that_a_component_has(sizes, n_background, at_most, is_one_place):
-    scene = made_scene((tuple(sizes),), n_background)
+    scene = synthetic_scene((tuple(sizes),), n_background)
     for component in scene.components:
         if is_one_place:
             component.gaussians.values["means"][:] = 1.0

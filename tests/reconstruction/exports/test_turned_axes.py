@@ -9,7 +9,7 @@ from reconstruction.exports.component_parts import ellipsoids_of_all
 from reconstruction.exports.gaussian_blocks import QUARTER_TURNS, harmonic_turns, rotation_about_x, turned
 from tests.reconstruction.exports.spz.reading import turned_back
 from tests.reconstruction.exports.test_ellipsoids import standard_harmonics
-from tests.reconstruction.objects.made_scene import made_scene
+from tests.reconstruction.objects.synthetic_scene import synthetic_scene
 
 TURNED = ("y-up", "y-down")
 
@@ -34,7 +34,7 @@ def covariances(ellipsoids):
 
 @pytest.mark.parametrize("axes", TURNED)
 def test_colours_agree_from_any_direction(axes):
-    ellipsoids = ellipsoids_of_all(made_scene().components)
+    ellipsoids = ellipsoids_of_all(synthetic_scene().components)
     directions = np.random.default_rng(1).normal(size=(200, 3))
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)
     turn = rotation_about_x(QUARTER_TURNS[axes])
@@ -44,7 +44,7 @@ def test_colours_agree_from_any_direction(axes):
 
 @pytest.mark.parametrize("axes", TURNED)
 def test_shapes_turn_with_the_places(axes):
-    ellipsoids = ellipsoids_of_all(made_scene().components)
+    ellipsoids = ellipsoids_of_all(synthetic_scene().components)
     turn = rotation_about_x(QUARTER_TURNS[axes])
     found = turned(ellipsoids, axes)
     assert np.array_equal(found.means_m, ellipsoids.means_m @ turn.T)
@@ -53,7 +53,7 @@ def test_shapes_turn_with_the_places(axes):
 
 
 def test_up_is_where_each_says():
-    ellipsoids = ellipsoids_of_all(made_scene().components)
+    ellipsoids = ellipsoids_of_all(synthetic_scene().components)
     x, y, z = ellipsoids.means_m.T
     assert np.array_equal(turned(ellipsoids, "y-up").means_m, np.stack([x, z, -y], axis=1))
     assert np.array_equal(turned(ellipsoids, "y-down").means_m, np.stack([x, -z, y], axis=1))
@@ -72,7 +72,7 @@ def test_harmonics_turn_each_degree_by_itself_and_keep_lengths(quarters):
 @settings(max_examples=8, deadline=None)
 @given(seed=st.integers(0, 999), axes=st.sampled_from(TURNED))
 def test_turning_back_gives_the_same(seed, axes):
-    ellipsoids = ellipsoids_of_all(made_scene(((3,),), 2, seed).components)
+    ellipsoids = ellipsoids_of_all(synthetic_scene(((3,),), 2, seed).components)
     back = turned_back(turned(ellipsoids, axes), axes)
     for name in ("means_m", "sh"):
         np.testing.assert_allclose(getattr(back, name), getattr(ellipsoids, name), atol=2e-6)

@@ -10,7 +10,7 @@ from planning.base.errors import InputError, OperationCancelled
 from reconstruction.exports.component_parts import ellipsoids_of
 from reconstruction.exports.usd import UsdOptions, write_usd
 from tests.reconstruction.exports.test_gltf import HOSTILE, Cancelling, component_with
-from tests.reconstruction.objects.made_scene import made_scene
+from tests.reconstruction.objects.synthetic_scene import synthetic_scene
 
 pytest.importorskip("pxr", reason="usd-core is not installed")
 from pxr import Gf, Usd, UsdGeom, UsdUtils, UsdValidation, UsdVol
@@ -32,7 +32,7 @@ def complaints(stage):
     ("degree", "name"), [(0, "model.usda"), (1, "model.usd"), (2, "model.usdc"), (3, "model.usdc")]
 )
 def test_gaussians_have_the_numbers_of_the_scene(tmp_path, degree, name):
-    scene = made_scene()
+    scene = synthetic_scene()
     stage = opened(scene, tmp_path, UsdOptions(sh_degree=degree), name=name)
     for component in scene.components:
         expected = ellipsoids_of(component)
@@ -55,7 +55,7 @@ def test_gaussians_have_the_numbers_of_the_scene(tmp_path, degree, name):
 
 
 def test_the_stage_is_the_sites_frame(tmp_path):
-    scene = made_scene()
+    scene = synthetic_scene()
     stage = opened(scene, tmp_path)
     assert UsdGeom.GetStageUpAxis(stage) == "Z"
     assert UsdGeom.GetStageMetersPerUnit(stage) == 1.0
@@ -70,7 +70,7 @@ def test_the_stage_is_the_sites_frame(tmp_path):
 
 
 def test_panels_are_quads_that_know_their_records(tmp_path):
-    scene = made_scene()
+    scene = synthetic_scene()
     first = scene.components[0].elements[0]
     attributes = {
         first.global_id: {"Material (außen)": 'Glas "ä"', "layer": "x", "age": 2**40, "far": 2**80, "none": None},
@@ -106,7 +106,7 @@ def test_panels_are_quads_that_know_their_records(tmp_path):
 @pytest.mark.parametrize("name", ["model.usdc", "model.usda"])
 def test_hostile_names_become_names_that_differ(tmp_path, name):
     names = [*HOSTILE, "Gaussians", "1", "a b", "a_b", "a/b", ""]
-    scene = made_scene(((1,) * len(names), (2,)), 1)
+    scene = synthetic_scene(((1,) * len(names), (2,)), 1)
     component = scene.components[0]
     elements = tuple(replace(element, name=each) for element, each in zip(component.elements, names, strict=True))
     components = (replace(component, name="B", elements=elements), *scene.components[1:])
@@ -122,7 +122,9 @@ def test_hostile_names_become_names_that_differ(tmp_path, name):
 
 
 def test_scenes_may_lack_anything(tmp_path):
-    for number, scene in enumerate((made_scene((), 0), made_scene(((), (0,)), 1), made_scene(((0, 1),), 0))):
+    for number, scene in enumerate(
+        (synthetic_scene((), 0), synthetic_scene(((), (0,)), 1), synthetic_scene(((0, 1),), 0))
+    ):
         folder = tmp_path / str(number)
         folder.mkdir()
         stage = opened(replace(scene, origin=None), folder)
@@ -134,17 +136,17 @@ def test_scenes_may_lack_anything(tmp_path):
 
 def test_the_same_scene_makes_the_same_bytes(tmp_path):
     for name in ("one.usdc", "two.usdc"):
-        write_usd(made_scene(((300, 20), (9,)), 40), tmp_path / name)
+        write_usd(synthetic_scene(((300, 20), (9,)), 40), tmp_path / name)
     assert (tmp_path / "one.usdc").read_bytes() == (tmp_path / "two.usdc").read_bytes()
 
 
 def test_an_export_that_fails_leaves_the_old_file(tmp_path):
     path = tmp_path / "model.usdc"
-    write_usd(made_scene(), path)
+    write_usd(synthetic_scene(), path)
     before = path.read_bytes()
     with pytest.raises(OperationCancelled):
-        write_usd(made_scene(seed=1), path, monitor=Cancelling(after=2))
-    bad = component_with(made_scene(), 1, sh=np.full((2, 16, 3), np.inf, np.float32))
+        write_usd(synthetic_scene(seed=1), path, monitor=Cancelling(after=2))
+    bad = component_with(synthetic_scene(), 1, sh=np.full((2, 16, 3), np.inf, np.float32))
     with pytest.raises(InputError, match=r"component 'B': sh: .*train again"):
         write_usd(bad, path)
     assert path.read_bytes() == before
@@ -153,9 +155,9 @@ def test_an_export_that_fails_leaves_the_old_file(tmp_path):
 
 def test_places_and_endings_that_cannot_be_are_refused(tmp_path):
     with pytest.raises(InputError, match=r"ends in \.usdc"):
-        write_usd(made_scene(), tmp_path / "model.obj")
+        write_usd(synthetic_scene(), tmp_path / "model.obj")
     with pytest.raises(InputError, match="no folder"):
-        write_usd(made_scene(), tmp_path / "none" / "model.usdc")
+        write_usd(synthetic_scene(), tmp_path / "none" / "model.usdc")
     with pytest.raises(ValueError, match="sh_degree"):
         UsdOptions(sh_degree=4)
 
@@ -164,12 +166,12 @@ def test_without_usd_core_it_says_what_to_install(tmp_path, monkeypatch):
     # Python takes a module that is None for one that is not there.
     monkeypatch.setitem(sys.modules, "pxr.UsdVol", None)
     with pytest.raises(InputError, match=r"pip install 'reflight-groundstation\[usd\]'"):
-        write_usd(made_scene(), tmp_path / "model.usdc")
+        write_usd(synthetic_scene(), tmp_path / "model.usdc")
     assert not list(tmp_path.iterdir())
 
 
 def test_a_package_for_apples_viewers_can_be_made_of_it(tmp_path):
-    write_usd(made_scene(), tmp_path / "model.usdc")
+    write_usd(synthetic_scene(), tmp_path / "model.usdc")
     assert UsdUtils.CreateNewUsdzPackage(str(tmp_path / "model.usdc"), str(tmp_path / "model.usdz"))
     stage = Usd.Stage.Open(str(tmp_path / "model.usdz"))
     assert stage.GetPrimAtPath("/World/A/Gaussians").GetTypeName() == "ParticleField3DGaussianSplat"

@@ -18,7 +18,7 @@ from reconstruction.exports import page_records, web
 from reconstruction.exports.component_parts import ellipsoids_of_all
 from reconstruction.exports.web import PAGE, SIGN, WebOptions, first_view, plain_sky_light, sky_light, write_web
 from reconstruction.splats.sky import Sky
-from tests.reconstruction.objects.made_scene import made_scene
+from tests.reconstruction.objects.synthetic_scene import synthetic_scene
 
 HOSTILE = [
     '"><img src=x onerror=alert(1)>',
@@ -31,7 +31,7 @@ HOSTILE = [
 
 
 def hostile_scene():
-    scene = made_scene()
+    scene = synthetic_scene()
     facade = scene.components[0]
     elements = tuple(replace(element, name=name) for element, name in zip(facade.elements, HOSTILE[:3], strict=True))
     facade = replace(facade, name=HOSTILE[3], elements=elements)
@@ -80,7 +80,7 @@ def page_of(folder):
 
 
 def test_nothing_of_a_user_becomes_markup(tmp_path):
-    write_web(made_scene(), tmp_path / "tame")
+    write_web(synthetic_scene(), tmp_path / "tame")
     scene = hostile_scene()
     write_web(scene, tmp_path / "wild", hostile_records(scene), WebOptions(title=HOSTILE[1]))
     tame, wild = page_of(tmp_path / "tame"), page_of(tmp_path / "wild")
@@ -95,7 +95,7 @@ def test_nothing_of_a_user_becomes_markup(tmp_path):
 
 
 def test_the_policy_allows_our_script_and_style_alone(tmp_path):
-    write_web(made_scene(), tmp_path / "page")
+    write_web(synthetic_scene(), tmp_path / "page")
     page = page_of(tmp_path / "page")
     policy = next(found["content"] for tag, found in page.elements if found.get("http-equiv"))
     rules = dict(rule.split(" ", 1) for rule in policy.split("; "))
@@ -114,7 +114,7 @@ def hash_of(text):
 
 
 def test_pages_are_the_same_bytes_each_time_and_name_no_place_of_this_machine(tmp_path):
-    scene = made_scene()
+    scene = synthetic_scene()
     records = [
         {"global_id": scene.components[0].elements[0].global_id, "record": "defect", "kind": "a", "picture": "p"}
     ]
@@ -134,7 +134,7 @@ def test_pages_are_the_same_bytes_each_time_and_name_no_place_of_this_machine(tm
 
 def test_chunks_of_the_page_hold_all_gaussians(tmp_path, monkeypatch):
     monkeypatch.setattr("reconstruction.exports.web.N_AT_ONCE", 4)
-    scene = made_scene()
+    scene = synthetic_scene()
     page = write_web(scene, tmp_path / "page", options=WebOptions(degree=1))
     found = page_of(tmp_path / "page")
     chunks = [base64.b64decode(text) for text in found.of("script", type="text/plain")]
@@ -145,7 +145,7 @@ def test_chunks_of_the_page_hold_all_gaussians(tmp_path, monkeypatch):
 
 def test_an_interrupted_write_leaves_the_old_page_whole(tmp_path):
     folder = tmp_path / "page"
-    write_web(made_scene(), folder)
+    write_web(synthetic_scene(), folder)
     before = (folder / PAGE).read_bytes()
 
     class Impatient:
@@ -153,9 +153,9 @@ def test_an_interrupted_write_leaves_the_old_page_whole(tmp_path):
             raise OperationCancelled("enough")
 
     with pytest.raises(OperationCancelled):
-        write_web(made_scene(seed=1), folder, monitor=Impatient())
+        write_web(synthetic_scene(seed=1), folder, monitor=Impatient())
     with pytest.raises(OperationCancelled):
-        write_web(made_scene(seed=1), tmp_path / "new", monitor=Impatient())
+        write_web(synthetic_scene(seed=1), tmp_path / "new", monitor=Impatient())
     assert (folder / PAGE).read_bytes() == before
     assert [path.name for path in tmp_path.rglob("*")] == ["page", PAGE]
 
@@ -168,14 +168,14 @@ def test_folders_of_others_are_refused_and_stay(tmp_path):
     (tmp_path / "file").write_text("mine")
     for name, message in [("other", "other files"), ("site", "somebody else's"), ("file", "this is a file")]:
         with pytest.raises(InputError, match=message):
-            write_web(made_scene(), tmp_path / name)
+            write_web(synthetic_scene(), tmp_path / name)
     assert (tmp_path / "site" / PAGE).read_text() == "<title>my own page</title>"
     (tmp_path / "empty").mkdir()
-    assert write_web(made_scene(), tmp_path / "empty").path.is_file()
+    assert write_web(synthetic_scene(), tmp_path / "empty").path.is_file()
 
 
 def test_scenes_that_no_page_bears_are_refused(tmp_path, monkeypatch):
-    scene = made_scene()
+    scene = synthetic_scene()
     monkeypatch.setattr(web, "MAX_GAUSSIANS", 10)
     with pytest.raises(InputError, match="14 Gaussians, a page bears 10; keep the most visible"):
         write_web(scene, tmp_path / "page")
@@ -193,7 +193,7 @@ def test_scenes_that_no_page_bears_are_refused(tmp_path, monkeypatch):
 
 def test_too_many_pictures_are_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(page_records, "MAX_PICTURE_BYTES", 1)
-    scene = made_scene()
+    scene = synthetic_scene()
     records = [{"global_id": scene.global_id, "record": "defect", "kind": "a", "picture": "p"}]
     content = cv2.imencode(".png", np.zeros((5, 5, 3), np.uint8))[1].tobytes()
     with pytest.raises(InputError, match="after 1 of 1"):
@@ -202,7 +202,7 @@ def test_too_many_pictures_are_refused(tmp_path, monkeypatch):
 
 
 def test_documents_for_which_there_is_no_room_are_named_the_largest_first(tmp_path, monkeypatch):
-    scene = made_scene()
+    scene = synthetic_scene()
     files = {"a.pdf": bytes(400), "b.pdf": bytes(300), "c.pdf": bytes(500), "d.txt": b"1"}
     rows = [
         {"global_id": scene.global_id, "record": "document", "title": f"{name[0]}/{name[0]}.pdf", "place": name}
@@ -226,7 +226,7 @@ def test_documents_for_which_there_is_no_room_are_named_the_largest_first(tmp_pa
 
 @pytest.mark.parametrize("name", ["means", "opacity_logits", "sh"])
 def test_numbers_that_are_not_finite_are_refused(tmp_path, name):
-    scene = made_scene()
+    scene = synthetic_scene()
     scene.components[-1].gaussians.values[name][1] = np.nan
     with pytest.raises(InputError, match="not finite"):
         write_web(scene, tmp_path / "page")
@@ -234,12 +234,12 @@ def test_numbers_that_are_not_finite_are_refused(tmp_path, name):
 
 
 def test_one_facade_or_the_background_alone_is_a_page_too(tmp_path):
-    scene = made_scene()
+    scene = synthetic_scene()
     facade = replace(scene, components=scene.components[1:2])
     assert write_web(facade, tmp_path / "facade").n_panes == 1
     background = replace(scene, components=scene.components[-1:])
     assert write_web(background, tmp_path / "background").n_panes == 0
-    panes = made_scene(sizes=((0, 0),), n_background=0)
+    panes = synthetic_scene(sizes=((0, 0),), n_background=0)
     assert write_web(panes, tmp_path / "panes").n_gaussians == 0
 
 
@@ -318,7 +318,7 @@ def opening_of(scene):
 
 def facade_of(n, width_m, height_m, turn):
     """A scene of one more facade beside the made one's: n panes side by side, turned from a plane that looks south."""
-    scene = made_scene(sizes=((0, 0, 0), (0,) * n), n_background=400)
+    scene = synthetic_scene(sizes=((0, 0, 0), (0,) * n), n_background=400)
     corners = np.array([element.corners_enu_m for element in scene.components[1].elements])
     low = corners.reshape(-1, 3).min(axis=0)
     scaled = (corners - low) / np.ptp(corners.reshape(-1, 3), axis=0).clip(1e-9) * (width_m, 0.0, height_m)

@@ -13,7 +13,7 @@ from reconstruction.exports.web import WebOptions, write_web
 from tests.reconstruction.exports.firefox import Firefox
 from tests.reconstruction.exports.test_web import HOSTILE, hostile_records, hostile_scene
 from tests.reconstruction.exports.web_browser import axes_of, middle, opened, pixel
-from tests.reconstruction.objects.made_scene import made_scene
+from tests.reconstruction.objects.synthetic_scene import synthetic_scene
 
 CAMERA = "return reflight.camera()"
 PICKED = "return reflight.state().picked"
@@ -66,7 +66,7 @@ def test_hostile_records_are_text_in_a_page_that_works(browser, tmp_path):
 
 @pytest.mark.slow
 def test_clicks_pick_what_is_seen_and_not_what_a_wall_hides(any_browser, tmp_path):
-    scene = made_scene(sizes=((400, 400),), n_background=1)
+    scene = synthetic_scene(sizes=((400, 400),), n_background=1)
     facade, background = scene.components
     # Panes at y = 0, seen from the south; a wall of one large disc stands before the left one.
     for element in facade.elements:
@@ -102,7 +102,7 @@ def test_clicks_pick_what_is_seen_and_not_what_a_wall_hides(any_browser, tmp_pat
 
 @pytest.mark.slow
 def test_search_folds_accents_and_finds_all_fields(any_browser, tmp_path):
-    scene = made_scene(sizes=((20, 20, 20), (20,)))
+    scene = synthetic_scene(sizes=((20, 20, 20), (20,)))
     opened(any_browser, tmp_path / "page", scene, inspected(scene))
 
     def found(text):
@@ -136,7 +136,7 @@ def with_files(scene):
 
 @pytest.mark.slow
 def test_documents_come_out_of_the_page_as_they_are_and_what_is_missing_is_named(browser, tmp_path):
-    scene = made_scene(sizes=((20, 20, 20), (20,)))
+    scene = synthetic_scene(sizes=((20, 20, 20), (20,)))
     rows, files = with_files(scene)
     page = opened(browser, tmp_path / "page", scene, rows, content_of=files.get)
     assert (page.n_pictures, page.n_documents) == (1, 1)
@@ -165,7 +165,7 @@ def test_documents_come_out_of_the_page_as_they_are_and_what_is_missing_is_named
 
 @pytest.mark.slow
 def test_what_is_shown_is_found_whatever_it_is_of(any_browser, tmp_path):
-    scene = made_scene(sizes=((20, 20, 20), (20,)))
+    scene = synthetic_scene(sizes=((20, 20, 20), (20,)))
     rows, files = with_files(scene)
     opened(any_browser, tmp_path / "page", scene, rows, content_of=files.get)
     # Folded up below all panes: of the facade and the building.
@@ -188,7 +188,7 @@ def test_what_is_shown_is_found_whatever_it_is_of(any_browser, tmp_path):
 
 @pytest.mark.slow
 def test_colours_show_on_panes_and_in_the_legend(any_browser, tmp_path):
-    scene = made_scene(sizes=((0, 0, 0),), n_background=0)
+    scene = synthetic_scene(sizes=((0, 0, 0),), n_background=0)
     panes = [element for _, element in scene.elements]
     rows = [of_pane(pane, "attribute", name="maker", value=maker) for pane, maker in zip(panes, "aab", strict=True)]
     opened(any_browser, tmp_path / "page", scene, rows)
@@ -208,7 +208,7 @@ def test_colours_show_on_panes_and_in_the_legend(any_browser, tmp_path):
 
 @pytest.mark.slow
 def test_language_follows_the_browser_and_the_switch(browser, tmp_path):
-    scene = made_scene(sizes=((20, 20, 20),))
+    scene = synthetic_scene(sizes=((20, 20, 20),))
     browser.cdp("Emulation.setUserAgentOverride", userAgent="test", acceptLanguage="de-AT")
     opened(browser, tmp_path / "page", scene, inspected(scene))
     browser.cdp("Emulation.setUserAgentOverride", userAgent="test", acceptLanguage="en-GB")
@@ -220,7 +220,7 @@ def test_language_follows_the_browser_and_the_switch(browser, tmp_path):
 
 @pytest.mark.slow
 def test_fingers_turn_move_and_pick_on_a_tablet(browser, tmp_path):
-    scene = made_scene(sizes=((50, 50, 50),), n_background=0)
+    scene = synthetic_scene(sizes=((50, 50, 50),), n_background=0)
     browser.window(700, 900, touch=True)
     browser.open(write_web(scene, tmp_path / "page", inspected(scene)).path)
     browser.settled()
@@ -253,7 +253,7 @@ def test_fingers_turn_move_and_pick_on_a_tablet(browser, tmp_path):
 
 @pytest.mark.slow
 def test_keys_reach_everything(any_browser, tmp_path):
-    scene = made_scene(sizes=((50, 50, 50),))
+    scene = synthetic_scene(sizes=((50, 50, 50),))
     opened(any_browser, tmp_path / "page", scene, inspected(scene))
     any_browser.run("document.getElementById('picture').focus()")
     start = any_browser.run(CAMERA)
@@ -274,7 +274,7 @@ def test_keys_reach_everything(any_browser, tmp_path):
 
 @pytest.mark.slow
 def test_pages_open_at_the_pane_that_their_address_names(any_browser, tmp_path):
-    scene = made_scene(sizes=((3, 0, 5), (2,)))
+    scene = synthetic_scene(sizes=((3, 0, 5), (2,)))
     rows, files = with_files(scene)
     page = write_web(scene, tmp_path / "page", rows, WebOptions(content_of=files.get))
     wanted = scene.components[0].elements[1].global_id
@@ -319,7 +319,7 @@ return { blocked, byMarkup, isFetched, bad: window.bad ?? null, knowsTrustedType
 @pytest.mark.slow
 @pytest.mark.parametrize("size", [(900, 500), (420, 700)])
 def test_a_page_opens_square_before_the_largest_facade(any_browser, tmp_path, size):
-    scene = made_scene(sizes=((20, 20, 20), (20,)))
+    scene = synthetic_scene(sizes=((20, 20, 20), (20,)))
     opened(any_browser, tmp_path / "page", scene, size=size)
     any_browser.run("reflight.look([3, 3, 3], 77, 30)")
     any_browser.run("document.getElementById('home').click()")
@@ -361,7 +361,7 @@ def server():
 
 
 def test_the_policy_blocks_network_scripts_and_markup_from_text(any_browser, tmp_path, server):
-    opened(any_browser, tmp_path / "page", made_scene())
+    opened(any_browser, tmp_path / "page", synthetic_scene())
     address, asked = server
     found = any_browser.run(ATTEMPTS, address)
     assert asked == []
@@ -377,7 +377,7 @@ def test_the_policy_blocks_network_scripts_and_markup_from_text(any_browser, tmp
 
 @pytest.mark.slow
 def test_a_page_that_was_cut_off_says_so(any_browser, tmp_path):
-    page = write_web(made_scene(), tmp_path / "page")
+    page = write_web(synthetic_scene(), tmp_path / "page")
     content = page.path.read_bytes()
     page.path.write_bytes(content[: content.index(b'id="g0">') + 200])
     any_browser.open(page.path)
@@ -388,7 +388,7 @@ def test_a_page_that_was_cut_off_says_so(any_browser, tmp_path):
 
 @pytest.mark.slow
 def test_without_webgl_the_records_are_still_there(browser, tmp_path):
-    scene = made_scene(sizes=((50, 50, 50),))
+    scene = synthetic_scene(sizes=((50, 50, 50),))
     page = write_web(scene, tmp_path / "page", inspected(scene))
     source = "HTMLCanvasElement.prototype.getContext = () => null"
     added = browser.cdp("Page.addScriptToEvaluateOnNewDocument", source=source)

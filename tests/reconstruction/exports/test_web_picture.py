@@ -16,7 +16,7 @@ from reconstruction.splats.rasterising.views import View
 from tests.reconstruction.exports.hard_scenes import antialiased
 from tests.reconstruction.exports.test_ellipsoids import standard_harmonics
 from tests.reconstruction.exports.web_browser import axes_of, opened
-from tests.reconstruction.objects.made_scene import gaussians, made_scene
+from tests.reconstruction.objects.synthetic_scene import gaussians, synthetic_scene
 
 ORIGIN_ENU_M = (100.0, -20.0, 5.0)
 
@@ -130,7 +130,7 @@ def solid(scene, seed=0):
 def test_what_is_finer_than_a_pixel_is_as_much_more_transparent_where_it_was_learned_so(
     any_browser, tmp_path, is_on, blur, is_flat
 ):
-    scene = antialiased(made_scene(sizes=((10, 10),), n_background=60, seed=1), is_on, math.sqrt(blur))
+    scene = antialiased(synthetic_scene(sizes=((10, 10),), n_background=60, seed=1), is_on, math.sqrt(blur))
     for component in scene.components:
         component.gaussians.values["means"][:] *= 0.8
         component.gaussians.values["log_scales"][:] -= 1.5
@@ -154,7 +154,7 @@ def psnr(a, b):
 @pytest.mark.slow
 @pytest.mark.parametrize(("degree", "is_flat"), [(0, True), (1, True), (2, True), (3, True), (3, False)])
 def test_pictures_are_those_of_the_slow_reference(any_browser, tmp_path, degree, is_flat):
-    whole = made_scene(sizes=((10, 10),), n_background=30, seed=degree)
+    whole = synthetic_scene(sizes=((10, 10),), n_background=30, seed=degree)
     for component in whole.components:
         component.gaussians.values["means"][:] *= 0.8
         component.gaussians.values["log_scales"][:] += 1.5
@@ -180,7 +180,7 @@ def test_the_sky_lies_in_its_directions(any_browser, tmp_path):
     sky = np.zeros((32, 64, 3), np.float16)
     sky[:16, :, 2] = light(200 / 255)
     sky[:, 32:48, 0] = light(220 / 255)  # north, which is in the middle, to east
-    opened(any_browser, tmp_path / "page", made_scene(sizes=((0,),), n_background=0), size=(300, 500), sky=sky)
+    opened(any_browser, tmp_path / "page", synthetic_scene(sizes=((0,),), n_background=0), size=(300, 500), sky=sky)
     above, below = {45: (220, 0, 200), -45: (0, 0, 200), 200: (0, 0, 200)}, {45: (220, 0, 0), -45: (0, 0, 0)}
     for pitch, expected in [(60, above), (-45, below)]:
         for heading, colour in expected.items():
@@ -203,7 +203,7 @@ def crossing_panes(n=40, seed=3):
         name = f"A-{panel:04d}"
         elements.append(GsElement(global_id_of("x", name), name, panel, corners, 0, 0))
     facade = GsComponent(global_id_of("x", "A"), "A", "facade", tuple(elements), gaussians(0, rng))
-    scene = made_scene(sizes=((0,),), n_background=0)
+    scene = synthetic_scene(sizes=((0,),), n_background=0)
     return replace(scene, components=(facade,), origin_enu_m=ORIGIN_ENU_M)
 
 

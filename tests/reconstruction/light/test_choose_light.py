@@ -15,7 +15,7 @@ from reconstruction.light.photo_set import read_photo_set
 from reconstruction.light.radiance_grid import RadianceGrid, box_around, box_of
 from reconstruction.light.training import mean_square_error, train_reflections
 from reconstruction.metrics.image_metrics import psnr_db
-from tests.reconstruction.light.made_folder import far, near, write_folder
+from tests.reconstruction.light.synthetic_folder import far, near, write_folder
 
 CONFIG = ReflectionConfig(environment_rows=32, steps=100, batch=512)
 

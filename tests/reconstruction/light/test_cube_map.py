@@ -10,7 +10,15 @@ from reconstruction.light.cube_lookup import solid_angles, texel_directions, tex
 from reconstruction.light.cube_map import ROUGH_LEVELS, CubeMap, level_of
 from reconstruction.light.shading import reflected_directions
 from tests.reconstruction.light.test_lobes import ggx_by_half_vectors
-from tests.reconstruction.training.methods.made_ball import N_TRAINED, N_UNSEEN, environment, psnr, seen, trained, unit
+from tests.reconstruction.training.methods.synthetic_ball import (
+    N_TRAINED,
+    N_UNSEEN,
+    environment,
+    psnr,
+    seen,
+    trained,
+    unit,
+)
 
 SIDE = 32
 

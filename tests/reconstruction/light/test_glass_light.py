@@ -15,7 +15,7 @@ from reconstruction.light.glass_rays import glass_rays, rays_of_pixels
 from reconstruction.light.photo_set import PanelPlanes, read_photo_set
 from reconstruction.light.ray_table import RayTable
 from reconstruction.light.training import train_reflections
-from tests.reconstruction.light.made_folder import corners_of, far, write_folder
+from tests.reconstruction.light.synthetic_folder import corners_of, far, write_folder
 
 
 class Detailed(nn.Module):

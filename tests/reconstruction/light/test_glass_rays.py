@@ -11,7 +11,7 @@ from planning.base.errors import OperationCancelled
 from reconstruction.light.glass_rays import BYTES_PER_RAY, COLUMNS, glass_rays, joined, rays_of_photo, rays_of_pixels
 from reconstruction.light.photo_set import read_photo_set
 from reconstruction.light.ray_table import RayTable
-from tests.reconstruction.light.made_folder import LENS, far, mirror_directions, write_folder
+from tests.reconstruction.light.synthetic_folder import LENS, far, mirror_directions, write_folder
 
 BENT = replace(LENS, distortion=(-0.12, 0.03, 0.002, -0.001, 0.0))
 

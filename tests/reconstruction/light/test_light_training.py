@@ -21,7 +21,7 @@ from reconstruction.light.reflection_mlp import MlpShape
 from reconstruction.light.reflective_panels import ReflectivePanels
 from reconstruction.light.training import new_panels, train_reflections
 from reconstruction.training.training_state import read_checkpoint, write_checkpoint
-from tests.reconstruction.light.made_folder import near, write_folder
+from tests.reconstruction.light.synthetic_folder import near, write_folder
 
 GRID = GridSettings(most_cells=2048, levels=2, far_side=16, batch_share=1.0, rest=3, grown=0.6)
 CONFIG = ReflectionConfig(

@@ -5,7 +5,7 @@ import pytest
 
 from reconstruction.light.cube_lookup import solid_angles, texel_directions, texels_of
 from reconstruction.light.cube_map import GGX_WIDTH, cosine_lobe, ggx_lobe, lobe_filter, pyramid
-from tests.reconstruction.training.methods.made_ball import environment
+from tests.reconstruction.training.methods.synthetic_ball import environment
 
 SIDE = 16
 

@@ -9,7 +9,7 @@ import pytest
 
 from planning.base.errors import InputError
 from reconstruction.light.photo_set import PanelPlanes, held_out_names, read_photo_set
-from tests.reconstruction.light.made_folder import LENS, corners_of, far, write_folder
+from tests.reconstruction.light.synthetic_folder import LENS, corners_of, far, write_folder
 
 NAMES = [f"p{number:03d}.jpg" for number in range(40)]
 

@@ -19,7 +19,7 @@ from reconstruction.light.reflection_mlp import MlpShape
 from reconstruction.light.shading import display_from_linear, linear_from_display
 from reconstruction.light.training import ReflectionScore, ViewScore, score_views, train_reflections
 from reconstruction.tradeoff.scene_downstream import downstream_psnr
-from tests.reconstruction.light.made_folder import far, near, write_folder
+from tests.reconstruction.light.synthetic_folder import far, near, write_folder
 
 SMALL = ReflectionConfig(
     mlp=MlpShape(32, 4, 4, 3), environment_rows=16, steps=60, batch=512, warm_up=10, precision="float32"

@@ -21,7 +21,7 @@ from reconstruction.light.photo_set import read_photo_set
 from reconstruction.light.reflection_mlp import MlpShape
 from reconstruction.light.shading import display_from_linear
 from reconstruction.light.training import faster_precision, mean_square_error, new_panels, psnr_db, train_reflections
-from tests.reconstruction.light.made_folder import far, near, write_folder
+from tests.reconstruction.light.synthetic_folder import far, near, write_folder
 
 GRID = GridSettings(most_cells=2048, levels=1, far_side=16, batch_share=1.0)
 SMALL = ReflectionConfig(

@@ -18,7 +18,7 @@ from reconstruction.panels.search.views import WholePicture
 from reconstruction.scenes.facades.cases import wide_camera
 from reconstruction.scenes.facades.record import Layout
 from reconstruction.scenes.facades.render import render_facade
-from tests.reconstruction.made_photos import simple_case
+from tests.reconstruction.synthetic_photos import simple_case
 
 coordinates = st.floats(-20.0, 60.0, allow_subnormal=False)
 

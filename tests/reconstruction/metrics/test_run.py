@@ -17,7 +17,7 @@ from reconstruction.metrics.sets import SYNTHETIC_SETS, PhotoSet, ScoredPhoto, s
 from reconstruction.scenes.facades.cases import random_case, wide_camera
 from reconstruction.scenes.facades.record import Layout, Wall
 from reconstruction.scenes.facades.render import render_facade
-from tests.reconstruction.made_photos import simple_case
+from tests.reconstruction.synthetic_photos import simple_case
 
 SMALL = wide_camera(400, 300)
 

@@ -8,7 +8,7 @@ from reconstruction.light.reflection_mlp import MlpShape
 from reconstruction.objects.organise import organised
 from reconstruction.training.config import TrainConfig
 from reconstruction.training.train import train_model
-from tests.reconstruction.training.made_data_set import write_data_set
+from tests.reconstruction.training.synthetic_data_set import write_data_set
 
 TINY = ReflectionConfig(MlpShape(width=16, layers=4, position_order=3, direction_order=2), steps=6, batch=256)
 CONFIG = TrainConfig(iterations=3, n_splats=150, max_splats=200, reflections=TINY, score_every_s=1e9, light="mlp")

@@ -13,7 +13,7 @@ from reconstruction.base.cameras import Intrinsics, Pose, PosedPhoto
 from reconstruction.light.photo_set import read_photo_set
 from reconstruction.objects.picking import Quads, picked, rays_of
 from reconstruction.scenes.parameters import SceneRequest
-from tests.reconstruction.objects.made_scene import pane
+from tests.reconstruction.objects.synthetic_scene import pane
 
 LENS = Intrinsics(64, 48, 60.0, 60.0, 32.0, 24.0)
 NORTH = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])

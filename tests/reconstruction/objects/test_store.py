@@ -11,7 +11,7 @@ from safetensors.numpy import load_file, save_file
 
 from planning.base.errors import InputError, OperationCancelled
 from reconstruction.objects.store import DESCRIPTION, StoredScene, read_scene, write_scene
-from tests.reconstruction.objects.made_scene import made_scene
+from tests.reconstruction.objects.synthetic_scene import synthetic_scene
 
 
 def assert_same(one, other):
@@ -44,7 +44,7 @@ def assert_same_table(mine, yours):
 
 @pytest.fixture
 def stored(tmp_path):
-    write_scene(made_scene(), tmp_path / "scene")
+    write_scene(synthetic_scene(), tmp_path / "scene")
     return tmp_path / "scene"
 
 
@@ -55,7 +55,7 @@ def stored(tmp_path):
     seed=st.integers(0, 99),
 )
 def test_any_scene_is_read_back_the_same(tmp_path_factory, sizes, n_background, seed):
-    scene = made_scene(tuple(map(tuple, sizes)), n_background, seed)
+    scene = synthetic_scene(tuple(map(tuple, sizes)), n_background, seed)
     folder = tmp_path_factory.mktemp("scenes")
     write_scene(scene, folder)
     assert_same(read_scene(folder), scene)
@@ -92,7 +92,7 @@ def test_components_come_one_by_one(stored):
 
 
 def test_a_scene_that_is_written_over_stays_whole_until_the_end(stored, monkeypatch):
-    before, other = made_scene(), made_scene(seed=5)
+    before, other = synthetic_scene(), synthetic_scene(seed=5)
     (stored / "records.sqlite").write_bytes(b"records")
     (stored / "own.safetensors").write_bytes(b"somebody's")
 

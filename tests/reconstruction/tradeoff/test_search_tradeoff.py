@@ -13,7 +13,7 @@ from reconstruction.scenes.facades.cases import wide_camera
 from reconstruction.scenes.facades.record import Layout
 from reconstruction.scenes.facades.render import render_facade
 from reconstruction.tradeoff.search_tradeoff import SegmentVariants, run_variants, variant_rows, variants_panel
-from tests.reconstruction.made_photos import simple_case
+from tests.reconstruction.synthetic_photos import simple_case
 
 
 @pytest.mark.slow

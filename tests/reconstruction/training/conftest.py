@@ -3,7 +3,7 @@
 import pytest
 import torch
 
-from tests.reconstruction.training.made_data_set import write_data_set
+from tests.reconstruction.training.synthetic_data_set import write_data_set
 
 
 @pytest.fixture(scope="package", autouse=True)

@@ -16,8 +16,8 @@ from reconstruction.splats.splats import NO_PANEL
 from reconstruction.training import start as start_module
 from reconstruction.training.config import TrainConfig
 from reconstruction.training.start import start_model
-from tests.reconstruction.light.made_folder import far
-from tests.reconstruction.training.made_data_set import write_data_set
+from tests.reconstruction.light.synthetic_folder import far
+from tests.reconstruction.training.synthetic_data_set import write_data_set
 
 WALL_Y_M = 0.5
 """Of a mesh behind the panels, which are in the plane y = 0."""

@@ -11,7 +11,7 @@ from reconstruction.training.config import TrainConfig
 from reconstruction.training.model.score import mean_of, score_views
 from reconstruction.training.photos.poses import OwnPoses
 from reconstruction.training.train import train_model
-from tests.reconstruction.training.made_data_set import write_data_set
+from tests.reconstruction.training.synthetic_data_set import write_data_set
 
 LEAST_GAIN_DB, MOST_GAIN_DB = 3.0, 14.0
 """7.4 dB were measured with 16 photos and 60 steps."""

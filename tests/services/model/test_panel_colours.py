@@ -21,7 +21,7 @@ from groundstation.services.model.panel_colours import (
 )
 from reconstruction.objects.store import write_scene
 from reconstruction.records.entries import Attribute, Defect, Inspection
-from tests.reconstruction.objects.made_scene import made_scene
+from tests.reconstruction.objects.synthetic_scene import made_scene
 
 IDS = ("a", "b", "c", "d")
 

@@ -11,7 +11,7 @@ from planning.base.errors import InputError
 from reconstruction.objects.gs_scene import GsElement
 from reconstruction.objects.store import StoredScene, write_scene
 from reconstruction.records.entries import global_id_of
-from tests.reconstruction.objects.made_scene import made_scene
+from tests.reconstruction.objects.synthetic_scene import made_scene
 
 
 @pytest.fixture

@@ -9,7 +9,7 @@ import pytest
 from groundstation.services.photos.found_panels import PanelDraft, search_panels, solved_draft
 from groundstation.services.photos.intake import photo_intake
 from groundstation.services.photos.tradeoff import corner_sigma_m, facade_trials
-from tests.reconstruction.made_photos import coarse_model, made_photos, write_flight
+from tests.reconstruction.synthetic_photos import coarse_model, made_photos, write_flight
 from tests.services.photo_cases import draft_of, site_model
 
 

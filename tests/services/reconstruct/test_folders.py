@@ -34,7 +34,7 @@ from groundstation.services.reconstruct.folders import (
 )
 from planning.base.errors import InputError
 from reconstruction.training.parameters import TrainRequest
-from tests.reconstruction.training.made_data_set import write_data_set
+from tests.reconstruction.training.synthetic_data_set import write_data_set
 
 
 @pytest.fixture(scope="module")

@@ -38,7 +38,7 @@ from groundstation.services.reconstruct.messages import (
 )
 from planning.base.errors import InputError
 from reconstruction.training.parameters import TrainRequest
-from tests.reconstruction.training.made_data_set import write_data_set
+from tests.reconstruction.training.synthetic_data_set import write_data_set
 
 TRAINING = Subject("training")
 PATIENCE_S = 240.0

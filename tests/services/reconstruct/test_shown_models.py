@@ -16,7 +16,7 @@ from reconstruction.light.photo_set import read_photo_set
 from reconstruction.training.config import TrainConfig
 from reconstruction.training.model.saved import save_model
 from reconstruction.training.train import train_model
-from tests.reconstruction.training.made_data_set import write_data_set
+from tests.reconstruction.training.synthetic_data_set import write_data_set
 
 LIGHT = ReflectionConfig(environment_rows=8, steps=10, batch=256)
 # With light apart, so that pictures say which panel a pixel is of.

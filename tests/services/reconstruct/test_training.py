@@ -7,7 +7,7 @@ from groundstation.services.reconstruct.training import config_of_request, light
 from planning.base.errors import InputError, OperationCancelled
 from reconstruction.training.parameters import TrainRequest
 from reconstruction.training.timer import Timer
-from tests.reconstruction.training.made_data_set import write_data_set
+from tests.reconstruction.training.synthetic_data_set import write_data_set
 
 
 @pytest.fixture(scope="module")

@@ -55,9 +55,9 @@ class _Cancelling:
 
 @pytest.fixture(autouse=True)
 def _nothing_kept():
-    photo_preview._KEPT.clear()
+    photo_preview._LAST.clear()
     yield
-    photo_preview._KEPT.clear()
+    photo_preview._LAST.clear()
 
 
 @pytest.mark.slow

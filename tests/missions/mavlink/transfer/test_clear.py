@@ -5,14 +5,14 @@ import pytest
 from missions.mavlink.messages import Message, MissionAck, MissionClearAll, Received
 from missions.mavlink.transfer.exchange import Ending, MissionType, Result
 from missions.mavlink.transfer.verified import Clear, ClearOutcome, ClearState
-from tests.missions.mavlink.transfer.twins import (
+from tests.missions.mavlink.transfer.fake_vehicle import (
     ARDUPILOT,
     OWN,
     PX4,
     ROUTE,
     VEHICLE,
     Air,
-    TwinVehicle,
+    FakeVehicle,
     lose,
     route,
     waypoints,
@@ -38,20 +38,20 @@ def started() -> Clear:
 
 @pytest.mark.parametrize("mission_type", list(MissionType))
 def test_only_the_list_that_was_meant_is_cleared(mission_type: MissionType) -> None:
-    vehicle = TwinVehicle(PX4, {kind: list(waypoints(3, mission_type=kind)) for kind in range(3)})
+    vehicle = FakeVehicle(PX4, {kind: list(waypoints(3, mission_type=kind)) for kind in range(3)})
     Air(vehicle).run(Clear(route(mission_type)))
     assert [len(vehicle.lists[kind]) for kind in range(3)] == [0 if kind == mission_type else 3 for kind in range(3)]
 
 
 @pytest.mark.parametrize(("is_up", "kind"), [(True, MissionClearAll), (False, MissionAck)])
 def test_lost_question_or_answer_is_asked_again(is_up: bool, kind: type[Message]) -> None:
-    air = Air(TwinVehicle(ARDUPILOT), fault=lose(is_up, kind, 0, 1))
+    air = Air(FakeVehicle(ARDUPILOT), fault=lose(is_up, kind, 0, 1))
     assert cleared(air) == ClearOutcome(Ending.DONE, Result.ACCEPTED)
     assert len(air.sent(MissionClearAll)) == 3
 
 
 def test_vehicle_in_its_mission_does_not_clear() -> None:
-    assert cleared(Air(TwinVehicle(ARDUPILOT, may_clear=False))) == ClearOutcome(Ending.REFUSED, Result.ERROR)
+    assert cleared(Air(FakeVehicle(ARDUPILOT, may_clear=False))) == ClearOutcome(Ending.REFUSED, Result.ERROR)
 
 
 def test_refusal_of_another_kind_ends_at_once() -> None:
@@ -79,7 +79,7 @@ def test_acknowledgements_of_other_lists_and_of_an_upload_before_are_ignored() -
 
 
 def test_dead_link_ends_silent() -> None:
-    air = Air(TwinVehicle(ARDUPILOT), loss=1.0)
+    air = Air(FakeVehicle(ARDUPILOT), loss=1.0)
     clear = Clear(ROUTE)
     assert 14.0 < air.run(clear) < 16.0
     assert clear.outcome == ClearOutcome(Ending.SILENT, None)

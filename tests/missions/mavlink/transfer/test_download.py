@@ -16,14 +16,14 @@ from missions.mavlink.messages import (
     Received,
 )
 from missions.mavlink.transfer.exchange import Download, DownloadOutcome, DownloadState, Ending, MissionType, Result
-from tests.missions.mavlink.transfer.twins import (
+from tests.missions.mavlink.transfer.fake_vehicle import (
     ARDUPILOT,
     OWN,
     PX4,
     ROUTE,
     VEHICLE,
     Air,
-    TwinVehicle,
+    FakeVehicle,
     lose,
     route,
     waypoints,
@@ -49,8 +49,8 @@ def acked(result: int, time_s: float = 0.0) -> Received:
     return told(MissionAck(OWN.system, OWN.component, result), time_s)
 
 
-def loaded(autopilot: Autopilot, n: int = 10, mission_type: int = 0) -> TwinVehicle:
-    vehicle = TwinVehicle(autopilot)
+def loaded(autopilot: Autopilot, n: int = 10, mission_type: int = 0) -> FakeVehicle:
+    vehicle = FakeVehicle(autopilot)
     vehicle.lists[mission_type] = list(waypoints(n, mission_type=mission_type))
     return vehicle
 

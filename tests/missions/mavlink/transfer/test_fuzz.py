@@ -28,7 +28,16 @@ from missions.mavlink.transfer.wire_items import compare
 from missions.mavlink.wire import Decoder, Encoder
 from tests.missions.mavlink.driving import Machine
 from tests.missions.mavlink.test_wire import messages_of
-from tests.missions.mavlink.transfer.twins import ARDUPILOT, OWN, PX4, ROUTE, VEHICLE, Air, TwinVehicle, waypoints
+from tests.missions.mavlink.transfer.fake_vehicle import (
+    ARDUPILOT,
+    OWN,
+    PX4,
+    ROUTE,
+    VEHICLE,
+    Air,
+    FakeVehicle,
+    waypoints,
+)
 
 
 @dataclass
@@ -78,7 +87,7 @@ def mangled(n_frames: int) -> None:
     for seed in itertools.count():
         rng = np.random.default_rng(seed)
         autopilot = (ARDUPILOT, PX4)[seed % 2]
-        vehicle = TwinVehicle(autopilot, {0: list(waypoints(30, z=50.0)), 1: [], 2: []})
+        vehicle = FakeVehicle(autopilot, {0: list(waypoints(30, z=50.0)), 1: [], 2: []})
         mangler = Mangler(rng, share=float(rng.choice([0.1, 0.3, 0.6])))
         machine = VerifiedUpload(ROUTE, waypoints(40), autopilot)
         Air(vehicle, fault=mangler).run(machine)

@@ -13,7 +13,7 @@ from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.messages import MissionItemInt
 from missions.mavlink.transfer.exchange import MissionType
 from missions.mavlink.transfer.wire_items import FIELDS, HOME, Difference, compare, has_place, rounding_rules
-from tests.missions.mavlink.transfer.twins import ARDUPILOT, PX4, waypoints
+from tests.missions.mavlink.transfer.fake_vehicle import ARDUPILOT, PX4, waypoints
 
 NAN = math.nan
 COMMANDS = (16, 19, 21, 22, 82, 93, 112, 115, 178, 201, 203, 205, 206, 1000, 2000, 5001, 5003, 5100)

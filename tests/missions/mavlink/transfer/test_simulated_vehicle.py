@@ -23,7 +23,7 @@ from missions.simulator.autopilot.mission_store import to_wire as stored_to_wire
 from missions.simulator.server import DirectLink
 from missions.simulator.vehicle import SimulatedVehicle
 from tests.missions.mavlink.driving import drive, fences_of, from_wire
-from tests.missions.mavlink.transfer.twins import ARDUPILOT, PX4, Air, route
+from tests.missions.mavlink.transfer.fake_vehicle import ARDUPILOT, PX4, Air, route
 from tests.missions.plans import example_plan
 from tests.missions.simulator.ground import ORIGIN, PointMass
 

@@ -18,14 +18,14 @@ from missions.mavlink.messages import (
 )
 from missions.mavlink.transfer.exchange import Ending, MissionType, Result
 from missions.mavlink.transfer.verified import Upload, UploadOutcome, UploadState
-from tests.missions.mavlink.transfer.twins import (
+from tests.missions.mavlink.transfer.fake_vehicle import (
     ARDUPILOT,
     OWN,
     PX4,
     ROUTE,
     VEHICLE,
     Air,
-    TwinVehicle,
+    FakeVehicle,
     lose,
     route,
     waypoints,
@@ -69,7 +69,7 @@ def uploaded(air: Air, n: int = 10, mission_type: MissionType = MissionType.MISS
 @both
 @pytest.mark.parametrize("mission_type", list(MissionType))
 def test_upload_without_trouble_sends_each_message_once(autopilot: Autopilot, mission_type: MissionType) -> None:
-    vehicle = TwinVehicle(autopilot)
+    vehicle = FakeVehicle(autopilot)
     air = Air(vehicle)
     assert uploaded(air, 10, mission_type) == UploadOutcome(Ending.DONE, Result.ACCEPTED, 9)
     assert vehicle.lists[mission_type] == list(waypoints(10, mission_type=mission_type))
@@ -108,7 +108,7 @@ def test_states_follow_the_table() -> None:
 
 @both
 def test_lost_count_is_sent_again_after_silence(autopilot: Autopilot) -> None:
-    air = Air(TwinVehicle(autopilot), fault=lose(True, MissionCount, 0, 1))
+    air = Air(FakeVehicle(autopilot), fault=lose(True, MissionCount, 0, 1))
     assert uploaded(air).ending is Ending.DONE
     assert len(air.sent(MissionCount)) == 3
 
@@ -117,7 +117,7 @@ def test_lost_count_is_sent_again_after_silence(autopilot: Autopilot) -> None:
 def test_lost_request_is_made_up_for(autopilot: Autopilot) -> None:
     for lost in range(10):
         kind = MissionRequest if autopilot is ARDUPILOT else MissionRequestInt
-        vehicle = TwinVehicle(autopilot)
+        vehicle = FakeVehicle(autopilot)
         assert uploaded(Air(vehicle, fault=lose(False, kind, lost))).ending is Ending.DONE
         assert vehicle.lists[0] == list(waypoints(10))
 
@@ -125,7 +125,7 @@ def test_lost_request_is_made_up_for(autopilot: Autopilot) -> None:
 @both
 def test_lost_item_is_sent_again_before_the_vehicle_asks_again(autopilot: Autopilot) -> None:
     for lost in range(9):
-        vehicle = TwinVehicle(autopilot)
+        vehicle = FakeVehicle(autopilot)
         air = Air(vehicle, fault=lose(True, MissionItemInt, lost))
         upload = Upload(ROUTE, waypoints(10))
         seconds = air.run(upload)
@@ -138,20 +138,20 @@ def test_lost_item_is_sent_again_before_the_vehicle_asks_again(autopilot: Autopi
 
 @both
 def test_lost_last_acknowledgement_ends_unconfirmed_never_done(autopilot: Autopilot) -> None:
-    air = Air(TwinVehicle(autopilot), fault=lose(False, MissionAck, *range(20)))
+    air = Air(FakeVehicle(autopilot), fault=lose(False, MissionAck, *range(20)))
     assert uploaded(air) == UploadOutcome(Ending.UNCONFIRMED, None, 9)
 
 
 def test_error_of_an_idle_vehicle_after_the_last_item_is_no_refusal() -> None:
     # The acknowledgement was lost; the item sent again meets a vehicle that expects none any more.
-    air = Air(TwinVehicle(ARDUPILOT), fault=lose(False, MissionAck, 0))
+    air = Air(FakeVehicle(ARDUPILOT), fault=lose(False, MissionAck, 0))
     assert uploaded(air) == UploadOutcome(Ending.UNCONFIRMED, Result.ERROR, 9)
 
 
 @both
 @pytest.mark.parametrize("n_messages", [0, 1, 5, 10])
 def test_link_that_dies_ends_silent(autopilot: Autopilot, n_messages: int) -> None:
-    air = Air(TwinVehicle(autopilot), fault=lambda is_up, message, n: [message] if n < n_messages else [])
+    air = Air(FakeVehicle(autopilot), fault=lambda is_up, message, n: [message] if n < n_messages else [])
     upload = Upload(ROUTE, waypoints(10))
     seconds = air.run(upload)
     assert upload.outcome is not None
@@ -168,7 +168,7 @@ def test_heartbeats_without_answers_do_not_keep_an_upload_waiting() -> None:
 
 
 def test_items_that_never_arrive_end_the_upload_stalled_though_the_vehicle_keeps_asking() -> None:
-    vehicle = TwinVehicle(ARDUPILOT)
+    vehicle = FakeVehicle(ARDUPILOT)
     # Items reach the vehicle's partner check but never count: it hears everything but items.
     air = Air(vehicle, fault=lambda is_up, message, n: [] if isinstance(message, MissionItemInt) else [message])
     upload = Upload(ROUTE, waypoints(5))
@@ -235,7 +235,7 @@ def test_repeated_request_is_answered_again_but_not_its_copy() -> None:
 
 @both
 def test_everything_twice_does_not_double_the_stream(autopilot: Autopilot) -> None:
-    vehicle = TwinVehicle(autopilot)
+    vehicle = FakeVehicle(autopilot)
     air = Air(vehicle, delay_s=0.2, fault=lambda is_up, message, n: [message, message])
     assert uploaded(air, 100).ending is Ending.DONE
     assert vehicle.lists[0] == list(waypoints(100))
@@ -245,7 +245,7 @@ def test_everything_twice_does_not_double_the_stream(autopilot: Autopilot) -> No
 @both
 def test_messages_out_of_order_end_well(autopilot: Autopilot) -> None:
     for seed in range(5):
-        vehicle = TwinVehicle(autopilot)
+        vehicle = FakeVehicle(autopilot)
         air = Air(vehicle, jitter_s=0.3, seed=seed, fault=lambda is_up, message, n: [message] * (1 + n % 2))
         # A copy of the last item may be answered with an error that overtakes the acknowledgement.
         assert uploaded(air, 30).ending in (Ending.DONE, Ending.UNCONFIRMED)
@@ -254,7 +254,7 @@ def test_messages_out_of_order_end_well(autopilot: Autopilot) -> None:
 
 @both
 def test_slow_link_is_learnt_and_not_flooded(autopilot: Autopilot) -> None:
-    vehicle = TwinVehicle(autopilot)
+    vehicle = FakeVehicle(autopilot)
     air = Air(vehicle, delay_s=0.45)
     assert uploaded(air, 40).ending is Ending.DONE
     # The vehicle asks again by itself after 0.5 or 1 s, so each item may go out twice, not more.
@@ -323,7 +323,7 @@ def test_vehicle_that_begins_anew_again_and_again_is_given_up() -> None:
 
 @both
 def test_vehicle_that_gave_up_is_sent_everything_anew(autopilot: Autopilot) -> None:
-    vehicle = TwinVehicle(autopilot)
+    vehicle = FakeVehicle(autopilot)
 
     def fault(is_up: bool, message: Message, n: int) -> list[Message]:
         if is_up and n == 5:
@@ -346,13 +346,13 @@ def test_cancelled_again_and_again_ends_refused() -> None:
 
 
 def test_second_ground_station_is_denied() -> None:
-    vehicle = TwinVehicle(ARDUPILOT)
+    vehicle = FakeVehicle(ARDUPILOT)
     vehicle.receive(Received(MissionCount(1, 1, 5), Address(254, 190), 0.0))
     assert uploaded(Air(vehicle)) == UploadOutcome(Ending.REFUSED, Result.DENIED, None)
 
 
 def test_no_space_is_told_before_anything_was_sent() -> None:
-    assert uploaded(Air(TwinVehicle(PX4, max_items=5))) == UploadOutcome(Ending.REFUSED, Result.NO_SPACE, None)
+    assert uploaded(Air(FakeVehicle(PX4, max_items=5))) == UploadOutcome(Ending.REFUSED, Result.NO_SPACE, None)
 
 
 @pytest.mark.parametrize(
@@ -365,7 +365,7 @@ def test_no_space_is_told_before_anything_was_sent() -> None:
 )
 @both
 def test_refused_item_is_named_with_the_vehicles_reason(autopilot: Autopilot, result: Result) -> None:
-    vehicle = TwinVehicle(autopilot, refuse=lambda item: result if item.seq == 3 else Result.ACCEPTED)
+    vehicle = FakeVehicle(autopilot, refuse=lambda item: result if item.seq == 3 else Result.ACCEPTED)
     assert uploaded(Air(vehicle)) == UploadOutcome(Ending.REFUSED, result, 3)
 
 
@@ -386,7 +386,7 @@ def test_error_left_over_from_before_does_not_end_a_new_upload() -> None:
 def test_a_vehicle_that_is_starting_gets_its_items_once_it_can_take_them() -> None:
     """ArduCopter 4.7.0-dev answers UNSUPPORTED to every count for some seconds after power-up."""
 
-    class Starting(TwinVehicle):
+    class Starting(FakeVehicle):
         def on_count(self, message: MissionCount, source: Address, now_s: float) -> list[Message]:
             if now_s < 4.0:
                 return [self.ack(Result.UNSUPPORTED, source, 0)]
@@ -405,7 +405,7 @@ def test_an_item_that_is_not_supported_still_ends_the_upload_at_once() -> None:
 
 
 def test_vehicle_that_answers_every_count_with_an_error_ends_refused() -> None:
-    class Busy(TwinVehicle):
+    class Busy(FakeVehicle):
         def on_count(self, message: MissionCount, source: Address, now_s: float) -> list[Message]:
             return [self.ack(Result.ERROR, source, 0)]
 

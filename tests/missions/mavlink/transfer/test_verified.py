@@ -19,7 +19,7 @@ from missions.mavlink.messages import (
 from missions.mavlink.transfer.exchange import Ending, MissionType, Result
 from missions.mavlink.transfer.verified import NotVerified, Verified, VerifiedState, VerifiedUpload
 from missions.mavlink.transfer.wire_items import compare
-from tests.missions.mavlink.transfer.twins import ARDUPILOT, PX4, Air, TwinVehicle, lose, route, waypoints
+from tests.missions.mavlink.transfer.fake_vehicle import ARDUPILOT, PX4, Air, FakeVehicle, lose, route, waypoints
 
 both = pytest.mark.parametrize("autopilot", [ARDUPILOT, PX4])
 OLD, NEW = waypoints(8, z=50.0), waypoints(10)
@@ -28,7 +28,7 @@ OLD, NEW = waypoints(8, z=50.0), waypoints(10)
 def put(
     air: Air, items: tuple[MissionItemInt, ...] = NEW, mission_type: MissionType = MissionType.MISSION
 ) -> Verified | NotVerified:
-    assert isinstance(air.vehicle, TwinVehicle)
+    assert isinstance(air.vehicle, FakeVehicle)
     machine = VerifiedUpload(route(mission_type), items, air.vehicle.autopilot)
     air.run(machine)
     assert machine.state is VerifiedState.ENDED
@@ -36,8 +36,8 @@ def put(
     return machine.outcome
 
 
-def old(autopilot: Autopilot) -> TwinVehicle:
-    return TwinVehicle(autopilot, {0: list(OLD), 1: [], 2: []})
+def old(autopilot: Autopilot) -> FakeVehicle:
+    return FakeVehicle(autopilot, {0: list(OLD), 1: [], 2: []})
 
 
 def stored_by_ardupilot(item: MissionItemInt) -> MissionItemInt:
@@ -49,7 +49,7 @@ def stored_by_ardupilot(item: MissionItemInt) -> MissionItemInt:
 @pytest.mark.parametrize("mission_type", list(MissionType))
 def test_equal_read_back_is_the_only_success(autopilot: Autopilot, mission_type: MissionType) -> None:
     items = waypoints(10, mission_type=mission_type)
-    air = Air(TwinVehicle(autopilot))
+    air = Air(FakeVehicle(autopilot))
     outcome = put(air, items, mission_type)
     assert isinstance(outcome, Verified)
     assert outcome.n_uploads == 1
@@ -59,7 +59,7 @@ def test_equal_read_back_is_the_only_success(autopilot: Autopilot, mission_type:
 
 def test_known_rounding_is_forgiven() -> None:
     items = tuple(replace(item, z=item.z + 0.3456, param1=2.9, param2=1.5) for item in NEW)
-    assert isinstance(put(Air(TwinVehicle(ARDUPILOT, change=stored_by_ardupilot)), items), Verified)
+    assert isinstance(put(Air(FakeVehicle(ARDUPILOT, change=stored_by_ardupilot)), items), Verified)
 
 
 @both
@@ -70,7 +70,7 @@ def test_lost_acknowledgement_is_settled_by_reading_back(autopilot: Autopilot) -
 
 @both
 def test_acknowledged_mission_that_is_not_there_is_never_a_success(autopilot: Autopilot) -> None:
-    class Liar(TwinVehicle):
+    class Liar(FakeVehicle):
         def keep(self, item: MissionItemInt) -> None:
             self.arrived.append(OLD[self.expected % len(OLD)])
             if self.is_ardupilot:
@@ -224,7 +224,7 @@ def test_no_items_clear_the_list_and_prove_it(autopilot: Autopilot) -> None:
 
 
 def test_vehicle_that_keeps_its_home_counts_as_cleared() -> None:
-    class KeepsHome(TwinVehicle):
+    class KeepsHome(FakeVehicle):
         def receive(self, received: Received) -> list[Message]:
             answers = super().receive(received)
             if isinstance(received.message, MissionClearAll):
@@ -247,7 +247,7 @@ def test_clearing_that_was_refused_is_no_success() -> None:
 
 
 def test_mission_shifted_by_a_forgotten_home_is_found() -> None:
-    class ShiftsByOne(TwinVehicle):
+    class ShiftsByOne(FakeVehicle):
         def keep(self, item: MissionItemInt) -> None:
             super().keep(replace(NEW[min(self.expected + 1, 9)], seq=self.expected))
 

@@ -18,8 +18,8 @@ from reconstruction.panels.segment import segment_image, segment_rectified
 from reconstruction.scenes.facades.cases import random_case, wide_camera
 from reconstruction.scenes.facades.record import Case, Disturbances, Layout
 from reconstruction.scenes.facades.render import render_facade
-from tests.reconstruction.made_photos import STRONG, simple_case
 from tests.reconstruction.panels.search.pictures import draw, spans
+from tests.reconstruction.synthetic_photos import STRONG, simple_case
 from tests.slow import slow
 
 Array = NDArray[np.float64]

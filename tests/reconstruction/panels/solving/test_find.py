@@ -13,7 +13,7 @@ from planning.geo.mesh import box_mesh
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.panels.solving.find import FindParameters, find_panels
 from reconstruction.scenes.facades.record import SyntheticFacade
-from tests.reconstruction.made_photos import coarse_model, made_photos
+from tests.reconstruction.synthetic_photos import coarse_model, made_photos
 from tests.slow import slow
 
 TOLD = np.diag([0.02**2] * 3 + [np.radians(0.1) ** 2] * 3)

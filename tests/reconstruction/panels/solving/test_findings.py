@@ -14,8 +14,8 @@ from reconstruction.base.cameras import PosedPhoto
 from reconstruction.panels.solving.find import FoundPanels, find_panels, photos_a_panel_apart, repeated_step_m
 from reconstruction.panels.solving.record import SurfaceLine
 from reconstruction.scenes.facades.record import SyntheticFacade
-from tests.reconstruction.made_photos import coarse_model, made_photos
 from tests.reconstruction.panels.solving.test_find import load_from, posed
+from tests.reconstruction.synthetic_photos import coarse_model, made_photos
 
 
 @cache

@@ -29,8 +29,8 @@ from reconstruction.panels.solving.solve import solve_facade
 from reconstruction.scenes.facades.cases import wide_camera
 from reconstruction.scenes.facades.record import Disturbances, Layout, SyntheticFacade, Wall
 from reconstruction.scenes.facades.render import render_facade
-from tests.reconstruction.made_photos import simple_case
 from tests.reconstruction.panels.solving.test_register import stated
+from tests.reconstruction.synthetic_photos import simple_case
 
 LAYOUT = Layout(4, 7, 1.5, 2.2)
 LENS = wide_camera(640, 480)

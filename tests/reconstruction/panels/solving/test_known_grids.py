@@ -21,8 +21,8 @@ from reconstruction.panels.search.record import FacadeGrid, GridLine, InclinedLi
 from reconstruction.panels.solving.facades import Facade, grid_from_file
 from reconstruction.panels.solving.find import FindParameters, find_panels
 from reconstruction.scenes.facades.record import SyntheticFacade
-from tests.reconstruction.made_photos import coarse_model, made_photos
 from tests.reconstruction.panels.solving.test_find import posed
+from tests.reconstruction.synthetic_photos import coarse_model, made_photos
 from tests.slow import slow
 
 WIDTH_M = 0.06

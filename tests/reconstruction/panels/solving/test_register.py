@@ -18,7 +18,7 @@ from reconstruction.panels.solving.register import registered
 from reconstruction.scenes.facades.cases import wide_camera
 from reconstruction.scenes.facades.record import Disturbances, Layout, SyntheticFacade, Wall
 from reconstruction.scenes.facades.render import render_facade
-from tests.reconstruction.made_photos import simple_case
+from tests.reconstruction.synthetic_photos import simple_case
 
 LAYOUT = Layout(5, 9, 1.5, 2.4)
 MIRRORING = Disturbances(reflection=0.45, opposite="grid", tilt_deg=0.3, clutter=True, blur_px=0.6, noise_grey=3.0)

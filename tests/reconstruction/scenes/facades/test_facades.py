@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from reconstruction.scenes.facades.cases import area, clip, grid_of_layout, photo_of, random_case, wide_camera
 from reconstruction.scenes.facades.record import Case, Disturbances, Layout, Wall, first_hits
 from reconstruction.scenes.facades.render import render_facade
-from tests.reconstruction.made_photos import STRONG, simple_case
+from tests.reconstruction.synthetic_photos import STRONG, simple_case
 
 SMALL = wide_camera(400, 300)
 SOFTLY = replace(STRONG, blur_px=0.0, noise_grey=0.0)

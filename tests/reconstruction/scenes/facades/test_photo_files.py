@@ -11,7 +11,7 @@ from planning.photos.folder import read_photos
 from planning.site.records import Airspace, Facade, Panel, Site
 from reconstruction.photos.poses import pose_photos
 from reconstruction.scenes.facades.render import BETWEEN, write_photos
-from tests.reconstruction.made_photos import ORIGIN
+from tests.reconstruction.synthetic_photos import ORIGIN
 from tests.services.photo_cases import true_photos
 
 PANEL = Panel("A-1", ((0.0, 0.0, 1.0), (1.0, 0.0, 1.0), (1.0, 0.0, 2.0), (0.0, 0.0, 2.0)))

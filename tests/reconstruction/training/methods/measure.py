@@ -36,7 +36,14 @@ from reconstruction.training.methods.ref_gaussian import RefGaussianSettings, Re
 from reconstruction.training.methods.ref_gs import RefGsSettings, RefGsShading
 from reconstruction.training.methods.shader import Attribute
 from tests.reconstruction.light.test_lobes import ggx_by_half_vectors
-from tests.reconstruction.training.methods.made_ball import environment, psnr, psnr_of_harmonics, seen, trained, unit
+from tests.reconstruction.training.methods.synthetic_ball import (
+    environment,
+    psnr,
+    psnr_of_harmonics,
+    seen,
+    trained,
+    unit,
+)
 
 SIDE, PLACES, STEPS, BATCH = 64, 4, 400, 4096
 COLOUR = Attribute("colour", (16, 3), 0.0)

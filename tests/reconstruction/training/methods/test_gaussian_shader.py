@@ -16,7 +16,7 @@ from reconstruction.training.methods.gaussian_shader import (
     shading_normals,
     sparsity,
 )
-from tests.reconstruction.training.methods.made_ball import (
+from tests.reconstruction.training.methods.synthetic_ball import (
     N_TRAINED,
     N_UNSEEN,
     axes_of,

@@ -15,7 +15,14 @@ from reconstruction.training.methods.ref_gaussian import (
     reflectance,
 )
 from reconstruction.training.methods.ref_gs import RefGsSettings, RefGsShading
-from tests.reconstruction.training.methods.made_ball import N_TRAINED, N_UNSEEN, psnr, psnr_of_harmonics, seen, trained
+from tests.reconstruction.training.methods.synthetic_ball import (
+    N_TRAINED,
+    N_UNSEEN,
+    psnr,
+    psnr_of_harmonics,
+    seen,
+    trained,
+)
 
 SMALL = RefGaussianSettings(side=8)
 

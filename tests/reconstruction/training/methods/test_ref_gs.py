@@ -5,7 +5,14 @@ import torch
 
 from reconstruction.light.shading import reflected_directions
 from reconstruction.training.methods.ref_gs import RefGsSettings, RefGsShading, SphMip
-from tests.reconstruction.training.methods.made_ball import N_TRAINED, N_UNSEEN, psnr, psnr_of_harmonics, seen, trained
+from tests.reconstruction.training.methods.synthetic_ball import (
+    N_TRAINED,
+    N_UNSEEN,
+    psnr,
+    psnr_of_harmonics,
+    seen,
+    trained,
+)
 
 SMALL = RefGsSettings(side=8, hidden=8, directional=4, spatial=2)
 

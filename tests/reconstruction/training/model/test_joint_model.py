@@ -23,7 +23,7 @@ from reconstruction.training.model.joint_model import LEAST_REFLECTIVITY, SceneM
 from reconstruction.training.model.render import OF_PICTURE, render_view
 from reconstruction.training.photos.photo_stream import PhotoStream, StreamSettings
 from reconstruction.training.start import warm_start_splats
-from tests.reconstruction.light.made_folder import DIFFUSE, F0, REFLECTIVITY, far
+from tests.reconstruction.light.synthetic_folder import DIFFUSE, F0, REFLECTIVITY, far
 
 
 class Known(nn.Module):

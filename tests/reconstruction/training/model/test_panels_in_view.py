@@ -7,7 +7,7 @@ import numpy as np
 from reconstruction.base.cameras import Intrinsics, Pose, PosedPhoto
 from reconstruction.splats.rasterising.views import View
 from reconstruction.training.model.joint_model import panels_in_view, photo_of
-from tests.reconstruction.light.made_folder import LENS, corners_of
+from tests.reconstruction.light.synthetic_folder import LENS, corners_of
 
 
 def view_at(position, heading=0.0, pitch=0.0, lens=LENS):

@@ -16,8 +16,8 @@ from reconstruction.training.config import TrainConfig
 from reconstruction.training.model.saved import read_model, save_model
 from reconstruction.training.photos.exposures import Exposures, fitted_gain, gains_from_points, own_exposures
 from reconstruction.training.train import train_model
-from tests.reconstruction.light.made_folder import cameras
-from tests.reconstruction.training.made_data_set import write_data_set
+from tests.reconstruction.light.synthetic_folder import cameras
+from tests.reconstruction.training.synthetic_data_set import write_data_set
 
 
 def test_they_start_from_what_is_known():

@@ -13,8 +13,8 @@ from reconstruction.base.cameras import Intrinsics
 from reconstruction.light.photo_set import read_photo_set
 from reconstruction.training.photos.decoded_photo import DECODING_BYTES_PER_PX
 from reconstruction.training.photos.photo_stream import PhotoOrder, PhotoStream, StreamSettings
-from tests.reconstruction.light.made_folder import LENS, panel_numbers
-from tests.reconstruction.training.made_data_set import write_data_set
+from tests.reconstruction.light.synthetic_folder import LENS, panel_numbers
+from tests.reconstruction.training.synthetic_data_set import write_data_set
 
 ORIGIN = np.array([1.0, -3.0, 2.0])
 N = 6

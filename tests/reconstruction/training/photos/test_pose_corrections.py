@@ -23,7 +23,7 @@ from reconstruction.training.photos.poses import (
     one_after_other,
     pulled,
 )
-from tests.reconstruction.light.made_folder import cameras, corners_of
+from tests.reconstruction.light.synthetic_folder import cameras, corners_of
 
 MOVE = (0.2, -0.1, 0.05, 0.004, -0.006, 0.003)
 

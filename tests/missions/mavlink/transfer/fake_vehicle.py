@@ -60,7 +60,7 @@ class Vehicle(Protocol):
 
 
 @dataclass
-class TwinVehicle:
+class FakeVehicle:
     """Keeps lists of items; ArduPilot-like writes each item at once, PX4-like the whole list at the end."""
 
     autopilot: Autopilot

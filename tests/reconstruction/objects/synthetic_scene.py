@@ -30,7 +30,7 @@ def pane(column: int, row: int, width_m: float = 1.5, height_m: float = 2.0):
     return ((west, 0.0, low), (east, 0.0, low), (east, 0.0, high), (west, 0.0, high))
 
 
-def made_scene(sizes=((3, 0, 5), (2,)), n_background=4, seed=0, name="made") -> GsScene:
+def synthetic_scene(sizes=((3, 0, 5), (2,)), n_background=4, seed=0, name="made") -> GsScene:
     """Facades with panels of so many Gaussians each, and a background."""
     rng = np.random.default_rng(seed)
     n = sum(map(sum, sizes)) + n_background

@@ -31,7 +31,7 @@ QUICK = ReflectionConfig(
 
 
 @dataclass(frozen=True, slots=True)
-class Lesson:
+class Run:
     """PSNR, dB, of glass pixels of unseen views: mean and worst view; and processor time of the training."""
 
     score_db: float
@@ -39,7 +39,7 @@ class Lesson:
     seconds: float
 
 
-Course = dict[str, Lesson]
+Results = dict[str, Run]
 """Lessons with one seed, by what is learned."""
 
 
@@ -50,7 +50,7 @@ def rendered(scene: str, folder: Path, n_views: int, width_px: int) -> Path:
     return folder
 
 
-class School:
+class Experiment:
     """Photos to learn from and to be scored on, with the rays read once for all lessons of a seed."""
 
     def __init__(self, folder: Path, seed: int) -> None:
@@ -61,9 +61,7 @@ class School:
         self._rays = glass_rays(self._source, self._photos)
         self._seed = seed
 
-    def lesson(
-        self, model: ModelName, config: ReflectionConfig, share: float = 1.0, limit_s: float | None = None
-    ) -> Lesson:
+    def run(self, model: ModelName, config: ReflectionConfig, share: float = 1.0, limit_s: float | None = None) -> Run:
         """Of a share of the photos that are not held out, within a limit of processor time."""
         rays = self._rays
         if share < 1.0:
@@ -74,12 +72,12 @@ class School:
         source = self._source
         trained = train_reflections(rays, source.panels, model, config, source.exposure, clock=time.process_time)
         score = score_views(trained, source, self._held_out)
-        return Lesson(score.mean_db, score.worst_db, trained.seconds)
+        return Run(score.mean_db, score.worst_db, trained.seconds)
 
 
 def courses(
-    course: Callable[[Path, int], Course], folders: Sequence[Path], seeds: Sequence[int]
-) -> Iterator[list[Course]]:
+    results: Callable[[Path, int], Results], folders: Sequence[Path], seeds: Sequence[int]
+) -> Iterator[list[Results]]:
     """A course for each folder with each seed, as many at a time as there are cores; those of a folder together.
 
     Parameters
@@ -89,31 +87,31 @@ def courses(
     """
     # A process that was forked would share torch's threads, which do not live on in it.
     with ProcessPoolExecutor(n_threads(), multiprocessing.get_context("spawn")) as pool:
-        asked = [[pool.submit(course, folder, seed) for seed in seeds] for folder in folders]
+        asked = [[pool.submit(results, folder, seed) for seed in seeds] for folder in folders]
         for of_folder in asked:
             yield [each.result() for each in of_folder]
 
 
-def lesson_rows(scene: str, found: Sequence[Course]) -> Iterator[Row]:
+def result_rows(scene: str, found: Sequence[Results]) -> Iterator[Row]:
     """Scores and times of each kind of lesson: means of the seeds, and the worst view of all."""
     for name in found[0]:
-        lessons = [course[name] for course in found]
-        scores = [each.score_db for each in lessons]
-        worst = min(each.worst_db for each in lessons)
+        runs = [results[name] for results in found]
+        scores = [each.score_db for each in runs]
+        worst = min(each.worst_db for each in runs)
         beside = f"worst view {worst:.1f} dB; seeds {', '.join(f'{score:.2f}' for score in scores)}"
-        mean, seconds = statistics.fmean(scores), statistics.fmean(each.seconds for each in lessons)
+        mean, seconds = statistics.fmean(scores), statistics.fmean(each.seconds for each in runs)
         yield Row(scene, f"{name}, unseen views", round(mean, 2), "dB", None, beside, seeds=len(found))
         yield Row(scene, f"{name}, learning", round(seconds, 1), "s", seeds=len(found))
 
 
 def gain_row(
-    scene: str, what: str, found: Sequence[Course], better: str, others: Iterable[str], least_db: float | None
+    scene: str, what: str, found: Sequence[Results], better: str, others: Iterable[str], least_db: float | None
 ) -> Row:
     """By how much one is above the best of others, mean of the seeds and worst; `least_db` is what the mean has to be.
 
     With None there is no target.
     """
-    gains = [course[better].score_db - max(course[other].score_db for other in others) for course in found]
+    gains = [results[better].score_db - max(results[other].score_db for other in others) for results in found]
     mean = statistics.fmean(gains)
-    wished = ("", None) if least_db is None else (f"at least {least_db:g} dB", mean >= least_db)
-    return Row(scene, what, round(mean, 2), "dB", None, f"worst {min(gains):.2f} dB", *wished, seeds=len(found))
+    target = ("", None) if least_db is None else (f"at least {least_db:g} dB", mean >= least_db)
+    return Row(scene, what, round(mean, 2), "dB", None, f"worst {min(gains):.2f} dB", *target, seeds=len(found))

@@ -73,7 +73,7 @@ class Axis:
 
 
 @dataclass
-class ArduPilotTwin:
+class ReferenceArduPilot:
     """Runs items; `two_axis` models a gimbal without pan axis, on which DO_MOUNT_CONTROL turns the vehicle."""
 
     origin: Origin

@@ -10,7 +10,7 @@ import numpy as np
 
 from reconstruction.base.cameras import Intrinsics, PosedPhoto
 from reconstruction.dataset.layers import normals_to_16_bit
-from tests.reconstruction.light.made_folder import LENS, Light, far, write_folder
+from tests.reconstruction.light.synthetic_folder import LENS, Light, far, write_folder
 
 
 def write_data_set(
