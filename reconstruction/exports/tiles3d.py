@@ -54,7 +54,7 @@ from reconstruction.splats.splats import NO_PANEL, Splats
 
 # How a component's Gaussians are shared among tiles: halves, by space, until each has few enough.
 #
-# Panels stay whole. Tiles that are shared out have merged Gaussians of their own (`coarser_parts`): some of a
+# Panels stay whole. Tiles that are shared out have merged Gaussians of their own (`coarser_part`): some of a
 # building's
 # would look like one with holes.
 

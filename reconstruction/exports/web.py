@@ -352,7 +352,7 @@ class WebOptions:
     is_baked
         Whether what panes mirror is in their colours: the page says so in its footnote.
     sky
-        What lies behind everything, see `web_sky`; None: a plain one.
+        What lies behind everything, see `sky_light`; None: a plain one.
     content_of
         Content of a picture or document that a record names, or None where there is none.
     """
@@ -412,7 +412,7 @@ def write_web(
     folder
         Made where it is missing; one that has a page of ours gets the new one.
     records
-        Of elements, components and the scene; see `web_records`.
+        Of elements, components and the scene; see `page_records`.
 
     Raises
     ------

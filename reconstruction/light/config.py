@@ -85,7 +85,7 @@ class GridSettings:
         Target side of a cell, of what a pixel covers half way to `reach_m`.
     reach_m
         From the glass, up to which cells are equally large; None for 1.25 times the longest side of the box around all
-        panels, which is about how far apart the cameras are, and so how far away parallax can be told well. What is
+        panels, which is about how far apart the cameras are, and so how far away parallax can be measured well. What is
         further away is contracted.
     outer
         Of the grid, what is beyond the inner box on each side, against half of that.

@@ -248,7 +248,7 @@ class _Multiplied(torch.autograd.Function):
 
 # Lookups in cubes of texels and the way back, compiled, float32 in main memory.
 #
-# Cubes are padded (`cube_faces.padding`), so that a lookup's four texels lie in one face, and come finest first, one
+# Cubes are padded (`padding`), so that a lookup's four texels lie in one face, and come finest first, one
 # below the other. The formulas are those of `looked_up_reference`. Gradients of texels are added up ray by ray in
 # up to four parts, whose number depends on sizes alone: the same bits for any number of threads.
 

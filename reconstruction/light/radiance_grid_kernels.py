@@ -1,4 +1,4 @@
-"""Marching rays through a grid of density and light, forward and backward, compiled; `radiance_grid_twin` is its twin.
+"""Marching rays through a grid of density and light, forward and backward, compiled.
 
 All arrays are float32 and C-contiguous. A grid's vertices carry raw density and the square roots of red, green and blue
 light. A ray visits the places `times` along it, the same for all rays but for a share of a step of its own. Gradients

@@ -1,8 +1,8 @@
 """Whole plans on sites that are hard: nothing to see, nowhere to be, too many views, one panel and thousands, far away.
 
 Hard cases of single parts stand with those parts: section borders, the pole and the panel's plane in
-`test_coverage_model` and `test_sections`; the exact minimum distance in `test_space` and `test_checks`; degenerate
-panels, NaN and UTM coordinates in files in `test_site_file` and `test_plan_file`; photos at one place in `test_flights`
+`test_coverage_model` and `test_sections`; the exact minimum distance in `test_free_space` and `test_checks`; degenerate
+panels, NaN and UTM coordinates in files in `test_plan_file` and the tests of site files; photos at one place in `test_flights`
 and `test_tour`.
 """
 

@@ -2,7 +2,7 @@
 
 Charts that are drawn several times a second beside a running plan or training are of this kind, and others to look
 alike: with 500 points a new curve costs half of what pyqtgraph takes to lay its plot out. Charts of a whole flight
-that are zoomed and clicked into, and drawn once, are pyqtgraph's: `profile_chart.py`, `clearance_chart.py`.
+that are zoomed and clicked into, and drawn once, are pyqtgraph's: `profile_chart.py`.
 """
 
 from __future__ import annotations

@@ -64,7 +64,7 @@ def light_name(light: str) -> str:
 
 
 QUICK_S = 0.12
-"""What a picture may take while the camera is led about, where so few pixels help (`picture_pace`)."""
+"""What a picture may take while the camera is led about, where so few pixels help (`PicturePace`)."""
 
 LEAST_PX, QUICK_PX = 96 * 72, 160 * 120
 """Pixels of the smallest coarse picture, and of the first one, before anybody knows how long one takes."""

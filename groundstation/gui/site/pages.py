@@ -305,7 +305,7 @@ class HomePage(Page):
 
 
 class ItemPage(Page):
-    """Name, and a button to remove the thing; kinds add their own boxes between the two with `add_between`."""
+    """Name, and a button to remove the thing; kinds add their own boxes between the two."""
 
     def __init__(self, title: str, units: UnitSystem, parent: QWidget | None = None) -> None:
         super().__init__(units, parent)

@@ -1,6 +1,6 @@
 """The main window: tabs along the pilot's work around one shared view, the job bar, messages, and the menus.
 
-It arranges; what happens in a tab is the tab's own matter, and what happens to the project is in `project_actions`.
+It arranges; what happens in a tab is the tab's own matter, and what happens to the project is in `project_controller`.
 """
 
 from __future__ import annotations

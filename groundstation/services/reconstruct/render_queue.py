@@ -48,7 +48,7 @@ if TYPE_CHECKING:
 
 # Models that are looked at: read, kept, cut by a plane, coloured by panel, and asked what is where.
 #
-# Only the process of models (`reconstruct_process`) uses this: it needs torch.
+# Only the process of models (`server`) uses this: it needs torch.
 
 MOST_MODELS = 2
 """Finished ones that are kept: the two that are compared."""

@@ -1,4 +1,4 @@
-"""How the regressions of `belief` are fitted: to panes that the network finds in pictures whose panes are known."""
+"""How the regressions of `confidence` are fitted: to panes that the network finds in pictures whose panes are known."""
 
 from __future__ import annotations
 

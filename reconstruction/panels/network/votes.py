@@ -1,7 +1,7 @@
 """Panes from what the network says at each place: places that name the same four corners are one pane.
 
 Places that say they lie on a pane are gathered by the middle of the corners they name; where many meet, there is a
-pane, its corners the median of what they name. How probably it is there is weighed in `belief`.
+pane, its corners the median of what they name. How probably it is there is weighed in `confidence`.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ class Pane:
     sigma_px
         Standard deviation of a corner, pixels of the photo.
     confidence
-        How probably it is there, 0 to 1: `belief` tells.
+        How probably it is there, 0 to 1, from `confidence`.
     """
 
     corners_px: Array

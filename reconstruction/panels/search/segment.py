@@ -152,7 +152,7 @@ def refined_inclined(
 ) -> tuple[InclinedLine, ...]:
     """Inclined lines of a coarse picture, measured in a view with `scale` times as many pixels along each side.
 
-    Their widths shrink by what the glass beside them tells (`frame_edges.py`), the median over all of them.
+    Their widths shrink by what the glass beside them tells (`edges.py`), the median over all of them.
     """
     measured = run_parallel(_measured_inclined, [(image, view, scale, line) for line in inclined])
     known = [bias for _, bias in measured if np.isfinite(bias)]

@@ -152,7 +152,7 @@ class SheetRole:
 def sheet_shares(mi: Any, role: SheetRole) -> Array:
     """Shares of light that is mirrored, and that passes, by cosines in equal steps, shape (STEPS + 1, 2, 3).
 
-    The same quantities as in `optics.pane_light`, but from Mitsuba's own polarised Fresnel terms.
+    The same quantities as in `pane_surfaces.pane_light`, but from Mitsuba's own polarised Fresnel terms.
     """
     glass = role.glass
     cosines = np.linspace(0.0, 1.0, STEPS + 1) if role.fresnel else np.ones(STEPS + 1)

@@ -1,6 +1,6 @@
-"""How photos are taken: sensor, shutter, speed, exposure, lens, and what is told wrong of positions and angles.
+"""How photos are taken: sensor, shutter, speed, exposure, lens, and errors of the stated positions and angles.
 
-One frozen record, loadable from TOML. What is in it is simulated where the scene calls for it (`effects_flight`).
+One frozen record, loadable from TOML. What is in it is simulated where the scene calls for it (`effects.flight`).
 """
 
 from __future__ import annotations

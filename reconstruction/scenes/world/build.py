@@ -377,8 +377,8 @@ def build_scene(model: SiteModel, look: Look | None = None, seed: int = 0) -> Sc
     """A site with all that a photo of it shows.
 
     The panes are the site's panels themselves. What of the building's mesh lies in their plane or up to 0.3 m before it
-    is cut out behind them (`wall_cut`). Buildings opposite and trees stand among the obstacles of the scene's site, so
-    that flights planned on it keep away from them; the site's hash stays.
+    is cut out behind them (`without_openings`). Buildings opposite and trees stand among the obstacles of the scene's
+    site, so that flights planned on it keep away from them; the site's hash stays.
 
     Panes, sky and surroundings draw from generators of their own: the panes of a scene are the same with and without
     what is near.

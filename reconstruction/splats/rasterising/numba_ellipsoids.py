@@ -1,8 +1,8 @@
 """Ellipsoids as a camera sees them, compiled, forward and backward.
 
-The formulas are those of `ellipsoid_projection`, in float64. An ellipsoid is drawn as a disc of one depth (e = f = 0),
-so that squares, blending and its way back are those of flat splats. The low-pass filter never counts: the blur is in
-the disc.
+The formulas are those of `projection.project_ellipsoids`, in float64. An ellipsoid is drawn as a disc of one depth
+(e = f = 0), so that squares, blending and gradients are those of flat splats. The low-pass filter never counts: the
+blur is in the disc.
 """
 
 from __future__ import annotations

@@ -436,7 +436,7 @@ def gradients_of_tiles(
     wanted, wanted_alphas, wanted_depths
         Gradients of the features, shape (h, w, c), and of alphas and depths, shape (h, w).
     slots
-        Shape (n_slots, 10 + c'), columns as `numba_splat_gradients` has them.
+        Shape (n_slots, 10 + c'), columns as `gradients_of_splats` has them.
     """
     height, width = wanted.shape[:2]
     most, in_row, n_channels = most_splats(starts, first, last), size // BLOCK_COLUMNS, features.shape[1]

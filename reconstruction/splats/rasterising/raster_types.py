@@ -92,7 +92,7 @@ class RasterSettings:
         return NO_DOT if self.antialiased else 1.0 / self.low_pass_px**2
 
     def least_depth_change(self, focal_px: float) -> float:
-        """Depth, as a share of that of its middle, by which any splat may differ from it; see `torch_twin`."""
+        """Depth, as a share of that of its middle, by which any splat may differ from it; see `torch_reference`."""
         smallest_px = self.blur_px if self.antialiased else self.low_pass_px
         return smallest_px * self.reach * steepest(focal_px)
 

@@ -1,6 +1,6 @@
 """Photos of a data set folder as a training looks at them: read from the disk ahead of time, within a memory limit.
 
-Which photos come up next is known (`photo_order`): they are decoded in a thread while the training works, and what has
+Which photos come up next is known (`PhotoOrder`): they are decoded in a thread while the training works, and what has
 to go is the photo that is needed last, which no other rule beats (L. A. Belady, 1966). What comes out depends on the
 generator alone, and not on how fast the disk is.
 """
