@@ -2,8 +2,8 @@
 
 Hard cases of single parts stand with those parts: section borders, the pole and the panel's plane in
 `test_coverage_model` and `test_sections`; the exact minimum distance in `test_free_space` and `test_checks`; degenerate
-panels, NaN and UTM coordinates in files in `test_plan_file` and the tests of site files; photos at one place in `test_flights`
-and `test_tour`.
+panels, NaN and UTM coordinates in files in `test_plan_file` and the tests of site files; photos at one place in
+`test_flights` and `test_tour`.
 """
 
 from __future__ import annotations
