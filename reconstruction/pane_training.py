@@ -34,7 +34,7 @@ from reconstruction.metrics.sets import PhotoSet, annotated_set, folder_set, syn
 from reconstruction.panels.network.calibration import Source, calibrated, write_regressions
 from reconstruction.panels.network.crops import CropSampler
 from reconstruction.panels.network.network import LARGE, SMALL, PaneNetwork, network_of
-from reconstruction.panels.network.pool import MADE_PX, PER_FILE, Pool, read_gathered, write_gathered
+from reconstruction.panels.network.pool import PER_FILE, SYNTHETIC_PX, Pool, read_gathered, write_gathered
 from reconstruction.panels.network.random_pictures import SyntheticPicture, synthetic_picture
 from reconstruction.panels.network.training import FIRST_PICTURES, SOURCES, NetworkToTrain, train
 from reconstruction.panels.search.cells import from_lower_left
@@ -171,7 +171,7 @@ def main() -> None:
     with Pool(options.pool, options.pictures, options.processes) as pool:
         if not options.gathered.exists():
             write_gathered(_sources(options), options.gathered)
-        bank = CropSampler(options.device, SOURCES, options.pictures * MADE_PX**2)
+        bank = CropSampler(options.device, SOURCES, options.pictures * SYNTHETIC_PX**2)
         traced, *photos = read_gathered(options.gathered)
         bank.add(traced, 1)
         for photos_of_set in photos:

@@ -52,7 +52,7 @@ class ParameterOutcome:
     former: float | None = None
 
     @property
-    def is_as_wanted(self) -> bool:
+    def is_as_set(self) -> bool:
         """Whether it was read, or now has the value that it should have."""
         return self.status in (ParameterStatus.READ, ParameterStatus.SET, ParameterStatus.UNCHANGED)
 

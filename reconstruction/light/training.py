@@ -36,7 +36,7 @@ HISTORY_POINTS = 12
 CHECKED = 16384
 """Rays of those given that it is measured on."""
 
-MEANT = 1 << 20
+N_MEAN_RAYS = 1 << 20
 """Rays that the mean colours to start from are taken of."""
 
 WORTH_IT = 1.3
@@ -162,7 +162,7 @@ def new_panels(
     rays: GlassRays, planes: PanelPlanes, model: ModelName, config: ReflectionConfig, generator: torch.Generator
 ) -> ReflectivePanels:
     """An untrained model that starts from the mean colours of its rays."""
-    some = _sample(rays, MEANT, config.seed)
+    some = _sample(rays, N_MEAN_RAYS, config.seed)
     linear, numbers = linear_from_display(some.display) / some.gains[:, None], some.panels.long()
     n_panels = len(planes.corners_enu_m)
     mean = linear.mean(dim=0)

@@ -246,7 +246,7 @@ class Truth:
     ----------
     name
         How it was made.
-    taken
+    rendered
         The photographs.
     again
         The same with another seed, which says how far the truth itself has converged; None where nothing is random.
@@ -257,7 +257,7 @@ class Truth:
     """
 
     name: str
-    taken: tuple[RenderedPhoto, ...]
+    rendered: tuple[RenderedPhoto, ...]
     again: tuple[RenderedPhoto, ...] | None
     seconds: float
     panels: SetScores
@@ -321,7 +321,7 @@ def truth_error(truth: Truth) -> float:
     if truth.again is None:
         return 0.0
     squares = []
-    for one, other in zip(truth.taken, truth.again, strict=True):
+    for one, other in zip(truth.rendered, truth.again, strict=True):
         exposure = metered_exposure(one)
         squares.append(_mean_square(_grey(one, exposure), _grey(other, exposure)))
     return math.sqrt(0.5 * float(np.mean(squares)))
@@ -348,7 +348,7 @@ def run_scene_variants(
     OperationCancelled
         The user cancelled.
     """
-    grey = [_grey(taken, metered_exposure(taken)) for taken in truth.taken]
+    grey = [_grey(taken, metered_exposure(taken)) for taken in truth.rendered]
     seen, trials = walls(scene.site.site.facades), []
     # Compiling and loading is in no setting's time; light that is gathered once for all photos is in each's.
     Renderer(scene, settings[0].settings).render(photos[0])
@@ -369,7 +369,7 @@ def run_scene_variants(
             started = clock()
             taken = renderer.render(small, seed=number)
             spent_s += clock() - started
-            exposure = metered_exposure(truth.taken[number])
+            exposure = metered_exposure(truth.rendered[number])
             squares.append(_mean_square(_enlarged(_grey(taken, exposure), grey[number]), grey[number]))
             scores.append(_panel_scores(small, taken, exposure, seen))
         trials.append(

@@ -439,10 +439,10 @@ def held_out_views(
 CLEAR_DB = 3.0
 """That light apart gains on harmonics, on rays of unseen photos, from which on nobody need ask further."""
 
-ASKED_SHARE = 0.04
+TRIAL_SHARE = 0.04
 """Of a training, for each of both ways."""
 
-LEAST_ASKED_STEPS = 20
+LEAST_TRIAL_STEPS = 20
 
 NEVER_S = 1e9
 
@@ -488,11 +488,11 @@ def _is_worth(
     unseen = [learned[number].name for number in tried.unseen]
     seen = tuple(photo for photo in learned if photo.name not in unseen)
     origin = model_origin(known_scene(source))
-    limit_s = None if config.time_limit_s is None else ASKED_SHARE * config.time_limit_s
+    limit_s = None if config.time_limit_s is None else TRIAL_SHARE * config.time_limit_s
     short = replace(
         config,
         time_limit_s=limit_s,
-        iterations=max(LEAST_ASKED_STEPS, round(ASKED_SHARE * config.iterations)),
+        iterations=max(LEAST_TRIAL_STEPS, round(TRIAL_SHARE * config.iterations)),
         densification="none",
         own_poses="off",
         score_every_s=NEVER_S,

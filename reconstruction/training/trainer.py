@@ -3,7 +3,7 @@
 How it ends, besides by itself, and as `TrainingState` says:
 
 - the user cancels: the state is written before `OperationCancelled` goes on, so that the training can, too;
-- the user stops: rates fall to their last within a twentieth of the time spent, see `settling`;
+- the user stops: rates fall to their last within a twentieth of the time spent, see `cool_down`;
 - time is up: the model is what it is then, for its rates are at their last.
 """
 
@@ -194,7 +194,7 @@ class Trainer(TrainingState):
         self._reserve_s = 0.0
         self._last_px = last_px
         self._with_glass = config.trained_by.knows_panels
-        self._settling: CoolDown | None = None
+        self._cool_down: CoolDown | None = None
         self._terms: dict[str, float] = {}
 
     @property
@@ -255,11 +255,11 @@ class Trainer(TrainingState):
         self._visit(watching)
 
     def _report(self, watching: Callbacks) -> None:
-        settling = self._settling
-        if settling is None:
+        cool_down = self._cool_down
+        if cool_down is None:
             watching.monitor.report("training", self.progress, 1.0)
         else:
-            watching.monitor.report("settling", settling.share(self.at.spent_s), 1.0)
+            watching.monitor.report("settling", cool_down.share(self.at.spent_s), 1.0)
 
     def _wait(self, watching: Callbacks) -> None:
         with self._watch.paused():
@@ -273,7 +273,7 @@ class Trainer(TrainingState):
         if watching.visit is None or not self._ranks.is_first:
             return
         at, was_training = self.at, self.model.training
-        state = "settling" if self._settling is not None and state == "training" else state
+        state = "settling" if self._cool_down is not None and state == "training" else state
         self.model.eval()
         watching.visit(
             TrainingSnapshot(
@@ -295,9 +295,9 @@ class Trainer(TrainingState):
         """Whether it was stopped, and its rates have fallen; all processes know what the first one has spent."""
         numbers = [self._watch(), self._needed_s(), float(watching.stop())]
         self.at.spent_s, self._reserve_s, is_stopped = self._ranks.agreed(numbers)
-        if is_stopped and self._settling is None:
-            self._settling = CoolDown(self.progress, self.at.spent_s)
-        return self._settling is not None and self._settling.share(self.at.spent_s) >= 1.0
+        if is_stopped and self._cool_down is None:
+            self._cool_down = CoolDown(self.progress, self.at.spent_s)
+        return self._cool_down is not None and self._cool_down.share(self.at.spent_s) >= 1.0
 
     def _needed_s(self) -> float:
         """For the last looks at the quality, and for writing the model."""
@@ -337,8 +337,8 @@ class Trainer(TrainingState):
         samples = [self.photos.sample(self.generator) for _ in range(self._ranks.n)]
         sample = on_device(samples[self._ranks.rank], self.device)
         self.n_pixels = sample.facade.numel()
-        settling = self._settling
-        falling = self.progress if settling is None else settling.progress_of_rates(at.spent_s)
+        cool_down = self._cool_down
+        falling = self.progress if cool_down is None else cool_down.progress_of_rates(at.spent_s)
         set_rates(self.optimiser, config.rates, at.step, max(self.progress, falling), at.factor)
         offsets = torch.zeros(len(splats), 2, device=self.device, requires_grad=True)
         if self.progress >= TRIED:
@@ -354,7 +354,7 @@ class Trainer(TrainingState):
         parameters = [value for group in self.optimiser.param_groups for value in group["params"]]
         require_finite(self._ranks.average_gradients(parameters, loss.detach()), parameters)
         self.is_editing = True
-        is_growing = settling is None and config.densify_from <= self.progress < config.densify_until
+        is_growing = cool_down is None and config.densify_from <= self.progress < config.densify_until
         strategy = self.strategy if is_growing else self._no_more
         stage = config.losses.stage(self.progress) if self._with_glass else None
         observe_pictures(

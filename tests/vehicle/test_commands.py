@@ -147,7 +147,7 @@ def test_a_parameter_is_read_before_it_is_set_and_the_vehicles_word_ends_it():
     value_of(machine, 0.0)
     outcome = machine.outcome
     assert (outcome.status, outcome.value, outcome.former) == (ParameterStatus.SET, 0.0, 2.0)
-    assert outcome.is_as_wanted
+    assert outcome.is_as_set
 
 
 def test_a_parameter_that_is_right_already_is_not_sent():
@@ -170,7 +170,7 @@ def test_a_vehicle_that_keeps_another_value_is_not_taken_for_set():
     value_of(machine, 20.0)
     value_of(machine, 30.0)
     assert (machine.outcome.status, machine.outcome.value) == (ParameterStatus.REFUSED, 30.0)
-    assert not machine.outcome.is_as_wanted
+    assert not machine.outcome.is_as_set
 
 
 def test_the_reading_that_comes_twice_is_no_refusal():

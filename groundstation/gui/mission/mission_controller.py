@@ -19,7 +19,7 @@ from planning.base.findings import Finding, Severity
 from planning.plan import Plan
 from planning.site.records import SiteModel
 
-MAX_SAID = 5
+MAX_SHOWN_FINDINGS = 5
 """Findings of one import that are said one by one; the check lists all."""
 
 
@@ -131,7 +131,7 @@ class MissionController(QObject):
         """Say what there is to say of the files of these names; what holds of several sorties once."""
         self._context.withdraw("plan.file.")
         by_message = {found.message: found for found in reversed(findings) if found.severity is not Severity.OK}
-        for found in list(reversed(by_message.values()))[:MAX_SAID]:
+        for found in list(reversed(by_message.values()))[:MAX_SHOWN_FINDINGS]:
             item = item_of_place(found.place, self._context.document)
             self._context.say(
                 found.severity,
@@ -139,5 +139,7 @@ class MissionController(QObject):
                 item,
                 f"plan.file.{found.message}",
             )
-        if len(by_message) > MAX_SAID:
-            self._context.say(Severity.NOTE, self.tr("{0} more findings like these").format(len(by_message) - MAX_SAID))
+        if len(by_message) > MAX_SHOWN_FINDINGS:
+            self._context.say(
+                Severity.NOTE, self.tr("{0} more findings like these").format(len(by_message) - MAX_SHOWN_FINDINGS)
+            )

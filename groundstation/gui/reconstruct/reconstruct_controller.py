@@ -245,19 +245,19 @@ class Phase(Enum):
     """What the process does.
 
     IDLE -> ASKING -> IDLE                                    the scene is asked which light it calls for
-    IDLE -> PREPARING -> TRAINING -> (SETTLING ->) IDLE       a training, to its end or stopped
-    PREPARING, TRAINING, SETTLING -> ENDING -> IDLE           broken off; its state is kept
+    IDLE -> PREPARING -> TRAINING -> (COOLING_DOWN ->) IDLE       a training, to its end or stopped
+    PREPARING, TRAINING, COOLING_DOWN -> ENDING -> IDLE           broken off; its state is kept
     """
 
     IDLE = auto()
     ASKING = auto()
     PREPARING = auto()
     TRAINING = auto()
-    SETTLING = auto()
+    COOLING_DOWN = auto()
     ENDING = auto()
 
 
-BUSY = frozenset({Phase.PREPARING, Phase.TRAINING, Phase.SETTLING, Phase.ENDING})
+BUSY = frozenset({Phase.PREPARING, Phase.TRAINING, Phase.COOLING_DOWN, Phase.ENDING})
 
 
 class ReconstructController(FolderController):
@@ -357,7 +357,7 @@ class ReconstructController(FolderController):
         if self.phase in (Phase.PREPARING, Phase.TRAINING):
             self.is_paused = False
             self._process.send(Stop())
-            self._to(Phase.SETTLING)
+            self._to(Phase.COOLING_DOWN)
 
     def cancel_training(self) -> None:
         """End now; the state is kept."""

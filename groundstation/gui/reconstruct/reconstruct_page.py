@@ -236,9 +236,9 @@ class ReconstructPage(QObject):
         controller = self.controller
         if controller.phase is Phase.ENDING:
             return self.tr("Breaking off; the state is being kept ...")
-        if controller.phase is Phase.SETTLING and controller.training.stepped is None:
+        if controller.phase is Phase.COOLING_DOWN and controller.training.stepped is None:
             return self.tr("Stops as soon as there is a model: {0}").format(stage)
-        if controller.phase is Phase.SETTLING:
+        if controller.phase is Phase.COOLING_DOWN:
             return self.tr("Stopped: the rates fall, then the model is written.")
         if controller.is_paused:
             return self.tr("Paused. The model can be looked at.")

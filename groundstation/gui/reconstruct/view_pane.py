@@ -352,7 +352,7 @@ class ViewPane(QWidget):
         """The training has gone on."""
         if self._has_model != self._controller.has_model:
             self.show_training()
-        is_learning = self._controller.phase in (Phase.PREPARING, Phase.TRAINING, Phase.SETTLING)
+        is_learning = self._controller.phase in (Phase.PREPARING, Phase.TRAINING, Phase.COOLING_DOWN)
         self.pictures_in_view.set_learning(is_learning and not self._controller.is_paused)
 
     # How it is put together

@@ -182,7 +182,7 @@ def _set_parameters(run: SortieRun, changes: tuple[ParameterChange, ...]) -> Ste
         if outcome.status is ParameterStatus.SET:
             is_restart_due |= change.needs_reboot
             run.note("parameter", say("{} was {:g} and is {:g} now", change.name, outcome.former, change.new))
-        elif not outcome.is_as_wanted:
+        elif not outcome.is_as_set:
             run.note("parameter", f"{change.name}: {outcome.status.value}")
     if is_restart_due:
         yield from _reboot(run)

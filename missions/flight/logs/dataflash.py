@@ -197,7 +197,7 @@ def times_s(table: Table) -> NDArray[np.float64] | None:
 # Messages and fields as ArduPilot's documentation of its log messages has them (Copter 3.3 to 4.6); event numbers from
 # libraries/AP_Logger/AP_Logger.h.
 
-WANTED = frozenset(
+MESSAGES_READ = frozenset(
     "POS GPS ATT AHR2 XKF1 NKF1 EKF1 MNT BAT CURR CAM TRIG MODE MSG EV ARM ERR PARM".split()  # noqa: SIM905
 )
 
@@ -211,7 +211,7 @@ def read_dataflash(content: bytes, monitor: Monitor = QUIET) -> RawLog:
     """Everything a dataflash log says of the vehicle."""
     log = RawLog(say("ArduPilot, dataflash log"), autopilot=Autopilot.ARDUPILOT)
     is_binary = looks_binary(content[:2])
-    tables, n_lost = (binary_tables if is_binary else text_tables)(content, WANTED, monitor)
+    tables, n_lost = (binary_tables if is_binary else text_tables)(content, MESSAGES_READ, monitor)
     if n_lost > (512 if is_binary else 0):  # a page of memory may end a binary log
         text = (
             say("{} bytes of the log are no records and were skipped", n_lost)

@@ -29,7 +29,7 @@ Columns = dict[str, NDArray[np.float64]]
 
 MAGIC = b"ULog\x01\x12\x35"
 
-WANTED = (
+MESSAGES_READ = (
     "vehicle_global_position",
     "vehicle_gps_position",
     "sensor_gps",
@@ -83,7 +83,7 @@ def read_ulog(content: bytes, label: str, monitor: Monitor = QUIET) -> RawLog:
         # pyulog prints what it finds wrong; the standard output belongs to --json.
         with contextlib.redirect_stdout(io.StringIO()):
             _check_formats(core.ULog(_BoundedFile(content, label), parse_header_only=True))
-            source = core.ULog(_BoundedFile(content, label), list(WANTED))
+            source = core.ULog(_BoundedFile(content, label), list(MESSAGES_READ))
     except (core.ULogException, struct.error, ValueError, KeyError, IndexError, TypeError, OverflowError) as error:
         raise InputError.say(
             "the ULog cannot be read ({}); copy it from the vehicle again", error, place=label
@@ -143,7 +143,7 @@ def _check_formats(header: ULog) -> None:
             sizes[name] = sum(max(1, count) * size(kind, depth + 1) for kind, count, _ in formats[name].fields)
         return sizes[name]
 
-    for name in WANTED:
+    for name in MESSAGES_READ:
         if size(name, 0) > MAX_FIELDS:
             raise ValueError(f"the topic '{name}' has more than {MAX_FIELDS} fields")
 

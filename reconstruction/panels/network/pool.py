@@ -19,7 +19,7 @@ from reconstruction.panels.network.random_pictures import SyntheticPicture, synt
 PER_FILE = 50
 """Made pictures in a file of the pool."""
 
-MADE_PX = 448
+SYNTHETIC_PX = 448
 """Their size."""
 
 
@@ -94,7 +94,7 @@ class Pool:
 
 def _write_file(number: int, path: Path, per_file: int) -> None:
     cv2.setNumThreads(1)
-    pictures = [synthetic_picture(seed, MADE_PX) for seed in range(number * per_file, (number + 1) * per_file)]
+    pictures = [synthetic_picture(seed, SYNTHETIC_PX) for seed in range(number * per_file, (number + 1) * per_file)]
     corners = [picture.corners_px for picture in pictures]
     unfinished = path.with_suffix(".part.npz")
     np.savez(

@@ -280,7 +280,7 @@ NEW_LINE, NEW_DIRECTION = 6.0, 6.0
 """Prices, nats: dozens of candidates are looked at, and a line's place and ends are free; a direction costs as much.
 Among 32 synthetic facades without inclined lines the best false one gains 6.6."""
 
-LEAST_WHERE_ASKED = 0.5
+LEAST_ON_REQUEST = 0.5
 """Of the edge pixels that are asked for else, where the user asks for inclined lines."""
 
 SECONDS_EACH = 0.003
@@ -338,7 +338,7 @@ def inclined_lines(
     if parameters.inclined == "off":
         return (), decide(effect, (), "off")
     points = inclined_points(axes, rows, columns, (0, 0, width, height))
-    least = panes.least_votes * (LEAST_WHERE_ASKED if parameters.inclined == "on" else 1.0)
+    least = panes.least_votes * (LEAST_ON_REQUEST if parameters.inclined == "on" else 1.0)
     tried = candidates(points, least)
     decision = decide(effect, tried, parameters.inclined)
     found: list[Profile] = []

@@ -148,7 +148,7 @@ def _use(photo: PosedPhoto, surface: FacadeSurface, low: Array, high: Array) -> 
 
 # Grids that are given, as from a corrected panels file, in place of a search.
 
-GIVEN_SIGMA_PX = 1.0
+FILE_LINE_SIGMA_PX = 1.0
 """Standard deviation of a line that is given: what a hand can place in a photo."""
 
 BESIDE_M = 2.0
@@ -245,7 +245,7 @@ def _inclined(line: FileInclined, index: int, view: Rectification) -> InclinedLi
     width = float(np.median((right - left) @ np.array([-along[1], along[0]])))
     open_side = OPEN_SIDES[line.panels]
     ends = (float(first[0]), float(first[1])), (float(last[0]), float(last[1]))
-    return InclinedLine(*ends, abs(width), GIVEN_SIGMA_PX, line.confidence, open_side)
+    return InclinedLine(*ends, abs(width), FILE_LINE_SIGMA_PX, line.confidence, open_side)
 
 
 def _is_on(file_facade: FileFacade, photo: PosedPhoto, facade: Facade) -> bool:
@@ -275,7 +275,7 @@ def _lines(
                 )
             )
         width = widths.get(index, usual)
-        lines.append(GridLine(float(np.median(places)), width, GIVEN_SIGMA_PX, line.confidence, line.inferred))
+        lines.append(GridLine(float(np.median(places)), width, FILE_LINE_SIGMA_PX, line.confidence, line.inferred))
     return tuple(sorted(lines, key=lambda line: line.position_px))
 
 

@@ -195,7 +195,7 @@ class Capture:
 
     Parameters
     ----------
-    told, told_higher_m
+    reported, reported_higher_m
         Its pose by its own metadata, and how much too high these tell the place of take-off as well.
     moved_enu_m
         How far the camera moves while the shutter is open, shape (3,); its pose is that of the middle.
@@ -205,8 +205,8 @@ class Capture:
         How long the shutter is open.
     """
 
-    told: Pose
-    told_higher_m: float
+    reported: Pose
+    reported_higher_m: float
     moved_enu_m: Array
     exposure: float
     exposure_s: float

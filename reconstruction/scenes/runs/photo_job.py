@@ -81,11 +81,11 @@ class RenderWorker:
         site = job.scene.site.site
         assert photo.taken_at is not None
         picture = developed(rendered, self._exposure * capture.exposure, job.camera_model.sensor)
-        reported, position = replace(photo, pose=capture.told), job.camera_model.position
+        reported, position = replace(photo, pose=capture.reported), job.camera_model.position
         how = Circumstances(
             position.fix == "rtk", position.total_m, capture.exposure_s, self._moments[number].velocity_enu_m_s
         )
-        home_up_m = site.home_enu_m[2] + capture.told_higher_m
+        home_up_m = site.home_enu_m[2] + capture.reported_higher_m
         jpeg = photo_jpeg(picture, reported, site.origin, photo.taken_at, home_up_m, how)
         contents = {photo.path: jpeg}
         mask = facade_mask(photo, self._grown, rendered.depth_m)

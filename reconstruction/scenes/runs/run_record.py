@@ -73,9 +73,9 @@ def captures_record(job: PhotoJob) -> dict[str, Any]:
             "exposure": capture.exposure,
             "exposure_s": capture.exposure_s,
             "moved_enu_m": capture.moved_enu_m.tolist(),
-            "told_position_enu_m": capture.told.position_enu_m.tolist(),
-            "told_cam_from_enu": capture.told.cam_from_enu.tolist(),
-            "told_higher_m": capture.told_higher_m,
+            "told_position_enu_m": capture.reported.position_enu_m.tolist(),
+            "told_cam_from_enu": capture.reported.cam_from_enu.tolist(),
+            "told_higher_m": capture.reported_higher_m,
         }
         for photo, capture in zip(job.photos, job.captures, strict=True)
     }

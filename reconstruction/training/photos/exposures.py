@@ -106,7 +106,7 @@ def fitted_gain(light: Tensor, truth: Tensor, display: Tensor, channels: Literal
 # The logarithm of what a photo shows of a point is that of its light plus that of the photo's gain. Medians over
 # points and photos in turn find both, whatever a part of the points is: hidden, glossy, or moved.
 
-TOLD_BY = 20_000
+N_GAIN_POINTS = 20_000
 """Points, evenly chosen, or up to twice as many."""
 
 SMALL_PX = 320
@@ -221,7 +221,7 @@ def gains_from_points(
     """
     on_glass = panel_proximity(points_enu_m, source.panels.corners_enu_m, SAME_SURFACE_M, 0.0).panels >= 0
     points = points_enu_m[~on_glass]
-    points = _in_blocks(points[:: max(1, len(points) // TOLD_BY)])
+    points = _in_blocks(points[:: max(1, len(points) // N_GAIN_POINTS)])
     caster = RayCaster(mesh) if len(mesh.triangles) else None
     seen = np.full((len(photos), len(points), 3), np.nan)
     for number, photo in enumerate(photos):

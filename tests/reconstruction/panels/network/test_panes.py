@@ -33,7 +33,7 @@ from reconstruction.panels.network.confidence import (
 from reconstruction.panels.network.crops import CROP_PX, CropSampler
 from reconstruction.panels.network.grids import network_facades
 from reconstruction.panels.network.network import LARGE, OFFSET_PX, SMALL, PaneNetwork, Shape, network
-from reconstruction.panels.network.pool import MADE_PX, Pool, read_gathered, write_gathered
+from reconstruction.panels.network.pool import SYNTHETIC_PX, Pool, read_gathered, write_gathered
 from reconstruction.panels.network.predictions import FoundPanes, PhotoPrediction, SizePrediction, predict_photo
 from reconstruction.panels.network.random_pictures import SyntheticPicture, synthetic_picture
 from reconstruction.panels.network.sides import measured
@@ -334,7 +334,7 @@ def test_training_learns_from_a_pool_that_is_still_being_made(tmp_path: Path, mo
     with Pool(tmp_path / "pool", 8, 1) as made:
         first = made.arrived(least=4)
         assert len(first) in (4, 8)
-        assert np.array_equal(first[1].image, synthetic_picture(1, MADE_PX).image)
+        assert np.array_equal(first[1].image, synthetic_picture(1, SYNTHETIC_PX).image)
         bank = CropSampler("cpu", (1.0,))
         bank.add(first, 0)
         train(bank, 0.05, wanted, more=lambda: made.arrived(least=1), tell=told.append)
