@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from missions.flight.logs.dataflash import WANTED, binary_tables, column, text_tables, texts
+from missions.flight.logs.dataflash import MESSAGES_READ, binary_tables, column, text_tables, texts
 from tests.missions.flight import log_writers as write
 from tests.missions.flight.flights import flown_as_planned
 from tests.missions.plans import example_plan
@@ -19,10 +19,10 @@ def compare(path: Path) -> int:
 
     is_text = path.suffix == ".log"
     judge = DFReader.DFReader_text(str(path)) if is_text else DFReader.DFReader_binary(str(path))
-    tables, _ = (text_tables if is_text else binary_tables)(path.read_bytes(), WANTED)
+    tables, _ = (text_tables if is_text else binary_tables)(path.read_bytes(), MESSAGES_READ)
     found: dict[str, dict[str, list[object]]] = {}
     while (message := judge.recv_msg()) is not None:
-        if message.get_type() in WANTED:
+        if message.get_type() in MESSAGES_READ:
             columns = found.setdefault(message.get_type(), {})
             for label, value in message.to_dict().items():
                 columns.setdefault(label, []).append(value)
