@@ -21,7 +21,7 @@ from reconstruction.training.presets import preset
 from reconstruction.training.ranks import cuda_devices
 from tests.benchmarks.experiments import rendered
 from tests.benchmarks.harness import Benchmark, Context, Row, Skipped
-from tests.benchmarks.rasteriser import N_CHANNELS, Scene, made_scene
+from tests.benchmarks.rasteriser import N_CHANNELS, Scene, synthetic_scene
 
 CASES = (((256, 192), 20_000), ((1024, 768), 100_000), ((2048, 1536), 1_000_000))
 QUICK_CASES = CASES[:1]
@@ -54,7 +54,7 @@ def measure(context: Context) -> Iterator[Row]:
     device = cuda_devices()[0]
     yield Row(device, "beside it, threads of the processor", torch.get_num_threads())
     for size, n in QUICK_CASES if context.is_quick else CASES:
-        yield from _of_rasterisers(made_scene(size, n), f"{size[0]} x {size[1]}, {n} splats")
+        yield from _of_rasterisers(synthetic_scene(size, n), f"{size[0]} x {size[1]}, {n} splats")
     with tempfile.TemporaryDirectory() as place:
         given = os.environ.get(FOLDER)
         folder = Path(given) if given else rendered("planar", Path(place) / "planar", N_VIEWS, WIDTH_PX)

@@ -63,7 +63,7 @@ def measure(context: Context) -> Iterator[Row]:
     repeats = 2 if context.is_quick else REPEATS
     found: dict[tuple[Size, int], Times] = {}
     for size, n in cases:
-        scene = made_scene(size, n)
+        scene = synthetic_scene(size, n)
         name = f"{size[0]} x {size[1]}, {n} splats"
         times = _compiled_times(scene, 0, repeats)
         found[size, n] = times
@@ -97,7 +97,7 @@ def measure(context: Context) -> Iterator[Row]:
         _draw(found, context.folder / "rasteriser.png")
 
 
-def made_scene(size: Size, n: int) -> Scene:
+def synthetic_scene(size: Size, n: int) -> Scene:
     """Surfels as of a facade 8 to 12 m away, up to some 60 degrees from square, at random."""
     g = torch.Generator().manual_seed(0)
     (width, height), focal_px = size, 0.9 * size[0]

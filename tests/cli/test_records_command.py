@@ -9,7 +9,7 @@ import pytest
 
 from planning.site.bundled import write_scene
 from reconstruction.objects.store import write_scene as write_objects
-from tests.reconstruction.objects.synthetic_scene import made_scene
+from tests.reconstruction.objects.synthetic_scene import synthetic_scene
 
 
 @pytest.fixture
@@ -119,10 +119,10 @@ def test_looking_into_records_loads_nothing_heavy(folder):
 
 
 def test_records_of_a_scene_take_its_objects(reflight, tmp_path):
-    write_objects(made_scene(), tmp_path / "made.gsscene")
+    write_objects(synthetic_scene(), tmp_path / "made.gsscene")
     done = reflight("records", tmp_path / "made.gsscene", "make", "--json")
     assert done.status == 0, done.error
-    n_objects = 1 + len(made_scene().components) + len(list(made_scene().elements))
+    n_objects = 1 + len(synthetic_scene().components) + len(list(synthetic_scene().elements))
     assert done.json["objects"]["present"] == n_objects
     nothing = reflight("records", tmp_path, "make")
     assert nothing.status == 1

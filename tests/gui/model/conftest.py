@@ -5,7 +5,7 @@ import pytest
 from reconstruction.objects.store import write_scene
 from tests.gui.driving import close_controller, turn_until
 from tests.gui.reconstruct.conftest import RecordedProcess
-from tests.reconstruction.objects.synthetic_scene import made_scene
+from tests.reconstruction.objects.synthetic_scene import synthetic_scene
 
 
 @pytest.fixture(scope="module")
@@ -43,7 +43,7 @@ def page(application, controller, monkeypatch):
 @pytest.fixture
 def scene(tmp_path):
     """A folder with a scene of four panels on two facades."""
-    write_scene(made_scene(((3, 2), (2, 1))), tmp_path / "made.gsscene")
+    write_scene(synthetic_scene(((3, 2), (2, 1))), tmp_path / "made.gsscene")
     return tmp_path / "made.gsscene"
 
 

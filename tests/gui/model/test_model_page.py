@@ -27,7 +27,7 @@ from reconstruction.objects.store import write_scene
 from reconstruction.records.book import FILE
 from reconstruction.records.entries import Attribute, Defect, Document, Inspection, Maintenance
 from tests.gui.driving import choose, clicked, escape, press, shut, turn_until, type_into
-from tests.reconstruction.objects.synthetic_scene import made_scene
+from tests.reconstruction.objects.synthetic_scene import synthetic_scene
 
 
 def looks(page):
@@ -242,7 +242,7 @@ def test_two_clicks_measure_and_a_third_begins_anew(opened):
 
 
 def test_another_scene_of_the_building_is_shown_beside_it(application, page, scene, tmp_path):
-    write_scene(made_scene(((3, 2), (2, 1)), seed=1), tmp_path / "later.gsscene")
+    write_scene(synthetic_scene(((3, 2), (2, 1)), seed=1), tmp_path / "later.gsscene")
     page.controller.open(scene)
     turn_until(application, lambda: page.controller.card is not None)
     assert page.pane.compare.findText("later.gsscene") == 1
@@ -254,7 +254,7 @@ def test_another_scene_of_the_building_is_shown_beside_it(application, page, sce
 
 
 def test_panels_have_their_colours_beside_too_where_they_have_other_numbers(application, opened, tmp_path):
-    later = made_scene(((3, 2), (2, 1)), seed=1)
+    later = synthetic_scene(((3, 2), (2, 1)), seed=1)
     facade = later.components[1]
     moved = tuple(replace(each, panel=5 - each.panel) for each in facade.elements)
     components = (later.components[0], replace(facade, elements=moved), *later.components[2:])
@@ -348,7 +348,7 @@ def test_another_model_in_the_middle_of_a_report_ends_it(application, opened, tm
     opened.controller.select(opened.controller.card.panels[0].global_id)
     opened.make_report(tmp_path / "r.pdf")
     look, folder = looks(opened)[-1], tmp_path / "other.gsscene"
-    write_scene(made_scene(((1,),), name="other"), folder)
+    write_scene(synthetic_scene(((1,),), name="other"), folder)
     opened.controller.open(folder)
     turn_until(application, lambda: opened.controller.card.folder == folder)
     answer(opened, look)

@@ -21,7 +21,7 @@ from groundstation.services.model.panel_colours import (
 )
 from reconstruction.objects.store import write_scene
 from reconstruction.records.entries import Attribute, Defect, Inspection
-from tests.reconstruction.objects.synthetic_scene import made_scene
+from tests.reconstruction.objects.synthetic_scene import synthetic_scene
 
 IDS = ("a", "b", "c", "d")
 
@@ -81,7 +81,7 @@ def test_severities_have_their_own_colours():
 
 
 def test_records_colour_the_panels_of_a_scene(tmp_path):
-    scene = made_scene()
+    scene = synthetic_scene()
     write_scene(scene, tmp_path)
     panels = {element.global_id: component.name for component, element in scene.elements}
     first, second, *_ = panels

@@ -11,12 +11,12 @@ from planning.base.errors import InputError
 from reconstruction.objects.gs_scene import GsElement
 from reconstruction.objects.store import StoredScene, write_scene
 from reconstruction.records.entries import global_id_of
-from tests.reconstruction.objects.synthetic_scene import made_scene
+from tests.reconstruction.objects.synthetic_scene import synthetic_scene
 
 
 @pytest.fixture
 def folder(tmp_path):
-    write_scene(made_scene(), tmp_path / "one.gsscene")
+    write_scene(synthetic_scene(), tmp_path / "one.gsscene")
     return tmp_path / "one.gsscene"
 
 
@@ -33,7 +33,7 @@ SQUARE = ((0.0, 0.0, 0.0), (2.0, 0.0, 0.0), (2.0, 0.0, 3.0), (0.0, 0.0, 3.0))
 
 def test_a_card_has_all_panels_with_their_facades(folder):
     card = read_card(folder)
-    scene = made_scene()
+    scene = synthetic_scene()
     assert [(panel.name, panel.facade) for panel in card.panels] == [
         (element.name, component.name) for component, element in scene.elements
     ]
@@ -44,7 +44,7 @@ def test_a_card_has_all_panels_with_their_facades(folder):
 
 
 def test_the_first_view_is_square_before_the_largest_facade_and_shows_all_of_it(tmp_path):
-    scene = made_scene()
+    scene = synthetic_scene()
     corners = np.array([element.corners_enu_m for element in scene.components[0].elements])
     middle = 0.5 * (corners.reshape(-1, 3).min(axis=0) + corners.reshape(-1, 3).max(axis=0))
     normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]).sum(axis=0)
@@ -70,7 +70,7 @@ def test_the_first_view_is_square_before_the_largest_facade_and_shows_all_of_it(
 
 
 def test_records_are_of_a_panel_its_facade_or_the_building(folder, tmp_path):
-    card, scene = read_card(folder), made_scene()
+    card, scene = read_card(folder), synthetic_scene()
     second = scene.components[1]
     panel = second.elements[0].global_id
     subjects = [card.subject(level, panel) for level in ("panel", "facade", "building")]
@@ -84,7 +84,7 @@ def test_records_are_of_a_panel_its_facade_or_the_building(folder, tmp_path):
     # Where nothing is chosen, only the building is known, and a facade that there is no other of.
     assert card.subject("panel", "") is card.subject("facade", "") is None
     assert card.subject("building", "").global_id == scene.global_id
-    write_scene(made_scene(((3, 1),)), tmp_path / "alone.gsscene")
+    write_scene(synthetic_scene(((3, 1),)), tmp_path / "alone.gsscene")
     assert read_card(tmp_path / "alone.gsscene").subject("facade", "").name == "A"
 
 
@@ -95,7 +95,7 @@ def test_a_folder_without_a_scene_is_refused(tmp_path):
 
 def test_scenes_beside_are_found_and_damaged_ones_left_out(folder, tmp_path):
     assert scenes_beside(folder) == ()
-    write_scene(made_scene(seed=1), tmp_path / "two.gsscene")
+    write_scene(synthetic_scene(seed=1), tmp_path / "two.gsscene")
     (tmp_path / "bad").mkdir()
     (tmp_path / "bad" / "gsscene.json").write_text("{")
     assert [path.name for path in scenes_beside(folder)] == ["two.gsscene"]
@@ -140,7 +140,7 @@ def test_records_know_the_objects_of_the_scene_they_lie_beside(folder):
         assert {row.global_id for row in book.objects()} == {row.global_id for row in rows}
         assert book.origin == read_card(folder).origin
     gone = read_card(folder).panels[-1].global_id
-    write_scene(made_scene(((3, 0, 5), ())), folder)
+    write_scene(synthetic_scene(((3, 0, 5), ())), folder)
     update_objects(folder, "test")
     with book_of_scene(folder, "test") as book:
         assert not book.is_present(gone)
