@@ -10,6 +10,7 @@ import torch
 
 from planning.base.effects import EffectSetting
 from reconstruction.base.cameras import Intrinsics, Pose, PosedPhoto
+from reconstruction.coarse.plane_sweep import Patches, ShownPhotos
 from reconstruction.dataset.layers import draw_panels
 from reconstruction.light.config import GlassLearned
 from reconstruction.light.cube_map import CubeMap
@@ -55,6 +56,7 @@ def compile_kernels() -> None:
     _march_grid()
     _shade_panes()
     _shade_by_cubes()
+    _sweep_planes()
     court = bundled_scene("court")
     eastwards = court.panes.corners_enu_m[0].mean(axis=0) + np.array([12.0, 0.0, 0.0])
     facing = PosedPhoto("", Path(), lens, Pose.looking(eastwards, -90.0, 0.0))
@@ -115,6 +117,19 @@ def _shade_by_cubes() -> None:
     roughness = torch.tensor([0.2, 0.7], requires_grad=True)
     light = CubeMap(8)(directions, roughness).sum() + SphMip(8, 2, 16)(directions, roughness).sum()
     light.backward()
+
+
+def _sweep_planes() -> None:
+    """A patch in two photos at two distances."""
+    photos = [
+        PosedPhoto("", Path(), Intrinsics(32, 24, 20.0, 20.0, 16.0, 12.0), Pose.looking(place, 0.0, 0.0))
+        for place in np.eye(3)[:2]
+    ]
+    shown = ShownPhotos.of(photos, [0, 1], lambda _: np.zeros((24, 32), np.uint8), 0.1, 0.1)
+    patches = Patches(
+        np.array([0.0, -1.0, 0.0]), np.array([1.0, 0.0, 0.0]), np.array([[0.5, 9.0, 0.0]]), np.array([[0, 1]])
+    )
+    shown.likeness(patches, 0.1, np.array([0.0, 0.1]))
 
 
 if __name__ == "__main__":

@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from planning.base.effects import Decision, EffectSetting, decide
 from planning.base.errors import InputError
 from planning.base.files import open_input_file
 from planning.base.findings import Finding, Severity
@@ -50,6 +51,8 @@ from reconstruction.coarse.ground_level import PICTURE_PX, level_of_ground
 from reconstruction.coarse.marks import agreeing_marks, factor_of_marks, is_in, meeting_place, scaled_marks
 from reconstruction.coarse.pairs import PairHint, PairParameters, choose_pairs, likeness_of
 from reconstruction.coarse.placing import NO_CONTROL, Above, Control, Measured, Placed, place_model
+from reconstruction.coarse.plane_sweep import PICTURE_PX as SWEPT_PX
+from reconstruction.coarse.plane_sweep import DenseDepth, joined, swept
 from reconstruction.coarse.walls import BuildingParameters, Ground, find_ground
 from reconstruction.colmap.folder import Frame, write_frame, write_model
 from reconstruction.colmap.georeference import Similarity, in_enu, posed_photos
@@ -134,6 +137,8 @@ class Stated:
         Of the site, where the photos do not say where it is.
     camera
         Which of several cameras; None for the wide one.
+    dense
+        Whether walls without points are looked for in the photos.
     """
 
     lens: Intrinsics | None = None
@@ -142,6 +147,7 @@ class Stated:
     origin: Origin | None = None
     heights: PhotoHeights = "auto"
     camera: CameraKind | None = None
+    dense: EffectSetting = "auto"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -160,6 +166,8 @@ class CoarseModel:
         Number of pairs that were matched, of how many there are.
     seconds
         Of each step, by its name.
+    decision
+        Whether walls without points were looked for in the photos.
     """
 
     photos: tuple[PosedPhoto, ...]
@@ -173,6 +181,7 @@ class CoarseModel:
     reprojection_px: float
     pairs: tuple[int, int]
     seconds: dict[str, float]
+    decision: Decision
     findings: tuple[Finding, ...]
 
 
@@ -244,6 +253,10 @@ def build_coarse(
     ground = _ground(model, taken, looked_at.points, cloud.points, cell, cell, monitor)
     buildings = make_buildings(looked_at, sizes, ground, monitor, cloud)
     clock.lap("buildings")
+    decision = decide(DenseDepth(), buildings, stated.dense)
+    if decision.on:
+        buildings = _with_dense(model, taken, buildings, looked_at, cloud, sizes, monitor)
+    clock.lap("dense depth")
     origin, shift = _origin(taken, stated, buildings, cloud)
     model = in_enu(model, Similarity(1.0, np.eye(3), shift))
     cloud = replace(cloud, points=cloud.points + shift, centres=cloud.centres + shift)
@@ -266,6 +279,7 @@ def build_coarse(
         error_px,
         (len(pairs), n * (n - 1) // 2),
         clock.laps,
+        decision,
         findings,
     )
 
@@ -643,6 +657,32 @@ LOWEST_PERCENT = 2.0
 """Of points that may lie below the ground where it was not seen: mismatches."""
 
 
+def _with_dense(
+    model: ColmapModel,
+    taken: _Taken,
+    buildings: Buildings,
+    looked_at: Cloud,
+    cloud: Cloud,
+    sizes: BuildingParameters,
+    monitor: Monitor,
+) -> Buildings:
+    """Buildings with what photos show of walls that have too few points; as they were where that says no more."""
+    metadata = dict(zip(taken.names, taken.metadata, strict=True))
+    photos = posed_photos(model, Similarity.identity(), Path())
+    more = swept(
+        photos, lambda photo: _small(metadata[photo.name], SWEPT_PX), buildings, cloud, 0.2 * sizes.cell_m, monitor
+    )
+    if not len(more):
+        return buildings
+    found = make_buildings(joined(looked_at, more), sizes, buildings.ground, monitor, joined(cloud, more))
+    return found if _seen_share(found) > _seen_share(buildings) else buildings
+
+
+def _seen_share(buildings: Buildings) -> float:
+    area = sum(face.area_m2 for face in buildings.faces)
+    return sum(face.area_m2 * face.seen_share for face in buildings.faces) / area if area > 0.0 else 0.0
+
+
 def _ground(
     model: ColmapModel,
     taken: _Taken,
@@ -662,11 +702,11 @@ def _ground(
     return replace(found, z_m=level, slope_deg=0.0, gradient=(0.0, 0.0), is_seen=True)
 
 
-def _small(photo: PhotoMetadata) -> NDArray[np.uint8]:
-    """Grey, of at least `PICTURE_PX`, or whole."""
+def _small(photo: PhotoMetadata, least_px: int = PICTURE_PX) -> NDArray[np.uint8]:
+    """Grey, of at least so many pixels, or whole."""
     longer = max(photo.width_px, photo.height_px)
     scales: tuple[Scale, ...] = (8, 4, 2, 1)
-    return grey_picture(photo, next(scale for scale in scales if longer >= scale * PICTURE_PX or scale == 1))
+    return grey_picture(photo, next(scale for scale in scales if longer >= scale * least_px or scale == 1))
 
 
 def _control(

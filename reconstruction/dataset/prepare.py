@@ -90,6 +90,8 @@ class HiddenPanels:
 
     def assess(self, scene: PanelsInPhotos) -> Assessment:
         """Share of points on panels, in some of the photos, that are hidden by the model."""
+        if not len(scene.corners_enu_m):
+            return Assessment(0.0, say("the site has no panels"), 0.0)
         step = max(1, len(scene.photos) // SAMPLED_PHOTOS)
         hidden, seen, photos = 0, 0, 0
         for photo in scene.photos[::step]:

@@ -139,7 +139,15 @@ def pose_photos(
     if not usable and posed_elsewhere:
         return PhotoSet((), (), (), tuple(unposed), findings)
     if not usable:
-        raise InputError(say("no photo can be given a camera pose ({}); {}", _counted(unposed), ADVICE, place=label))
+        raise InputError(
+            say(
+                "no photo can be given a camera pose ({}); {}. Or make a coarse model of the photos, which finds their "
+                "poses by itself, and take its poses",
+                _counted(unposed),
+                ADVICE,
+                place=label,
+            )
+        )
     near, elsewhere = photos_near(usable, site, label)
     here = in_order(near)
     places = photo_places(here, site, heights, label)

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from groundstation.cli.console import counted, print_findings, print_json, print_next, run_job, tell, worded
+from groundstation.cli.console import counted, print_findings, print_json, print_next, run_job, show, tell, worded
 from groundstation.cli.options import count, in_words_of_options, new_folder
 from planning.base.messages import say
 
@@ -47,6 +47,12 @@ def add_parser(subparsers: Any) -> None:
     add("--origin", type=_origin, metavar="LAT,LON,H", help="where this is, if the photos do not say so")
     add("--heights", choices=("auto", "takeoff", "absolute"), default="auto", help="which heights of photos count")
     add("--lens", choices=("wide", "zoom", "thermal", "band"), help="which of several cameras (default: the wide one)")
+    add(
+        "--dense",
+        choices=("auto", "on", "off"),
+        default="auto",
+        help="look in the photos for walls that have too few points (default auto: where that is a tenth of them)",
+    )
     add("--size", type=count, default=1600, metavar="PX", help="longer side that photos are reduced to (default 1600)")
     add("--seed", type=int, default=0, metavar="N", help="of random choices (default 0)")
     add("--json", action="store_true", help="print one JSON object instead of text")
@@ -93,6 +99,7 @@ def run(options: argparse.Namespace) -> int:
             None if options.lens is None else CameraKind(options.lens),
             options.size,
             options.seed,
+            options.dense,
         )
     result = run_job("coarse", lambda context: coarse_files(request, context))
     report = result.report
@@ -124,6 +131,7 @@ def run(options: argparse.Namespace) -> int:
         report["holes_m2"],
         report["guessed_m2"],
     )
+    show(str(result.decision))
     print_findings(result.findings)
     tell("written", place=result.site)
     out = options.out

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from groundstation.cli.console import counted, print_findings, print_json, run_job, show, tell
+from groundstation.cli.console import counted, print_findings, print_json, print_next, run_job, show, tell
 from groundstation.cli.options import add_pose_arguments, in_words_of_options, new_folder, refine_request
 from planning.base.messages import glue
 
@@ -71,4 +71,5 @@ def run(options: argparse.Namespace) -> int:
     for decision in prepared.data.decisions:
         show(glue("  ", decision))
     print_findings(prepared.findings)
+    print_next("train", options.out, "-o", options.out.with_name(f"{options.out.name}.model"))
     return 0

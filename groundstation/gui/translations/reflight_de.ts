@@ -5948,6 +5948,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>--effects, --wind und --speedup sind für --link sim; das Fluggerät an einem Link hat eigene</translation>
     </message>
     <message>
+        <source>% of the walls</source>
+        <translation>% der Wände</translation>
+    </message>
+    <message>
         <source>--into and --site are for IFC; expected a name ending in .ifc</source>
         <translation>--into und --site sind für IFC; erwartet wird ein Name mit der Endung .ifc</translation>
     </message>
@@ -7026,6 +7030,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Scheiben suchen</translation>
     </message>
     <message>
+        <source>looking at photos</source>
+        <translation>Fotos werden angesehen</translation>
+    </message>
+    <message>
+        <source>looking for walls</source>
+        <translation>Wände werden gesucht</translation>
+    </message>
+    <message>
         <source>lost</source>
         <translation>verloren</translation>
     </message>
@@ -7122,6 +7134,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>keine Scheiben gefunden: Ist die Fassade von vorn zu sehen, und sind ihre Rahmen sichtbar?</translation>
     </message>
     <message>
+        <source>no photo can be given a camera pose ({0}); {1}. Or make a coarse model of the photos, which finds their poses by itself, and take its poses</source>
+        <translation>kein Foto bekommt eine Kamerapose ({0}); {1}. Oder machen Sie ein Grobmodell der Fotos, das ihre Posen selbst findet, und nehmen Sie dessen Posen</translation>
+    </message>
+    <message>
         <source>no photo says where and when it was taken ({0}); use the files as the camera wrote them: programs that edit, send or share photos often take that out</source>
         <translation>kein Foto sagt, wo und wann es gemacht wurde ({0}); die Dateien benutzen, wie die Kamera sie schrieb: Programme zum Bearbeiten, Senden oder Teilen nehmen das oft heraus</translation>
     </message>
@@ -7136,6 +7152,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>no top-up was written; --all writes it all the same</source>
         <translation>kein Ergänzungsflug wurde geschrieben; --all schreibt ihn trotzdem</translation>
+    </message>
+    <message>
+        <source>no wall was found</source>
+        <translation>keine Wand wurde gefunden</translation>
     </message>
     <message>
         <source>no wall was found: the points say too little; come closer, and take photos that overlap more</source>
@@ -7818,6 +7838,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>der Standort hat kein Gebäudenetz, und Scheiben werden auf einem gefunden; stattdessen ein Netz nennen</translation>
     </message>
     <message>
+        <source>the site has no panels</source>
+        <translation>der Standort hat keine Paneele</translation>
+    </message>
+    <message>
         <source>the site would be written over the file it is imported from; name another file</source>
         <translation>der Standort würde über die Datei geschrieben, aus der er importiert wird; eine andere Datei nennen</translation>
     </message>
@@ -7924,6 +7948,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>{0} % of the points lie more than {1} m off the mesh</source>
         <translation>{0} % der Punkte liegen mehr als {1} m neben dem Netz</translation>
+    </message>
+    <message>
+        <source>{0} % of the walls have no points</source>
+        <translation>{0} % der Wände haben keine Punkte</translation>
     </message>
     <message>
         <source>{0} bytes of the log are no messages and were skipped</source>
@@ -13766,10 +13794,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>photos of other cameras are left out ({0}); choose another camera to use those instead</source>
         <translation>Fotos anderer Kameras werden ausgelassen ({0}); wählen Sie eine andere Kamera, um stattdessen diese zu verwenden</translation>
-    </message>
-    <message>
-        <source>no photo can be given a camera pose ({0}); {1}</source>
-        <translation>keinem Foto kann eine Lage der Kamera gegeben werden ({0}); {1}</translation>
     </message>
     <message>
         <source>use the files as the camera wrote them: programs that edit, send or share photos often take that out</source>

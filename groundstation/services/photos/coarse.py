@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from groundstation.services.photos.dataset import prepare_files
+from planning.base.effects import Decision, EffectSetting
 from planning.base.errors import InputError
 from planning.base.files import check_folder_name
 from planning.base.findings import Finding, Severity
@@ -69,6 +70,8 @@ class CoarseRequest:
         Names of two photos, and the metres between where they were taken.
     size_px
         Longer side that photos are reduced to for matching.
+    dense
+        Whether walls without points are looked for in the photos.
     """
 
     photos: Path
@@ -81,6 +84,7 @@ class CoarseRequest:
     kind: CameraKind | None = None
     size_px: int = 1600
     seed: int = 0
+    dense: EffectSetting = "auto"
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,10 +97,13 @@ class CoarseFiles:
         The site file.
     report
         Content of the report.
+    decision
+        Whether walls without points were looked for in the photos.
     """
 
     site: Path
     report: dict[str, Any]
+    decision: Decision
     findings: tuple[Finding, ...]
 
 
@@ -124,6 +131,7 @@ def coarse_files(request: CoarseRequest, monitor: Monitor = QUIET) -> CoarseFile
         request.origin,
         request.heights,
         request.kind,
+        request.dense,
     )
     coarse = build_coarse(request.photos, read.photos, request.out / KEPT, stated, parameters, monitor)
     monitor.report(say("writing the coarse model"), 0, 0)
@@ -132,7 +140,7 @@ def coarse_files(request: CoarseRequest, monitor: Monitor = QUIET) -> CoarseFile
     write_atomically(request.out / KEPT / PHOTOS_FILE, json.dumps(taken_from).encode())
     report = coarse_report(coarse)
     write_atomically(request.out / REPORT_FILE, json.dumps(report, indent=1).encode())
-    return CoarseFiles(request.out / SITE_FILE, report, (*read.findings, *coarse.findings, *findings))
+    return CoarseFiles(request.out / SITE_FILE, report, coarse.decision, (*read.findings, *coarse.findings, *findings))
 
 
 def coarse_files_in_process(
@@ -261,6 +269,11 @@ def coarse_report(coarse: CoarseModel) -> dict[str, Any]:
         "points": len(coarse.model.points),
         "seconds": round(sum(coarse.seconds.values()), 3),
         "steps_s": {name: round(value, 3) for name, value in coarse.seconds.items()},
+        "dense_depth": {
+            "is_on": coarse.decision.on,
+            "decided_by": coarse.decision.decided_by,
+            "walls_without_points_percent": round(coarse.decision.size, 2),
+        },
         "pairs": coarse.pairs[0],
         "of_pairs": coarse.pairs[1],
         "reprojection_px": round(coarse.reprojection_px, 4),

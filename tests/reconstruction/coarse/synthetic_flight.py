@@ -115,10 +115,12 @@ def position_errors_m(flight: Flight, coarse: Path) -> Array:
     return np.asarray(np.linalg.norm(found - np.array([truth[image.name] for image in images]), axis=1))
 
 
-def wall_errors_m(flight: Flight, coarse: Path) -> Array:
+def wall_errors_m(flight: Flight, coarse: Path, with_guessed: bool = False) -> Array:
     """By how much the ends of sides that were seen lie before or behind the true wall next to them, shape (2 n,)."""
     report = json.loads((coarse / "coarse.json").read_text("utf-8"))
-    ends = np.array([side["ends_enu_m"] for side in report["sides"] if not side["is_guessed"]]).reshape(-1, 2, 2)
+    ends = np.array([side["ends_enu_m"] for side in report["sides"] if with_guessed or not side["is_guessed"]]).reshape(
+        -1, 2, 2
+    )
     origins = (read_site(path).site.origin for path in (coarse / "site.json", flight.site))
     ends = in_truth(np.concatenate([ends, np.zeros((len(ends), 2, 1))], axis=2), *origins)[..., :2]
     along = ends[:, 1] - ends[:, 0]

@@ -17,7 +17,7 @@ from planning.base.effects import decide
 from planning.base.errors import InputError, OperationCancelled
 from planning.base.progress import Monitor
 from planning.geo.frames import Origin
-from planning.geo.mesh import TriangleMesh, box_mesh, join
+from planning.geo.mesh import TriangleMesh, box_mesh, empty_mesh, join
 from planning.site.records import Airspace, Facade, Obstacle, Panel, Site, SiteModel
 from reconstruction.base.cameras import Intrinsics, PosedPhoto
 from reconstruction.base.ray_casting import RayCaster
@@ -279,3 +279,9 @@ def test_frames_are_measured_and_covered() -> None:
     cv2.fillConvexPoly(inside, np.round(photo.pixels(outline) - 0.5).astype(np.int32), 1)
     assert layers.facade[cv2.erode(inside, np.ones((5, 5))) > 0].all()
     assert layers.normals_enu.shape == (38, 50, 3)
+
+
+def test_a_site_without_panels_hides_none():
+    found = HiddenPanels().assess(PanelsInPhotos((), np.zeros((0, 4, 3)), RayCaster(empty_mesh())))
+    assert found.size == 0.0
+    assert str(found.reason) == "the site has no panels"
