@@ -668,14 +668,16 @@ def _with_dense(
 ) -> Buildings:
     """Buildings with what photos show of walls that have too few points; as they were where that says no more."""
     metadata = dict(zip(taken.names, taken.metadata, strict=True))
-    photos = posed_photos(model, Similarity.identity(), Path())
+    by_name = {photo.name: photo for photo in posed_photos(model, Similarity.identity(), Path())}
+    photos = [by_name[image.name] for image in model.images.values()]
     more = swept(
         photos, lambda photo: _small(metadata[photo.name], SWEPT_PX), buildings, cloud, 0.2 * sizes.cell_m, monitor
     )
     if not len(more):
         return buildings
     found = make_buildings(joined(looked_at, more), sizes, buildings.ground, monitor, joined(cloud, more))
-    return found if _seen_share(found) > _seen_share(buildings) else buildings
+    is_closed = not found.notes or bool(buildings.notes)
+    return found if is_closed and _seen_share(found) > _seen_share(buildings) else buildings
 
 
 def _seen_share(buildings: Buildings) -> float:

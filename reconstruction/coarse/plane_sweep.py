@@ -52,8 +52,9 @@ MOST_DISTANCES = 201
 ALIKE = 0.6
 """Median correlation of pairs of photos, from which on a patch is believed."""
 
-LEAST_CONTRAST = 2.0
-"""Grey levels, standard deviation in a patch: in less there is noise alone."""
+LEAST_CONTRAST = 0.5
+"""Grey levels, standard deviation in a blurred patch: less is not in the picture. Bare concrete has 1 or 2; noise has
+as much, but not the same in two photos."""
 
 LEAST_AGREEING, AGREEING_SHARE, CLEARER = 8, 0.2, 1.8
 """Patches of a side that agree on a distance: number, share of those that photos see, and times the next distance."""
@@ -187,12 +188,20 @@ def swept(
     Parameters
     ----------
     photos
-        In the frame of the buildings, z up, metres; one for each row of the cloud's cameras.
+        In the frame of the buildings, z up, metres; those of the cloud's cameras, in their order.
     picture
         Of a photo, grey, of any size.
     step_m
         Between distances that are tried.
+
+    Raises
+    ------
+    ValueError
+        The photos were not taken where the cloud's cameras are.
     """
+    places = np.array([photo.pose.position_enu_m for photo in photos]).reshape(-1, 3)
+    if places.shape != cloud.centres.shape or not np.allclose(places, cloud.centres, atol=1e-3):
+        raise ValueError("photos: expected those of the cloud's cameras, in their order")
     faces = [face for face in buildings.faces if face.area_m2 > 4.0 * LEAST_PATCH_M**2]
     area = sum(face.area_m2 for face in faces)
     patch_m = float(np.clip(math.sqrt(area / MOST_PATCHES), LEAST_PATCH_M, MOST_PATCH_M))

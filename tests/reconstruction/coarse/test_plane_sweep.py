@@ -79,8 +79,24 @@ def test_a_side_that_is_a_little_askew_stays_so():
     assert line[0] == pytest.approx(0.012, abs=0.003)
 
 
-def test_plain_walls_say_nothing():
-    assert len(look(np.full((1000, 1000), 120, np.uint8), -5.0)) == 0
+@pytest.mark.parametrize("noise", [0.0, 4.0])
+def test_plain_walls_say_nothing(noise):
+    buildings, cloud = site_with(-5.0)
+    rng = np.random.default_rng(0)
+    plain = np.full((1000, 1000), 120, np.uint8)
+
+    def noisy(photo):
+        shown = seen_by(photo, plain)
+        return np.clip(shown + rng.normal(0.0, noise, shown.shape), 0.0, 255.0).astype(np.uint8)
+
+    assert len(swept(flown(), noisy, buildings, cloud, STEP_M)) == 0
+
+
+def test_bare_concrete_is_enough():
+    faint = (118.0 + plaster() / 255.0 * 20.0).astype(np.uint8)
+    found = look(faint, -5.0)
+    assert len(found) > 60
+    assert np.abs(found.points[:, 1] - WALL_Y).max() < 0.08
 
 
 def test_photos_that_show_other_things_say_nothing():
@@ -93,6 +109,12 @@ def test_photos_that_show_other_things_say_nothing():
 def test_a_side_with_points_is_not_led_away_from_them():
     assert len(look(plaster(), WALL_Y + 1.5, wall=0)) == 0
     assert len(look(plaster(), WALL_Y + 0.1, wall=0)) > 60
+
+
+def test_photos_in_another_order_are_refused():
+    buildings, cloud = site_with(-5.0)
+    with pytest.raises(ValueError, match="in their order"):
+        swept(flown()[::-1], lambda photo: seen_by(photo, plaster()), buildings, cloud, STEP_M)
 
 
 def test_points_are_added_to_those_of_the_cloud():
