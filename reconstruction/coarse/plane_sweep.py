@@ -228,8 +228,10 @@ def swept(
             rows, at = _within_edges(shown, one, rows, at, spacing, distances)
         if len(rows) >= LEAST_AGREEING:
             at, sigma = _straightened(one.middles[rows] @ one.along, at)
-            points = one.middles[rows] + at[:, None] * one.normal
-            parts.append((points, one.views[rows], np.full(len(rows), max(sigma, SIGMA_STEPS * step))))
+            middles = one.middles[rows] + at[:, None] * one.normal
+            points = (middles[:, None] + one.outline(patch_m)).reshape(-1, 3)
+            views = np.repeat(one.views[rows], 4, axis=0)
+            parts.append((points, views, np.full(len(points), max(sigma, SIGMA_STEPS * step))))
     return _as_cloud(cloud, parts)
 
 
@@ -285,6 +287,11 @@ class Patches:
             views[better, worst[better]] = row
         order = np.argsort(-best, axis=1, kind="stable")
         return cls(normal, along, middles, np.take_along_axis(views, order, axis=1))
+
+    def outline(self, patch_m: float) -> Array:
+        """Points on the upper and the lower edge of what a patch stands for, from its middle, shape (4, 3)."""
+        up = np.array([0.0, 0.0, 1.0])
+        return patch_m * np.array([0.25 * a * self.along + 0.5 * b * up for a in (-1.0, 1.0) for b in (-1.0, 1.0)])
 
     def metres_per_px(self, photos: Sequence[PosedPhoto]) -> float:
         """Of the photos as they are reduced, at the patches; NaN where no photo sees one."""
@@ -395,7 +402,7 @@ def _agreed(likeness: Array, distances: Array, within: int) -> tuple[NDArray[np.
 def _within_edges(
     shown: ShownPhotos, patches: Patches, rows: NDArray[np.int64], at: Array, spacing_m: float, distances: Array
 ) -> tuple[NDArray[np.int64], Array]:
-    """Patches whose middle is on the wall: moved by a quarter to either side and upwards they agree, too.
+    """Patches whose middle is on the wall: moved by a quarter to either side they agree, too.
 
     A patch that looks half beyond a corner agrees on the half that does not, and would make the wall longer. Guessed
     sides have the corners of their neighbours.
@@ -405,7 +412,7 @@ def _within_edges(
     near = distances[(distances >= at.min() - 1e-9) & (distances <= at.max() + 1e-9)]
     quarter_m = 0.25 * spacing_m * (N_SAMPLES - 1)
     inside = np.ones(len(rows), bool)
-    for moved in (quarter_m * patches.along, -quarter_m * patches.along, np.array([0.0, 0.0, quarter_m])):
+    for moved in (quarter_m * patches.along, -quarter_m * patches.along):
         others = replace(patches, middles=patches.middles[rows] + moved, views=patches.views[rows])
         likeness = np.nan_to_num(shown.likeness(others, spacing_m, near), nan=-1.0)
         inside &= likeness.max(axis=1) >= ALIKE
