@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
+from planning.base.effects import EffectSetting
 from planning.base.parameters import check, parameter
 from reconstruction.light.reflection_mlp import MlpShape
 
@@ -195,6 +196,8 @@ class ReflectionConfig:
         Of `ray_errors`: 0 for the paper's mean error. A radiance grid has its own.
     white
         See `no_brighter`.
+    transients
+        Whether rays of transients are left out: `transients.LeaveTransientsOut`.
     precision
         Of the matrix products; features, colours and weights are float32 always. `auto` times both, once in a process.
     threads
@@ -227,6 +230,7 @@ class ReflectionConfig:
     high_frequency: tuple[HighFrequencyStage, ...] = ()
     squared_to: float = 0.0
     white: float = parameter(1.0, above=0.0, most=1.0)
+    transients: EffectSetting = "off"
     precision: Precision = "auto"
     threads: int = parameter(1, least=1)
     time_limit_s: float | None = parameter(None, above=0.0, most=math.inf, expected="more than 0")

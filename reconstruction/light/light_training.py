@@ -18,9 +18,12 @@ from dataclasses import asdict, dataclass, field, fields
 from typing import Any
 
 import msgspec
+import numpy as np
 import torch
+from numpy.typing import NDArray
 from torch import Tensor
 
+from planning.base.effects import decide
 from planning.base.errors import OperationCancelled, ReconstructionError
 from planning.base.messages import say
 from planning.base.progress import QUIET, Clock, Monitor
@@ -30,12 +33,16 @@ from reconstruction.light.glass_rays import GlassRays
 from reconstruction.light.losses import no_brighter, ray_errors, ray_loss
 from reconstruction.light.radiance_grid import RadianceGrid
 from reconstruction.light.reflective_panels import ReflectivePanels
+from reconstruction.light.transients import TRIED, UNSEEN, Blocks, LeaveTransientsOut, Seen, transient_blocks
 
 MOST_HALVINGS = 8
 """Of the rates, over a whole training: beyond, they are so small that nothing is learned any more."""
 
 KEPT_EVERY = 100
 """Steps from one good state in memory to the next: copying it takes about as long as a step."""
+
+MOST_LOOKED_AT, LOOKED_AT = 1 << 18, 1 << 14
+"""Rays that transients are looked for by, and those of them that are shaded at once."""
 
 LEAST_BATCH = 32
 """Rays; where there is no memory for so few, there is none for the model."""
@@ -73,6 +80,7 @@ class LightProgress:
     kept_at_s: float = 0.0
     factor: float = 1.0
     n_undone: int = 0
+    transients: float = UNSEEN
     history: list[tuple[float, float]] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
 
@@ -105,7 +113,8 @@ class LightTraining:
         # A grid grows: states of coarser ones are put into copies of what it was at first.
         self._first = panels
         self.panels = copy.deepcopy(panels).to(self.device)
-        self.rays, self.config = on_device(rays, self.device), config
+        self.rays = self._all = on_device(rays, self.device)
+        self.config, self.transients = config, np.zeros(0, np.bool_)
         self.precision, self.generator = precision, generator
         self.at = LightProgress(config.batch)
         self.n_steps = config.steps_for(len(rays))
@@ -170,6 +179,8 @@ class LightTraining:
         progress = self.progress
         for group in self.optimiser.param_groups:
             group["lr"] = at.factor * group["rate"] * config.rate(at.step, progress)
+        if progress >= TRIED:
+            self._leave_out_transients()
         rows = torch.randint(len(self.rays), (at.batch,), generator=self.generator)
         batch = self.rays[rows.to(self.device)]
         with torch.autocast(self.device.type, torch.bfloat16, enabled=self.precision == "bfloat16"):
@@ -197,6 +208,37 @@ class LightTraining:
                 raise NotFinite(say("a weight is not a number"))
             self._good = copy.deepcopy(self.state())
 
+    @torch.no_grad()
+    def _leave_out_transients(self) -> None:
+        """Look for transients, once, and go on without their rays where they are worth it."""
+        at, setting = self.at, self.config.transients
+        if setting == "off" or at.transients != UNSEEN:
+            return
+        self.panels.eval()
+        chosen = self._all[:: max(1, len(self._all) // MOST_LOOKED_AT)]
+        parts = [chosen[start : start + LOOKED_AT] for start in range(0, len(chosen), LOOKED_AT)]
+        errors = torch.cat(
+            [no_brighter(self.panels(part), part.display, self.config.white) - part.display for part in parts]
+        )
+        self.panels.train()
+        blocks = _blocks(self._all)
+        found, at.transients = transient_blocks(
+            blocks,
+            _blocks_of(blocks, chosen),
+            errors.float().cpu().numpy(),
+            chosen.panels.cpu().numpy().astype(np.int64),
+        )
+        if decide(LeaveTransientsOut(), Seen(at.transients, 0.0), setting).on:
+            self._without(found)
+
+    def _without(self, transients: NDArray[np.bool_]) -> None:
+        """Go on with the rays of other blocks; with all where no rays would be left."""
+        if not len(transients):
+            return
+        lasting = torch.from_numpy(~transients[_blocks_of(_blocks(self._all), self._all)]).to(self.device)
+        if bool(lasting.any()):
+            self.rays, self.transients = self._all[lasting], transients
+
     def state(self) -> dict[str, Any]:
         """All that the training is; what comes from the clock is seconds only."""
         grids = _grids(self.panels)
@@ -207,6 +249,7 @@ class LightTraining:
             "adam": self.optimiser.state_dict(),
             "generator": self.generator.get_state(),
             "precision": self.precision,
+            "transients": torch.from_numpy(self.transients),
             "progress": asdict(self.at),
         }
 
@@ -237,6 +280,7 @@ class LightTraining:
         except (KeyError, ValueError, TypeError, RuntimeError, AttributeError) as error:
             raise ValueError(f"the state is that of another model ({error})") from error
         self.panels, self.optimiser = panels, optimiser
+        self._without(state["transients"].numpy())
 
     def _survived_step(self) -> None:
         try:
@@ -332,3 +376,13 @@ def _optimiser(
             if before is not None and value in before.state:
                 optimiser.state[value] = before.state[value]
     return optimiser
+
+
+def _blocks(rays: GlassRays) -> Blocks:
+    """Of the photos that rays are of."""
+    return Blocks([(int(width), int(height)) for width, height in rays.table.lenses[:, 4:6].cpu().numpy()])
+
+
+def _blocks_of(blocks: Blocks, rays: GlassRays) -> NDArray[np.int64]:
+    photos, columns, rows = (value.cpu().numpy().astype(np.int64) for value in (rays.photos, rays.columns, rays.rows))
+    return blocks.at(photos, columns, rows)

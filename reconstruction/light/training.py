@@ -7,11 +7,12 @@ import statistics
 import time
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache, partial
 
 import numpy as np
 import torch
+from numpy.typing import NDArray
 from torch import Tensor
 
 from planning.base.errors import InputError
@@ -65,6 +66,8 @@ class TrainedReflections:
         Of an MLP, on rays learned from; None for other models.
     notes
         What had to be survived on the way.
+    transients
+        Blocks of photos whose rays were left out, as `Blocks` numbers them; shape (0,) where none were.
     """
 
     panels: ReflectivePanels
@@ -79,6 +82,7 @@ class TrainedReflections:
     history: tuple[QualityPoint, ...]
     health: MlpHealth | None
     notes: tuple[str, ...] = ()
+    transients: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, np.bool_))
 
     @property
     def box(self) -> GridBox | None:
@@ -151,6 +155,7 @@ def train_reflections(
         history,
         health,
         tuple(at.notes),
+        training.transients,
     )
 
 

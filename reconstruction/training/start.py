@@ -45,6 +45,7 @@ from reconstruction.training.model.record import SiteRecord, site_record
 from reconstruction.training.photos.exposures import Exposures, own_exposures
 from reconstruction.training.photos.photo_stream import PhotoStream, StreamSettings
 from reconstruction.training.photos.poses import Move, PoseCorrections, learned_moves, moved
+from reconstruction.training.photos.transients import Transients
 from reconstruction.training.timer import Timer
 from reconstruction.training.trainer import SHOWN_VIEWS, Trainer, strategy_of
 from reconstruction.training.training_state import write_checkpoint
@@ -307,6 +308,8 @@ class Start:
         Corrections of the poses of photos learned from; none where they were not learned.
     notes
         What learning light had to survive.
+    transients
+        Blocks of photos that were left out meanwhile.
     """
 
     config: TrainConfig
@@ -319,6 +322,7 @@ class Start:
     decisions: tuple[Decision, ...] = ()
     moves: tuple[Move, ...] = ()
     notes: tuple[str, ...] = ()
+    transients: NDArray[np.bool_] | None = None
 
 
 def start_model(
@@ -411,6 +415,7 @@ def start_model(
         decisions,
         moves,
         () if light is None else light.notes,
+        None if light is None else light.transients,
     )
 
 
@@ -495,6 +500,7 @@ def _is_worth(
         iterations=max(LEAST_TRIAL_STEPS, round(TRIAL_SHARE * config.iterations)),
         densification="none",
         own_poses="off",
+        transients="off",
         score_every_s=NEVER_S,
         checkpoint_every_s=NEVER_S,
     )
@@ -516,6 +522,7 @@ def _is_worth(
                 joint,
                 Exposures(exposures),
                 PoseCorrections(seen, origin),
+                Transients([(photo.intrinsics.width_px, photo.intrinsics.height_px) for photo in seen], 1.0),
                 photos,
                 strategy_of(short, len(own)),
                 short,
@@ -546,7 +553,13 @@ def _learned_light(
     before: tuple[Decision, ...],
 ) -> tuple[TrainedReflections, tuple[Decision, ...]]:
     """The light, and the decisions about what learns it after those that were made before."""
-    settings = replace(config.reflections, seed=config.seed, threads=config.threads, memory_bytes=config.memory_bytes)
+    settings = replace(
+        config.reflections,
+        transients=config.transients,
+        seed=config.seed,
+        threads=config.threads,
+        memory_bytes=config.memory_bytes,
+    )
     rays = glass_rays(source, learned, settings.memory_bytes, settings.seed, monitor)
     if not len(rays):
         raise InputError(
@@ -564,7 +577,7 @@ def _learned_light(
         if name == "auto" and config.light_apart == "off":
             name, decisions = "harmonics", (decide(SeparateLight(), None, "off"),)
         elif name == "auto":
-            quick = replace(settings, time_limit_s=_light_limit_s(config, watch))
+            quick = replace(settings, transients="off", time_limit_s=_light_limit_s(config, watch))
             tried = try_lights(rays, source.panels, quick, monitor, device=config.device)
             name, decisions = ("environment-map", no_decisions) if tried is None else chosen(tried.trials)
             if config.light_apart == "on":
@@ -590,7 +603,9 @@ def _learned_light(
         keeping = CheckpointSettings(
             write, config.checkpoint_every_s, None if interrupted is None else interrupted.state
         )
-    settings = replace(settings, time_limit_s=stage.time_limit_s)
+    # Harmonics cannot show what is mirrored: all of it would be a transient.
+    of_rays = "off" if stage.name == "harmonics" else settings.transients
+    settings = replace(settings, transients=of_rays, time_limit_s=stage.time_limit_s)
     try:
         trained = train_reflections(
             rays,

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import torch
+from numpy.typing import NDArray
 
 from planning.base.errors import InputError, OperationCancelled
 from planning.base.json_file import to_record
@@ -26,6 +27,7 @@ from reconstruction.training.model.saved import TrainedModel
 from reconstruction.training.model.score import quality_of, score_views
 from reconstruction.training.photos.photo_stream import PhotoStream, StreamSettings
 from reconstruction.training.photos.poses import PoseCorrections, moved, one_after_other
+from reconstruction.training.photos.transients import Transients
 from reconstruction.training.ranks import ALONE, Ranks
 from reconstruction.training.start import Start, held_out_views, interrupted_light_stage, start_model
 from reconstruction.training.timer import Timer
@@ -149,6 +151,7 @@ def _started(
             start.model,
             start.exposures,
             _poses(source, record),
+            _transients(source, record, start.transients),
             photos,
             strategy_of(config, len(start.model.splats)),
             config,
@@ -243,6 +246,7 @@ def _resumed(
             model,
             exposures,
             _poses(source, record),
+            _transients(source, record),
             photos,
             strategy_of(record.config, len(model.splats)),
             record.config,
@@ -288,6 +292,13 @@ def _poses(source: PhotoSet, record: ModelRecord) -> PoseCorrections:
     return PoseCorrections(_corrected(source, record).named(record.learned), np.array(record.origin_enu_m))
 
 
+def _transients(source: PhotoSet, record: ModelRecord, known: NDArray[np.bool_] | None = None) -> Transients:
+    """Of the photos that are learned from, to begin with."""
+    reduce, lenses = record.config.reduce, [photo.intrinsics for photo in source.named(record.learned)]
+    sizes = [(lens.width_px // reduce, lens.height_px // reduce) for lens in lenses]
+    return Transients(sizes, record.extent_m, known)
+
+
 def _pixels(source: PhotoSet, names: Sequence[str]) -> int:
     """Of all photos that are named."""
     return sum(photo.intrinsics.width_px * photo.intrinsics.height_px for photo in source.named(names))
@@ -304,7 +315,7 @@ def _corrected(source: PhotoSet, record: ModelRecord) -> PhotoSet:
 def _finished(trainer: Trainer, record: ModelRecord, source: PhotoSet, watching: Callbacks) -> TrainedModel:
     trainer.run(watching)
     at = trainer.at
-    record = _with_poses(record, trainer, source)
+    record = _with_findings(record, trainer, source)
     history = tuple(QualityPoint(t_s, value) for t_s, value in at.history)
     trained = TrainedModel(record, trainer.model, trainer.exposures, history, at.step, at.spent_s, tuple(at.notes))
     try:
@@ -317,11 +328,14 @@ def _finished(trainer: Trainer, record: ModelRecord, source: PhotoSet, watching:
     return replace(trained, quality=quality)
 
 
-def _with_poses(record: ModelRecord, trainer: Trainer, source: PhotoSet) -> ModelRecord:
-    """The record of a model whose photos' poses were corrected with it, or were not."""
-    setting = record.config.own_poses
-    decision = trainer.poses.decision(setting, trainer.at.spent_s)
+def _with_findings(record: ModelRecord, trainer: Trainer, source: PhotoSet) -> ModelRecord:
+    """The record of a model, with what training it found out about its photos."""
+    config, spent_s = record.config, trainer.at.spent_s
+    decision = trainer.poses.decision(config.own_poses, spent_s)
     record = replace(record, decisions=(*record.decisions, decision))
+    if config.transients != "off":
+        of_transients = trainer.transients.decision(config.transients, spent_s)
+        record = replace(record, decisions=(*record.decisions, of_transients))
     if not decision.on:
         return record
     moves = one_after_other(record.moves, trainer.poses.moves())

@@ -21,6 +21,7 @@ from torch import Tensor
 
 from planning.base.errors import OperationCancelled
 from reconstruction.base.out_of_memory import NotFinite, is_out_of_memory, require_finite
+from reconstruction.light.transients import TRIED as TRANSIENTS_TRIED
 from reconstruction.splats.densification.adaptive import AdaptiveControl, AdaptiveParameters
 from reconstruction.splats.densification.mcmc import MarkovChain, McmcParameters
 from reconstruction.splats.densification.strategy import Densification, FixedNumber, Limits
@@ -40,6 +41,7 @@ from reconstruction.training.objective import objective, on_device
 from reconstruction.training.photos.exposures import Exposures
 from reconstruction.training.photos.photo_stream import PhotoStream, Sample
 from reconstruction.training.photos.poses import TRIED, PoseCorrections
+from reconstruction.training.photos.transients import Transients
 from reconstruction.training.ranks import ALONE, Ranks
 from reconstruction.training.timer import Timer
 from reconstruction.training.training_state import TrainingState, set_rates, take_step, write_checkpoint
@@ -145,7 +147,7 @@ class Trainer(TrainingState):
 
     Parameters
     ----------
-    exposures, poses
+    exposures, poses, transients
         Of the photos.
     strategy
         Adds and takes away splats, until `densify_until` of the training.
@@ -172,6 +174,7 @@ class Trainer(TrainingState):
         model: SceneModel,
         exposures: Exposures,
         poses: PoseCorrections,
+        transients: Transients,
         photos: PhotoStream,
         strategy: Densification,
         config: TrainConfig,
@@ -186,7 +189,7 @@ class Trainer(TrainingState):
         last_px: int = 0,
     ) -> None:
         at = Progress(window_px=photos.window_px or config.window_px, notes=[*notes])
-        super().__init__(model, exposures, poses, photos, strategy, config, extent_m, checkpoint, at)
+        super().__init__(model, exposures, poses, transients, photos, strategy, config, extent_m, checkpoint, at)
         self.shown, self._record, self._watch = tuple(shown), record or {}, watch or Timer()
         self.at.spent_s = self.at.saved_at_s = self.at.began_s = self._watch()
         self._settings = replace(config.raster, threads=config.threads)
@@ -345,7 +348,10 @@ class Trainer(TrainingState):
             self.poses.settle(config.own_poses)
         move = self.poses(sample.number) if self.poses.are_learned(config.own_poses) else None
         picture = self.picture(sample, self.exposures(sample.number), offsets, move)
-        loss, terms = objective(picture, sample, config.losses, self.progress, self._with_glass)
+        if self.progress >= TRANSIENTS_TRIED:
+            self.transients.settle(config.transients)
+        looked_at = replace(sample, shown=self.transients.lasting(sample))
+        loss, terms = objective(picture, looked_at, config.losses, self.progress, self._with_glass)
         glass = self.model.light
         more = None if glass is None else glass.regulariser(config.reflections, at.step)
         loss = loss if more is None else loss + more
@@ -353,6 +359,8 @@ class Trainer(TrainingState):
         loss.backward()  # type: ignore[no-untyped-call]
         parameters = [value for group in self.optimiser.param_groups for value in group["params"]]
         require_finite(self._ranks.average_gradients(parameters, loss.detach()), parameters)
+        if self.transients.are_looked_for(config.transients):
+            self.transients.see(sample, picture.display, picture.raster.depths)
         self.is_editing = True
         is_growing = cool_down is None and config.densify_from <= self.progress < config.densify_until
         strategy = self.strategy if is_growing else self._no_more

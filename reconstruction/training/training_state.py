@@ -36,6 +36,7 @@ from reconstruction.training.model.joint_model import SceneModel
 from reconstruction.training.photos.exposures import Exposures
 from reconstruction.training.photos.photo_stream import PhotoStream
 from reconstruction.training.photos.poses import PoseCorrections
+from reconstruction.training.photos.transients import Transients
 
 # One Adam for all that is learned, and the learning rate that each part has at each step.
 
@@ -274,6 +275,7 @@ class TrainingState:
         model: SceneModel,
         exposures: Exposures,
         poses: PoseCorrections,
+        transients: Transients,
         photos: PhotoStream,
         strategy: Densification,
         config: TrainConfig,
@@ -283,7 +285,7 @@ class TrainingState:
     ) -> None:
         self.device = torch.device(config.device)
         self.model, self.exposures = model.to(self.device), exposures.to(self.device)
-        self.poses = poses.to(self.device)
+        self.poses, self.transients = poses.to(self.device), transients
         self.photos, self.strategy, self.config = photos, strategy, config
         self.path, self.at, self._extent_m = path, at, extent_m
         self.generator = torch.Generator().manual_seed(config.seed)
@@ -373,6 +375,7 @@ class TrainingState:
             "empty places": self.model.empty_places(),
             "exposures": self.exposures.state_dict(),
             "poses": self.poses.state_dict(),
+            "transients": self.transients.state_dict(),
             "adam": self.optimiser.state_dict(),
             "photos": self.photos.state_dict(),
             "strategy": self.strategy.state_dict(),
@@ -392,6 +395,7 @@ class TrainingState:
             self.model.load(state["model"], state["empty places"])
             self.exposures.load_state_dict(state["exposures"])
             self.poses.load_state_dict(state["poses"])
+            self.transients.load_state_dict(state["transients"])
             self.optimiser = adam_of(self.model, self.exposures, self.poses, self.config, self._extent_m)
             self.optimiser.load_state_dict(state["adam"])
             self.photos.load_state_dict(state["photos"])

@@ -93,6 +93,9 @@ class Case:
             if settings[part]["white"] == 1.0:
                 del settings[part]["white"]
         settings["rates"].pop("poses")
+        settings["reflections"].pop("transients")
+        if settings["transients"] == "off":
+            del settings["transients"]
         if not config.trained_by.knows_panels:
             settings = {name: value for name, value in settings.items() if name not in OF_PANELS}
             settings["rates"].pop("glass_geometry")

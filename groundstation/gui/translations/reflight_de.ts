@@ -7494,6 +7494,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Einstellung</translation>
     </message>
     <message>
+        <source>share of the error</source>
+        <translation>Anteil am Fehler</translation>
+    </message>
+    <message>
         <source>share of the pixels</source>
         <translation>Anteil der Pixel</translation>
     </message>
@@ -7930,6 +7934,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Flugweg</translation>
     </message>
     <message>
+        <source>what only single photos show</source>
+        <translation>was nur einzelne Fotos zeigen</translation>
+    </message>
+    <message>
         <source>without an element in this file, so not written: {0}</source>
         <translation>ohne Element in dieser Datei, also nicht geschrieben: {0}</translation>
     </message>
@@ -7940,6 +7948,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>written</source>
         <translation>geschrieben</translation>
+    </message>
+    <message>
+        <source>{0} % of the error is where one photo contradicts the others</source>
+        <translation>{0} % des Fehlers liegen, wo ein Foto den anderen widerspricht</translation>
     </message>
     <message>
         <source>{0} % of the pixels are next to white</source>

@@ -248,3 +248,23 @@ def test_on_another_device_all_that_a_step_needs_is_there(photos, model, monkeyp
     found = [value.grad for value in panels.parameters() if value.grad is not None]
     assert len(found) > 2
     assert {value.device.type for value in found} == {"meta"}
+
+
+def test_rays_of_somebody_who_walked_by_are_left_out_and_stay_out(photos):
+    rays, planes, unseen = photos
+    person = (rays.photos == 1) & (rays.columns >= 8) & (rays.columns < 24)
+    seen = replace(rays, colours=torch.where(person[:, None], 255 - rays.colours // 4, rays.colours))
+    config = replace(CONFIG, steps=60, transients="on", learned=None)
+    found = training((seen, planes, unseen), "environment-map", config)
+    found.run(None, 1)
+    assert 0.0 < found.at.transients < 1.0
+    assert len(found.rays) < len(rays)
+    left = (found.rays.photos == 1) & (found.rays.columns >= 8) & (found.rays.columns < 24)
+    assert float(left.sum() / person.sum()) < 0.2
+    assert float((found.rays.photos != 1).sum() / (rays.photos != 1).sum()) > 0.8
+    again = training((seen, planes, unseen), "environment-map", config)
+    again.restore(found.state())
+    assert len(again.rays) == len(found.rays)
+    everything = training((seen, planes, unseen), "environment-map", replace(config, transients="off"))
+    everything.run(None, 1)
+    assert len(everything.rays) == len(rays)

@@ -18,6 +18,7 @@ from reconstruction.training.callbacks import Callbacks, HeldOut
 from reconstruction.training.config import LossWeights, TrainConfig
 from reconstruction.training.photos.photo_stream import PhotoStream, StreamSettings
 from reconstruction.training.photos.poses import OwnPoses, PoseCorrections
+from reconstruction.training.photos.transients import Transients
 from reconstruction.training.start import start_model
 from reconstruction.training.timer import Timer
 from reconstruction.training.trainer import Trainer, strategy_of
@@ -86,6 +87,7 @@ def make(data_set, tmp_path, request):
             start.model,
             start.exposures,
             PoseCorrections(start.learned, start.model.origin_enu_m),
+            Transients([(photo.intrinsics.width_px, photo.intrinsics.height_px) for photo in start.learned], 1.0),
             photos,
             strategy,
             config,
@@ -99,7 +101,8 @@ def make(data_set, tmp_path, request):
 
 
 def everything(trainer):
-    return {**trainer.model.state_dict(), **trainer.exposures.state_dict(), **trainer.poses.state_dict()}
+    parts = (trainer.model, trainer.exposures, trainer.poses, trainer.transients)
+    return {f"{number}.{name}": value for number, part in enumerate(parts) for name, value in part.state_dict().items()}
 
 
 def assert_same(one, other):
@@ -178,7 +181,7 @@ def test_interrupted_training_goes_on_bit_by_bit(make, tmp_path, light):
 @pytest.mark.few(1)
 @pytest.mark.parametrize("setting", ["on", "auto", "off"])
 def test_poses_are_corrected_where_they_are_to_be_and_go_on_bit_by_bit(make, tmp_path, setting):
-    config = replace(CONFIG, own_poses=setting)
+    config = replace(CONFIG, own_poses=setting, transients=setting)
     whole, first, second = make(config), make(config, checkpoint="c"), make(config, checkpoint="c")
     whole.run(Callbacks())
     with pytest.raises(OperationCancelled):
