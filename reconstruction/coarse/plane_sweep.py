@@ -74,7 +74,7 @@ class DenseDepth:
     """Whether walls are looked for in photos where points are too few."""
 
     tolerance: float = 10.0
-    name = "dense-depth"
+    name = say("dense depth")
     unit = say("% of the walls")
 
     def assess(self, buildings: Buildings) -> Assessment:

@@ -100,7 +100,7 @@ class Blocks:
     def with_neighbours(self, are: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """Some blocks, and those above, below and beside them: transients end within blocks."""
         found = np.empty_like(are)
-        for shape, first, last in zip(self.shapes, self.starts, self.starts[1:], strict=False):
+        for shape, first, last in zip(self.shapes, self.starts[:-1], self.starts[1:], strict=True):
             found[first:last] = binary_dilation(are[first:last].reshape(shape)).ravel()
         return found
 

@@ -6324,6 +6324,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>abgedeckt {0} von {1} Sektoren ({2} Blickrichtungen für jede von {3})</translation>
     </message>
     <message>
+        <source>dense depth</source>
+        <translation>dichte Tiefen</translation>
+    </message>
+    <message>
         <source>distortion: {0} folds the picture or bends it too far: a place in it belongs to no one direction; expected a lens that can be undistorted up to its corners (k1, k2, p1, p2, k3 for lengths in units of the focal length)</source>
         <translation>distortion: {0} faltet das Bild oder biegt es zu weit: eine Stelle darin gehört zu keiner eindeutigen Richtung; erwartet wird ein Objektiv, das bis in die Ecken zu entzerren ist (k1, k2, p1, p2, k3 für Längen in Einheiten der Brennweite)</translation>
     </message>

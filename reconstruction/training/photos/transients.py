@@ -98,7 +98,7 @@ class Transients(nn.Module):
         every = max(1, side // 4)
         rows, columns = np.mgrid[every // 2 : height : every, every // 2 : width : every]
         panels = sample.panels.cpu().numpy()[rows, columns]
-        surfaces = self._places(sample.view, columns, rows, depths.cpu().numpy()[rows, columns])
+        surfaces = self._places(sample.view, columns, rows, depths.detach().cpu().numpy()[rows, columns])
         places[of_pixels[rows, columns] - first] = np.where(panels >= 0, panels - PLACES, surfaces)
         self.places.numpy()[of_blocks] = places[seen]
         self.n_looks += 1
