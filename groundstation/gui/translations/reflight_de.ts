@@ -6256,6 +6256,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Prüfung:  {0} von {1} Regeln eingehalten, {2}</translation>
     </message>
     <message>
+        <source>clearing</source>
+        <translation>wird gelöscht</translation>
+    </message>
+    <message>
         <source>coarsest pixel</source>
         <translation>gröbstes Pixel</translation>
     </message>
@@ -7924,6 +7928,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>two facades at a right angle, whose glass sees glass</source>
         <translation>zwei Fassaden im rechten Winkel, deren Glas Glas sieht</translation>
+    </message>
+    <message>
+        <source>uploading</source>
+        <translation>wird hochgeladen</translation>
     </message>
     <message>
         <source>views found after</source>

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections import deque
 from dataclasses import dataclass, field
 from enum import Enum, IntEnum, auto
@@ -243,6 +244,46 @@ class RetryTimer:
         return Ending.STALLED if now_s >= self._advanced_s + self.timing.stall_s else None
 
 
+@dataclass(slots=True)
+class Transfer(ABC):
+    """What downloads, uploads and clearing share: one question is open at a time, and repeated until time is up."""
+
+    route: Route
+    timing: Timing = field(default=DEFAULT_TIMING, kw_only=True)
+    outcome: object = field(init=False, default=None)
+    _retry: RetryTimer = field(init=False)
+
+    def __post_init__(self) -> None:
+        self._retry = RetryTimer(self.timing)
+
+    @property
+    def next_deadline_s(self) -> float:
+        """When to repeat or to give up; never once it has ended."""
+        return self._retry.next_deadline_s if self.outcome is None else math.inf
+
+    def tick(self, now_s: float) -> list[Message]:
+        """Ask again, or give up."""
+        if now_s < self.next_deadline_s:
+            return []
+        ending = self._gives_up(now_s)
+        if ending is not None:
+            return self._end(ending)
+        self._retry.repeat(now_s)
+        return self._repeated(now_s)
+
+    def _gives_up(self, now_s: float) -> Ending | None:
+        """The ending that it comes to now, if it does."""
+        return self._retry.gave_up(now_s)
+
+    @abstractmethod
+    def _repeated(self, now_s: float) -> list[Message]:
+        """The open question, again."""
+
+    @abstractmethod
+    def _end(self, ending: Ending, result: int | None = None) -> list[Message]:
+        """Note how it ended; the vehicle is told nothing."""
+
+
 # Download of a list of items.
 #
 # | state | event | does | next |
@@ -293,25 +334,14 @@ class DownloadOutcome:
 
 
 @dataclass(slots=True)
-class Download:
+class Download(Transfer):
     """Asks the vehicle for its items, one after the other."""
 
-    route: Route
-    timing: Timing = DEFAULT_TIMING
     state: DownloadState = field(init=False, default=DownloadState.READY)
     outcome: DownloadOutcome | None = field(init=False, default=None)
-    _retry: RetryTimer = field(init=False)
     _items: list[MissionItemInt] = field(init=False, default_factory=list)
     _count: int | None = field(init=False, default=None)
     _restarts: int = field(init=False, default=0)
-
-    def __post_init__(self) -> None:
-        self._retry = RetryTimer(self.timing)
-
-    @property
-    def next_deadline_s(self) -> float:
-        """When to repeat or to give up; never once it has ended."""
-        return self._retry.next_deadline_s if self.outcome is None else math.inf
 
     @property
     def progress(self) -> tuple[str, float, float]:
@@ -330,13 +360,13 @@ class Download:
         self._items.clear()
         self._count = None
         self._retry.ask(now_s)
-        return [self._question()]
+        return self._repeated(now_s)
 
-    def _question(self) -> Message:
+    def _repeated(self, now_s: float) -> list[Message]:
         vehicle, kind = self.route.vehicle, self.route.mission_type
         if self.state is DownloadState.LISTING:
-            return MissionRequestList(vehicle.system, vehicle.component, kind)
-        return MissionRequestInt(vehicle.system, vehicle.component, len(self._items), kind)
+            return [MissionRequestList(vehicle.system, vehicle.component, kind)]
+        return [MissionRequestInt(vehicle.system, vehicle.component, len(self._items), kind)]
 
     def receive(self, received: Received) -> list[Message]:
         """Take what comes."""
@@ -372,7 +402,7 @@ class Download:
             self._end(Ending.DONE)
             return [self.route.ack(Result.ACCEPTED)]
         self._retry.ask(now_s)
-        return [self._question()]
+        return self._repeated(now_s)
 
     def _acknowledged(self, result: int, now_s: float) -> list[Message]:
         if result == Result.ACCEPTED:
@@ -387,32 +417,20 @@ class Download:
         if result in (Result.INVALID_SEQUENCE, Result.OPERATION_CANCELLED):
             # Of an upload before this.
             return []
-        self._end(Ending.REFUSED, result)
-        return []
+        return self._end(Ending.REFUSED, result)
 
     def _anew(self, now_s: float, ending: Ending, result: int | None = None) -> list[Message]:
         """Begin anew, or end so where that was tried often enough."""
         self._restarts += 1
         if self._restarts > self.timing.restarts:
-            self._end(ending, result)
-            return []
+            return self._end(ending, result)
         return self._list(now_s)
-
-    def tick(self, now_s: float) -> list[Message]:
-        """Ask again, or give up."""
-        if self.outcome is not None or now_s < self.next_deadline_s:
-            return []
-        ending = self._retry.gave_up(now_s)
-        if ending is not None:
-            self._end(ending)
-            return []
-        self._retry.repeat(now_s)
-        return [self._question()]
 
     def cancel(self) -> list[Message]:
         """Tell the vehicle that nothing more is asked for."""
         return [self.route.ack(Result.OPERATION_CANCELLED)]
 
-    def _end(self, ending: Ending, result: int | None = None) -> None:
+    def _end(self, ending: Ending, result: int | None = None) -> list[Message]:
         self.state = DownloadState.ENDED
         self.outcome = DownloadOutcome(ending, tuple(self._items), self._count, result)
+        return []

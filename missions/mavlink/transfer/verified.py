@@ -43,9 +43,9 @@ from missions.mavlink.transfer.exchange import (
     Ending,
     MissionType,
     Result,
-    RetryTimer,
     Route,
     Timing,
+    Transfer,
 )
 from missions.mavlink.transfer.wire_items import Difference, compare
 from planning.base.messages import glue, joined, say
@@ -82,27 +82,16 @@ class ClearOutcome:
 
 
 @dataclass(slots=True)
-class Clear:
+class Clear(Transfer):
     """Asks the vehicle to forget its items."""
 
-    route: Route
-    timing: Timing = DEFAULT_TIMING
     state: ClearState = field(init=False, default=ClearState.READY)
     outcome: ClearOutcome | None = field(init=False, default=None)
-    _retry: RetryTimer = field(init=False)
-
-    def __post_init__(self) -> None:
-        self._retry = RetryTimer(self.timing)
-
-    @property
-    def next_deadline_s(self) -> float:
-        """When to repeat or to give up; never once it has ended."""
-        return self._retry.next_deadline_s if self.outcome is None else math.inf
 
     @property
     def progress(self) -> tuple[str, float, float]:
         """All or nothing."""
-        return "clearing", float(self.state is ClearState.ENDED), 1
+        return say("clearing"), float(self.state is ClearState.ENDED), 1
 
     def start(self, now_s: float) -> list[Message]:
         """Ask."""
@@ -111,42 +100,32 @@ class Clear:
         self.state = ClearState.ASKED
         self._retry.begin(now_s)
         self._retry.ask(now_s)
-        return [self._question()]
+        return self._repeated(now_s)
 
-    def _question(self) -> Message:
+    def _repeated(self, now_s: float) -> list[Message]:
         vehicle = self.route.vehicle
-        return MissionClearAll(vehicle.system, vehicle.component, self.route.mission_type)
+        return [MissionClearAll(vehicle.system, vehicle.component, self.route.mission_type)]
 
     def receive(self, received: Received) -> list[Message]:
         """Take the acknowledgement."""
         message = self.route.message_of(received)
         if self.state is ClearState.ASKED and isinstance(message, MissionAck):
             if message.type == Result.ACCEPTED:
-                self._end(Ending.DONE, message.type)
-            elif message.type in (Result.INVALID_SEQUENCE, Result.OPERATION_CANCELLED):
+                return self._end(Ending.DONE, message.type)
+            if message.type in (Result.INVALID_SEQUENCE, Result.OPERATION_CANCELLED):
                 self._retry.hear(received.time_s)
             elif message.type not in {Result.DENIED, *NOT_YET} or not self._retry.asks_again(received.time_s):
-                self._end(Ending.REFUSED, message.type)
+                return self._end(Ending.REFUSED, message.type)
         return []
-
-    def tick(self, now_s: float) -> list[Message]:
-        """Ask again, or give up."""
-        if self.outcome is not None or now_s < self.next_deadline_s:
-            return []
-        ending = self._retry.gave_up(now_s)
-        if ending is not None:
-            self._end(ending)
-            return []
-        self._retry.repeat(now_s)
-        return [self._question()]
 
     def cancel(self) -> list[Message]:
         """Nothing to say: the question is out."""
         return []
 
-    def _end(self, ending: Ending, result: int | None = None) -> None:
+    def _end(self, ending: Ending, result: int | None = None) -> list[Message]:
         self.state = ClearState.ENDED
         self.outcome = ClearOutcome(ending, result)
+        return []
 
 
 # Upload of a list of items, without reading back: part of `verified.VerifiedUpload`, which does.
@@ -208,7 +187,7 @@ class UploadOutcome:
 
 
 @dataclass(slots=True)
-class Upload:
+class Upload(Transfer):
     """Sends items to the vehicle as it asks for them.
 
     Parameters
@@ -217,12 +196,9 @@ class Upload:
         In order; `seq`, target and mission type are filled in here.
     """
 
-    route: Route
     items: Sequence[MissionItemInt]
-    timing: Timing = DEFAULT_TIMING
     state: UploadState = field(init=False, default=UploadState.READY)
     outcome: UploadOutcome | None = field(init=False, default=None)
-    _retry: RetryTimer = field(init=False)
     _seq: int = field(init=False, default=-1)
     _answered_s: dict[int, float] = field(init=False, default_factory=dict)
     _may_guess: bool = field(init=False, default=False)
@@ -238,17 +214,12 @@ class Upload:
             replace(item, seq=seq, target_system=vehicle.system, target_component=vehicle.component, mission_type=kind)
             for seq, item in enumerate(self.items)
         )
-        self._retry = RetryTimer(self.timing)
-
-    @property
-    def next_deadline_s(self) -> float:
-        """When to repeat or to give up; never once it has ended."""
-        return self._retry.next_deadline_s if self.outcome is None else math.inf
+        Transfer.__post_init__(self)
 
     @property
     def progress(self) -> tuple[str, float, float]:
         """Items asked for so far."""
-        return "uploading", self._seq + 1, len(self.items)
+        return say("uploading"), self._seq + 1, len(self.items)
 
     def start(self, now_s: float) -> list[Message]:
         """Announce the items."""
@@ -333,17 +304,14 @@ class Upload:
         self._retry.hear(now_s)
         return self._announce(now_s)
 
-    def tick(self, now_s: float) -> list[Message]:
-        """Repeat what is open, or give up."""
-        if self.outcome is not None or now_s < self.next_deadline_s:
-            return []
+    def _gives_up(self, now_s: float) -> Ending | None:
         ending = self._retry.gave_up(now_s)
-        is_closing = self.state is UploadState.CLOSING
-        if is_closing and (ending or self._retry.repeats >= self.timing.acknowledgement_repeats):
-            return self._end(Ending.UNCONFIRMED)
-        if ending is not None:
-            return self._end(ending)
-        self._retry.repeat(now_s)
+        if self.state is not UploadState.CLOSING:
+            return ending
+        is_over = ending is not None or self._retry.repeats >= self.timing.acknowledgement_repeats
+        return Ending.UNCONFIRMED if is_over else None
+
+    def _repeated(self, now_s: float) -> list[Message]:
         if self._seq < 0:
             return [self._count()]
         self._may_guess = True
@@ -497,7 +465,9 @@ class VerifiedUpload:
         return self._step.cancel()
 
     def _writing(self) -> Upload | Clear:
-        return Upload(self.route, self.items, self.timing) if self.items else Clear(self.route, self.timing)
+        return (
+            Upload(self.route, self.items, timing=self.timing) if self.items else Clear(self.route, timing=self.timing)
+        )
 
     def _put(self, now_s: float) -> list[Message]:
         self._n_tries += 1
@@ -512,10 +482,10 @@ class VerifiedUpload:
 
     def _read(self, now_s: float) -> list[Message]:
         self._n_reads += 1
-        return self._begin(VerifiedState.READING, Download(self.route, self.timing), now_s)
+        return self._begin(VerifiedState.READING, Download(self.route, timing=self.timing), now_s)
 
     def _clear(self, now_s: float) -> list[Message]:
-        return self._begin(VerifiedState.CLEARING, Clear(self.route, self.timing), now_s)
+        return self._begin(VerifiedState.CLEARING, Clear(self.route, timing=self.timing), now_s)
 
     def _go_on(self, now_s: float) -> list[Message]:
         """What follows where the step has ended."""
