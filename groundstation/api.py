@@ -14,9 +14,10 @@ from groundstation.services.mission.readiness import preflight
 from groundstation.services.model.export import ModelExport, ModelExporter, ModelToExport, WrittenModel, export_model
 from groundstation.services.plan.planning import plan_site
 from groundstation.services.reconstruct.training import TrainedFiles, train_files
-from missions.formats.encode import EncodedFiles, ExportOptions
+from missions.formats.options import EncodedFiles, ExportOptions
 from missions.formats.registry import MissionFormat, mission_formats, read_missions
-from missions.mission.model import FileFormat, Mission, ReadMission
+from missions.mission.export_choices import FileFormat
+from missions.mission.model import Mission, ReadMission
 from planning.aircraft.catalogue import Profile, profile, profiles
 from planning.base.errors import GroundStationError, InfeasibleError, InputError, MissionError, OperationCancelled
 from planning.base.findings import Finding, Severity

@@ -15,7 +15,8 @@ from missions.mavlink.items import MissionItem, Polygon, mission_items
 from missions.mavlink.messages import MissionItemInt
 from missions.mavlink.transfer.exchange import MissionType
 from missions.mavlink.transfer.wire_items import to_wire
-from missions.mission.model import GeoPoint, HeightReference, Mission
+from missions.mission.export_choices import HeightReference
+from missions.mission.model import GeoPoint, Mission
 from planning.base.errors import InfeasibleError, MissionError
 from planning.base.messages import say
 from planning.geo.frames import Vec3

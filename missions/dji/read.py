@@ -9,12 +9,11 @@ from pathlib import Path
 
 from missions.dji.check import check_dji, is_on_globe
 from missions.dji.wpml import Action, ActionGroup, DjiParts, Folder, WpmlWaypoint, load_parts
+from missions.mission.export_choices import FileFormat, HeightReference
 from missions.mission.model import (
     ON_THE_WAY,
-    FileFormat,
     Finish,
     GeoPoint,
-    HeightReference,
     ReadMission,
     ReadPhoto,
     ReadWaypoint,

@@ -15,11 +15,11 @@ import re
 import zipfile
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from enum import StrEnum
 from xml.sax.saxutils import escape
 
 from missions.dji.wpml import DjiCatalogue, DjiProfile, dji_catalogue, dji_profile
-from missions.mission.model import GeoPoint, HeightReference, Mission, Photo, Waypoint, altitude_amsl_m, leg_lengths_m
+from missions.mission.export_choices import HIGHEST_RETURN_M, LOWEST_RETURN_M, HeightReference, LinkLoss
+from missions.mission.model import GeoPoint, Mission, Photo, Waypoint, altitude_amsl_m, leg_lengths_m
 from planning.geo.frames import wrap_heading_deg
 from planning.plan import ANGLE_DECIMALS
 from planning.site.records import MIN_HEIGHT_ABOVE_GROUND_M
@@ -160,19 +160,7 @@ def _gimbal_pitch(pitch_deg: float) -> list[Node]:
 MAX_SPEED_M_S = 15.0
 """Highest autoFlightSpeed and globalTransitionalSpeed of the format."""
 
-LOWEST_RETURN_M, HIGHEST_RETURN_M = 20.0, 1500.0
-"""Return heights above take-off that DJI's remote controllers take; the higher is that of all heights of waylines."""
-
 STOP_MODE = "toPointAndStopWithDiscontinuityCurvature"
-
-
-class LinkLoss(StrEnum):
-    """What the aircraft does when it no longer hears the remote controller."""
-
-    CONTINUE = "continue"
-    """Fly the mission to its end at home: the only path that has been checked."""
-    GO_HOME = "go-home"
-    """Leave the mission, climb to the return height and fly straight home, over whatever stands in between."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,15 +11,8 @@ import io
 from collections.abc import Sequence
 from pathlib import Path
 
-from missions.mission.model import (
-    FileFormat,
-    HeightReference,
-    Mission,
-    ReadMission,
-    ReadPhoto,
-    ReadWaypoint,
-    altitude_amsl_m,
-)
+from missions.mission.export_choices import FileFormat, HeightReference
+from missions.mission.model import Mission, ReadMission, ReadPhoto, ReadWaypoint, altitude_amsl_m
 from missions.mission.safe_files import MAX_LINES, read_limited
 from planning.base.errors import MissionError
 from planning.base.files import check_lines

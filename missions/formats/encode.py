@@ -3,58 +3,20 @@
 from __future__ import annotations
 
 import math
-import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from missions.dji.write import LinkLoss
+from missions.formats.options import EncodedFiles, ExportOptions
 from missions.mavlink.autopilots import Autopilot
-from missions.mission.model import FileFormat, HeightReference, Mission
+from missions.mission.export_choices import HIGHEST_RETURN_M, LOWEST_RETURN_M, FileFormat, HeightReference
+from missions.mission.model import Mission
 from planning.base.errors import MissionError
 from planning.base.findings import Finding, Severity
 from planning.base.messages import glue, say
 from planning.plan import Plan
 from planning.routing.rally import CLEARANCE_M, clear_height_z_m, return_height
 from planning.site.free_space import unchecked_space
-from planning.site.records import MIN_HEIGHT_ABOVE_GROUND_M, Site, SiteModel
-
-
-@dataclass(frozen=True, slots=True)
-class ExportOptions:
-    """What a pilot may choose; each format takes what concerns it.
-
-    Parameters
-    ----------
-    height_reference
-        Of DJI and MAVLink files; KML is always above sea level, a table of photos has a column for each.
-    autopilot
-        Whose rules MAVLink files follow; None: PX4 for the profile px4, ArduPilot for all others.
-    link_loss, rth_height_m
-        For DJI. Without a height above take-off the aircraft returns as high as `site` or, without it, the path needs,
-        and as remote controllers take.
-    site
-        For the return height and for fences.
-    clock
-        Seconds since 1970 UTC, for the time of creation in DJI files.
-    """
-
-    height_reference: HeightReference = HeightReference.ABOVE_TAKEOFF
-    autopilot: Autopilot | None = None
-    link_loss: LinkLoss = LinkLoss.CONTINUE
-    rth_height_m: float | None = None
-    site: SiteModel | None = None
-    clock: Callable[[], float] = time.time
-
-
-@dataclass(frozen=True, slots=True)
-class EncodedFiles:
-    """Contents of the files of an export, and what the checks found on them."""
-
-    contents: tuple[bytes, ...]
-    findings: tuple[Finding, ...]
-
-
-DEFAULT_OPTIONS = ExportOptions()
+from planning.site.records import MIN_HEIGHT_ABOVE_GROUND_M, Site
 
 
 def encode_dji(plan: Plan, missions: Sequence[Mission], options: ExportOptions) -> EncodedFiles:
@@ -187,8 +149,6 @@ def dji_return_height(plan: Plan, missions: Sequence[Mission], options: ExportOp
 
     The height is always one that DJI's remote controllers take.
     """
-    from missions.dji.write import HIGHEST_RETURN_M, LOWEST_RETURN_M
-
     asked_m = options.rth_height_m
     if asked_m is not None and not LOWEST_RETURN_M <= asked_m <= HIGHEST_RETURN_M:
         text = say(

@@ -12,11 +12,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 from xml.sax.saxutils import escape
 
+from missions.mission.export_choices import FileFormat, HeightReference
 from missions.mission.model import (
-    FileFormat,
     Finish,
     GeoPoint,
-    HeightReference,
     Mission,
     Photo,
     ReadMission,

@@ -2,24 +2,24 @@
 
 Writing checks what it wrote with the format's own checks and refuses to leave a file that an aircraft would refuse.
 Reading looks at the content, never only at the name of a file. Plug-ins add formats: an entry point of the group
-`reflight.mission_formats` stands for a `MissionFormat`.
+`reflight.mission_formats` stands for a `MissionFormat`. What takes time is imported by the functions that need it: the
+command line describes itself from this table.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from missions.formats.encode import DEFAULT_OPTIONS, EncodedFiles, ExportOptions, encode_dji, encode_mavlink
-from missions.mission.build import missions_from_plan
-from missions.mission.model import FileFormat, Mission, ReadMission
+from missions.formats.options import DEFAULT_OPTIONS, EncodedFiles, ExportOptions
+from missions.mission.export_choices import FileFormat, HeightReference
 from missions.mission.safe_files import KMZ_FILE, MISSION_FILE
 from planning.base.errors import InputError, MissionError
 from planning.base.files import open_input_file
 from planning.base.findings import Finding, Severity
-from planning.base.json_file import write_together
 from planning.base.messages import about, glue, say
 from planning.base.plugins import (
     Plugin,
@@ -30,16 +30,19 @@ from planning.base.plugins import (
     load_plugins,
     plugin_problem,
 )
-from planning.geo.frames import Origin, Vec3
-from planning.plan import Plan
+
+if TYPE_CHECKING:
+    from missions.mission.model import Mission, ReadMission
+    from planning.geo.frames import Origin, Vec3
+    from planning.plan import Plan
+
+    _Reader = Callable[[Path, bool], tuple[ReadMission, ...]]
+    """Takes the file, and whether to refuse what an aircraft would refuse."""
+
+    _Encoder = Callable[[Plan, Sequence[Mission], ExportOptions], EncodedFiles]
 
 HEAD_BYTES = 4096
 """Enough of a file to see what it is."""
-
-_Reader = Callable[[Path, bool], tuple[ReadMission, ...]]
-"""Takes the file, and whether to refuse what an aircraft would refuse."""
-
-_Encoder = Callable[[Plan, Sequence[Mission], ExportOptions], EncodedFiles]
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,8 +60,11 @@ class MissionFormat:
         Whether a file that begins with these bytes (up to `HEAD_BYTES`) is of this format, and the sorties in it. None:
         the format is only written.
     title
-        Of a plug-in, in the window's list: such as "Table of photos (.csv)". For the formats of this program the window
-        has words in the user's language.
+        In the window's list: such as "Table of photos (.csv)".
+    options
+        What it takes of `ExportOptions`, by name; None for all.
+    heights
+        References of heights that it knows.
     """
 
     endings: tuple[str, ...]
@@ -66,12 +72,32 @@ class MissionFormat:
     begins: Callable[[bytes], bool] | None = None
     read: _Reader | None = None
     title: str = ""
+    options: frozenset[str] | None = None
+    heights: tuple[HeightReference, ...] = tuple(HeightReference)
 
     def __post_init__(self) -> None:
         if not self.endings or not all(ending.startswith(".") for ending in self.endings):
             raise ValueError(f"endings: expected such as ('.csv',), got {self.endings}")
         if (self.begins is None) != (self.read is None):
             raise ValueError("begins and read: expected both or none of them")
+
+    def takes(self, option: str) -> bool:
+        """Whether the format has a use for one of `ExportOptions`."""
+        return self.options is None or option in self.options
+
+
+def _encode_dji(plan: Plan, missions: Sequence[Mission], options: ExportOptions) -> EncodedFiles:
+    from missions.formats.encode import encode_dji
+
+    return encode_dji(plan, missions, options)
+
+
+def _encode_mavlink(
+    file_format: FileFormat, _plan: Plan, missions: Sequence[Mission], options: ExportOptions
+) -> EncodedFiles:
+    from missions.formats.encode import encode_mavlink
+
+    return encode_mavlink(missions, file_format, options)
 
 
 def _encode_kml(_plan: Plan, missions: Sequence[Mission], _options: ExportOptions) -> EncodedFiles:
@@ -86,18 +112,30 @@ def _encode_csv(_plan: Plan, missions: Sequence[Mission], _options: ExportOption
     return EncodedFiles((csv_bytes(missions),), ())
 
 
+OF_DJI = frozenset(("height_reference", "link_loss", "rth_height_m"))
+OF_MAVLINK = frozenset(("height_reference", "autopilot"))
+MAVLINK_HEIGHTS = (HeightReference.ABOVE_TAKEOFF, HeightReference.AMSL)
+
 FORMATS: dict[str, MissionFormat] = {
-    FileFormat.DJI_KMZ: MissionFormat((".kmz",), encode_dji),
+    FileFormat.DJI_KMZ: MissionFormat((".kmz",), _encode_dji, title=say("DJI (.kmz)"), options=OF_DJI),
     FileFormat.MAVLINK_PLAN: MissionFormat(
         (".plan",),
-        lambda _plan, missions, options: encode_mavlink(missions, FileFormat.MAVLINK_PLAN, options),
+        partial(_encode_mavlink, FileFormat.MAVLINK_PLAN),
+        title=say("QGroundControl (.plan)"),
+        options=OF_MAVLINK,
+        heights=MAVLINK_HEIGHTS,
     ),
     FileFormat.MAVLINK_WPL: MissionFormat(
         (".waypoints", ".txt"),
-        lambda _plan, missions, options: encode_mavlink(missions, FileFormat.MAVLINK_WPL, options),
+        partial(_encode_mavlink, FileFormat.MAVLINK_WPL),
+        title=say("Mission Planner (.waypoints)"),
+        options=OF_MAVLINK,
+        heights=MAVLINK_HEIGHTS,
     ),
-    FileFormat.KML: MissionFormat((".kml",), _encode_kml),
-    FileFormat.CSV: MissionFormat((".csv",), _encode_csv),
+    FileFormat.KML: MissionFormat(
+        (".kml",), _encode_kml, title=say("Google Earth (.kml), to look at"), options=frozenset()
+    ),
+    FileFormat.CSV: MissionFormat((".csv",), _encode_csv, title=say("Table of photos (.csv)"), options=frozenset()),
 }
 """Of this program, by the name on the command line; `_reader_of` tells their files apart."""
 
@@ -152,6 +190,8 @@ def encode(
     InputError, MissionError
         As `export`, where there is nothing to check.
     """
+    from missions.mission.build import missions_from_plan
+
     missions = missions_from_plan(plan, origin, home_enu_m)
     encoded = mission_format(file_format).encode(plan, missions, options)
     return replace(encoded, findings=(*_on_passing(plan, missions), *encoded.findings))
@@ -175,6 +215,8 @@ def _on_passing(plan: Plan, missions: Sequence[Mission]) -> Iterator[Finding]:
 
 def write_files(encoded: EncodedFiles, path: Path) -> tuple[Path, ...]:
     """Write encoded missions, all of them or none; see `export`."""
+    from planning.base.json_file import write_together
+
     errors = [finding for finding in encoded.findings if finding.severity is Severity.ERROR]
     if errors:
         first = about(errors[0].place, errors[0].message) if errors[0].place else errors[0].message

@@ -7,7 +7,6 @@ from enum import StrEnum
 from functools import cache
 from pathlib import Path
 
-from planning.base.json_file import read_toml
 from planning.base.messages import say
 
 DATA_PATH = Path(__file__).parents[1] / "data" / "mavlink.toml"
@@ -39,6 +38,8 @@ class AutopilotFacts:
 
 @cache
 def _all_facts() -> dict[str, AutopilotFacts]:
+    from planning.base.json_file import read_toml  # not at the top: the command line describes itself
+
     return read_toml(DATA_PATH, dict[str, AutopilotFacts])
 
 
@@ -65,6 +66,8 @@ def px4_main_and_sub(custom_mode: int) -> tuple[int, int]:
 @cache
 def mode_numbers(autopilot: Autopilot) -> dict[str, int]:
     """Custom mode, as HEARTBEAT tells it, by name."""
+    from planning.base.json_file import read_toml
+
     written = read_toml(MODE_DATA_PATH, dict[str, dict[str, int]])[autopilot]
     if autopilot is Autopilot.ARDUPILOT:
         return written

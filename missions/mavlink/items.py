@@ -24,9 +24,9 @@ from pymavlink.dialects.v20 import common as mavlink
 from missions.mavlink.autopilots import Autopilot, facts
 from missions.mavlink.px4_motion import px4_turn_s
 from missions.mission.build import SAME_POINT_M
+from missions.mission.export_choices import HeightReference
 from missions.mission.model import (
     GeoPoint,
-    HeightReference,
     Mission,
     Photo,
     ReadWaypoint,

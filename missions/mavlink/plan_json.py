@@ -10,7 +10,8 @@ from typing import Any, TypeGuard
 
 from missions.mavlink.autopilots import Autopilot, facts
 from missions.mavlink.items import MavlinkFile, MissionItem, Params, Polygon, RallyPlace, home_of
-from missions.mission.model import GeoPoint, HeightReference, altitude_amsl_m
+from missions.mission.export_choices import HeightReference
+from missions.mission.model import GeoPoint, altitude_amsl_m
 from planning.base.errors import InputError, MissionError
 from planning.base.findings import Finding
 from planning.base.json_file import read_json

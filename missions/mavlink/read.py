@@ -12,10 +12,10 @@ from pymavlink.dialects.v20 import common as mavlink
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.check import check_items
 from missions.mavlink.items import RELATIVE_FRAMES, MavlinkFile, MissionItem, has_place, is_same_place, position_of
+from missions.mission.export_choices import HeightReference
 from missions.mission.model import (
     ON_THE_WAY,
     Finish,
-    HeightReference,
     ReadMission,
     ReadPhoto,
     ReadWaypoint,

@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from missions.mission.export_choices import HeightReference
 from planning.base.errors import MissionError
 from planning.base.findings import Finding, Severity
 from planning.base.messages import glue, joined, say
@@ -134,24 +135,6 @@ def shots_on_leg(travelled: float, length: float, spacing: float) -> list[float]
 
 def _wrapped(angle_deg: float) -> float:
     return angle_deg if angle_deg > -180.0 else 180.0
-
-
-class HeightReference(StrEnum):
-    """What the heights of a mission file are measured from."""
-
-    ABOVE_TAKEOFF = "above-takeoff"
-    AMSL = "amsl"
-    ELLIPSOID = "ellipsoid"
-
-
-class FileFormat(StrEnum):
-    """Mission file formats, by the names of the command line."""
-
-    DJI_KMZ = "dji-kmz"
-    MAVLINK_PLAN = "mavlink-plan"
-    MAVLINK_WPL = "mavlink-wpl"
-    KML = "kml"
-    CSV = "csv"
 
 
 @dataclass(frozen=True, slots=True)

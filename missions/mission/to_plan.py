@@ -17,7 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from missions.mission.build import COLUMN_RADIUS_M
-from missions.mission.model import Finish, HeightReference, ReadMission, ReadPhoto, Stay, distance_m
+from missions.mission.export_choices import HeightReference
+from missions.mission.model import Finish, ReadMission, ReadPhoto, Stay, distance_m
 from planning.aircraft.catalogue import profile
 from planning.base.errors import InputError
 from planning.base.findings import Finding, Severity

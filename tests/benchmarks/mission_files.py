@@ -10,7 +10,7 @@ import numpy as np
 
 from groundstation.services.mission.export import export_plan
 from missions.formats.registry import read_missions
-from missions.mission.model import FileFormat
+from missions.mission.export_choices import FileFormat
 from missions.mission.to_plan import viewpoints_and_sorties
 from planning.geo.frames import wrap_heading_rad
 from planning.plan import ViewpointArrays, viewpoint_arrays, write_plan

@@ -74,7 +74,7 @@ def files(tmp_path_factory):
     from groundstation.services.mission.export import export_plan
     from groundstation.services.project.document import Document
     from groundstation.services.project.folder import add_plans, create_project, open_project, save_project
-    from missions.mission.model import FileFormat
+    from missions.mission.export_choices import FileFormat
     from planning.site.file import read_site
 
     folder = tmp_path_factory.mktemp("files")

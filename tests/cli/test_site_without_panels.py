@@ -44,7 +44,7 @@ def bare(tmp_path_factory):
 def mission(bare, tmp_path):
     """The plan as a mission file."""
     from missions.formats.registry import encode, write_files
-    from missions.mission.model import FileFormat
+    from missions.mission.export_choices import FileFormat
 
     plan = read_plan(bare / "office.plan.json")
     write_files(encode(plan, plan.origin, plan.home_enu_m, FileFormat.MAVLINK_PLAN), tmp_path / "m.plan")

@@ -7,6 +7,7 @@ import textwrap
 from typing import Any
 
 from groundstation.services.model.export import ModelExport
+from missions.formats.options import ExportOptions
 from missions.simulator.conditions import Conditions
 from planning.base.parameters import declared
 from planning.parameters import PlanParameters
@@ -24,7 +25,7 @@ from PySide6.QtCore import QT_TRANSLATE_NOOP
 TEXTS = (
 '''
 
-RECORDS: tuple[type[Any], ...] = (PlanParameters, Conditions, ModelExport, TrainRequest)
+RECORDS: tuple[type[Any], ...] = (PlanParameters, Conditions, ExportOptions, ModelExport, TrainRequest)
 """Records whose parameters have rows in forms."""
 
 LINE = 120

@@ -13,10 +13,9 @@ from hypothesis import strategies as st
 from groundstation.services.fly.options import ConnectionChoice, LinkKind
 from groundstation.services.reconstruct.choices import TrainChoice
 from groundstation.services.units import UnitSystem
-from missions.dji.write import LinkLoss
-from missions.formats.encode import ExportOptions
+from missions.formats.options import ExportOptions
 from missions.mavlink.autopilots import Autopilot
-from missions.mission.model import FileFormat, HeightReference
+from missions.mission.export_choices import FileFormat, HeightReference, LinkLoss
 from missions.simulator.conditions import Conditions
 from planning.geo.frames import Origin
 from planning.parameters import LARGEST_SEED, Constraints, FlightRules, GreedyParameters

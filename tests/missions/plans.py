@@ -9,7 +9,7 @@ from pathlib import Path
 
 from hypothesis import strategies as st
 
-from missions.formats.encode import DEFAULT_OPTIONS, ExportOptions
+from missions.formats.options import DEFAULT_OPTIONS, ExportOptions
 from missions.formats.registry import encode, write_files
 from planning.aircraft.catalogue import profile
 from planning.geo.frames import Origin, Vec3

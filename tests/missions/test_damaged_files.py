@@ -11,10 +11,10 @@ from pathlib import Path
 
 import pytest
 
-from missions.formats.encode import ExportOptions
+from missions.formats.options import ExportOptions
 from missions.formats.registry import encode, read_missions
 from missions.mavlink.autopilots import Autopilot
-from missions.mission.model import FileFormat
+from missions.mission.export_choices import FileFormat
 from missions.mission.to_plan import viewpoints_and_sorties
 from planning.base.errors import GroundStationError
 from planning.geo.frames import Origin

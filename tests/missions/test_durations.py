@@ -15,7 +15,8 @@ from missions.formats.registry import encode, read_missions
 from missions.mavlink.items import MavlinkFile, MissionItem, plain
 from missions.mavlink.read import read_mavlink
 from missions.mission.build import missions_from_plan
-from missions.mission.model import FileFormat, ReadMission, Stay
+from missions.mission.export_choices import FileFormat
+from missions.mission.model import ReadMission, Stay
 from missions.mission.to_plan import CORNER_SHARE, PlanParts, flown_s, timed_route, viewpoints_and_sorties
 from planning.aircraft.catalogue import profile
 from planning.checks import check_plan

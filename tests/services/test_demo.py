@@ -3,7 +3,7 @@
 import pytest
 
 from groundstation.services.demo import demonstrate
-from missions.mission.model import FileFormat
+from missions.mission.export_choices import FileFormat
 from planning.base.errors import InputError, OperationCancelled
 from planning.base.findings import is_flyable
 from planning.plan import read_plan

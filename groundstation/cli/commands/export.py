@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from groundstation.cli.console import print_findings, print_json, print_notes, run_job, tell
-from groundstation.cli.options import PluginNames, add_parameter, in_words_of_options, number, typed_values, words
+from groundstation.cli.options import PluginNames, add_parameter, in_words_of_options, typed_values, words
 from groundstation.services.model.export import (
     EXPORTERS,
     GROUP,
@@ -16,23 +16,15 @@ from groundstation.services.model.export import (
     export_model,
     model_exporter,
 )
+from missions.formats.options import GROUP as MISSION_GROUP
+from missions.formats.options import ExportOptions
+from missions.formats.registry import FORMATS, mission_format
 from planning.base.messages import say
 from planning.base.parameters import declared, with_values
 from planning.base.plugins import PluginGroup
 
-MISSIONS = ("dji-kmz", "mavlink-plan", "mavlink-wpl", "kml", "csv")
-DJI, MAVLINK = MISSIONS[:1], MISSIONS[1:3]
-OF_MISSIONS = {
-    "--site": MISSIONS,
-    "--heights": DJI + MAVLINK,
-    "--autopilot": MAVLINK,
-    "--link-loss": DJI,
-    "--return-height": DJI,
-}
-"""Formats of this program that an option is for; those of plug-ins get all of them."""
-
 ALL_MODELS = PluginNames(EXPORTERS, PluginGroup.MODEL_FORMATS)
-ALL_FORMATS = PluginNames((*MISSIONS, *EXPORTERS), PluginGroup.MISSION_FORMATS, PluginGroup.MODEL_FORMATS)
+ALL_FORMATS = PluginNames((*FORMATS, *EXPORTERS), PluginGroup.MISSION_FORMATS, PluginGroup.MODEL_FORMATS)
 
 
 def _line(name: str, exporter: ModelExporter) -> str:
@@ -69,26 +61,14 @@ def add_parser(subparsers: Any) -> None:
         required=True,
         choices=ALL_FORMATS,
         metavar="FORMAT",
-        help=f"of plans {', '.join(MISSIONS)}; of models below",
+        help=f"of plans {', '.join(FORMATS)}; of models below",
     )
     add("-o", "--out", type=Path, required=True, metavar="FILE", help="file to write; web and 3d-tiles: folder")
     add("--site", type=Path, metavar="SITE", help="site file (default: the one beside the plan it was made for)")
-    add(
-        "--heights",
-        choices=("above-takeoff", "amsl", "ellipsoid"),
-        help="reference of heights in the file (default above-takeoff)",
-    )
-    add("--autopilot", choices=("ardupilot", "px4"), help="whose rules MAVLink files follow (default: by profile)")
-    add("--link-loss", choices=("continue", "go-home"), help="DJI: what to do without radio link (default continue)")
-    add(
-        "--return-height",
-        type=number,
-        metavar="M",
-        help="DJI: above take-off, 20 to 1500 (default: above everything)",
-    )
-    model = parser.add_argument_group(GROUP)
-    for each in declared(ModelExport).values():
-        add_parameter(model, each)
+    mission, model = parser.add_argument_group(MISSION_GROUP), parser.add_argument_group(GROUP)
+    for place, record in ((mission, ExportOptions), (model, ModelExport)):
+        for each in declared(record).values():
+            add_parameter(place, each)
     model.add_argument("--components", type=words, metavar="LIST", help="such as A,background (default: all)")
     add("--json", action="store_true", help="print one JSON object instead of text")
 
@@ -101,14 +81,16 @@ def run(options: argparse.Namespace) -> int:
 def _left_out(options: argparse.Namespace) -> list[str]:
     """Notes on options that were typed and that the format has no use for."""
     name = options.format
+    of_missions = {"--site": "site"} | {each.parameter.option: key for key, each in declared(ExportOptions).items()}
     of_models = {each.parameter.option: key for key, each in declared(ModelExport).items()}
     of_models["--components"] = "components"
-    typed = {option: getattr(options, option[2:].replace("-", "_"), None) for option in (*OF_MISSIONS, *of_models)}
+    typed = {option: getattr(options, option[2:].replace("-", "_"), None) for option in (*of_missions, *of_models)}
     if name in ALL_MODELS:
-        exporter = model_exporter(name)
-        useful = {option for option, key in of_models.items() if exporter.takes(key, typed["--gaussians"])}
+        model = model_exporter(name)
+        useful = {option for option, key in of_models.items() if model.takes(key, typed["--gaussians"])}
     else:
-        useful = {option for option, formats in OF_MISSIONS.items() if name in formats or name not in MISSIONS}
+        mission = mission_format(name)
+        useful = {option for option, key in of_missions.items() if key == "site" or mission.takes(key)}
     return [
         say("{} is left out: the format {} has no use for it", option, name)
         for option, value in typed.items()
@@ -134,19 +116,9 @@ def _export_model(options: argparse.Namespace) -> int:
 def _export_plan(options: argparse.Namespace) -> int:
     from groundstation.services.mission.export import export_plan
     from groundstation.services.plan.planning import finding_summary
-    from missions.dji.write import LinkLoss
-    from missions.formats.encode import ExportOptions
-    from missions.mavlink.autopilots import Autopilot
-    from missions.mission.model import HeightReference
     from planning.base.findings import Finding, Severity
 
-    heights = HeightReference(options.heights or "above-takeoff")
-    export_options = ExportOptions(
-        height_reference=heights,
-        autopilot=None if options.autopilot is None else Autopilot(options.autopilot),
-        link_loss=LinkLoss(options.link_loss or "continue"),
-        rth_height_m=options.return_height,
-    )
+    export_options = with_values(ExportOptions(), typed_values(options, ExportOptions))
     left_out = [Finding(Severity.WARNING, "option-left-out", text) for text in _left_out(options)]
     paths, found = export_plan(options.plan, options.format, options.out, options.site, export_options)
     findings = (*left_out, *found)
@@ -155,7 +127,7 @@ def _export_plan(options: argparse.Namespace) -> int:
             {
                 "files": [str(path) for path in paths],
                 "format": options.format,
-                "heights": heights.value,
+                "heights": export_options.height_reference.value,
                 "findings": [finding_summary(finding) for finding in findings],
             }
         )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,32 +9,38 @@ from PySide6.QtCore import QSignalBlocker, QTimer, Signal
 from PySide6.QtWidgets import QCheckBox, QDialog, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 
 from groundstation.gui.application.context import ApplicationContext
+from groundstation.gui.application.translate import translated
 from groundstation.gui.widgets.findings_list import FindingsList
 from groundstation.gui.widgets.inputs import ChoiceBox, Form, LengthBox
 from groundstation.gui.widgets.job_bar import DialogFoot
+from groundstation.gui.widgets.parameter_form import (
+    add_rows,
+    rows_of,
+    title_of,
+    typed_range,
+)
 from groundstation.gui.widgets.questions import agrees, choose_new_file, file_name
 from groundstation.services.jobs.runner import JobContext
 from groundstation.services.mission.files import (
-    MAVLINK_FORMATS,
     PreparedExport,
     export_paths,
     prepare_export,
     write_export,
 )
 from groundstation.services.units import UnitSystem
-from missions.dji.write import HIGHEST_RETURN_M, LOWEST_RETURN_M, LinkLoss
-from missions.formats.encode import ExportOptions
-from missions.formats.registry import FORMATS, mission_format, mission_formats
-from missions.mavlink.autopilots import Autopilot
-from missions.mission.model import FileFormat, HeightReference
+from missions.formats.options import ExportOptions
+from missions.formats.registry import mission_format, mission_formats
 from planning.base.files import PLAIN_ENDINGS
 from planning.base.findings import Severity
+from planning.base.parameters import declared
 from planning.plan import Plan
 from planning.site.records import SiteModel
 
 # What a pilot chooses for mission files: the format and the options that it has.
 
 FIRST_RETURN_HEIGHT_M = 60.0
+
+KNOWN = declared(ExportOptions)
 
 
 class ExportForm(QWidget):
@@ -45,49 +50,43 @@ class ExportForm(QWidget):
 
     def __init__(self, units: UnitSystem, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._format, self._heights, self._autopilot, self._link_loss = (ChoiceBox() for _ in range(4))
+        self._format = ChoiceBox()
+        for name, each in mission_formats().items():
+            self._format.addItem(translated(each.title, units), name)
+        self._rows = rows_of(KNOWN, but=("rth_height_m",))
+        known = KNOWN["rth_height_m"].parameter
         self._return_auto = QCheckBox(self.tr("above everything on the site"))
         self._return_auto.setChecked(True)
-        self._return = LengthBox(LOWEST_RETURN_M, HIGHEST_RETURN_M, 5.0, units)
+        self._return = LengthBox(*typed_range(known), known.step, units)
         self._return.setValue(FIRST_RETURN_HEIGHT_M)
-        self._fill()
         form = self._form = Form(self)
         form.setContentsMargins(0, 0, 0, 0)
         form.addRow(self.tr("Format"), self._format)
-        form.addRow(self.tr("Heights in the file"), self._heights)
-        form.addRow(self.tr("Autopilot"), self._autopilot)
-        form.addRow(self.tr("Without radio link"), self._link_loss)
-        form.addRow(self.tr("Return height"), self._return_auto)
+        add_rows(form, self._rows)
+        form.addRow(title_of(known), self._return_auto)
         form.addRow(self.tr("Above take-off"), self._return)
-        for box in (self._format, self._heights, self._autopilot, self._link_loss):
-            box.currentIndexChanged.connect(self._changed)
+        self._format.currentIndexChanged.connect(self._changed)
+        for row in self._rows.values():
+            row.valueChanged.connect(self._changed)
         self._return_auto.toggled.connect(self._changed)
         self._return.valueChanged.connect(self._changed)
         self._show_options()
 
     def value(self) -> tuple[str, ExportOptions]:
         """The format and its options; what is hidden has its usual value."""
-        file_format = str(self._format.currentData())
-        options = ExportOptions()
-        if self._form.isRowVisible(self._heights):
-            options = replace(options, height_reference=HeightReference(self._heights.currentData()))
-        if file_format in MAVLINK_FORMATS and self._autopilot.currentData():
-            options = replace(options, autopilot=Autopilot(self._autopilot.currentData()))
-        if file_format == FileFormat.DJI_KMZ:
-            height_m = None if self._return_auto.isChecked() else self._return.value()
-            options = replace(options, link_loss=LinkLoss(self._link_loss.currentData()), rth_height_m=height_m)
-        return file_format, options
+        name = str(self._format.currentData())
+        chosen = mission_format(name)
+        values = {option: row.value() for option, row in self._rows.items() if chosen.takes(option)}
+        if chosen.takes("rth_height_m") and not self._return_auto.isChecked():
+            values["rth_height_m"] = self._return.value()
+        return name, ExportOptions(**values)
 
     def setValue(self, file_format: str, options: ExportOptions) -> None:  # noqa: N802
         """Show a format and options."""
         with QSignalBlocker(self):
-            for box, value in (
-                (self._format, str(file_format)),
-                (self._heights, options.height_reference.value),
-                (self._autopilot, options.autopilot.value if options.autopilot else ""),
-                (self._link_loss, options.link_loss.value),
-            ):
-                box.setCurrentIndex(max(0, box.findData(value)))
+            self._format.setCurrentIndex(max(0, self._format.findData(str(file_format))))
+            for option, row in self._rows.items():
+                row.setValue(getattr(options, option))
             self._return_auto.setChecked(options.rth_height_m is None)
             if options.rth_height_m is not None:
                 self._return.setValue(options.rth_height_m)
@@ -97,52 +96,18 @@ class ExportForm(QWidget):
         """Show the return height in other units."""
         self._return.set_units(units)
 
-    def _fill(self) -> None:
-        for text, value in (
-            (self.tr("DJI (.kmz)"), FileFormat.DJI_KMZ),
-            (self.tr("QGroundControl (.plan)"), FileFormat.MAVLINK_PLAN),
-            (self.tr("Mission Planner (.waypoints)"), FileFormat.MAVLINK_WPL),
-            (self.tr("Google Earth (.kml), to look at"), FileFormat.KML),
-            (self.tr("Table of photos (.csv)"), FileFormat.CSV),
-        ):
-            self._format.addItem(text, value.value)
-        for name, of_plugin in mission_formats().items():
-            if name not in FORMATS:
-                self._format.addItem(of_plugin.title, name)
-        self._autopilot.addItem(self.tr("by aircraft"), "")
-        self._autopilot.addItem("ArduPilot", Autopilot.ARDUPILOT.value)
-        self._autopilot.addItem("PX4", Autopilot.PX4.value)
-        self._link_loss.addItem(self.tr("fly the mission to its end"), LinkLoss.CONTINUE.value)
-        self._link_loss.addItem(self.tr("return home straight"), LinkLoss.GO_HOME.value)
-        self._fill_heights(FileFormat.DJI_KMZ)
-
-    def _fill_heights(self, file_format: str) -> None:
-        kept = self._heights.currentData()
-        choices = [
-            (self.tr("above take-off"), HeightReference.ABOVE_TAKEOFF),
-            (self.tr("above sea level (EGM96)"), HeightReference.AMSL),
-        ]
-        if file_format == FileFormat.DJI_KMZ:
-            choices.append((self.tr("above ellipsoid (WGS 84)"), HeightReference.ELLIPSOID))
-        with QSignalBlocker(self._heights):
-            self._heights.clear()
-            for text, value in choices:
-                self._heights.addItem(text, value.value)
-            self._heights.setCurrentIndex(max(0, self._heights.findData(kept)))
-
     def _changed(self) -> None:
         self._show_options()
         self.valueChanged.emit()
 
     def _show_options(self) -> None:
-        file_format = str(self._format.currentData())
-        is_dji, is_mavlink = file_format == FileFormat.DJI_KMZ, file_format in MAVLINK_FORMATS
-        self._fill_heights(file_format)
-        self._form.setRowVisible(self._heights, is_dji or is_mavlink)
-        self._form.setRowVisible(self._autopilot, is_mavlink)
-        for row in (self._link_loss, self._return_auto):
-            self._form.setRowVisible(row, is_dji)
-        self._form.setRowVisible(self._return, is_dji and not self._return_auto.isChecked())
+        chosen = mission_format(str(self._format.currentData()))
+        self._rows["height_reference"].offer(chosen.heights)
+        for option, row in self._rows.items():
+            self._form.setRowVisible(row.widget, chosen.takes(option))
+        returns = chosen.takes("rth_height_m")
+        self._form.setRowVisible(self._return_auto, returns)
+        self._form.setRowVisible(self._return, returns and not self._return_auto.isChecked())
 
 
 FORM_WIDTH_PX = 360

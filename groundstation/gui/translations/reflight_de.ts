@@ -1197,68 +1197,8 @@ Bild in dieser Entfernung: {4} x {5}</translation>
         <translation>Format</translation>
     </message>
     <message>
-        <source>Heights in the file</source>
-        <translation>Höhen in der Datei</translation>
-    </message>
-    <message>
-        <source>Autopilot</source>
-        <translation>Autopilot</translation>
-    </message>
-    <message>
-        <source>Without radio link</source>
-        <translation>Ohne Funkverbindung</translation>
-    </message>
-    <message>
-        <source>Return height</source>
-        <translation>Rückkehrhöhe</translation>
-    </message>
-    <message>
         <source>Above take-off</source>
         <translation>Über Start</translation>
-    </message>
-    <message>
-        <source>DJI (.kmz)</source>
-        <translation>DJI (.kmz)</translation>
-    </message>
-    <message>
-        <source>QGroundControl (.plan)</source>
-        <translation>QGroundControl (.plan)</translation>
-    </message>
-    <message>
-        <source>Mission Planner (.waypoints)</source>
-        <translation>Mission Planner (.waypoints)</translation>
-    </message>
-    <message>
-        <source>Google Earth (.kml), to look at</source>
-        <translation>Google Earth (.kml), zum Ansehen</translation>
-    </message>
-    <message>
-        <source>Table of photos (.csv)</source>
-        <translation>Tabelle der Fotos (.csv)</translation>
-    </message>
-    <message>
-        <source>by aircraft</source>
-        <translation>nach Fluggerät</translation>
-    </message>
-    <message>
-        <source>fly the mission to its end</source>
-        <translation>Mission zu Ende fliegen</translation>
-    </message>
-    <message>
-        <source>return home straight</source>
-        <translation>direkt zum Startplatz zurück</translation>
-    </message>
-    <message>
-        <source>above take-off</source>
-        <translation>über Start</translation>
-    </message>
-    <message>
-        <source>above sea level (EGM96)</source>
-        <translation>über Meer (EGM96)</translation>
-    </message>
-    <message>
-        <source>above ellipsoid (WGS 84)</source>
-        <translation>über Ellipsoid (WGS 84)</translation>
     </message>
 </context>
 <context>
@@ -3500,6 +3440,70 @@ Blickrichtung: {3}</translation>
     <message>
         <source>without RTK</source>
         <translation>ohne RTK</translation>
+    </message>
+    <message>
+        <source>Heights in the file</source>
+        <translation>Höhen in der Datei</translation>
+    </message>
+    <message>
+        <source>reference of heights in the file</source>
+        <translation>Bezug der Höhen in der Datei</translation>
+    </message>
+    <message>
+        <source>above take-off</source>
+        <translation>über Startplatz</translation>
+    </message>
+    <message>
+        <source>above sea level (EGM96)</source>
+        <translation>über Meer (EGM96)</translation>
+    </message>
+    <message>
+        <source>above ellipsoid (WGS 84)</source>
+        <translation>über Ellipsoid (WGS 84)</translation>
+    </message>
+    <message>
+        <source>Autopilot</source>
+        <translation>Autopilot</translation>
+    </message>
+    <message>
+        <source>whose rules MAVLink files follow</source>
+        <translation>wessen Regeln MAVLink-Dateien folgen</translation>
+    </message>
+    <message>
+        <source>ArduPilot</source>
+        <translation>ArduPilot</translation>
+    </message>
+    <message>
+        <source>PX4</source>
+        <translation>PX4</translation>
+    </message>
+    <message>
+        <source>by aircraft</source>
+        <translation>nach Fluggerät</translation>
+    </message>
+    <message>
+        <source>Without radio link</source>
+        <translation>Ohne Funkverbindung</translation>
+    </message>
+    <message>
+        <source>DJI: what to do without radio link</source>
+        <translation>DJI: was ohne Funkverbindung geschieht</translation>
+    </message>
+    <message>
+        <source>fly the mission to its end</source>
+        <translation>Mission zu Ende fliegen</translation>
+    </message>
+    <message>
+        <source>return home straight</source>
+        <translation>direkt zum Startplatz zurück</translation>
+    </message>
+    <message>
+        <source>Return height</source>
+        <translation>Rückkehrhöhe</translation>
+    </message>
+    <message>
+        <source>DJI: of the return above take-off, 20 to 1500</source>
+        <translation>DJI: der Rückkehr über dem Startplatz, 20 bis 1500</translation>
     </message>
     <message>
         <source>Colours</source>
@@ -6012,12 +6016,24 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>COLMAP-Modell: die rationale Verzeichnung der Kamera {0} ist {1} px vom nächsten Polynom entfernt; erwartet werden höchstens {2} px; die Bilder in COLMAP entzerren (image_undistorter)</translation>
     </message>
     <message>
+        <source>DJI (.kmz)</source>
+        <translation>DJI (.kmz)</translation>
+    </message>
+    <message>
+        <source>Google Earth (.kml), to look at</source>
+        <translation>Google Earth (.kml), zum Ansehen</translation>
+    </message>
+    <message>
         <source>Ipopt found no speed profile: {0}</source>
         <translation>Ipopt fand kein Geschwindigkeitsprofil: {0}</translation>
     </message>
     <message>
         <source>Mesh (glTF)</source>
         <translation>Netz (glTF)</translation>
+    </message>
+    <message>
+        <source>Mission Planner (.waypoints)</source>
+        <translation>Mission Planner (.waypoints)</translation>
     </message>
     <message>
         <source>Mitsuba is installed but does not work here ({0}); use the embedded renderer</source>
@@ -6038,6 +6054,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>PyVRP found no tour of all {0} points by existing legs; more time may help</source>
         <translation>PyVRP fand keine Rundtour durch alle {0} Punkte über vorhandene Strecken; mehr Zeit kann helfen</translation>
+    </message>
+    <message>
+        <source>QGroundControl (.plan)</source>
+        <translation>QGroundControl (.plan)</translation>
     </message>
     <message>
         <source>Reflight failed where it should not ({0}: {1}); please report it with {2}</source>
@@ -6066,6 +6086,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>Splats, compressed: most viewers of splats open it.</source>
         <translation>Splats, komprimiert: die meisten Betrachter von Splats öffnen es.</translation>
+    </message>
+    <message>
+        <source>Table of photos (.csv)</source>
+        <translation>Tabelle der Fotos (.csv)</translation>
     </message>
     <message>
         <source>The newer version of SPZ: smaller, for the newest programs.</source>

@@ -6,10 +6,10 @@ Titles and tool tips are what the parameter declares, translated in the context 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
-from PySide6.QtCore import QCoreApplication, QObject, Signal
+from PySide6.QtCore import QCoreApplication, QObject, QSignalBlocker, Signal
 from PySide6.QtWidgets import QCheckBox, QWidget
 
 from groundstation.gui.widgets.inputs import (
@@ -154,6 +154,17 @@ class ParameterRow(QObject):
             self._set_mm, self._shown_m = value, self.widget.value()
         else:
             self.widget.setValue(value)
+
+    def offer(self, values: Iterable[Any]) -> None:
+        """Let a list offer these values alone; the first stands in where the one that was shown is not among them."""
+        if not isinstance(self.widget, ChoiceBox):
+            raise TypeError(f"{self.declared.name}: expected a list, got {type(self.widget).__name__}")
+        shown = self.value()
+        with QSignalBlocker(self.widget):
+            self.widget.clear()
+            for value in values:
+                self.widget.addItem(self._names(value), value)
+            self.widget.setCurrentIndex(max(0, self.widget.findData(shown)))
 
     def set_units(self, system: UnitSystem) -> None:
         """Show lengths and speeds in other units."""

@@ -31,7 +31,8 @@ from missions.flight.logs.read import read_log
 from missions.flight.photo_folder import read_photo_flights
 from missions.flight.record import FlightEvent, FlightRecord
 from missions.flight.report import report_flight
-from missions.formats.encode import ExportOptions, default_autopilot
+from missions.formats.encode import default_autopilot
+from missions.formats.options import ExportOptions
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.link import ChannelLink, open_link
 from missions.mavlink.signing import Signer

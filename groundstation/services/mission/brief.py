@@ -8,9 +8,10 @@ from dataclasses import dataclass
 
 from groundstation.services.mission.readiness import UNKNOWN_DAY, FlightDay, Readiness, by_severity, readiness_of
 from groundstation.services.mission.waypoints import WaypointRow, waypoint_rows
-from missions.dji.write import LinkLoss
-from missions.formats.encode import ExportOptions, TakeoffCheck, dji_return_height, takeoff_check
+from missions.formats.encode import TakeoffCheck, dji_return_height, takeoff_check
+from missions.formats.options import ExportOptions
 from missions.mission.build import missions_from_plan
+from missions.mission.export_choices import LinkLoss
 from planning.base.errors import GroundStationError
 from planning.base.findings import Finding, Severity
 from planning.base.messages import say

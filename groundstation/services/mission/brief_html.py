@@ -29,8 +29,8 @@ from groundstation.services.units import (
     sampling_unit,
     speed_unit,
 )
-from missions.dji.write import LinkLoss
 from missions.formats.encode import TakeoffCheck
+from missions.mission.export_choices import LinkLoss
 from planning.base.findings import Severity
 from planning.insight.flight_profile import LOW_M
 from planning.plan import Plan

@@ -11,7 +11,8 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from missions.mission.model import FileFormat, ReadMission
+from missions.mission.export_choices import FileFormat
+from missions.mission.model import ReadMission
 from missions.mission.to_plan import viewpoints_and_sorties
 from planning.base.errors import InputError
 from planning.base.findings import Finding

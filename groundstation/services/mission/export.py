@@ -17,7 +17,7 @@ from groundstation.services.mission.files import (
 )
 from groundstation.services.project.input_files import read_input_plan, read_input_site
 from groundstation.services.project.project_file import SITE_FOLDER, check_not_index
-from missions.formats.encode import DEFAULT_OPTIONS, ExportOptions
+from missions.formats.options import DEFAULT_OPTIONS, ExportOptions
 from missions.formats.registry import encode, mission_format, sortie_path, write_files
 from planning.base.errors import InputError
 from planning.base.files import check_ending, real_path, sha256_of_file

@@ -11,9 +11,11 @@ import numpy as np
 
 from groundstation.services.project.input_files import FileKind, expecting
 from groundstation.services.project.project_file import check_not_index
-from missions.formats.encode import DEFAULT_OPTIONS, EncodedFiles, ExportOptions, default_autopilot
+from missions.formats.encode import default_autopilot
+from missions.formats.options import DEFAULT_OPTIONS, EncodedFiles, ExportOptions
 from missions.formats.registry import encode, read_missions, sortie_path, write_files
-from missions.mission.model import FileFormat, GeoPoint, ReadMission, distance_m
+from missions.mission.export_choices import FileFormat
+from missions.mission.model import GeoPoint, ReadMission, distance_m
 from missions.mission.to_plan import viewpoints_and_sorties
 from planning.aircraft.catalogue import profile
 from planning.base.errors import GroundStationError, InputError

@@ -13,8 +13,8 @@ from groundstation.services.mission.brief import flight_brief
 from groundstation.services.mission.brief_html import brief_html, brief_pictures
 from groundstation.services.mission.readiness import FlightDay
 from groundstation.services.units import UnitSystem
-from missions.dji.write import LinkLoss
 from missions.formats.encode import takeoff_check
+from missions.mission.export_choices import LinkLoss
 from planning.base.errors import InputError
 from planning.base.findings import Finding, Severity
 from planning.insight.flight_profile import LowFlight

@@ -10,7 +10,7 @@ from groundstation.services.project.document import Document, Item, ItemKind, Pl
 from groundstation.services.project.session import Session
 from groundstation.services.units import UnitSystem
 from missions.formats.registry import read_missions
-from missions.mission.model import FileFormat
+from missions.mission.export_choices import FileFormat
 from planning.base.findings import Severity
 from planning.planner import plan_flight
 from planning.request import PlanRequest
@@ -301,10 +301,9 @@ def test_a_folder_that_cannot_be_written_is_told_in_the_dialog(page, context, pl
 
 def test_every_choice_of_the_export_form_comes_back(application):
     from groundstation.gui.mission.export_dialog import ExportForm
-    from missions.dji.write import LinkLoss
-    from missions.formats.encode import ExportOptions
+    from missions.formats.options import ExportOptions
     from missions.mavlink.autopilots import Autopilot
-    from missions.mission.model import HeightReference
+    from missions.mission.export_choices import HeightReference, LinkLoss
 
     form = ExportForm(UnitSystem.METRIC)
     heard = []

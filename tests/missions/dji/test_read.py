@@ -11,7 +11,8 @@ from missions.dji.read import Flight, read_dji
 from missions.dji.wpml import Action, ActionGroup, Folder, WpmlWaypoint
 from missions.dji.write import DjiOptions, kmz_bytes
 from missions.mission.build import missions_from_plan
-from missions.mission.model import Finish, HeightReference, ReadMission, ReadPhoto, distance_m
+from missions.mission.export_choices import HeightReference
+from missions.mission.model import Finish, ReadMission, ReadPhoto, distance_m
 from planning.base.errors import MissionError
 from planning.base.findings import Severity
 from tests.missions.plans import example_plan

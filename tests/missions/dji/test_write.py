@@ -12,11 +12,12 @@ from xml.etree import ElementTree
 import pytest
 from hypothesis import given, settings
 
-from missions.dji.write import HIGHEST_RETURN_M, LOWEST_RETURN_M, DjiOptions, LinkLoss, kmz_bytes
-from missions.formats.encode import ExportOptions
+from missions.dji.write import DjiOptions, kmz_bytes
+from missions.formats.options import ExportOptions
 from missions.formats.registry import encode
 from missions.mission.build import missions_from_plan
-from missions.mission.model import FileFormat, HeightReference, Mission, altitude_amsl_m
+from missions.mission.export_choices import HIGHEST_RETURN_M, LOWEST_RETURN_M, FileFormat, HeightReference, LinkLoss
+from missions.mission.model import Mission, altitude_amsl_m
 from planning.base.errors import MissionError
 from planning.parameters import Constraints, FlightRules
 from planning.plan import Plan

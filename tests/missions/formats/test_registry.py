@@ -13,11 +13,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 
-from missions.formats.encode import ExportOptions, takeoff_check
+from missions.formats.encode import takeoff_check
+from missions.formats.options import ExportOptions
 from missions.formats.registry import encode, read_missions, sortie_path
 from missions.mavlink.autopilots import Autopilot
 from missions.mission.build import missions_from_plan
-from missions.mission.model import FileFormat, GeoPoint, HeightReference, ReadMission, altitude_amsl_m
+from missions.mission.export_choices import FileFormat, HeightReference
+from missions.mission.model import GeoPoint, ReadMission, altitude_amsl_m
 from missions.mission.to_plan import viewpoints_and_sorties
 from planning.base.errors import InputError, MissionError
 from planning.base.findings import Finding, Severity

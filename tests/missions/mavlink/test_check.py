@@ -10,7 +10,8 @@ from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.check import check_items
 from missions.mavlink.items import MavlinkFile, MissionItem, mission_items, plain
 from missions.mission.build import missions_from_plan
-from missions.mission.model import HeightReference, point_at_amsl
+from missions.mission.export_choices import HeightReference
+from missions.mission.model import point_at_amsl
 from planning.base.findings import Severity
 from tests.missions.plans import example_plan
 

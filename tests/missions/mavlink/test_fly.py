@@ -10,16 +10,8 @@ import pytest
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.items import MavlinkFile, MissionItem, plain
 from missions.mavlink.read import autopilot_by_items, read_mavlink
-from missions.mission.model import (
-    FileFormat,
-    Finish,
-    GeoPoint,
-    HeightReference,
-    ReadMission,
-    ReadPhoto,
-    distance_m,
-    point_at_amsl,
-)
+from missions.mission.export_choices import FileFormat, HeightReference
+from missions.mission.model import Finish, GeoPoint, ReadMission, ReadPhoto, distance_m, point_at_amsl
 from planning.base.errors import MissionError
 
 HOME = point_at_amsl(52.0, 5.0, 10.0)

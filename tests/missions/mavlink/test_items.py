@@ -13,7 +13,8 @@ from hypothesis import given, settings
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.items import MissionItem, mission_items, plain
 from missions.mission.build import missions_from_plan
-from missions.mission.model import HeightReference, Mission, altitude_amsl_m
+from missions.mission.export_choices import HeightReference
+from missions.mission.model import Mission, altitude_amsl_m
 from planning.parameters import FlightRules
 from planning.plan import Plan, Viewpoint
 from tests.missions.mavlink.reference_autopilots import Px4Twin, ReferenceArduPilot, Shot

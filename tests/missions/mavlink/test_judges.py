@@ -9,11 +9,11 @@ from typing import Any
 
 import pytest
 
-from missions.formats.encode import ExportOptions
+from missions.formats.options import ExportOptions
 from missions.mavlink.autopilots import Autopilot, facts
 from missions.mavlink.items import MissionItem, mission_items
 from missions.mission.build import missions_from_plan
-from missions.mission.model import FileFormat, HeightReference
+from missions.mission.export_choices import FileFormat, HeightReference
 from tests.missions.plans import example_plan, export
 
 SCALE = 1e7

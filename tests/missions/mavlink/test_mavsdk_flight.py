@@ -12,7 +12,7 @@ from missions.mavlink.items import mission_items
 from missions.mavlink.transfer.exchange import MissionType
 from missions.mavlink.transfer.wire_items import to_wire
 from missions.mission.build import missions_from_plan
-from missions.mission.model import HeightReference
+from missions.mission.export_choices import HeightReference
 from missions.simulator.vehicle import SimulatedVehicle
 from tests.missions.mavlink.transfer.fake_vehicle import ARDUPILOT, PX4
 from tests.missions.plans import make_plan, ring

@@ -23,7 +23,8 @@ from missions.mavlink.transfer.exchange import Download, Ending, MissionType, Ro
 from missions.mavlink.transfer.verified import Upload
 from missions.mavlink.transfer.wire_items import compare, to_wire
 from missions.mission.build import missions_from_plan
-from missions.mission.model import GeoPoint, HeightReference
+from missions.mission.export_choices import HeightReference
+from missions.mission.model import GeoPoint
 from missions.simulator.server import serve
 from missions.simulator.vehicle import SimulatedVehicle
 from tests.missions.mavlink.driving import drive

@@ -8,11 +8,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from missions.formats.encode import ExportOptions
+from missions.formats.options import ExportOptions
 from missions.formats.registry import encode, read_missions
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.plan_json import read_plan_json
-from missions.mission.model import FileFormat, GeoPoint, altitude_amsl_m
+from missions.mission.export_choices import FileFormat
+from missions.mission.model import GeoPoint, altitude_amsl_m
 from planning.base.errors import InputError, MissionError
 from planning.geo.enu import enu_from_geodetic
 from planning.planner import plan_flight

@@ -4,12 +4,12 @@ from pathlib import Path
 
 import pytest
 
-from missions.formats.encode import ExportOptions
+from missions.formats.options import ExportOptions
 from missions.formats.registry import encode, read_missions
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.wpl import read_wpl
 from missions.mission.build import missions_from_plan
-from missions.mission.model import FileFormat
+from missions.mission.export_choices import FileFormat
 from planning.base.errors import MissionError
 from tests.missions.plans import example_plan
 

@@ -12,11 +12,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pymavlink.dialects.v20 import common as mavlink
 
-from missions.formats.encode import ExportOptions
+from missions.formats.options import ExportOptions
 from missions.formats.registry import encode
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.items import MissionItem, mission_items
-from missions.mission.model import FileFormat, HeightReference, Mission
+from missions.mission.export_choices import FileFormat, HeightReference
+from missions.mission.model import Mission
 from missions.mission.resume import Resumed, resume_sortie
 from planning.aircraft.catalogue import profile
 from planning.base.errors import InfeasibleError, MissionError

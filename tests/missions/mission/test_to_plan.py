@@ -8,7 +8,8 @@ import pytest
 
 from missions.formats.registry import read_missions
 from missions.mission.build import missions_from_plan
-from missions.mission.model import FileFormat, Finish, GeoPoint, HeightReference, ReadMission, ReadPhoto, ReadWaypoint
+from missions.mission.export_choices import FileFormat, HeightReference
+from missions.mission.model import Finish, GeoPoint, ReadMission, ReadPhoto, ReadWaypoint
 from missions.mission.to_plan import viewpoints_and_sorties
 from planning.base.errors import InputError
 from planning.base.findings import Severity

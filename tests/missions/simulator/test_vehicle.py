@@ -40,7 +40,8 @@ from missions.mavlink.messages import (
 )
 from missions.mavlink.wire import Encoder
 from missions.mission.build import missions_from_plan
-from missions.mission.model import HeightReference, Mission
+from missions.mission.export_choices import HeightReference
+from missions.mission.model import Mission
 from missions.simulator.autopilot.instruments import camera_quaternion
 from missions.simulator.autopilot.mission_store import Refused, stored
 from missions.simulator.build import make_airframe

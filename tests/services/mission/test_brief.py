@@ -20,9 +20,9 @@ from groundstation.services.mission.brief_html import (
 )
 from groundstation.services.mission.readiness import FlightDay, preflight
 from groundstation.services.units import UnitSystem
-from missions.dji.write import LinkLoss
-from missions.formats.encode import ExportOptions
+from missions.formats.options import ExportOptions
 from missions.mission.build import missions_from_plan
+from missions.mission.export_choices import LinkLoss
 from missions.mission.model import altitude_amsl_m
 from planning.base.findings import Finding, Severity
 from planning.geo.frames import Origin

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from groundstation.services.mission.compare import Difference, MissionComparison, PhotoComparison, compare_with_plan
 from groundstation.services.mission.files import read_mission_files
-from missions.mission.model import FileFormat
+from missions.mission.export_choices import FileFormat
 from planning.base.errors import InputError
 from tests.missions.plans import HOME, HONG_KONG, example_plan, export, make_plan, ring
 

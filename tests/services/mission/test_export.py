@@ -8,10 +8,10 @@ from groundstation.services.mission.export import export_plan, find_site, import
 from groundstation.services.plan.planning import plan_site
 from groundstation.services.project.document import Document
 from groundstation.services.project.folder import create_project
-from missions.formats.encode import ExportOptions
+from missions.formats.options import ExportOptions
 from missions.formats.registry import FORMATS, read_missions
 from missions.mavlink.autopilots import Autopilot
-from missions.mission.model import FileFormat
+from missions.mission.export_choices import FileFormat
 from planning.base.errors import InputError
 from planning.plan import read_plan
 from planning.request import PlanRequest

@@ -13,10 +13,9 @@ from groundstation.services.mission.files import (
     write_export,
 )
 from groundstation.services.mission.readiness import preflight
-from missions.dji.write import LinkLoss
-from missions.formats.encode import ExportOptions
+from missions.formats.options import ExportOptions
 from missions.formats.registry import FORMATS
-from missions.mission.model import FileFormat, HeightReference
+from missions.mission.export_choices import FileFormat, HeightReference, LinkLoss
 from planning.base.errors import InputError
 from planning.base.findings import Severity
 from planning.planner import plan_flight

@@ -17,7 +17,8 @@ from missions.mavlink.transfer.exchange import MissionType
 from missions.mavlink.transfer.verified import NotVerified, Verified, VerifiedUpload
 from missions.mavlink.transfer.wire_items import compare, has_place, to_wire
 from missions.mission.build import missions_from_plan
-from missions.mission.model import GeoPoint, HeightReference
+from missions.mission.export_choices import HeightReference
+from missions.mission.model import GeoPoint
 from missions.simulator.autopilot.mission_store import MissionStores, StoredItem, stored
 from missions.simulator.autopilot.mission_store import to_wire as stored_to_wire
 from missions.simulator.server import DirectLink

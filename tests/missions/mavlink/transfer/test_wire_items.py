@@ -12,7 +12,7 @@ from missions.mavlink.items import MissionItem, mission_items
 from missions.mavlink.transfer.exchange import MissionType
 from missions.mavlink.transfer.wire_items import HOME, has_place, to_wire
 from missions.mission.build import missions_from_plan
-from missions.mission.model import HeightReference
+from missions.mission.export_choices import HeightReference
 from planning.base.errors import MissionError
 from tests.missions.mavlink.driving import from_wire
 from tests.missions.plans import example_plan
