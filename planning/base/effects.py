@@ -77,17 +77,19 @@ class Effect(Protocol[Scene_contra]):
         """Size, reason and cost of the effect in this scene."""
 
 
-def decide(effect: Effect[Scene_contra], scene: Scene_contra, setting: EffectSetting = "auto") -> Decision:
-    """Ask the scene, and let the user overrule it."""
-    found = effect.assess(scene)
-    on = found.size > effect.tolerance if setting == "auto" else setting == "on"
+def decide(
+    effect: Effect[Scene_contra], scene: Scene_contra, setting: EffectSetting = "auto", factor: float = 1.0
+) -> Decision:
+    """Ask the scene, and let the user overrule it; `factor` multiplies the effect's tolerance."""
+    found, tolerance = effect.assess(scene), factor * effect.tolerance
+    on = found.size > tolerance if setting == "auto" else setting == "on"
     return Decision(
         effect=effect.name,
         on=on,
         decided_by="scene" if setting == "auto" else "user",
         reason=found.reason,
         size=found.size,
-        tolerance=effect.tolerance,
+        tolerance=tolerance,
         unit=effect.unit,
         cost_s=found.cost_s,
     )

@@ -20,26 +20,6 @@ SKY_OCCLUSION = say("sky occlusion")
 DISTORTION, VIGNETTING, NOISE = say("lens distortion"), "vignetting", "noise"
 MOTION_BLUR, EXPOSURE = say("motion blur"), say("exposure changes")
 POSITION_ERROR, GIMBAL_ERROR = say("position error"), say("gimbal error")
-EFFECTS = (
-    NEAR_FIELD,
-    FRESNEL,
-    SECOND_BOUNCE,
-    TILT,
-    CURVATURE,
-    DOUBLING,
-    SHADOW,
-    INTERIOR,
-    SUN_GLARE,
-    OCCLUSION,
-    SKY_OCCLUSION,
-    DISTORTION,
-    VIGNETTING,
-    NOISE,
-    MOTION_BLUR,
-    EXPOSURE,
-    POSITION_ERROR,
-    GIMBAL_ERROR,
-)
 
 ROWS, MOST_ROWS = 1024, 8192
 """Of the picture of the surroundings, and at most: 2 GB."""
@@ -64,7 +44,7 @@ class RenderSettings:
     samples
         Rays along each side of a pixel; `auto` takes one, and several where detail calls for it.
     effects
-        By effect, those of `EFFECTS`: on, off, or left to scene and flight; what is not named is left to them.
+        By name of the effect: on, off, or left to scene and flight; what is not named is left to them.
     tolerance
         How much more than its stated tolerance an effect may change pictures and still be left out.
     environment_rows
@@ -76,7 +56,7 @@ class RenderSettings:
     Raises
     ------
     InputError
-        A setting names no effect, or the samples make no sense.
+        The samples, or the rows of the surroundings, make no sense.
     ValueError
         The tolerance or Mitsuba's rays are out of range.
     """
@@ -104,9 +84,6 @@ class RenderSettings:
     )
 
     def __post_init__(self) -> None:
-        unknown = [name for name in self.effects if name not in EFFECTS]
-        if unknown:
-            raise InputError(say("there is no effect '{}'; expected one of {}", unknown[0], ", ".join(EFFECTS)))
         if self.samples != "auto" and not 1 <= self.samples <= 32:
             raise InputError(say("samples: expected 1 to 32 along a pixel's side, or auto, got {}", self.samples))
         if not 2 <= self.environment_rows <= MOST_ROWS:

@@ -30,9 +30,9 @@ from reconstruction.metrics.sets import EXTENT_MARGIN_M, ScoredPhoto
 from reconstruction.panels.rectify.fit import fit_cylinder, fit_plane
 from reconstruction.panels.rectify.surface import FacadeSurface
 from reconstruction.panels.rectify.view import SurfaceView, surface_view
+from reconstruction.scenes.effects.registry import EFFECTS
 from reconstruction.scenes.parameters import (
     DISTORTION,
-    EFFECTS,
     EXPOSURE,
     GIMBAL_ERROR,
     MOTION_BLUR,
@@ -110,7 +110,7 @@ WHITE = 255.0
 OF_A_FLIGHT = (DISTORTION, MOTION_BLUR, EXPOSURE, POSITION_ERROR, GIMBAL_ERROR)
 """Effects that single photos of a straight camera at rest do not show."""
 
-OF_A_PHOTO = tuple(name for name in EFFECTS if name not in OF_A_FLIGHT)
+OF_A_PHOTO = tuple(effect.name for effect in EFFECTS if effect.name not in OF_A_FLIGHT)
 
 ERROR_AXIS = GapAxis(
     label="error against the truth (PSNR)",
@@ -292,7 +292,7 @@ def make_truth(
     clock: Clock = time.perf_counter,
 ) -> Truth:
     """Photographs with every effect, by a physically based renderer and its rays a pixel, or by the embedded one."""
-    settings = RenderSettings(samples=TRUTH_SAMPLES, effects=dict.fromkeys(EFFECTS, "on"))
+    settings = RenderSettings(samples=TRUTH_SAMPLES, effects={effect.name: "on" for effect in EFFECTS})
     renderer = Renderer(scene, settings) if make is None else make[0](scene, settings, make[1])
     passes, started = (1 if make is None else 2), clock()
     rendered: list[list[RenderedPhoto]] = [[] for _ in range(passes)]

@@ -45,7 +45,7 @@ class Method:
         that the paper adds for glass (Eqs. 23 and 24).
     shader
         Of a plug-in: makes the `methods.shader.Shader` of a training from its `TrainConfig` and `Surroundings`, and
-        imports torch only then. None: as `methods.shaders` has it, which is spherical harmonics for new names.
+        imports torch only then. None: `make_shader` of the module that has its name in `methods`, or else harmonics.
     """
 
     title: str

@@ -38,8 +38,8 @@ from reconstruction.splats.splats import NO_PANEL, Splats, splats_from_tensors, 
 from reconstruction.splats.surfels import known_scene, model_origin, points_only, scene_of_points
 from reconstruction.training.callbacks import Callbacks, HeldOut
 from reconstruction.training.config import TrainConfig
-from reconstruction.training.methods.shader import Shader
-from reconstruction.training.methods.shaders import Surroundings, converted_for_method, shader_of, with_primitive
+from reconstruction.training.methods.shader import Shader, Surroundings
+from reconstruction.training.methods.shaders import converted_for_method, shader_of, with_primitive
 from reconstruction.training.model.joint_model import SceneModel
 from reconstruction.training.model.record import SiteRecord, site_record
 from reconstruction.training.photos.exposures import Exposures, own_exposures

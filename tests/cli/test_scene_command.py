@@ -14,7 +14,7 @@ from planning.photos.folder import read_photos
 from planning.plan import read_plan
 from planning.site.file import read_site
 from reconstruction.photos.poses import pose_photos
-from reconstruction.scenes.parameters import EFFECTS
+from reconstruction.scenes.effects.registry import EFFECTS
 from reconstruction.scenes.world.bundled import SCENES
 
 QUICK = ("--width", 32, "--jobs", 1, "--points", 500)
@@ -65,7 +65,7 @@ def test_the_photos_of_a_plan_are_rendered_where_it_has_its_views(render, pane, 
     done = render("--plan", pane / "plan.json")
     assert done.status == 0, done.err
     assert "6 photos of 'single-panel'" in done.out
-    assert all(name in done.out for name in EFFECTS)
+    assert all(effect.name in done.out for effect in EFFECTS)
     plan, site = read_plan(pane / "plan.json"), read_site(pane / "site.json").site
     images = tmp_path / "photos" / "images"
     posed = pose_photos(read_photos(images).photos, site, images).photos
@@ -80,7 +80,7 @@ def test_the_photos_of_a_plan_are_rendered_where_it_has_its_views(render, pane, 
 def test_asking_again_keeps_what_is_there_and_asking_for_something_else_is_refused(render, pane, tmp_path):
     first = render("--plan", pane / "plan.json", "--json").json
     assert (first["photos"], first["kept"]) == (6, 0)
-    assert [effect["effect"] for effect in first["effects"]] == list(EFFECTS)
+    assert [effect["effect"] for effect in first["effects"]] == [effect.name for effect in EFFECTS]
     before = (tmp_path / "photos" / "scene.json").read_bytes()
     assert render("--plan", pane / "plan.json", "--json").json["kept"] == 6
     assert (tmp_path / "photos" / "scene.json").read_bytes() == before

@@ -1,18 +1,23 @@
-"""One more model format, training method or simulated effect, as a row and a module, is everywhere at once."""
+"""One more format of models or missions, training method or effect, as a row and a module, is everywhere at once."""
 
 import argparse
 import importlib.util
 import io
+import sys
 from contextlib import redirect_stdout
 from pathlib import Path
 
 import pytest
 
 from groundstation.services.model import export as exports
+from missions.formats import registry as registry_of_missions
+from missions.formats.options import EncodedFiles, ExportOptions
+from missions.mission.export_choices import HeightReference
 from planning.base.errors import InputError
-from reconstruction.scenes import parameters
 from reconstruction.scenes.effects import registry
+from reconstruction.scenes.parameters import RenderSettings
 from reconstruction.training import method_registry
+from tests.missions.plans import example_plan
 
 
 def described(name, *words):
@@ -64,32 +69,77 @@ def test_a_format_is_offered_by_command_window_and_docs_and_in_messages(voxels, 
 
 
 @pytest.fixture
-def glow(monkeypatch):
+def cards(monkeypatch):
+    """A mission format more."""
+    made = registry_of_missions.MissionFormat(
+        (".cards",),
+        lambda _plan, missions, options: EncodedFiles((options.height_reference.encode(),), ()),
+        title="Cards",
+        options=frozenset(("height_reference",)),
+        heights=(HeightReference.AMSL,),
+    )
+    monkeypatch.setitem(registry_of_missions.FORMATS, "cards", made)
+    registry_of_missions.mission_formats.cache_clear()
+    yield made
+    registry_of_missions.mission_formats.cache_clear()
+
+
+def test_a_mission_format_is_offered_by_command_and_window_with_its_options(cards, application, tmp_path):
+    from groundstation.gui.mission.export_dialog import ExportForm
+    from groundstation.services.units import UnitSystem
+
+    export, parser, told = described("export", "export")
+    assert "csv, cards; of models below" in told
+    words = ["export", "a", "--format", "cards", "-o", "b", "--heights", "amsl", "--autopilot", "px4"]
+    assert export._left_out(parser.parse_args(words)) == ["--autopilot is left out: the format cards has no use for it"]
+    form = ExportForm(UnitSystem.METRIC)
+    form._format.setCurrentIndex(form._format.findData("cards"))
+    assert form._format.currentText() == "Cards"
+    assert form.value() == ("cards", ExportOptions(HeightReference.AMSL))
+    encoded = registry_of_missions.encode(example_plan(), None, None, "cards", form.value()[1])
+    assert registry_of_missions.write_files(encoded, tmp_path / "a.cards")[0].read_text() == "amsl"
+    with pytest.raises(InputError, match=r"known are: .*, cards"):
+        registry_of_missions.mission_format("absent")
+
+
+GLOW = """
+from reconstruction.training.methods.shader import Shader
+
+class Glow(Shader):
+    '''Harmonics, by another name.'''
+
+def make_shader(config, surroundings):
+    return Glow()
+"""
+
+
+@pytest.fixture
+def glow(monkeypatch, tmp_path):
     """A training method more, with a shading of its own."""
-    from reconstruction.training.methods import shader, shaders
+    from reconstruction.training import methods
 
-    class Glow(shader.Shader):
-        """Harmonics, by another name."""
-
+    (tmp_path / "glow.py").write_text(GLOW)
+    monkeypatch.setattr(methods, "__path__", [*methods.__path__, str(tmp_path)])
     made = method_registry.Method("Glow", "nobody, never", "splats that glow", settings={"iterations": 7})
     monkeypatch.setitem(method_registry.METHODS, "glow", made)
-    monkeypatch.setitem(shaders._SHADERS, "glow", lambda config, surroundings: Glow())
     method_registry.training_methods.cache_clear()
-    yield Glow
+    yield "Glow"
     method_registry.training_methods.cache_clear()
+    sys.modules.pop("reconstruction.training.methods.glow", None)
 
 
 def test_a_method_is_offered_by_command_window_and_settings_and_in_messages(glow, application):
     from groundstation.gui.reconstruct.choice_side import ChoiceForm
     from groundstation.services.reconstruct.training import config_of_request
-    from reconstruction.training.methods.shaders import Surroundings, shader_of
+    from reconstruction.training.methods.shader import Surroundings
+    from reconstruction.training.methods.shaders import shader_of
 
     train, parser, told = described("train", "train")
     assert " glow Glow " in told
     asked = train.request_of(parser.parse_args(["train", "a", "-o", "b", "--method", "glow"]))
     config = config_of_request(asked)
     assert (config.method, config.iterations) == ("glow", 7)
-    assert isinstance(shader_of(config, Surroundings(None)), glow)
+    assert type(shader_of(config, Surroundings(None))).__name__ == glow
     form = ChoiceForm()
     form.method.setCurrentIndex(form.method.findData("glow"))
     assert (form.value().method, form.about.text()) == ("glow", "splats that glow")
@@ -110,9 +160,7 @@ def haze(monkeypatch):
             """Never worth it."""
             raise AssertionError("it is switched on")
 
-    names, known = (*parameters.EFFECTS, "haze"), registry.effects
-    monkeypatch.setattr(parameters, "EFFECTS", names)
-    monkeypatch.setattr(registry, "effects", lambda *given: (*known(*given), Haze()))
+    monkeypatch.setattr(registry, "EFFECTS", (*registry.EFFECTS, Haze()))
 
 
 def test_an_effect_is_taken_by_the_command_decided_and_named_in_messages(haze):
@@ -124,4 +172,4 @@ def test_an_effect_is_taken_by_the_command_decided_and_named_in_messages(haze):
     with pytest.raises(InputError, match=r"--effects.*haze"):
         scene._request(parser.parse_args([*words, "--effects", "absent=on"]))
     with pytest.raises(InputError, match=r"there is no effect 'absent'; expected one of .*, haze"):
-        parameters.RenderSettings(effects={"absent": "on"})
+        registry.decide_effects(None, [None], RenderSettings(effects={"absent": "on"}))

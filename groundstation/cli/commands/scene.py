@@ -18,7 +18,7 @@ from groundstation.cli.options import (
 from planning.base.errors import InputError
 from planning.base.messages import glue, say
 from planning.base.parameters import declared, with_values
-from reconstruction.scenes.parameters import EFFECTS, MITSUBA_RAYS, RenderSettings, SceneRequest
+from reconstruction.scenes.parameters import MITSUBA_RAYS, RenderSettings, SceneRequest
 
 if TYPE_CHECKING:
     from groundstation.services.scenes.photos import RenderedScene
@@ -118,7 +118,9 @@ def run_render(options: argparse.Namespace) -> int:
 
 
 def _request(options: argparse.Namespace) -> SceneRequest:
-    settings = effect_settings(options.effects, EFFECTS)
+    from reconstruction.scenes.effects.registry import EFFECTS
+
+    settings = effect_settings(options.effects, [effect.name for effect in EFFECTS])
     typed = typed_values(options, SceneRequest)
     rays = ("settings", "mitsuba_rays")
     if options.renderer == "mitsuba":

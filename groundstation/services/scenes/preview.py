@@ -192,11 +192,11 @@ class _PreviewScene:
     def _decided(self, photo: PosedPhoto, monitor: Monitor) -> tuple[Renderer, tuple[Decision, ...]]:
         """A renderer of what the scene calls for in this photo, and why."""
         from reconstruction.scenes.effects.probe import Probe
-        from reconstruction.scenes.effects.registry import effects
+        from reconstruction.scenes.effects.registry import EFFECTS
         from reconstruction.scenes.parameters import RenderSettings
         from reconstruction.scenes.photos.renderer import Renderer
 
-        to_decide = [effect for effect in effects() if effect.name not in OF_FILES and effect.name not in LEFT_OUT]
+        to_decide = [effect for effect in EFFECTS if effect.name not in OF_FILES and effect.name not in LEFT_OUT]
         monitor.report(say("choosing what to simulate"), 0, len(to_decide))
         probe, decisions = Probe(self._scene, [photo]), []
         for done, effect in enumerate(to_decide):

@@ -10,7 +10,7 @@ from planning.base.effects import Assessment
 from planning.base.messages import say
 from reconstruction.scenes.effects.probe import SECONDS_PER_ANGLE, TOLERANCE_GREY, TOLERANCE_PX, Probe, cost_s
 from reconstruction.scenes.parameters import DISTORTION, NOISE, VIGNETTING
-from reconstruction.scenes.photos.lens_effects import MIDDLE_GREY, USUAL_SENSOR, Sensor, grey_levels
+from reconstruction.scenes.photos.lens_effects import MIDDLE_GREY, grey_levels
 
 SECONDS_PER_BEND = 3e-7
 """Of one core, for a ray whose distortion is undone."""
@@ -43,16 +43,15 @@ class Distortion:
 class Vignetting:
     """Light that the lens loses in the corners."""
 
-    sensor: Sensor = USUAL_SENSOR
     tolerance: float = TOLERANCE_GREY
     name = VIGNETTING
     unit = say("grey levels")
 
     def assess(self, probe: Probe) -> Assessment:
         """Of middle grey, in a corner."""
-        kept = 1.0 - self.sensor.corner_loss
-        size = float(grey_levels(np.array(MIDDLE_GREY)) - grey_levels(np.array(MIDDLE_GREY * kept)))
-        reason = say("the lens loses {:.0f} % of the light in the corners", 100.0 * self.sensor.corner_loss)
+        lost = probe.camera_model.sensor.corner_loss
+        size = float(grey_levels(np.array(MIDDLE_GREY)) - grey_levels(np.array(MIDDLE_GREY * (1.0 - lost))))
+        reason = say("the lens loses {:.0f} % of the light in the corners", 100.0 * lost)
         return Assessment(size, reason, probe.n_pixels * SECONDS_PER_ANGLE)
 
 
@@ -60,14 +59,16 @@ class Vignetting:
 class Noise:
     """Noise of the sensor."""
 
-    sensor: Sensor = USUAL_SENSOR
     tolerance: float = TOLERANCE_GREY
     name = NOISE
     unit = say("grey levels")
 
     def assess(self, probe: Probe) -> Assessment:
         """Of middle grey."""
-        grey = np.array(MIDDLE_GREY)
-        size = float(grey_levels(grey + self.sensor.noise(grey)) - grey_levels(grey))
-        reason = say("a white pixel holds {:.0f} electrons", self.sensor.white_e)
+        sensor, grey = probe.camera_model.sensor, np.array(MIDDLE_GREY)
+        size = float(grey_levels(grey + sensor.noise(grey)) - grey_levels(grey))
+        reason = say("a white pixel holds {:.0f} electrons", sensor.white_e)
         return Assessment(size, reason, 3.0 * probe.n_pixels * SECONDS_PER_ANGLE)
+
+
+EFFECTS = (Distortion(), Vignetting(), Noise())

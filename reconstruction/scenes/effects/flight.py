@@ -186,3 +186,6 @@ def _grid(photo: PosedPhoto) -> Array:
     sides: Sequence[int] = photo.intrinsics.width_px, photo.intrinsics.height_px
     x, y = ((np.arange(RAYS_TOLD) + 0.5) * side / RAYS_TOLD for side in sides)
     return np.asarray(np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2))
+
+
+EFFECTS = (MotionBlur(), ExposureChanges(), PositionError(), GimbalError())

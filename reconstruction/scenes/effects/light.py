@@ -100,3 +100,6 @@ class Occlusion:
         reason = say("what is near hides {:.1f} % of the facade", 100.0 * share)
         # Without it, rays have further to go.
         return Assessment(probe.change_without(Switches(occlusion=False)), reason, 0.0)
+
+
+EFFECTS = (Shadow(), Interior(), Occlusion(), SkyOcclusion())

@@ -170,3 +170,6 @@ class Doubling:
 
 def _far(metres: Array) -> str:
     return say("{:.0f} m away", np.median(metres)) if len(metres) else say("as far as the sky")
+
+
+EFFECTS = (NearField(), Fresnel(), SecondBounce(), Tilt(), Curvature(), Doubling())

@@ -11,25 +11,19 @@ from planning.base.effects import Decision, Effect, decide
 from planning.base.errors import InputError
 from planning.base.messages import say
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.scenes.effects.camera import Distortion, Noise, Vignetting
-from reconstruction.scenes.effects.flight import ExposureChanges, GimbalError, MotionBlur, PositionError
-from reconstruction.scenes.effects.light import Interior, Occlusion, Shadow, SkyOcclusion
-from reconstruction.scenes.effects.mirror import Curvature, Doubling, Fresnel, NearField, SecondBounce, Tilt
-from reconstruction.scenes.effects.probe import TOLERANCE_GREY, TOLERANCE_PX, Probe
-from reconstruction.scenes.effects.sun import SunGlare
+from reconstruction.scenes.effects import camera, flight, light, mirror, sun
+from reconstruction.scenes.effects.probe import Probe
 from reconstruction.scenes.parameters import RenderSettings
 from reconstruction.scenes.photos.camera_model import USUAL_CAMERA_MODEL, CameraModel, Moment
-from reconstruction.scenes.photos.lens_effects import USUAL_SENSOR, Sensor
 from reconstruction.scenes.record import Scene
 
-
-def effects(tolerance: float = 1.0, sensor: Sensor = USUAL_SENSOR) -> tuple[Effect[Probe], ...]:
-    """All of them; `tolerance` multiplies that of each."""
-    px, grey = tolerance * TOLERANCE_PX, tolerance * TOLERANCE_GREY
-    mirrors = (NearField(px), Fresnel(grey), SecondBounce(grey), Tilt(px), Curvature(px), Doubling(px))
-    light = (*mirrors, Shadow(grey), Interior(grey), SunGlare(grey), Occlusion(grey), SkyOcclusion(grey))
-    camera = (Distortion(px), Vignetting(sensor, grey), Noise(sensor, grey))
-    return (*light, *camera, MotionBlur(px), ExposureChanges(grey), PositionError(px), GimbalError(px))
+EFFECTS: tuple[Effect[Probe], ...] = (
+    *mirror.EFFECTS,
+    *light.EFFECTS,
+    *sun.EFFECTS,
+    *camera.EFFECTS,
+    *flight.EFFECTS,
+)
 
 
 def decide_effects(
@@ -46,10 +40,16 @@ def decide_effects(
     Raises
     ------
     InputError
-        There are no photos.
+        There are no photos, or the settings name an effect that there is not.
     """
+    names = [effect.name for effect in EFFECTS]
+    unknown = [name for name in settings.effects if name not in names]
+    if unknown:
+        raise InputError(say("there is no effect '{}'; expected one of {}", unknown[0], ", ".join(names)))
     if not photos:
         raise InputError(say("effects are decided by the photos of a flight; expected at least one, got none"))
     probe = Probe(scene, photos, camera_model, moments)
-    chosen, requested = effects(settings.tolerance, camera_model.sensor), settings.effects
-    return {effect.name: decide(effect, probe, requested.get(effect.name, "auto")) for effect in chosen}
+    return {
+        effect.name: decide(effect, probe, settings.effects.get(effect.name, "auto"), settings.tolerance)
+        for effect in EFFECTS
+    }

@@ -255,3 +255,6 @@ def _miss(
         for axis in range(2):
             wrong[axis] += out * across[axis, k]
     return towards if falling < 0.0 else -1.0
+
+
+EFFECTS = (SunGlare(),)

@@ -34,12 +34,13 @@ from reconstruction.splats.harmonic_colour import N_HARMONICS
 from reconstruction.splats.rasterising.raster_types import Raster
 from reconstruction.splats.rasterising.views import View
 from reconstruction.splats.splats import Splats, thinnest_axes
-from reconstruction.training.config import Rates
+from reconstruction.training.config import Rates, TrainConfig
 from reconstruction.training.losses import surface_normals
 from reconstruction.training.methods.shader import (
     Attribute,
     Shaded,
     Shader,
+    Surroundings,
     directions_to,
     require_not_negative,
     with_colours,
@@ -230,3 +231,8 @@ class GaussianShader(Shader):
     def _normals(splats: Splats, omega_o: Tensor) -> Tensor:
         axes = thinnest_axes(splats.quats, splats.log_scales)
         return shading_normals(axes, splats.attribute("residual_normals"), omega_o)
+
+
+def make_shader(_config: TrainConfig, _surroundings: Surroundings) -> GaussianShader:
+    """Of a training."""
+    return GaussianShader()

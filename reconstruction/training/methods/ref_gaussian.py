@@ -36,12 +36,13 @@ from reconstruction.splats.harmonic_colour import N_HARMONICS, display_colours, 
 from reconstruction.splats.rasterising.raster_types import Raster
 from reconstruction.splats.rasterising.views import View
 from reconstruction.splats.splats import Splats
-from reconstruction.training.config import Rates
+from reconstruction.training.config import Rates, TrainConfig
 from reconstruction.training.methods.shader import (
     Attribute,
     Pixels,
     Shaded,
     Shader,
+    Surroundings,
     covered_pixels,
     directions_to,
     require_not_negative,
@@ -380,3 +381,8 @@ class RefGaussian(Shader):
         """Of the environment."""
         settings = self.shading.settings
         return [{"params": list(self.shading.environment.parameters()), "lr": settings.environment_rate}]
+
+
+def make_shader(_config: TrainConfig, surroundings: Surroundings) -> RefGaussian:
+    """Of a training."""
+    return RefGaussian(torch.from_numpy(surroundings.triangles_m))

@@ -34,10 +34,12 @@ from reconstruction.light.shading import reflected_directions
 from reconstruction.splats.rasterising.raster_types import Raster
 from reconstruction.splats.rasterising.views import View
 from reconstruction.splats.splats import FEATURES, Splats
+from reconstruction.training.config import TrainConfig
 from reconstruction.training.methods.shader import (
     Attribute,
     Shaded,
     Shader,
+    Surroundings,
     covered_pixels,
     require_not_negative,
     with_colours,
@@ -212,3 +214,8 @@ class RefGs(Shader):
             {"params": list(shading.grid.parameters()), "lr": settings.grid_rate},
             {"params": network, "lr": settings.network_rate},
         ]
+
+
+def make_shader(config: TrainConfig, _surroundings: Surroundings) -> RefGs:
+    """Of a training."""
+    return RefGs(config.seed)

@@ -7,7 +7,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any, Literal
 
+import numpy as np
 import torch
+from numpy.typing import NDArray
 from torch import Tensor, nn
 
 from reconstruction.splats.harmonic_colour import display_colours, light_of_display
@@ -191,6 +193,19 @@ def directions_to(splats: Splats, position_m: Tensor) -> Tensor:
     towards = splats.means.detach() - position_m
     unit: Tensor = towards / towards.norm(dim=1, keepdim=True).clamp(min=NEAREST_M)
     return unit
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Surroundings:
+    """What a shading may know of the scene.
+
+    Parameters
+    ----------
+    triangles_m
+        Of the refined mesh, in the model's frame, shape (m, 3, 3), float32.
+    """
+
+    triangles_m: NDArray[np.float32]
 
 
 class Shader(nn.Module):

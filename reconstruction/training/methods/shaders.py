@@ -3,55 +3,35 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping
+from importlib import import_module
+from importlib.util import find_spec
 
 import numpy as np
 import torch
-from numpy.typing import NDArray
 from torch import Tensor
 
 from reconstruction.splats.splats import NO_PANEL, SHAPES, Splats, flattened
 from reconstruction.training.config import TrainConfig
 from reconstruction.training.method_registry import Primitive
-from reconstruction.training.methods.gaussian_shader import GaussianShader
-from reconstruction.training.methods.ref_gaussian import RefGaussian
-from reconstruction.training.methods.ref_gs import RefGs
-from reconstruction.training.methods.shader import Shader
+from reconstruction.training.methods.shader import Shader, Surroundings
 
 FLATNESS = 0.3
 """Smallest size of an ellipsoid that begins in a disc's place, of the disc's smaller one: it is on a surface."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Surroundings:
-    """What a shading may know of the scene.
-
-    Parameters
-    ----------
-    triangles_m
-        Of the refined mesh, in the model's frame, shape (m, 3, 3), float32.
-    """
-
-    triangles_m: NDArray[np.float32]
-
-
-_SHADERS: dict[str, Callable[[TrainConfig, Surroundings], Shader]] = {
-    "gaussian-shader": lambda config, surroundings: GaussianShader(),
-    "ref-gaussian": lambda config, surroundings: RefGaussian(torch.from_numpy(surroundings.triangles_m)),
-    "ref-gs": lambda config, surroundings: RefGs(config.seed),
-}
-"""By the method's name; plug-ins bring theirs, and all others have harmonics alone."""
-
-
 def shader_of(config: TrainConfig, surroundings: Surroundings) -> Shader:
-    """For a training that begins."""
-    if config.method in _SHADERS:
-        return _SHADERS[config.method](config, surroundings)
-    of_plugin = config.trained_by.shader
-    if of_plugin is None:
+    """For a training that begins: as the method's plug-in or its module makes it; all others have harmonics alone.
+
+    The module of `ref-gs` is `ref_gs` in this room, and its `make_shader` takes what this function takes.
+    """
+    module = f"{__package__}.{config.method.replace('-', '_')}"
+    make = config.trained_by.shader
+    if make is None and find_spec(module) is not None:
+        make = getattr(import_module(module), "make_shader", None)
+    if make is None:
         return Shader()
-    made = of_plugin(config, surroundings)
+    made = make(config, surroundings)
     if not isinstance(made, Shader):
         raise TypeError(f"the method '{config.method}': expected a Shader, got {type(made).__name__}")
     return made

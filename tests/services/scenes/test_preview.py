@@ -24,7 +24,8 @@ from planning.plan import Viewpoint
 from planning.site.bundled import office, single_panel, tower
 from planning.site.records import SiteModel
 from reconstruction.base.cameras import Pose, PosedPhoto
-from reconstruction.scenes.parameters import EFFECTS, RenderSettings
+from reconstruction.scenes.effects.registry import EFFECTS
+from reconstruction.scenes.parameters import RenderSettings
 from reconstruction.scenes.photos.flight_views import lens_of
 from reconstruction.scenes.photos.lens_effects import developed
 from reconstruction.scenes.photos.renderer import Renderer
@@ -70,7 +71,7 @@ def test_the_fine_picture_is_the_photo_that_would_be_rendered_whole(monkeypatch,
     settings = RenderSettings(effects=LEFT_OUT)
     whole = Renderer(scene, settings.decided(seen.decisions)).render(photo)
     assert (seen.picture == developed(whole)).all()
-    assert {found.effect for found in seen.decisions} | OF_FILES | set(LEFT_OUT) == set(EFFECTS)
+    assert {found.effect for found in seen.decisions} | OF_FILES | set(LEFT_OUT) == {effect.name for effect in EFFECTS}
     assert seen.panels.tolist() == sorted({int(panel) - 1 for panel in np.unique(whole.panel)} - {-1})
     assert len(seen.panels) > 20
 

@@ -14,12 +14,11 @@ from planning.base.effects import Decision
 from planning.base.errors import InputError
 from planning.geo.mesh import box_mesh
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.scenes.effects.registry import decide_effects
+from reconstruction.scenes.effects.registry import EFFECTS, decide_effects
 from reconstruction.scenes.light.pane_surfaces import pane_light
 from reconstruction.scenes.parameters import (
     DISTORTION,
     DOUBLING,
-    EFFECTS,
     FRESNEL,
     NEAR_FIELD,
     NOISE,
@@ -227,15 +226,17 @@ def test_the_user_overrules_scenes_and_moves_tolerances() -> None:
     made, camera = scene(board()), photo()
     chosen = RenderSettings(effects={TILT: "on", NEAR_FIELD: "off"})
     decided = decide_effects(made, [camera], chosen)
-    assert tuple(decided) == EFFECTS
+    assert list(decided) == [effect.name for effect in EFFECTS]
     assert (decided[TILT].on, decided[TILT].decided_by) == (True, "user")
     assert (decided[NEAR_FIELD].on, decided[NEAR_FIELD].decided_by) == (False, "user")
     settings = chosen.decided(decided.values())
-    assert all(settings.is_on(name) == decided[name].on for name in EFFECTS)
+    assert all(settings.is_on(name) == decided[name].on for name in decided)
     patient = decide_effects(made, [camera], RenderSettings(tolerance=1e6))
     assert not any(d.on for d in patient.values())
     with pytest.raises(InputError, match="at least one"):
         decide_effects(made, [], chosen)
+    with pytest.raises(InputError, match="no effect 'absent'"):
+        decide_effects(made, [camera], RenderSettings(effects={"absent": "on"}))
 
 
 def test_without_glass_in_sight_no_effect_of_glass_is_on() -> None:

@@ -9,7 +9,7 @@ from torch import nn
 from planning.base.errors import InputError
 from reconstruction.splats.splats import FEATURES
 from reconstruction.training.config import TrainConfig
-from reconstruction.training.methods import shaders as made
+from reconstruction.training.method_registry import METHODS
 from reconstruction.training.methods.shader import Shaded, Shader
 from reconstruction.training.model.saved import read_model, save_model
 from reconstruction.training.train import train_model
@@ -49,7 +49,8 @@ class Glossy(Shader):
 
 @pytest.fixture
 def glossy(monkeypatch):
-    monkeypatch.setitem(made._SHADERS, "2dgs", lambda config, surroundings: Glossy())
+    with_gloss = replace(METHODS["2dgs"], shader=lambda config, surroundings: Glossy())
+    monkeypatch.setitem(METHODS, "2dgs", with_gloss)
 
 
 def test_attributes_and_parameters_of_a_shader_are_learned_and_handed_on(glossy, data_set):
@@ -73,6 +74,6 @@ def test_a_model_with_a_shader_is_read_back_bit_by_bit(glossy, data_set, tmp_pat
 
 def test_a_model_whose_method_lacks_what_its_splats_have_is_refused(glossy, data_set, tmp_path, monkeypatch):
     save_model(train_model(data_set, replace(CONFIG, iterations=1)), tmp_path / "m")
-    monkeypatch.delitem(made._SHADERS, "2dgs")
+    monkeypatch.setitem(METHODS, "2dgs", replace(METHODS["2dgs"], shader=None))
     with pytest.raises(InputError, match="weights of another model"):
         read_model(tmp_path / "m")

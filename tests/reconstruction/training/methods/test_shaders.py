@@ -11,8 +11,8 @@ from reconstruction.splats.splats import Splats
 from reconstruction.training.config import TrainConfig, config_of
 from reconstruction.training.method_registry import METHODS
 from reconstruction.training.methods.ref_gaussian import RefGaussian
-from reconstruction.training.methods.shader import covered_pixels
-from reconstruction.training.methods.shaders import Surroundings, shader_of, with_primitive
+from reconstruction.training.methods.shader import Surroundings, covered_pixels
+from reconstruction.training.methods.shaders import shader_of, with_primitive
 from reconstruction.training.model.saved import read_model, save_model
 from reconstruction.training.photos.photo_stream import PhotoStream
 from reconstruction.training.train import train_model
