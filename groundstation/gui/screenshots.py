@@ -357,6 +357,8 @@ class _Tour(QObject):
         self._controller.open_folder(damaged)
         self._wait_until_idle()
         self._take("error")
+        for message in self._window.messages.standing():
+            self._window.messages.dismiss(message)
 
     def _other_looks(self) -> None:
         for name in self._in_each_look():

@@ -61,7 +61,7 @@ def demonstrate(
     missions: list[Path] = []
     export_findings: list[Finding] = []
     for file_format, kind in FORMATS.items():
-        monitor.report("exporting", len(missions), 0)
+        monitor.report(say("exporting"), len(missions), 0)
         paths, found = export_plan(plan_path, file_format, folder / f"{scene}{kind.endings[0]}", site_path)
         missions += paths
         export_findings += found

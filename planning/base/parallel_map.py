@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 
 from planning.base.errors import InputError
 from planning.base.jit import n_threads
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 
 # Dask clusters: how the program gets in touch with one.
@@ -81,14 +82,14 @@ def sweep(
     if n_processes <= 1:
         results = []
         for done, a in enumerate(arguments):
-            monitor.report("running", done, len(arguments))
+            monitor.report(say("running"), done, len(arguments))
             results.append(function(*a))
         return results
     with ProcessPoolExecutor(n_processes, mp_context=multiprocessing.get_context("spawn")) as pool:
         futures: list[Future[Result]] = [pool.submit(function, *a) for a in arguments]
         try:
             for done, _ in enumerate(as_completed(futures)):
-                monitor.report("running", done + 1, len(arguments))
+                monitor.report(say("running"), done + 1, len(arguments))
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
             raise
@@ -104,5 +105,5 @@ def _on_cluster(
 
         futures = [client.submit(function, *a, pure=False) for a in arguments]
         for done, _ in enumerate(completed(futures)):
-            monitor.report("running on the cluster", done + 1, len(arguments))
+            monitor.report(say("running on the cluster"), done + 1, len(arguments))
         return [future.result() for future in futures]

@@ -7,6 +7,7 @@ not samples. The plan's own numbers (coverage, lengths, durations) are computed 
 from __future__ import annotations
 
 from planning.base.findings import Finding
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.checks.case import Case
 from planning.checks.rules import FLIGHT_RULES, GEOMETRY_RULES
@@ -18,7 +19,7 @@ RULES = (*GEOMETRY_RULES, *FLIGHT_RULES)
 
 def check_plan(plan: Plan, site_model: SiteModel, monitor: Monitor = QUIET) -> tuple[Finding, ...]:
     """All findings of all rules, in the order of the rules."""
-    monitor.report("checking", 0, len(RULES))
+    monitor.report(say("checking"), 0, len(RULES))
     return check_case(Case.of(plan, site_model), monitor)
 
 
@@ -26,6 +27,6 @@ def check_case(case: Case, monitor: Monitor = QUIET) -> tuple[Finding, ...]:
     """All findings of all rules on a plan that is measured already."""
     findings: list[Finding] = []
     for number, rule in enumerate(RULES):
-        monitor.report("checking", number, len(RULES))
+        monitor.report(say("checking"), number, len(RULES))
         findings += rule(case)
     return tuple(findings)

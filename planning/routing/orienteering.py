@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor, Stop, Trace, never
 from planning.routing import insertion, tour
 from planning.routing.insertion import CoverageGain
@@ -136,7 +137,7 @@ def solve_orienteering(
     trace.record(search.best.value)
     last_success = 0
     for rounds in itertools.count():
-        monitor.report("orienteering", rounds, max_rounds or 0)
+        monitor.report(say("orienteering"), rounds, max_rounds or 0)
         limit = last_success + PATIENCE if max_rounds is None else max_rounds
         if rounds >= limit or search.best.value >= bound or stop():
             break

@@ -275,7 +275,7 @@ class _Solver:
             run.status[3] = HOT * self._mean_leg_s(sorties)
             cooling = (COLD / HOT) ** (1.0 / cycle)
             for some_rounds in slices(min(cycle, max_rounds - rounds), first=100):
-                self.monitor.report("sorties", rounds, max_rounds)
+                self.monitor.report(say("sorties"), rounds, max_rounds)
                 string_removal.anneal(self.limits, run, some_rounds, cooling, self.rng)
                 rounds += some_rounds
                 if run.status[1] < self.trace.points[-1].value:

@@ -552,7 +552,7 @@ def _run(
         if search.length < length:
             length = search.length
             trace.record(length)
-        monitor.report("tour", kicks, max_kicks or 0)
+        monitor.report(say("tour"), kicks, max_kicks or 0)
         limit = last_success + patience if max_kicks is None else max_kicks
         if kicks >= limit or search.length <= target_length or stop():
             break
@@ -637,7 +637,7 @@ def _legs(cost: Floats, monitor: Monitor) -> Legs:
     n = len(cost)
 
     def find(first: int, last: int) -> tuple[Ints, Floats]:
-        monitor.report("neighbours", first, n)
+        monitor.report(say("neighbours"), first, n)
         return _find_neighbours(cost, first, last)
 
     parts = run_chunks(find, chunks(n, max(1, 1_000_000 // n)))

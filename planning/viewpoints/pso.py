@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.jit import run_chunks
+from planning.base.messages import say
 from planning.base.progress import Monitor, Stop, Trace
 from planning.coverage.positions import aimed_views, spread_positions
 from planning.plan import ViewpointArrays
@@ -83,7 +84,7 @@ def pso(
     best = int(np.argmax(own_fitness))
     trace.record(own_fitness[best])
     for iteration in range(parameters.iterations):
-        monitor.report("moving the swarm", iteration, parameters.iterations)
+        monitor.report(say("moving the swarm"), iteration, parameters.iterations)
         if stop():
             break
         share = iteration / max(1, parameters.iterations - 1)

@@ -171,7 +171,7 @@ def zstd_file(n: int, degree: int, fraction: int, flags: int, streams: Sequence[
         compressor.set_pledged_input_size(len(stream))
         pieces = []
         for start in range(0, len(stream), AT_ONCE_BYTES):
-            monitor.report("compressing", done, total)
+            monitor.report(say("compressing"), done, total)
             piece = stream[start : start + AT_ONCE_BYTES]
             pieces.append(compressor.compress(piece))
             done += len(piece)
@@ -273,7 +273,7 @@ def _gzipped(parts: list[bytes | memoryview], monitor: Monitor) -> bytes:
     found = []
     for part in parts:
         for start in range(0, len(part), AT_ONCE_BYTES):
-            monitor.report("compressing", done, total)
+            monitor.report(say("compressing"), done, total)
             piece = part[start : start + AT_ONCE_BYTES]
             found.append(compressor.compress(piece))
             done += len(piece)

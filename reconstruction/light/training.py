@@ -346,7 +346,7 @@ def score_views(
         )
     views = []
     for done, photo in enumerate(photos):
-        monitor.report("scoring views", done, len(photos))
+        monitor.report(say("scoring views"), done, len(photos))
         rays = rays_of_photo(source, photo)
         if len(rays) >= LEAST_RAYS:
             error = mean_square_error(trained.panels, rays, source.exposure / trained.exposure)

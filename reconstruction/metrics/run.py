@@ -261,7 +261,7 @@ def score_set(
     done: list[PhotoScores] = []
     worst: list[ScoredAnswer] = []
     for number, photo in enumerate(photos.photos()):
-        monitor.report(f"scoring {photos.name}", number, photos.n_photos)
+        monitor.report(say("scoring {}", photos.name), number, photos.n_photos)
         try:
             answer = method(photo, monitor)
         except InfeasibleError:
@@ -269,7 +269,7 @@ def score_set(
         scores = score_answer(photo, answer)
         done.append(scores)
         worst = sorted([*worst, ScoredAnswer(photo, answer, scores)], key=_badness)[:n_worst]
-    monitor.report(f"scoring {photos.name}", len(done), len(done))
+    monitor.report(say("scoring {}", photos.name), len(done), len(done))
     return summarise(done), tuple(worst)
 
 

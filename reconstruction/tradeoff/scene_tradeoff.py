@@ -298,7 +298,7 @@ def make_truth(
     rendered: list[list[RenderedPhoto]] = [[] for _ in range(passes)]
     for again in range(passes):
         for number, photo in enumerate(photos):
-            monitor.report("rendering the truth", again * len(photos) + number, passes * len(photos))
+            monitor.report(say("rendering the truth"), again * len(photos) + number, passes * len(photos))
             rendered[again].append(renderer.render(photo, seed=again * len(photos) + number))
     seconds = (clock() - started) / (passes * len(photos))
     if make is None:

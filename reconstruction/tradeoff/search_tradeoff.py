@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.tradeoff.runner import GapAxis, Panel, knob_lines
 from reconstruction.metrics.metrics import PhotoScores, SetScores, summarise
@@ -117,7 +118,7 @@ def run_variants(
     total = photos.n_photos * len(settings)
     for number, photo in enumerate(photos.photos()):
         for which, setting in enumerate(settings):
-            monitor.report("comparing settings", number * len(settings) + which, total)
+            monitor.report(say("comparing settings"), number * len(settings) + which, total)
             if number == 0:
                 # Compiling is in no setting's time.
                 setting.method(photo, QUIET)

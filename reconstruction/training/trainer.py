@@ -20,6 +20,7 @@ import torch
 from torch import Tensor
 
 from planning.base.errors import OperationCancelled
+from planning.base.messages import say
 from reconstruction.base.out_of_memory import NotFinite, is_out_of_memory, require_finite
 from reconstruction.light.transients import TRIED as TRANSIENTS_TRIED
 from reconstruction.splats.densification.adaptive import AdaptiveControl, AdaptiveParameters
@@ -260,14 +261,14 @@ class Trainer(TrainingState):
     def _report(self, watching: Callbacks) -> None:
         cool_down = self._cool_down
         if cool_down is None:
-            watching.monitor.report("training", self.progress, 1.0)
+            watching.monitor.report(say("training"), self.progress, 1.0)
         else:
-            watching.monitor.report("settling", cool_down.share(self.at.spent_s), 1.0)
+            watching.monitor.report(say("settling"), cool_down.share(self.at.spent_s), 1.0)
 
     def _wait(self, watching: Callbacks) -> None:
         with self._watch.paused():
             while watching.pause():
-                watching.monitor.report("paused", self.progress, 1.0)
+                watching.monitor.report(say("paused"), self.progress, 1.0)
                 self._visit(watching, "paused")
                 time.sleep(PAUSE_S)
 

@@ -73,7 +73,7 @@ def _of_rasterisers(scene: Scene, name: str) -> Iterator[Row]:
     before = torch.cuda.memory_allocated()
     _there_and_back(there)
     used = torch.cuda.max_memory_allocated() - before
-    yield Row(name, "memory from there to back, CUDA", round(used / 2**20, 1), "MiB")
+    yield Row(name, "memory for both, CUDA", round(used / 2**20, 1), "MiB")
     for part, a, b in zip(
         ("places", "turns", "sizes", "opacities", "features"), scene.inputs, there.inputs, strict=True
     ):

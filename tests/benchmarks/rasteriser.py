@@ -1,4 +1,4 @@
-"""Splats to pictures and back: milliseconds and memory by number of splats and pixels, against torch's operations."""
+"""Splats to pictures, forward and backward: time and memory by splats and pixels, against torch's operations."""
 
 from __future__ import annotations
 
@@ -45,16 +45,16 @@ class Scene:
 
 @dataclass(frozen=True, slots=True)
 class Times:
-    """Least milliseconds of a call: there, back, and processor time of both."""
+    """Least milliseconds of a call: forward, backward, and processor time of both."""
 
-    there: float
-    back: float
+    forward: float
+    backward: float
     processor: float
 
     @property
     def both(self) -> float:
-        """There and back."""
-        return self.there + self.back
+        """Forward and backward."""
+        return self.forward + self.backward
 
 
 def measure(context: Context) -> Iterator[Row]:
@@ -68,11 +68,11 @@ def measure(context: Context) -> Iterator[Row]:
         times = _compiled_times(scene, 0, repeats)
         found[size, n] = times
         is_main = (size, n) == MAIN
-        yield Row(name, "there", round(times.there, 1), "ms")
+        yield Row(name, "forward", round(times.forward, 1), "ms")
         yield Row(name, "forward and backward", round(times.both, 1), "ms")
         target = (f"2 x {MOST_MS:g} ms at most", times.processor <= 2.0 * MOST_MS) if is_main else ("", None)
         yield Row(name, "forward and backward, processor time", round(times.processor, 1), "ms", None, "", *target)
-        yield Row(name, "memory from there to back", round(_peak_mib(scene), 1), "MiB")
+        yield Row(name, "memory for both", round(_peak_mib(scene), 1), "MiB")
         if is_main:
             one = _compiled_times(scene, 1, repeats)
             yield Row(
@@ -129,21 +129,21 @@ def _compiled(scene: Scene, threads: int, is_antialiased: bool = False) -> Raste
 
 
 def _compiled_times(scene: Scene, threads: int, repeats: int, is_antialiased: bool = False) -> Times:
-    def there() -> tuple[Tensor, Tensor, Tensor]:
+    def forward() -> tuple[Tensor, Tensor, Tensor]:
         raster = _compiled(scene, threads, is_antialiased)
         return raster.features, raster.alphas, raster.depths
 
-    there()
-    return _times(scene, there, repeats)
+    forward()
+    return _times(scene, forward, repeats)
 
 
-def _times(scene: Scene, there: Callable[[], tuple[Tensor, Tensor, Tensor]], repeats: int) -> Times:
+def _times(scene: Scene, forward: Callable[[], tuple[Tensor, Tensor, Tensor]], repeats: int) -> Times:
     runs = []
     for _ in range(repeats):
         for values in scene.inputs:
             values.grad = None
         started, processor = time.perf_counter(), time.process_time()
-        pictures = there()
+        pictures = forward()
         between = time.perf_counter()
         torch.autograd.backward(pictures, scene.wanted)
         ended = time.perf_counter()
@@ -156,14 +156,14 @@ def _against_torch(name: str, scene: Scene, compiled: Times, is_main: bool) -> I
     raster = _compiled(scene, 0)
     counted = []
 
-    def there() -> tuple[Tensor, Tensor, Tensor]:
+    def forward() -> tuple[Tensor, Tensor, Tensor]:
         *pictures, n_counted = rasterise_in_torch(*scene.inputs, scene.view)
         counted.append((pictures, n_counted))
         return pictures[0], pictures[1], pictures[2]
 
     before = torch.get_num_threads()
     torch.set_num_threads(1)
-    times = _times(scene, there, TORCH_REPEATS)
+    times = _times(scene, forward, TORCH_REPEATS)
     torch.set_num_threads(before)
     pictures, n_counted = counted[-1]
     off = float((pictures[0] - raster.features).detach().abs().max())
@@ -211,7 +211,7 @@ def _draw(found: dict[tuple[Size, int], Times], path: Path) -> None:
 
 BENCHMARK = Benchmark(
     "rasteriser",
-    "Splats to pictures and back",
+    "Splats to pictures, forward and backward",
     f"One call of the rasteriser for processors, {N_CHANNELS} channels, depth and alpha, and its gradients back to "
     "places, turns, sizes, opacities and features; projection and sorting count, too. The least of nine. Splats are "
     "smaller where there are more, so that about as many count in each pixel. Against it, in the same run, the same "

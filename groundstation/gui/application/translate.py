@@ -26,10 +26,8 @@ def QT_TRANSLATE_NOOP(context: str, text: str) -> str:  # noqa: N802
 # Words that stand in messages, and what the window says in place of what is typed.
 #
 # The parts without Qt say what to type. Whoever reads them in the window has buttons and fields: each such message
-# stands
-# here with the one that names those (`IN_WINDOW`), and each option with its field (`OPTION_FIELDS`). `WORDS` are
-# values
-# that are no messages themselves, such as names of things, stages in one word, and what the system and libraries say.
+# stands here with the one that names those (`IN_WINDOW`), and each option with its field (`OPTION_FIELDS`). `WORDS` are
+# values that are no messages themselves, such as names of things, and what the system and libraries say.
 
 IN_WINDOW = {
     "the picture is distorted, and splats are rendered without distortion; make it straight with `prepare`": (
@@ -209,7 +207,6 @@ WORDS = (
     QT_TRANSLATE_NOOP("Sentences", "warning"),
     QT_TRANSLATE_NOOP("Sentences", "note"),
     QT_TRANSLATE_NOOP("Sentences", "error"),
-    QT_TRANSLATE_NOOP("Sentences", "compressing"),
     QT_TRANSLATE_NOOP("Sentences", "no answer"),
     QT_TRANSLATE_NOOP("Sentences", "preparing the vehicle"),
     QT_TRANSLATE_NOOP("Sentences", "checking before take-off"),
@@ -320,14 +317,12 @@ WORDS = (
     QT_TRANSLATE_NOOP("Sentences", "vignetting"),
     QT_TRANSLATE_NOOP("Sentences", "noise"),
     QT_TRANSLATE_NOOP("Sentences", "px"),
-    QT_TRANSLATE_NOOP("Sentences", "rendering"),
     QT_TRANSLATE_NOOP("Sentences", "dewarp data"),
     QT_TRANSLATE_NOOP("Sentences", "calibrated focal length"),
     QT_TRANSLATE_NOOP("Sentences", "focal length and catalogue sensor"),
     QT_TRANSLATE_NOOP("Sentences", "focal length and sensor size"),
     QT_TRANSLATE_NOOP("Sentences", "35 mm equivalent"),
     QT_TRANSLATE_NOOP("Sentences", "focal length and focal plane resolution"),
-    QT_TRANSLATE_NOOP("Sentences", "straighten"),
     QT_TRANSLATE_NOOP("Sentences", "a plan"),
     QT_TRANSLATE_NOOP("Sentences", "a site"),
     QT_TRANSLATE_NOOP("Sentences", "a project"),
@@ -336,16 +331,6 @@ WORDS = (
     QT_TRANSLATE_NOOP("Sentences", "a folder"),
     QT_TRANSLATE_NOOP("Sentences", "an empty file"),
     QT_TRANSLATE_NOOP("Sentences", "a file of another kind"),
-    QT_TRANSLATE_NOOP("Sentences", "training"),
-    QT_TRANSLATE_NOOP("Sentences", "paused"),
-    QT_TRANSLATE_NOOP("Sentences", "settling"),
-    QT_TRANSLATE_NOOP("Sentences", "checking"),
-    QT_TRANSLATE_NOOP("Sentences", "orienteering"),
-    QT_TRANSLATE_NOOP("Sentences", "sorties"),
-    QT_TRANSLATE_NOOP("Sentences", "tour"),
-    QT_TRANSLATE_NOOP("Sentences", "neighbours"),
-    QT_TRANSLATE_NOOP("Sentences", "surfaces"),
-    QT_TRANSLATE_NOOP("Sentences", "measuring"),
     QT_TRANSLATE_NOOP("Sentences", "starting"),
     QT_TRANSLATE_NOOP("Sentences", "a divisor of 90 from 1 to 90 degrees"),
     QT_TRANSLATE_NOOP("Sentences", "0 m or more"),

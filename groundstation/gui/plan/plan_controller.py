@@ -20,6 +20,7 @@ from groundstation.services.project.input_files import read_input_plan
 from planning import revision as edits
 from planning.base.errors import GroundStationError
 from planning.base.findings import Severity
+from planning.base.messages import say
 from planning.plan import Plan, Viewpoint
 from planning.planner import Planned
 from planning.request import PlanRequest
@@ -92,7 +93,7 @@ class EffectsController(QObject):
             return
 
         def work(context: JobContext) -> Found:
-            context.report("looking at the scene", 0, 1)
+            context.report(say("looking at the scene"), 0, 1)
             scene = scene_effects(site, request) if known is None else known
             return scene, plan, scene.choices + (() if plan is None else plan_effects(plan))
 

@@ -6288,6 +6288,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>gröbstes Pixel</translation>
     </message>
     <message>
+        <source>colouring points</source>
+        <translation>Punkte werden gefärbt</translation>
+    </message>
+    <message>
         <source>compared with the reference: {0}</source>
         <translation>verglichen mit der Referenz: {0}</translation>
     </message>
@@ -6298,6 +6302,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>comparing photos</source>
         <translation>Fotos werden verglichen</translation>
+    </message>
+    <message>
+        <source>comparing settings</source>
+        <translation>Einstellungen werden verglichen</translation>
     </message>
     <message>
         <source>control point &apos;{0}&apos; is elsewhere in {1} than other photos show it; it is not used there</source>
@@ -6350,6 +6358,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>covered {0} of {1} sections ({2} directions of view for each of {3})</source>
         <translation>abgedeckt {0} von {1} Sektoren ({2} Blickrichtungen für jede von {3})</translation>
+    </message>
+    <message>
+        <source>deciding on effects</source>
+        <translation>über Effekte wird entschieden</translation>
     </message>
     <message>
         <source>dense depth</source>
@@ -6762,6 +6774,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>erwartet wird {0}, gefunden &apos;{1}&apos;</translation>
     </message>
     <message>
+        <source>exporting</source>
+        <translation>wird exportiert</translation>
+    </message>
+    <message>
         <source>exposure of each photo</source>
         <translation>Belichtung jedes Fotos</translation>
     </message>
@@ -6812,6 +6828,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>give and withdraw want the url of a link; set, status and forget want none</source>
         <translation>give und withdraw brauchen die URL eines Links; set, status und forget keine</translation>
+    </message>
+    <message>
+        <source>giving the scene to the cluster</source>
+        <translation>die Szene geht an den Cluster</translation>
     </message>
     <message>
         <source>has no &apos;{0}&apos;, so these are points and not splats</source>
@@ -7046,6 +7066,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Zeile {0}: erwartet &apos;X Y Z column row photo name&apos;, gefunden &apos;{1}&apos;</translation>
     </message>
     <message>
+        <source>loading kernels</source>
+        <translation>Rechenkerne werden geladen</translation>
+    </message>
+    <message>
         <source>local-search needs a symmetric instance; add --method pyvrp</source>
         <translation>local-search braucht eine symmetrische Instanz; --method pyvrp dazunehmen</translation>
     </message>
@@ -7064,6 +7088,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>looking at photos</source>
         <translation>Fotos werden angesehen</translation>
+    </message>
+    <message>
+        <source>looking at the scene</source>
+        <translation>die Szene wird angesehen</translation>
     </message>
     <message>
         <source>looking for walls</source>
@@ -7090,6 +7118,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Mittel</translation>
     </message>
     <message>
+        <source>metering</source>
+        <translation>Belichtung wird gemessen</translation>
+    </message>
+    <message>
         <source>method: expected {0}, got &apos;{1}&apos;</source>
         <translation>Methode: erwartet {0}, gefunden &apos;{1}&apos;</translation>
     </message>
@@ -7108,6 +7140,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>more than {0} and at most {1}</source>
         <translation>mehr als {0} und höchstens {1}</translation>
+    </message>
+    <message>
+        <source>moving the swarm</source>
+        <translation>der Schwarm bewegt sich</translation>
     </message>
     <message>
         <source>name: expected the name of an object of the model, got &apos;{0}&apos;</source>
@@ -7438,6 +7474,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Erreichbarkeit</translation>
     </message>
     <message>
+        <source>reading the IFC file</source>
+        <translation>die IFC-Datei wird gelesen</translation>
+    </message>
+    <message>
+        <source>reading the log</source>
+        <translation>das Log wird gelesen</translation>
+    </message>
+    <message>
         <source>ready in</source>
         <translation>bereit in</translation>
     </message>
@@ -7470,6 +7514,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>gerendert in {0} s</translation>
     </message>
     <message>
+        <source>rendering photos</source>
+        <translation>Fotos werden berechnet</translation>
+    </message>
+    <message>
+        <source>rendering the truth</source>
+        <translation>die Wahrheit wird berechnet</translation>
+    </message>
+    <message>
         <source>rest of sortie {0} from {1} on, {2}, {3} m, {4} min</source>
         <translation>Rest von Einsatz {0} ab {1}, {2}, {3} m, {4} min</translation>
     </message>
@@ -7482,6 +7534,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Lauf</translation>
     </message>
     <message>
+        <source>running</source>
+        <translation>läuft</translation>
+    </message>
+    <message>
+        <source>running on the cluster</source>
+        <translation>läuft auf dem Cluster</translation>
+    </message>
+    <message>
         <source>runs another version of it</source>
         <translation>führt eine andere Version davon aus</translation>
     </message>
@@ -7492,6 +7552,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>samples: expected 1 to 32 along a pixel&apos;s side, or auto, got {0}</source>
         <translation>samples: erwartet werden 1 bis 32 entlang einer Pixelseite oder auto, angegeben {0}</translation>
+    </message>
+    <message>
+        <source>saving photos</source>
+        <translation>Fotos werden gesichert</translation>
     </message>
     <message>
         <source>says that it has more numbers than it holds; get the file again</source>
@@ -7508,6 +7572,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>scheduler and workers need the same program and libraries as here; {0} {1}: install it there</source>
         <translation>Scheduler und Worker brauchen dasselbe Programm und dieselben Bibliotheken wie hier; {0} {1}: dort installieren</translation>
+    </message>
+    <message>
+        <source>scoring views</source>
+        <translation>Ansichten werden bewertet</translation>
+    </message>
+    <message>
+        <source>scoring {0}</source>
+        <translation>{0} wird bewertet</translation>
     </message>
     <message>
         <source>sections covered</source>
@@ -7596,6 +7668,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>spread of the gains&apos; logarithms</source>
         <translation>Streuung der Logarithmen der Verstärkungen</translation>
+    </message>
+    <message>
+        <source>starting the simulation</source>
+        <translation>die Simulation beginnt</translation>
     </message>
     <message>
         <source>state</source>

@@ -85,7 +85,7 @@ class MessageArea(QWidget):
         self._text.clicked.connect(self._all.toggle)
         self._jump.clicked.connect(self._jump_to_shown)
         self.sheet.closed.connect(lambda: self._all.setChecked(False))
-        self.sheet.dismissed.connect(self._dismiss)
+        self.sheet.dismissed.connect(self.dismiss)
         self.sheet.placeRequested.connect(self._show_place)
         self.sheet.copyRequested.connect(self.copy_all)
         self._timer = QTimer(self, interval=LOOK_MS)
@@ -117,6 +117,11 @@ class MessageArea(QWidget):
             for message, since in self._standing
             if not (message.about.startswith(about) if is_over else message.about == about)
         ]
+        self._show()
+
+    def dismiss(self, message: Message) -> None:
+        """Put a message away that holds no more; the history keeps it."""
+        self._standing = [entry for entry in self._standing if entry[0] is not message]
         self._show()
 
     def look(self) -> None:
@@ -194,10 +199,6 @@ class MessageArea(QWidget):
 
     def _fill(self) -> None:
         self.sheet.fill(self.standing(), self._told)
-
-    def _dismiss(self, message: Message) -> None:
-        self._standing = [entry for entry in self._standing if entry[0] is not message]
-        self._show()
 
     def _jump_to_shown(self) -> None:
         if self._shown is not None:

@@ -158,7 +158,7 @@ def _wait_for_link(process: subprocess.Popen[bytes], binary: Path, output: Path,
     """Wait until it listens; a link that is opened and closed again does no harm."""
     deadline_s = time.monotonic() + START_S
     while True:
-        monitor.report("starting the simulation", 0, 0)
+        monitor.report(say("starting the simulation"), 0, 0)
         if process.poll() is not None:
             last_lines = output.read_text(errors="replace").strip().splitlines()[-1:] or ["it said nothing"]
             raise LinkError(say("ended at once with status {} ({})", process.returncode, last_lines[0], place=binary))

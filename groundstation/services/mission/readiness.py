@@ -462,7 +462,7 @@ class Preflight:
 
 def preflight(plan: Plan, site_model: SiteModel, day: FlightDay = UNKNOWN_DAY, monitor: Monitor = QUIET) -> Preflight:
     """Check a plan on its site, for a day of which something is known or not."""
-    monitor.report("measuring", 0, 1)
+    monitor.report(say("measuring"), 0, 1)
     case = Case.of(plan, site_model)
     seen = case.measures.seen
     # A view sees a panel in one section only: as many elements, as many panels.

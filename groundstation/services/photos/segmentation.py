@@ -176,7 +176,7 @@ def save_photos(request: ScoreRequest, out: Path, monitor: Monitor = QUIET) -> i
     n_done = 0
     with output_folder(out) as folder:
         for photo in photos.photos():
-            monitor.report("saving photos", n_done, photos.n_photos)
+            monitor.report(say("saving photos"), n_done, photos.n_photos)
             write_picture(folder / f"{photo.name}.png", photo.image)
             n_done += 1
     return n_done

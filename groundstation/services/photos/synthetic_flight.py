@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.geo.frames import Origin
 from planning.geo.mesh import box_mesh, write_mesh
@@ -44,7 +45,7 @@ def write_synthetic_flight(folder: Path, monitor: Monitor = QUIET) -> tuple[Path
     """
     facades = []
     for number, (aside_deg, up_deg) in enumerate(DIRECTIONS_DEG):
-        monitor.report("rendering", number, len(DIRECTIONS_DEG))
+        monitor.report(say("rendering"), number, len(DIRECTIONS_DEG))
         photo = photo_of(WALL, LAYOUT, wide_camera(*PHOTO_PX), seed=SEED, oblique_deg=aside_deg, from_below_deg=up_deg)
         facades.append(render_facade(Case("made", LAYOUT, WALL, photo, DISTURBED, seed=SEED)))
     write_photos(folder / "photos", [(one.photo, one.image) for one in facades], ORIGIN)

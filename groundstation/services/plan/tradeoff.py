@@ -115,7 +115,7 @@ def plan_tradeoff(
         is_timed = n_processes == 1 and address is None
         progress, plan_once = monitor, run_plan
         if is_timed:
-            monitor.report("loading kernels", 0, 1)
+            monitor.report(say("loading kernels"), 0, 1)
             load_kernels(requests)
             progress = NumberedRuns(monitor)
             plan_once = partial(run_plan, monitor=progress)

@@ -136,7 +136,7 @@ class _Waiting:
             return
         with self._watch.paused():
             while self._pause():
-                self._monitor.report("paused", done, total)
+                self._monitor.report(say("paused"), done, total)
                 time.sleep(PAUSE_S)
 
 

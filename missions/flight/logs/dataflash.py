@@ -75,7 +75,7 @@ def looks_like_text(head: bytes) -> bool:
 def binary_tables(content: bytes, names: frozenset[str], monitor: Monitor = QUIET) -> tuple[dict[str, Table], int]:
     """Tables of the wanted messages of a binary log, and how many bytes of it are no records."""
     data = np.frombuffer(content, np.uint8)
-    monitor.report("reading the log", 0, 1)
+    monitor.report(say("reading the log"), 0, 1)
     places = np.empty(len(data) // 3 + 1, np.int64)
     n_found, n_lost = _scan(data, places)
     places = places[:n_found]
@@ -128,7 +128,7 @@ def text_tables(content: bytes, names: frozenset[str], monitor: Monitor = QUIET)
     n_lost = 0
     for number, line in enumerate(lines):
         if number % 65536 == 0:
-            monitor.report("reading the log", number, len(lines))
+            monitor.report(say("reading the log"), number, len(lines))
         name, _, rest = line.partition(",")
         if name == "FMT":
             parts = [part.strip() for part in rest.split(",")]

@@ -281,14 +281,14 @@ def read_tlog(content: bytes, monitor: Monitor = QUIET) -> RawLog:
             following = _RECORD.search(content, at + 1)
             following_at = len(content) if following is None else following.start()
             at, n_lost = following_at, n_lost + following_at - at
-            monitor.report("reading the log", at, len(content))
+            monitor.report(say("reading the log"), at, len(content))
             continue
         if packet is not _SKIPPED and (message := message_of(packet)) is not None:
             source = Address(packet.get_srcSystem(), packet.get_srcComponent())
             reader.take(Received(message, source, struct.unpack_from(">Q", content, at)[0] / 1e6))
         at += TIME_BYTES + size
         if at % 4096 < size:
-            monitor.report("reading the log", at, len(content))
+            monitor.report(say("reading the log"), at, len(content))
     log = reader.read()
     log.vehicle = say("{}, telemetry log", VEHICLES.get(reader.autopilot, "MAVLink"))
     if n_lost:

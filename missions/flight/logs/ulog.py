@@ -77,7 +77,7 @@ def read_ulog(content: bytes, label: str, monitor: Monitor = QUIET) -> RawLog:
     """
     from pyulog import core
 
-    monitor.report("reading the log", 0, 1)
+    monitor.report(say("reading the log"), 0, 1)
     log = RawLog("PX4, ULog", autopilot=Autopilot.PX4)
     try:
         # pyulog prints what it finds wrong; the standard output belongs to --json.

@@ -160,7 +160,7 @@ def city_source(
     near = _near(building.vertices_enu_m, others, options.airspace_margin_m + NEIGHBOUR_REACH_M)
     meshes = []
     for done, other in enumerate(near):
-        monitor.report("surfaces", done, len(near))
+        monitor.report(say("surfaces"), done, len(near))
         meshes.append(from_corners(other.triangles()))
     notes = [*placement.georeference.notes, *choice, *stands.notes]
     if others:

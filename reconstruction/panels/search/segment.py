@@ -358,7 +358,7 @@ def grid_by_lines(
     picture, valid = _seen(image, small)
     axes = Axes.of(picture, valid, parameters)
     if parameters.straighten:
-        monitor.report("straighten", 0, 1)
+        monitor.report(say("straighten"), 0, 1)
         bend = straightening(picture, parameters.max_tilt_deg, parameters.seed)
         bent = _bent(image, small, picture, valid, bend)
         bent_axes = axes if bend is None else Axes.of(bent[1], bent[2], parameters)

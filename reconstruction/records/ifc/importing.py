@@ -172,7 +172,7 @@ def _run(task: str, path: Path, folder: Path, request: bytes, kind: type[Result]
                 process.wait(POLL_S)
                 break
             except subprocess.TimeoutExpired:
-                monitor.report("reading the IFC file", 0, 0)
+                monitor.report(say("reading the IFC file"), 0, 0)
     except BaseException:
         process.kill()
         process.wait()

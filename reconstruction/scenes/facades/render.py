@@ -78,12 +78,12 @@ def render_facade(case: Case, monitor: Monitor = QUIET) -> SyntheticFacade:
     scene = build_scene(case, grid, rng)
     intrinsics = case.truth.intrinsics
     height, width = intrinsics.height_px, intrinsics.width_px
-    monitor.report("rendering", 0, 2)
+    monitor.report(say("rendering"), 0, 2)
     x, y = np.arange(width, dtype=np.float32) + np.float32(0.5), np.arange(height, dtype=np.float32) + np.float32(0.5)
     colours, keys = _sampled(scene, np.tile(x, height), np.repeat(y, width))
     picture = colours.reshape(height, width, 3)
     key_image = keys.reshape(height, width)
-    monitor.report("rendering", 1, 2)
+    monitor.report(say("rendering"), 1, 2)
     _refine(scene, picture, _on_edges(key_image))
     return SyntheticFacade(
         case=case,

@@ -167,7 +167,7 @@ def _installed_plugin(
     run, token = f"reflight-{secrets.token_hex(8)}", secrets.token_bytes(16)
     write_atomically(folder / TOKEN_FILE, token)
     try:
-        monitor.report("giving the scene to the cluster", 0, 1)
+        monitor.report(say("giving the scene to the cluster"), 0, 1)
         client.register_plugin(RenderPlugin(make_worker, folder, token, program_sha256()), run)
         yield run
     finally:

@@ -86,7 +86,7 @@ def _own_exposures(job: PhotoJob, common: float, monitor: Monitor) -> Array:
         return np.ones(n)
     renderer, factors = Renderer(job.scene, job.settings), np.ones(n)
     for number, photo in enumerate(job.photos):
-        monitor.report("metering", number, n)
+        monitor.report(say("metering"), number, n)
         factors[number] = _metered(renderer, photo) / common
     shutters_s = np.array([moment.exposure_s for moment in job.moments])
     low, high = SHUTTERS_S
@@ -137,7 +137,7 @@ def render_photo_folder(
     """
     if not job.photos:
         raise InputError(say("there are no views to photograph; name a plan or flight that has some"))
-    monitor.report("deciding on effects", 0, 1)
+    monitor.report(say("deciding on effects"), 0, 1)
     job = replace(job, moments=job.moments or (Moment(),) * len(job.photos))
     found = decide_effects(job.scene, job.photos, job.settings, job.camera_model, job.moments)
     decisions = tuple(found.values())
@@ -212,7 +212,7 @@ def _write_records(job: PhotoJob, folder: Path, decisions: Sequence[Decision], m
     points = start_points(_mesh(job.scene, (Layer.BUILDING, Layer.NEAR)), job.n_points, job.scene.seed)
     everything = RayCaster(_mesh(job.scene, tuple(Layer)))
     for done, photo in enumerate(job.photos):
-        monitor.report("colouring points", done, len(job.photos))
+        monitor.report(say("colouring points"), done, len(job.photos))
         picture = decoded(read_input_file(photo.path, PICTURE_FILE), cv2.IMREAD_COLOR, str(photo.path))
         points.add(photo, np.asarray(picture, np.uint8), everything)
     monitor.report(say("writing cameras and points"), 0, 1)

@@ -64,7 +64,7 @@ def render_on_cores(
     elif n_processes <= 1:
         alone = photographer()
         for done, number in enumerate(numbers, len(job.photos) - len(numbers)):
-            monitor.report("rendering photos", done, len(job.photos))
+            monitor.report(say("rendering photos"), done, len(job.photos))
             yield number, checksums_of(folder, alone.render(number))
     else:
         yield from _side_by_side(photographer, job, folder, numbers, n_processes, monitor)
@@ -83,7 +83,7 @@ def _side_by_side(
         running, left = list(numbers[:n_processes]), list(numbers[n_processes:])
         waiting: dict[Future[dict[str, str]], int] = {pool.submit(_take, number, folder): number for number in running}
         while waiting:
-            monitor.report("rendering photos", len(job.photos) - len(waiting) - len(left), len(job.photos))
+            monitor.report(say("rendering photos"), len(job.photos) - len(waiting) - len(left), len(job.photos))
             for future in wait(waiting, PATIENCE_S, FIRST_COMPLETED).done:
                 if left:
                     following = left.pop(0)

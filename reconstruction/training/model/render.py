@@ -197,7 +197,7 @@ def render_files(
         make_folder(folder / name)
     written = []
     for done, photo in enumerate(photos):
-        monitor.report("rendering", done, len(photos))
+        monitor.report(say("rendering"), done, len(photos))
         straight = replace(photo, intrinsics=photo.intrinsics.straight())
         found = render_view(model, View.of(straight, model.origin_enu_m), layers, 1.0, settings)
         name = photo.name.replace("/", "_")

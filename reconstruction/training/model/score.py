@@ -94,7 +94,7 @@ def score_views(
     scores = []
     with PhotoStream(source, names, model.origin_enu_m, StreamSettings()) as photos:
         for done, photo in enumerate(photos.photos):
-            monitor.report("scoring views", done, len(photos.photos))
+            monitor.report(say("scoring views"), done, len(photos.photos))
             sample = photos.frame(done)
             factor = exposure * source.own_exposures.get(photo.name, 1.0)
             if gain == "fitted":

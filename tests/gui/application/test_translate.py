@@ -144,6 +144,22 @@ def test_errors_and_findings_are_messages():
     assert plain == [], "say it with planning.base.messages.say, so that it can be translated"
 
 
+@pytest.mark.lint
+def test_stages_of_work_are_messages():
+    """What `report` is told first: a message, or a name that all languages share."""
+    plain = [
+        f"{path.relative_to(ROOT)}:{node.lineno}"
+        for house in HOUSES
+        for path in sorted((ROOT / house).rglob("*.py"))
+        for node in ast.walk(ast.parse(path.read_text("utf-8")))
+        if isinstance(node, ast.Call) and getattr(node.func, "attr", "") == "report" and node.args
+        if isinstance(node.args[0], ast.JoinedStr)
+        or (isinstance(node.args[0], ast.Constant) and isinstance(node.args[0].value, str))
+        if not (isinstance(node.args[0], ast.Constant) and node.args[0].value in ("PyVRP",))
+    ]
+    assert plain == [], "say it with planning.base.messages.say, so that it can be translated"
+
+
 def test_what_is_said_of_wrong_parameters_is_german(german):
     n_said = 0
     for name, each in {**declared(PlanRequest), **declared(Conditions)}.items():
