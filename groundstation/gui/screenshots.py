@@ -42,6 +42,7 @@ from groundstation.services.settings import CONFIG_VARIABLE, Language, Theme
 from groundstation.services.site.sources import open_site
 from groundstation.services.units import UnitSystem
 from planning.base.errors import InputError
+from planning.base.files import make_folder
 from planning.base.messages import say
 from planning.request import PlanRequest
 from planning.site.bundled import write_scene
@@ -121,12 +122,7 @@ def take_screenshots(folder: Path, site: Path | None = None, sizes_px: tuple[tup
     InputError
         The site cannot be read or has no panels, or the folder not written.
     """
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(
-            say("this folder cannot be made ({}); name another", error.strerror or error, place=folder)
-        ) from error
+    make_folder(folder)
     if site is not None:
         require_panels(open_site(site).site)
     application = QApplication.instance() or QApplication(["reflight"])

@@ -10,7 +10,7 @@ from groundstation.services.mission.export import export_plan
 from groundstation.services.mission.readiness import preflight
 from groundstation.services.plan.planning import plan_site
 from missions.formats.registry import FORMATS
-from planning.base.errors import InputError
+from planning.base.files import make_folder
 from planning.base.findings import Finding, is_flyable
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
@@ -48,12 +48,7 @@ def demonstrate(
     InputError
         The folder cannot be made.
     """
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(
-            say("this folder cannot be made ({}); name another", error.strerror or error, place=folder)
-        ) from error
+    make_folder(folder)
     site_path = write_scene(scene, folder)
     plan_path = folder / f"{scene}.plan.json"
     planned = plan_site(site_path, request, plan_path, monitor=monitor)

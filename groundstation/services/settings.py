@@ -13,7 +13,7 @@ from typing import Any, TypeVar
 
 from groundstation.services.units import UnitSystem
 from planning.base.errors import InputError
-from planning.base.files import real_path
+from planning.base.files import make_folder, real_path
 from planning.base.json_file import plain_values, read_toml, to_record, write_atomically
 from planning.base.messages import glue, say
 from planning.parameters import DEFAULT_PROFILE
@@ -67,10 +67,7 @@ def write_preferences(path: Path, record: object) -> None:
     """
     import tomli_w
 
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(say("this folder cannot be made ({})", error.strerror or error, place=path.parent)) from error
+    make_folder(path.parent)
     write_atomically(path, tomli_w.dumps(plain_values(record)).encode())
 
 
@@ -229,10 +226,7 @@ def write_settings(path: Path, settings: Settings, *, replace_unreadable: bool =
     """
     if not replace_unreadable:
         read_settings(path)
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(say("this folder cannot be made ({})", error.strerror or error, place=path.parent)) from error
+    make_folder(path.parent)
     import tomli_w
 
     write_atomically(path, (HEADER + tomli_w.dumps(plain_values(settings))).encode())

@@ -15,6 +15,7 @@ from missions.flight.logs.telemetry import TelemetryReader
 from missions.flight.record import FlightRecord
 from missions.mavlink.messages import Address, Received
 from planning.base.errors import InputError
+from planning.base.files import make_folder
 from planning.base.messages import say
 from planning.site.records import Site
 
@@ -105,12 +106,7 @@ def new_log_path(folder: Path, unix_time_s: float, name: str = "flight") -> Path
     InputError
         The folder cannot be made.
     """
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(
-            say("the folder for telemetry logs cannot be made ({})", error.strerror or error, place=folder)
-        ) from error
+    make_folder(folder)
     began = datetime.datetime.fromtimestamp(unix_time_s, datetime.UTC).strftime("%Y-%m-%dT%H-%M-%SZ")
     path, number = folder / f"{name}-{began}.tlog", 1
     while path.exists():

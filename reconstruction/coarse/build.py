@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from planning.base.effects import Decision, EffectSetting, decide
 from planning.base.errors import InputError
-from planning.base.files import open_input_file
+from planning.base.files import make_folder, open_input_file
 from planning.base.findings import Finding, Severity
 from planning.base.json_file import read_json, write_atomically
 from planning.base.messages import say
@@ -444,10 +444,7 @@ def _prepare_folder(kept: Path, taken: _Taken, parameters: CoarseParameters) -> 
     path = kept / SETTINGS
     if not path.is_file() or read_json(path) != {"sha256": digest}:
         shutil.rmtree(kept, ignore_errors=True)
-    try:
-        kept.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(say("cannot be made ({})", error.strerror or error, place=kept)) from error
+    make_folder(kept)
     write_atomically(path, json.dumps({"sha256": digest}).encode())
 
 

@@ -33,9 +33,6 @@ LONELY = 4.0
 
 N_NEAR = 8
 
-THINNED = 200
-"""Cells across a thinned cloud: one point stands for a cell, so that counts are areas."""
-
 N_SAMPLES = 400
 """Of each plane; with a tenth of the points on it and neighbours sampled, one in five is good."""
 

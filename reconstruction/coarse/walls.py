@@ -114,9 +114,6 @@ class Wall:
 
 # The ground.
 
-LOW_SHARE = 0.05
-"""Of the map's cells that may lie below the ground: mismatches and cellar steps."""
-
 LEVEL_SHARE = 0.2
 """Of the best level's cells that another level needs to be the ground below it."""
 

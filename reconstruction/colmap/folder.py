@@ -16,7 +16,7 @@ from typing import Any, Literal, TypeVar
 import numpy as np
 
 from planning.base.errors import InputError
-from planning.base.files import MIB, FileLimit, check_lines, read_input_file
+from planning.base.files import MIB, FileLimit, check_lines, make_folder, read_input_file
 from planning.base.json_file import encoded, plain_values, read_json, to_record, write_atomically
 from planning.base.messages import say
 from planning.geo.frames import Origin
@@ -428,10 +428,7 @@ def write_model(folder: Path, model: ColmapModel, kind: FileKind = "bin") -> Non
         "images": images_bytes(images) if kind == "bin" else _encoded(images_text(images)),
         "points3D": points_bytes(model.points) if kind == "bin" else _encoded(points_text(model.points)),
     }
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(say("cannot be made ({})", error.strerror or error, place=folder)) from error
+    make_folder(folder)
     for name, content in contents.items():
         write_atomically(folder / f"{name}.{kind}", content)
 

@@ -154,5 +154,5 @@ def test_whether_rtk_is_needed_comes_back_and_leave_to_set_parameters_does_not(t
 
 def test_what_cannot_be_kept_is_told(tmp_path):
     (tmp_path / "file").write_text("")
-    with pytest.raises(InputError, match="this folder cannot be made"):
+    with pytest.raises(InputError, match="cannot be made"):
         write_preferences(tmp_path / "file" / "flight.toml", FlightSettings())

@@ -103,7 +103,7 @@ def test_a_file_with_mistakes_is_not_written_over_before_the_user_agrees(tmp_pat
 
 def test_settings_that_cannot_be_written_say_where(tmp_path):
     (tmp_path / "file").write_text("")
-    with pytest.raises(InputError, match="file: this folder cannot be made"):
+    with pytest.raises(InputError, match="file: cannot be made"):
         write_settings(tmp_path / "file" / "settings.toml", Settings())
 
 

@@ -9854,10 +9854,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>das könnte ein echtes Fluggerät sein, und &apos;simulate&apos; startet von selbst; --take-off dazunehmen, wenn es darf</translation>
     </message>
     <message>
-        <source>this folder cannot be made ({0}); name another</source>
-        <translation>dieser Ordner ist nicht anzulegen ({0}); einen anderen nennen</translation>
-    </message>
-    <message>
         <source>this is a flight over &apos;{0}&apos;, and not over &apos;{1}&apos; at its origin; name the site that was flown over</source>
         <translation>das ist ein Flug über &apos;{0}&apos; und nicht über &apos;{1}&apos; an dessen Ursprung; den überflogenen Standort nennen</translation>
     </message>
@@ -10694,10 +10690,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>unsaved work could not be copied for after a crash: {0}. Nothing is lost while this window is open; make room or save the project in another folder</source>
         <translation>ungesicherte Arbeit ließ sich nicht für den Fall eines Absturzes kopieren: {0}. Solange dieses Fenster offen ist, geht nichts verloren; Platz schaffen oder das Projekt in einem anderen Ordner speichern</translation>
-    </message>
-    <message>
-        <source>this folder cannot be made ({0})</source>
-        <translation>dieser Ordner lässt sich nicht anlegen ({0})</translation>
     </message>
     <message>
         <source>a plan</source>
@@ -13282,10 +13274,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the telemetry log cannot be written ({0}); free some space, and it goes on by itself</source>
         <translation>das Telemetrieprotokoll lässt sich nicht schreiben ({0}); Platz schaffen, dann geht es von selbst weiter</translation>
-    </message>
-    <message>
-        <source>the folder for telemetry logs cannot be made ({0})</source>
-        <translation>der Ordner für Telemetrieprotokolle lässt sich nicht anlegen ({0})</translation>
     </message>
     <message>
         <source>no heartbeat for {0} s: what is shown is old; the aircraft goes on by itself</source>

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from planning.base.effects import Decision
 from planning.base.errors import InputError
-from planning.base.files import read_input_file
+from planning.base.files import make_folder, read_input_file
 from planning.base.json_file import write_atomically
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
@@ -149,7 +149,8 @@ def render_photo_folder(
     files = finished_photos(folder, run)
     missing = [number for number, photo in enumerate(job.photos) if photo.name not in files]
     _check_room(folder, job.photos, len(missing))
-    _make_folders(folder)
+    for name in ("images", *ARRAYS, *PICTURES):
+        make_folder(folder / name)
     exposure = common_exposure(decided)
     decided = replace(decided, captures=captures_of(decided, exposure, monitor))
     run |= {"exposure": exposure, "captures": captures_record(decided)}
@@ -171,16 +172,6 @@ def _mesh(scene: Scene, layers: Sequence[Layer]) -> TriangleMesh:
     """Bodies of some layers, and all panes."""
     panes = from_corners(panel_triangles(scene.panes.corners_enu_m))
     return join([*(body.mesh for body in scene.bodies if body.layer in layers), panes])
-
-
-def _make_folders(folder: Path) -> None:
-    try:
-        for name in ("images", *ARRAYS, *PICTURES):
-            (folder / name).mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(
-            say("cannot be made ({}); name another folder", error.strerror or error, place=folder)
-        ) from error
 
 
 def _check_room(folder: Path, photos: Sequence[PosedPhoto], n_missing: int) -> None:
