@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import torch
 from numpy.typing import NDArray
+from scipy.stats import t as student
 
 from planning.base.effects import Assessment, Decision, Effect, EffectSetting, decide
 from planning.base.messages import say
@@ -25,6 +26,8 @@ from reconstruction.light.photo_set import PanelPlanes, PhotoSet
 from reconstruction.light.reflective_panels import ModelName
 from reconstruction.light.training import TrainedReflections, mean_square_error, train_reflections
 from reconstruction.metrics.image_metrics import psnr_db
+
+Floats = NDArray[np.float64]
 
 TRIED: tuple[ModelName, ...] = ("harmonics", "environment-map", "radiance-grid")
 
@@ -42,7 +45,10 @@ SCORED, UNSEEN = 8192, 0.2
 """Rays that a trial is scored on, and the share of the photos that these are of."""
 
 FOLDS, FEW_PHOTOS = 3, 40
-"""Of fewer photos than this, others are held back again and again: a fifth of them would tell too little."""
+"""Of fewer photos than this, others are held back again and again until they agree: a fifth would tell too little."""
+
+MOST_WRONG = 0.05
+"""Probability, at most, that trials end early with another answer than that of all photos: all looks together."""
 
 NEAR_TOLERANCE_DB, FAR_TOLERANCE_DB = 0.3, 0.3
 
@@ -79,6 +85,29 @@ class LightTrials:
     unseen: tuple[int, ...]
 
 
+def surely_more(gains_db: Floats, tolerance_db: float, n_looks: int) -> bool | None:
+    """Whether a mean gain is more than a tolerance; None as long as the photos do not tell.
+
+    A group sequential test: at each look the gain is compared with Student's interval for its mean, two-sided, whose
+    error is `MOST_WRONG` shared evenly by all looks (Bonferroni), so that looking again and again misleads nobody.
+
+    Parameters
+    ----------
+    gains_db
+        Of photos that were not learned from, one of each, shape (n,).
+    n_looks
+        That there are at most.
+    """
+    n = len(gains_db)
+    if n < 2:
+        return None
+    reach = float(student.ppf(1.0 - 0.5 * MOST_WRONG / n_looks, n - 1)) * _standard_error(gains_db)
+    mean = float(gains_db.mean())
+    if mean - reach > tolerance_db:
+        return True
+    return False if mean + reach < tolerance_db else None
+
+
 @dataclass(frozen=True, slots=True)
 class NearLight:
     """Whether what glass mirrors is near enough to show parallax."""
@@ -96,6 +125,23 @@ class NearLight:
             "mirror images in unseen photos {}: radiance grid {:.1f} dB, environment map {:.1f} dB", what, near, far
         )
         return Assessment(gained, reason, GRID_TIMES * scene.seconds)
+
+
+@dataclass(frozen=True, slots=True)
+class NearLightBySplats:
+    """Whether views are better with near-field light, where rays of glass alone do not tell."""
+
+    name: str = say("near-field light")
+    unit: str = "dB"
+    tolerance: float = 0.0
+
+    def assess(self, scene: tuple[float, float, float]) -> Assessment:
+        """By PSNR, dB, of views held back with a radiance grid and with an environment map, and seconds of the map."""
+        near, far, seconds = scene
+        reason = say(
+            "views held back have {:.1f} dB with a radiance grid, {:.1f} dB with an environment map", near, far
+        )
+        return Assessment(near - far, reason, GRID_TIMES * seconds)
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,6 +208,8 @@ def try_lights(
 ) -> LightTrials | None:
     """Try the models on some rays, and score them on photos that they have not seen; None of fewer than two photos.
 
+    Of few photos others are held back again and again, until those that were tell which model is to be chosen.
+
     Parameters
     ----------
     rays
@@ -181,6 +229,7 @@ def try_lights(
     folds = _folds(rays, config.seed)
     scores: list[list[float]] = []
     found: dict[ModelName, TrainedReflections] = {}
+    last: tuple[int, ...] = ()
     for number, (seen, unseen) in enumerate(folds):
         for done, model in enumerate(TRIED):
             monitor.report(
@@ -191,26 +240,44 @@ def try_lights(
                 _tried(model, seen, planes, replace(config, steps=1, time_limit_s=None), monitor, clock, device)
             found[model] = _tried(model, seen, planes, config, monitor, clock, device)
         scores += [[psnr_db(mean_square_error(found[model].panels, photo)) for model in TRIED] for photo in unseen]
+        last = tuple(int(photo.photos[0]) for photo in unseen)
+        if _are_clear(np.array(scores), len(folds)):
+            break
     if not scores:
         return None
     far = found["environment-map"]
     whole = config.steps_for(len(rays)) * config.batch / (far.n_steps * far.config.batch)
     trials = trials_of(np.array(scores), far.seconds * whole)
-    return LightTrials(trials, found, tuple(int(photo.photos[0]) for photo in folds[-1][1]))
+    return LightTrials(trials, found, last)
 
 
-def trials_of(scores_db: NDArray[np.float64], seconds: float) -> Trials:
-    """Means of photos' scores, shape (n, 3) in the order of `TRIED`, and how far their differences may be off."""
+def _are_clear(scores_db: Floats, n_looks: int) -> bool:
+    """Whether more photos would not change which model is chosen."""
+    on_harmonics, on_others = _gains(scores_db)
+    mirrors, near = (
+        surely_more(gains, tolerance, n_looks)
+        for gains, tolerance in ((on_harmonics, FAR_TOLERANCE_DB), (on_others, NEAR_TOLERANCE_DB))
+    )
+    return near is not None and (near or mirrors is not None)
+
+
+def _gains(scores_db: Floats) -> tuple[Floats, Floats]:
+    """What the better light gains on harmonics in each photo, and the grid on the better of the others."""
     slow, far, near = scores_db.T
     best = near if near.mean() > far.mean() else far
+    return best - slow, near - (far if far.mean() > slow.mean() else slow)
+
+
+def trials_of(scores_db: Floats, seconds: float) -> Trials:
+    """Means of photos' scores, shape (n, 3) in the order of `TRIED`, and how far their differences may be off."""
+    slow, far, near = scores_db.mean(axis=0)
+    on_harmonics, on_others = _gains(scores_db)
     return Trials(
-        (float(slow.mean()), float(far.mean()), float(near.mean())),
-        seconds,
-        (_standard_error(best - slow), _standard_error(near - np.where(far.mean() > slow.mean(), far, slow))),
+        (float(slow), float(far), float(near)), seconds, (_standard_error(on_harmonics), _standard_error(on_others))
     )
 
 
-def _standard_error(differences: NDArray[np.float64]) -> float:
+def _standard_error(differences: Floats) -> float:
     """Of a mean; 0 of one alone, of which it is not known."""
     return float(differences.std(ddof=1) / np.sqrt(len(differences))) if len(differences) > 1 else 0.0
 
@@ -245,6 +312,17 @@ def chosen(trials: Trials) -> tuple[ModelName, tuple[Decision, ...]]:
     if near.on:
         return "radiance-grid", (mirrors, near)
     return ("environment-map" if mirrors.on else "harmonics"), (mirrors, near)
+
+
+def contenders(trials: Trials, name: ModelName) -> tuple[ModelName, ...]:
+    """Models beside the one chosen that may be better, together with splats: a grid that is better, but not surely."""
+    slow, far, near = trials.scores_db
+    return ("radiance-grid",) if name == "environment-map" and near > max(slow, far) else ()
+
+
+def with_splats(scores_db: Mapping[ModelName, float], seconds: float) -> Decision:
+    """About near-field light by PSNR, dB, of models together with splats; `seconds` as `Trials` has it."""
+    return decide(NearLightBySplats(), (scores_db["radiance-grid"], scores_db["environment-map"], seconds))
 
 
 def _folds(rays: GlassRays, seed: int) -> list[tuple[GlassRays, list[GlassRays]]]:

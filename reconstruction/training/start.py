@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import hashlib
 import math
-from collections.abc import Iterator, Sequence
-from contextlib import ExitStack
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
 from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
 from typing import Any
@@ -21,7 +21,15 @@ from planning.base.json_file import to_record
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.light.choose_light import LightTrials, chosen, try_lights, white_of
+from reconstruction.light.choose_light import (
+    LightTrials,
+    chosen,
+    contenders,
+    surely_more,
+    try_lights,
+    white_of,
+    with_splats,
+)
 from reconstruction.light.glass_rays import GlassRays, glass_rays
 from reconstruction.light.light_training import CheckpointSettings
 from reconstruction.light.photo_set import PanelPlanes, PhotoSet, held_out_names
@@ -47,7 +55,7 @@ from reconstruction.training.photos.photo_stream import PhotoStream, StreamSetti
 from reconstruction.training.photos.poses import Move, PoseCorrections, learned_moves, moved
 from reconstruction.training.photos.transients import Transients
 from reconstruction.training.timer import Timer
-from reconstruction.training.trainer import SHOWN_VIEWS, Trainer, strategy_of
+from reconstruction.training.trainer import Trainer, strategy_of
 from reconstruction.training.training_state import write_checkpoint
 
 # The first stage of a training, learning light alone: what it needs to go on after it was interrupted.
@@ -388,6 +396,7 @@ def start_model(
         splats = initial_splats(start, learned, origin, parameters, source.picture, monitor)
     light: TrainedReflections | None = None
     shader: Shader | None = None
+    is_told = False
     if interrupted is None and config.trained_by.knows_panels:
         white, decision = white_of(source, learned, config.overexposed)
         config = with_white(config, white)
@@ -397,12 +406,11 @@ def start_model(
         shader = shader_of(config, Surroundings(triangles))
         splats = converted_for_method(splats, config, shader)
     else:
-        light, decisions = _learned_light(
-            source, learned, config, splats, monitor, watch, checkpoint, interrupted, decisions
-        )
+        first = _learned_light(source, learned, config, splats, monitor, watch, checkpoint, interrupted, decisions)
+        light, splats, decisions, is_told = first.light, first.splats, first.decisions, first.is_in_splats
     moves = learned_moves(None if light is None else light.panels.light, len(learned))
     cameras = np.array([photo.pose.position_enu_m for photo in moved(learned, moves)])
-    if light is not None:
+    if light is not None and not is_told:
         warm_start_splats(light.panels, splats, source.panels, origin, cameras)
     return Start(
         config,
@@ -444,10 +452,16 @@ def held_out_views(
 CLEAR_DB = 3.0
 """That light apart gains on harmonics, on rays of unseen photos, from which on nobody need ask further."""
 
-TRIAL_SHARE = 0.04
-"""Of a training, for each of both ways."""
+TRIAL_SHARE = 0.08
+"""Of a training, for all ways together."""
 
 LEAST_TRIAL_STEPS = 20
+
+ALONE_MODEL: ModelName = "harmonics"
+"""Of panes, where splats are alone."""
+
+LOOKS, MOST_SCORED = 3, 8
+"""At photos held back, evenly spread over both trials, which end where one is surely better; and photos looked at."""
 
 NEVER_S = 1e9
 
@@ -479,66 +493,158 @@ class _NamedReports:
         self.monitor.report(say("choosing a model of mirrored light"), done, total)
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _Worth:
+    """What came of it: the decision, the model of light that is best, PSNR of all, dB, and the best one's splats.
+
+    What these have learned is not thrown away: a training goes on with them.
+    """
+
+    decision: Decision
+    name: ModelName
+    scores_db: Mapping[ModelName, float]
+    splats: Splats
+
+
+@dataclass(slots=True, eq=False)
+class _JointTrial:
+    """One way: its training, its own time, and the views that it is scored on."""
+
+    trainer: Trainer
+    watch: Timer
+    shown: tuple[HeldOut, ...]
+
+
+@contextmanager
+def _turn(trials: Collection[_JointTrial], of: _JointTrial | None = None) -> Iterator[None]:
+    """Let the time of one trial go on within a block, and that of no other."""
+    with ExitStack() as waiting:
+        for trial in trials:
+            if trial is not of:
+                waiting.enter_context(trial.watch.paused())
+        yield
+
+
 def _is_worth(
     source: PhotoSet,
     learned: Sequence[PosedPhoto],
     splats: Splats,
     tried: LightTrials,
-    name: ModelName,
+    names: Sequence[ModelName],
     config: TrainConfig,
     watch: Timer,
     monitor: Monitor,
-) -> Decision:
-    """Train with light apart and without for a short while, and score both on the photos that trials have not seen."""
+) -> _Worth:
+    """Train with light apart, of one model or several, and without for a short while; score all on unseen photos.
+
+    Trainings go on in turns. One whose photos are surely worse than those of another light ends, and all end as soon as
+    photos tell whether light apart is better.
+    """
     unseen = [learned[number].name for number in tried.unseen]
     seen = tuple(photo for photo in learned if photo.name not in unseen)
-    origin = model_origin(known_scene(source))
-    limit_s = None if config.time_limit_s is None else TRIAL_SHARE * config.time_limit_s
+    scored = unseen[:MOST_SCORED]
+    reports = Callbacks(_NamedReports(monitor))
+    n_looks, tolerance_db = LOOKS * len(names), SeparateLight().tolerance
+    with ExitStack() as closing:
+        trials: dict[ModelName, _JointTrial] = {}
+        for name in (*names, ALONE_MODEL):
+            with _turn(trials.values()):
+                light = tried.found[name]
+                trials[name] = _joint_trial(source, seen, scored, splats, light, config, len(names) + 1, watch, closing)
+        going = [*names]
+        scores: dict[ModelName, NDArray[np.float64]] = {}
+        for look in range(1, LOOKS + 1):
+            for name in (*going, ALONE_MODEL):
+                with _turn(trials.values(), trials[name]):
+                    trials[name].trainer.run(reports, look / LOOKS)
+            with _turn(trials.values()):
+                scores |= {name: np.array(_of_views(trials[name])) for name in (*going, ALONE_MODEL)}
+            best = max(going, key=lambda name: float(scores[name].mean()))
+            going = [x for x in going if x == best or not surely_more(scores[best] - scores[x], 0.0, n_looks)]
+            is_better = surely_more(scores[best] - scores[ALONE_MODEL], tolerance_db, n_looks)
+            if is_better is not None and (len(going) == 1 or not is_better):
+                break
+    means = {name: float(scores[name].mean()) for name in trials}
+    worth = decide(SeparateLight(), (means[best], means[ALONE_MODEL], tried.trials.seconds))
+    better = trials[best if worth.on else ALONE_MODEL]
+    kept = splats_from_tensors(splats_to_tensors(better.trainer.model.splats), str(source.folder))
+    return _Worth(worth, best if worth.on else ALONE_MODEL, means, kept)
+
+
+def _of_views(trial: _JointTrial) -> list[float]:
+    return trial.trainer.qualities_db(trial.shown)
+
+
+def _joint_trial(
+    source: PhotoSet,
+    seen: Sequence[PosedPhoto],
+    scored: Sequence[str],
+    splats: Splats,
+    light: TrainedReflections,
+    config: TrainConfig,
+    n_trials: int,
+    watch: Timer,
+    closing: ExitStack,
+) -> _JointTrial:
+    """One of several short trainings on some photos, not yet begun; photos are open until `closing` ends."""
+    share = TRIAL_SHARE / n_trials
+    limit_s = None if config.time_limit_s is None else share * config.time_limit_s
     short = replace(
         config,
         time_limit_s=limit_s,
-        iterations=max(LEAST_TRIAL_STEPS, round(TRIAL_SHARE * config.iterations)),
+        iterations=max(LEAST_TRIAL_STEPS, round(share * config.iterations)),
         densification="none",
         own_poses="off",
         transients="off",
         score_every_s=NEVER_S,
         checkpoint_every_s=NEVER_S,
     )
+    origin = model_origin(known_scene(source))
     cameras = np.array([photo.pose.position_enu_m for photo in seen])
-    exposures = [source.own_exposures.get(photo.name, 1.0) for photo in seen]
-    scores: dict[str, float] = {}
-    for model in (name, "harmonics"):
-        light = tried.found[model]
-        own = splats_from_tensors(splats_to_tensors(splats), str(source.folder))
-        warm_start_splats(light.panels, own, source.panels, origin, cameras)
-        joint = _joined(source, seen, own, light, None, origin, config)
-        with ExitStack() as closing:
-            with_normals = config.losses.normal_prior > 0.0
-            settings = StreamSettings(config.memory_bytes // 2, config.window_px, config.reduce, with_normals)
-            names = [photo.name for photo in seen]
-            photos = closing.enter_context(PhotoStream(source, names, origin, settings))
-            shown = held_out_views(source, unseen[:SHOWN_VIEWS], origin, config.memory_bytes // 2, closing)
-            trainer = Trainer(
-                joint,
-                Exposures(exposures),
-                PoseCorrections(seen, origin),
-                Transients([(photo.intrinsics.width_px, photo.intrinsics.height_px) for photo in seen], 1.0),
-                photos,
-                strategy_of(short, len(own)),
-                short,
-                shown=shown,
-                extent_m=_extent_m(cameras),
-                watch=Timer(watch.clock),
-            )
-            trainer.run(Callbacks(_NamedReports(monitor)))
-            scores[model] = trainer.at.history[-1][1]
-    return decide(SeparateLight(), (scores[name], scores["harmonics"], tried.trials.seconds))
+    own = splats_from_tensors(splats_to_tensors(splats), str(source.folder))
+    warm_start_splats(light.panels, own, source.panels, origin, cameras)
+    with_normals = config.losses.normal_prior > 0.0
+    memory_bytes = config.memory_bytes // (2 * n_trials)
+    settings = StreamSettings(memory_bytes, config.window_px, config.reduce, with_normals)
+    photos = closing.enter_context(PhotoStream(source, [photo.name for photo in seen], origin, settings))
+    shown = held_out_views(source, scored, origin, memory_bytes, closing)
+    timer = Timer(watch.clock)
+    trainer = Trainer(
+        _joined(source, seen, own, light, None, origin, config),
+        Exposures([source.own_exposures.get(photo.name, 1.0) for photo in seen]),
+        PoseCorrections(seen, origin),
+        Transients([(photo.intrinsics.width_px, photo.intrinsics.height_px) for photo in seen], 1.0),
+        photos,
+        strategy_of(short, len(own)),
+        short,
+        extent_m=_extent_m(cameras),
+        watch=timer,
+    )
+    return _JointTrial(trainer, timer, shown)
 
 
 def with_white(config: TrainConfig, white: float) -> TrainConfig:
     """Settings with a value from which on photos are taken as overexposed."""
     losses, reflections = replace(config.losses, white=white), replace(config.reflections, white=white)
     return replace(config, losses=losses, reflections=reflections)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _LightLearned:
+    """What is learned before the joint training, and all decisions so far.
+
+    Parameters
+    ----------
+    splats
+        Those that were placed, or what trials have made of them.
+    is_in_splats
+        Whether they show what `light` does.
+    """
+
+    light: TrainedReflections
+    splats: Splats
+    decisions: tuple[Decision, ...]
+    is_in_splats: bool = False
 
 
 def _learned_light(
@@ -551,8 +657,8 @@ def _learned_light(
     checkpoint: Path | None,
     interrupted: InterruptedLightStage | None,
     before: tuple[Decision, ...],
-) -> tuple[TrainedReflections, tuple[Decision, ...]]:
-    """The light, and the decisions about what learns it after those that were made before."""
+) -> _LightLearned:
+    """The light, or harmonics where splats alone tell more, after what was decided `before`."""
     settings = replace(
         config.reflections,
         transients=config.transients,
@@ -582,9 +688,15 @@ def _learned_light(
             name, decisions = ("environment-map", no_decisions) if tried is None else chosen(tried.trials)
             if config.light_apart == "on":
                 decisions = (*decisions, decide(SeparateLight(), None, "on"))
-            elif tried is not None and name != "harmonics" and decisions[0].size < CLEAR_DB:
-                worth = _is_worth(source, learned, splats, tried, name, config, watch, monitor)
-                name, decisions = (name if worth.on else "harmonics"), (*decisions, worth)
+            elif tried is not None and name != ALONE_MODEL and decisions[0].size < CLEAR_DB:
+                names = (name, *contenders(tried.trials, name))
+                worth = _is_worth(source, learned, splats, tried, names, config, watch, monitor)
+                name, splats = worth.name, worth.splats
+                if len(names) > 1:
+                    decisions = (decisions[0], with_splats(worth.scores_db, tried.trials.seconds))
+                decisions = (*decisions, worth.decision)
+                if not worth.decision.on:
+                    return _LightLearned(tried.found[name], splats, (*before, *decisions), True)
         limit_s = _light_limit_s(config, watch)
         stage = LightStage(config, site_record(source.folder), name, (*before, *decisions), limit_s, digest)
     else:
@@ -624,7 +736,7 @@ def _learned_light(
         raise InputError(
             say("is of another version, or damaged ({}); begin the training anew", error, place=checkpoint)
         ) from error
-    return trained, stage.decisions
+    return _LightLearned(trained, splats, stage.decisions)
 
 
 def _light_limit_s(config: TrainConfig, watch: Timer) -> float | None:

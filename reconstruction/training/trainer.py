@@ -22,7 +22,6 @@ from torch import Tensor
 from planning.base.errors import OperationCancelled
 from planning.base.messages import say
 from reconstruction.base.out_of_memory import NotFinite, is_out_of_memory, require_finite
-from reconstruction.light.transients import TRIED as TRANSIENTS_TRIED
 from reconstruction.splats.densification.adaptive import AdaptiveControl, AdaptiveParameters
 from reconstruction.splats.densification.mcmc import MarkovChain, McmcParameters
 from reconstruction.splats.densification.strategy import Densification, FixedNumber, Limits
@@ -41,7 +40,7 @@ from reconstruction.training.model.joint_model import Picture, SceneModel
 from reconstruction.training.objective import objective, on_device
 from reconstruction.training.photos.exposures import Exposures
 from reconstruction.training.photos.photo_stream import PhotoStream, Sample
-from reconstruction.training.photos.poses import TRIED, PoseCorrections
+from reconstruction.training.photos.poses import PoseCorrections
 from reconstruction.training.photos.transients import Transients
 from reconstruction.training.ranks import ALONE, Ranks
 from reconstruction.training.timer import Timer
@@ -220,8 +219,13 @@ class Trainer(TrainingState):
         by_time = 1.0 if left_s <= 0.0 else (at.spent_s + self._reserve_s - at.began_s) / left_s
         return min(1.0, max(by_steps, by_time))
 
-    def run(self, watching: Callbacks) -> None:
+    def run(self, watching: Callbacks, until: float = 1.0) -> None:
         """Train to the end, until stopped and settled, or until time is up.
+
+        Parameters
+        ----------
+        until
+            Progress to wait at, 0 to 1: called again, it goes on.
 
         Raises
         ------
@@ -233,18 +237,20 @@ class Trainer(TrainingState):
         before = torch.get_num_threads()
         torch.set_num_threads(self.config.threads)
         try:
-            self._run(watching)
+            self._run(watching, until)
         except OperationCancelled:
             self.save()
             raise
         finally:
             torch.set_num_threads(before)
 
-    def _run(self, watching: Callbacks) -> None:
+    def _run(self, watching: Callbacks, until: float) -> None:
         self.model.train()
         self._score(watching)
         self._visit(watching)
         while not self._is_settled(watching) and self.progress < 1.0:
+            if self.progress >= until:
+                return
             self._report(watching)
             self._wait(watching)
             self._survived_step()
@@ -345,13 +351,13 @@ class Trainer(TrainingState):
         falling = self.progress if cool_down is None else cool_down.progress_of_rates(at.spent_s)
         set_rates(self.optimiser, config.rates, at.step, max(self.progress, falling), at.factor)
         offsets = torch.zeros(len(splats), 2, device=self.device, requires_grad=True)
-        if self.progress >= TRIED:
-            self.poses.settle(config.own_poses)
+        self.poses.settle(config.own_poses, self.progress)
         move = self.poses(sample.number) if self.poses.are_learned(config.own_poses) else None
         picture = self.picture(sample, self.exposures(sample.number), offsets, move)
-        if self.progress >= TRANSIENTS_TRIED:
-            self.transients.settle(config.transients)
-        looked_at = replace(sample, shown=self.transients.lasting(sample))
+        self.transients.settle(config.transients, self.progress)
+        looked_at = sample
+        if config.transients != "off":
+            looked_at = replace(sample, shown=self.transients.lasting(sample))
         loss, terms = objective(picture, looked_at, config.losses, self.progress, self._with_glass)
         glass = self.model.light
         more = None if glass is None else glass.regulariser(config.reflections, at.step)
@@ -412,7 +418,7 @@ class Trainer(TrainingState):
 
         def displayed(held_out: HeldOut) -> Tensor:
             self._report(watching)
-            display = self.picture(on_device(held_out.sample, self.device), held_out.gain).display.clamp(0.0, 1.0)
+            display = self._displayed(held_out)
             if held_out is self.shown[0] and watching.preview is not None:
                 watching.preview(Preview(at.step, (255.0 * display).round().to(torch.uint8).cpu().numpy()))
             return display
@@ -424,6 +430,17 @@ class Trainer(TrainingState):
         self.model.train(was_training)
         if watching.trace is not None:
             watching.trace.record(at.history[-1][1])
+
+    def _displayed(self, held_out: HeldOut) -> Tensor:
+        return self.picture(on_device(held_out.sample, self.device), held_out.gain).display.clamp(0.0, 1.0)
+
+    def qualities_db(self, views: Sequence[HeldOut]) -> list[float]:
+        """PSNR, dB, of each view by itself, as `quality_db` has it."""
+        was_training = self.model.training
+        self.model.eval()
+        found = [quality_db([view], self._displayed) for view in views]
+        self.model.train(was_training)
+        return found
 
     def save(self) -> None:
         """Write a checkpoint; of a state that is no good, none."""

@@ -163,9 +163,15 @@ class PoseCorrections(nn.Module):
         return setting == "on" or (setting == "auto" and not 0.0 <= float(self.shift_px) <= OwnPoses().tolerance)
 
     @torch.no_grad()
-    def settle(self, setting: EffectSetting) -> None:
-        """Measure how far photos were moved, once; with `auto`, take corrections back that are not worth it."""
-        if setting == "off" or float(self.shift_px) != UNKNOWN:
+    def settle(self, setting: EffectSetting, progress: float) -> None:
+        """Measure how far photos were moved, once; with `auto`, take corrections back that are not worth it.
+
+        Parameters
+        ----------
+        progress
+            Of the training, 0 to 1: nothing is measured before `TRIED`.
+        """
+        if progress < TRIED or setting == "off" or float(self.shift_px) != UNKNOWN:
             return
         shift, turn = self._moves().split_with_sizes([3, 3], dim=1)
         seen = shift / self.distances_m[:, None] + torch.linalg.cross(turn, self.axes)

@@ -12,6 +12,7 @@ from torch import Tensor, nn
 from planning.base.effects import Decision, EffectSetting, decide
 from reconstruction.light.transients import (
     COST,
+    TRIED,
     UNSEEN,
     Blocks,
     LeaveTransientsOut,
@@ -113,8 +114,16 @@ class Transients(nn.Module):
         a, b, c = np.moveaxis(np.floor(points / self._place_m).astype(np.int64), -1, 0)
         return np.asarray((a * 73_856_093 ^ b * 19_349_663 ^ c * 83_492_791) % PLACES)
 
-    def settle(self, setting: EffectSetting) -> None:
-        """Find transients anew, once for about each look at every photo; the first time tells what they are worth."""
+    def settle(self, setting: EffectSetting, progress: float) -> None:
+        """Find transients anew, once for about each look at every photo; the first time tells what they are worth.
+
+        Parameters
+        ----------
+        progress
+            Of the training, 0 to 1: nothing is looked for before `TRIED`.
+        """
+        if progress < TRIED:
+            return
         is_first = float(self.share) == UNSEEN
         if not self.are_looked_for(setting) or not (is_first or int(self.n_looks) % len(self.blocks.shapes) == 0):
             return

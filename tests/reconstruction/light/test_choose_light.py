@@ -8,7 +8,21 @@ import pytest
 import torch
 
 from planning.base.errors import OperationCancelled
-from reconstruction.light.choose_light import WHITE, Trials, choose_light, chosen, trials_of, try_lights, white_of
+from reconstruction.light import choose_light as choose_module
+from reconstruction.light.choose_light import (
+    FOLDS,
+    MOST_WRONG,
+    WHITE,
+    Trials,
+    choose_light,
+    chosen,
+    contenders,
+    surely_more,
+    trials_of,
+    try_lights,
+    white_of,
+    with_splats,
+)
 from reconstruction.light.config import GridSettings, ReflectionConfig
 from reconstruction.light.glass_rays import glass_rays
 from reconstruction.light.photo_set import read_photo_set
@@ -113,6 +127,57 @@ def test_gains_count_as_far_as_they_are_beyond_what_photos_differ_in():
     assert trials.unsure_db[1] == pytest.approx(2.0)
     assert chosen(trials)[0] == "harmonics"
     assert trials_of(alike[:1], 1.0).unsure_db == (0.0, 0.0)
+
+
+def test_looking_at_more_and_more_photos_misleads_no_more_often_than_is_said():
+    rng, n_wrong, n_clear, n_drawn = np.random.default_rng(0), 0, 0, 2000
+    for _ in range(n_drawn):
+        # The true gain is the tolerance, or well beyond it: who says "more" or "less" of the first is wrong.
+        noise = rng.normal(0.0, 1.0, (FOLDS, 6))
+        looks = [noise[: number + 1].ravel() for number in range(FOLDS)]
+        n_wrong += any(surely_more(0.3 + seen, 0.3, FOLDS) is not None for seen in looks)
+        n_clear += surely_more(3.3 + looks[-1], 0.3, FOLDS) is True
+    assert 0.25 * MOST_WRONG < n_wrong / n_drawn <= MOST_WRONG
+    assert n_clear == n_drawn
+    assert surely_more(-3.0 + noise[0], 0.3, FOLDS) is False
+    assert surely_more(np.array([9.0]), 0.3, FOLDS) is None
+
+
+@pytest.mark.parametrize(("spread_db", "n_folds"), [(0.05, 1), (6.0, FOLDS)])
+def test_photos_are_held_back_again_only_while_those_before_do_not_tell(found, monkeypatch, spread_db, n_folds):
+    _, rays, planes, _ = found
+    rng, tried = np.random.default_rng(0), []
+    levels = {"harmonics": 20.0, "environment-map": 23.0, "radiance-grid": 23.1}
+
+    def named(model, *_):
+        tried.append(model)
+        return choose_module.TrainedReflections(model, model, CONFIG, planes, 1.0, "float32", 1, 1, 1.0, (), None)
+
+    monkeypatch.setattr(choose_module, "_tried", named)
+    monkeypatch.setattr(choose_module, "mean_square_error", lambda model, _: levels[model] + rng.normal(0.0, spread_db))
+    monkeypatch.setattr(choose_module, "psnr_db", lambda score: score)
+    found = try_lights(rays, planes, CONFIG)
+    assert len(tried) == 3 * (n_folds + 1)
+    assert len(found.unseen) == 4
+    if n_folds == 1:
+        assert chosen(found.trials)[0] == "environment-map"
+
+
+@pytest.mark.parametrize(
+    ("scores_db", "name", "others"),
+    [
+        ((18.9, 19.7, 20.2), "environment-map", ("radiance-grid",)),
+        ((18.9, 19.7, 19.6), "environment-map", ()),
+        ((18.9, 19.7, 22.0), "radiance-grid", ()),
+        ((18.9, 18.9, 19.0), "harmonics", ()),
+    ],
+)
+def test_a_grid_that_may_be_better_is_tried_with_splats_beside_the_environment_map(scores_db, name, others):
+    assert contenders(Trials(scores_db, 1.0), name) == others
+    near = with_splats({"environment-map": 19.5, "radiance-grid": 20.3, "harmonics": 19.4}, 10.0)
+    assert near.on
+    assert near.size == pytest.approx(0.8)
+    assert "20.3 dB with a radiance grid, 19.5 dB with an environment map" in near.reason
 
 
 @pytest.mark.few(1)

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import torch
 
 from planning.base.errors import InputError
 from planning.geo.mesh import from_corners, write_mesh
@@ -96,8 +97,9 @@ def of_other_light(folder, n):
         shutil.rmtree(one)
 
 
-def light_apart(folder, config, monkeypatch):
-    """The decision, and the model of light; it is asked whatever rays alone say."""
+def light_apart(folder, config, monkeypatch, others=()):
+    """The decision, and the model of light; it is asked whatever rays alone say, of the environment map and others."""
+    monkeypatch.setattr(start_module, "contenders", lambda *_: others)
     monkeypatch.setattr(start_module, "CLEAR_DB", np.inf)
     monkeypatch.setattr(start_module, "chosen", lambda trials: ("environment-map", chosen(trials)[1]))
     start = start_model(read_photo_set(folder), config)
@@ -115,6 +117,31 @@ def test_light_apart_is_on_where_mirror_images_agree_and_off_where_they_do_not(t
     (decision,), name = light_apart(tmp_path / "other", ASKED, monkeypatch)
     assert (decision.on, decision.decided_by, name) == (False, "scene", "harmonics")
     assert "splats alone" in decision.reason
+
+
+def test_of_several_lights_the_one_that_tells_most_together_with_splats_is_kept_with_what_these_learned(
+    tmp_path, monkeypatch
+):
+    write_data_set(tmp_path / "same", n=16)
+    trainers, found, begun = [], [], start_module.Trainer.__init__
+
+    def noted(trainer, *arguments, **more):
+        begun(trainer, *arguments, **more)
+        trainers.append(trainer)
+
+    monkeypatch.setattr(start_module.Trainer, "__init__", noted)
+    monkeypatch.setattr(
+        start_module, "warm_start_splats", lambda panels, splats, *_: found.append(splats.means.clone())
+    )
+    (decision,), name = light_apart(tmp_path / "same", ASKED, monkeypatch, ("radiance-grid",))
+    assert decision.on
+    assert len(trainers) == 3
+    # All began alike; what the best one learned goes on.
+    best = trainers[("environment-map", "radiance-grid").index(name)]
+    assert torch.equal(found[0], found[1])
+    assert torch.equal(found[0], found[2])
+    assert torch.equal(found[3], best.model.splats.means)
+    assert not torch.equal(found[3], found[0])
 
 
 @pytest.mark.parametrize(("setting", "is_apart"), [("on", True), ("off", False)])

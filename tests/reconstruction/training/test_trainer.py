@@ -4,6 +4,7 @@ import itertools
 import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
 import torch
 
@@ -427,6 +428,20 @@ def test_stopped_it_lets_its_rates_fall_to_their_last_within_a_twentieth_of_the_
 def test_settling_takes_a_minute_at_most(make, monkeypatch):
     trainer, _ = stopped(make, monkeypatch, 7200.0, 2)
     assert trainer.at.step == 2 + 60
+
+
+def test_a_training_that_waits_goes_on_as_if_it_had_not(make):
+    whole, part = make(), make()
+    whole.run(Callbacks())
+    part.run(Callbacks(), 0.5)
+    assert part.at.step == CONFIG.iterations // 2
+    waiting = part.qualities_db(part.shown)
+    assert len(waiting) == len(part.shown)
+    assert part.model.training
+    part.run(Callbacks())
+    assert_same(whole, part)
+    assert float(np.mean(part.qualities_db(part.shown))) == pytest.approx(part.at.history[-1][1])
+    assert waiting != part.qualities_db(part.shown)
 
 
 def test_a_training_that_is_nearly_over_settles_no_longer_than_it_would_have_lasted(make, monkeypatch):

@@ -16,6 +16,7 @@ from reconstruction.splats.sky import Sky
 from reconstruction.splats.splats import Splats
 from reconstruction.training.model.joint_model import SceneModel
 from reconstruction.training.photos.poses import (
+    TRIED,
     OwnPoses,
     PoseCorrections,
     moved,
@@ -175,7 +176,7 @@ def test_the_shift_is_that_of_what_photos_show(tmp_path):
     for photo, there, distance in zip(photos, moved(photos, poses.moves()), poses.distances_m, strict=True):
         point = (photo.pose.position_enu_m + float(distance) * photo.pose.cam_from_enu[2])[None]
         found.append(float(np.linalg.norm(there.pixels(point) - photo.pixels(point))))
-    poses.settle("on")
+    poses.settle("on", 1.0)
     assert float(poses.shift_px) == pytest.approx(float(np.median(found)), rel=0.15)
 
 
@@ -185,7 +186,9 @@ def test_photos_that_hardly_move_are_put_back_and_others_go_on(tmp_path):
     for px, is_on in ((little, False), (much, True)):
         poses = corrected(photos, [[px, 0.0, 0.0], [0.0, 0.0, px], [px, 0.0, 0.0]])
         assert poses.are_learned("auto")
-        poses.settle("auto")
+        poses.settle("auto", TRIED - 0.01)
+        assert poses.pixels.any()
+        poses.settle("auto", TRIED)
         assert poses.are_learned("auto") is is_on
         assert bool(poses.pixels.any()) is is_on
         decision = poses.decision("auto", 100.0)
@@ -196,7 +199,7 @@ def test_photos_that_hardly_move_are_put_back_and_others_go_on(tmp_path):
 def test_the_user_decides_whatever_photos_do(tmp_path):
     photos = cameras(tmp_path, 2)
     poses = corrected(photos, [[0.1, 0.0, 0.0], [0.0, 0.0, 0.1]])
-    poses.settle("on")
+    poses.settle("on", 1.0)
     assert poses.are_learned("on")
     assert poses.pixels.any()
     assert poses.decision("on", 1.0).on

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import torch
 
-from reconstruction.light.transients import UNSEEN
+from reconstruction.light.transients import TRIED, UNSEEN
 from reconstruction.splats.rasterising.views import View
 from reconstruction.training.config import LossWeights
 from reconstruction.training.model.joint_model import Picture
@@ -43,7 +43,9 @@ def looked_at(persons, setting, window=(0, 0, WIDTH, HEIGHT)):
     for _ in range(3):
         for sample in samples:
             transients.see(sample, shown[y : y + height, x : x + width], torch.full((height, width), 5.0))
-    transients.settle(setting)
+    transients.settle(setting, TRIED - 0.01)
+    assert float(transients.share) == UNSEEN
+    transients.settle(setting, TRIED)
     return transients, samples
 
 
@@ -88,7 +90,7 @@ def test_what_learning_light_found_holds_until_splats_say_otherwise():
     sample = sample_of(0, displays([])[0])
     assert not transients.lasting(sample)[:8, 40:48].any()
     transients.see(sample, torch.full((HEIGHT, WIDTH, 3), 120 / 255), torch.full((HEIGHT, WIDTH), 5.0))
-    transients.settle("auto")
+    transients.settle("auto", 1.0)
     assert transients.lasting(sample) is None
     assert not Transients([(WIDTH, HEIGHT)], 5.0, known).left_out.any()  # of photos of another size
 
