@@ -8038,6 +8038,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Aufnahmen gefunden nach</translation>
     </message>
     <message>
+        <source>views held back have {0} dB with a radiance grid, {1} dB with an environment map</source>
+        <translation>zurückgehaltene Ansichten haben mit einem Strahlungsgitter {0} dB, mit einem Umgebungsbild {1} dB</translation>
+    </message>
+    <message>
         <source>views held back have {0} dB with it, {1} dB with splats alone</source>
         <translation>zurückgehaltene Ansichten haben damit {0} dB, mit Splats allein {1} dB</translation>
     </message>
