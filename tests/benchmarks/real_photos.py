@@ -23,11 +23,12 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from groundstation.services.model.rendering import stored_lpips_weights
-from groundstation.services.photos.coarse import SITE_FILE, SPARSE, CoarseRequest, coarse_files
+from groundstation.services.photos.coarse import SITE_FILE, SPARSE, coarse_files
 from groundstation.services.project.input_files import read_input_site
 from groundstation.services.reconstruct.training import PLAIN_METHOD
 from groundstation.services.scenes.photos import render_photos
 from reconstruction.base.cameras import Pose, PosedPhoto
+from reconstruction.coarse.parameters import CoarseRequest
 from reconstruction.colmap.folder import read_model, write_model
 from reconstruction.colmap.georeference import Similarity, model_of, posed_photos
 from reconstruction.dataset.prepare import prepare

@@ -7,8 +7,10 @@ from pathlib import Path
 from typing import Any
 
 from groundstation.cli.console import counted, print_findings, print_json, print_next, run_job, show, tell, worded
-from groundstation.cli.options import count, in_words_of_options, new_folder
+from groundstation.cli.options import add_parameter, in_words_of_options, new_folder, typed_values
 from planning.base.messages import say
+from planning.base.parameters import declared, with_values
+from reconstruction.coarse.parameters import CoarseRequest
 
 EPILOG = """Writes coarse.ply, site.json (without panels), sparse/0 (a COLMAP text model in the frame of the site) and
 coarse.json, a report. An interrupted run goes on when the command is given again. The size is that of GPS, control
@@ -45,16 +47,8 @@ def add_parser(subparsers: Any) -> None:
         help="two photos, and the metres between where they were taken; may be given again",
     )
     add("--origin", type=_origin, metavar="LAT,LON,H", help="where this is, if the photos do not say so")
-    add("--heights", choices=("auto", "takeoff", "absolute"), default="auto", help="which heights of photos count")
-    add("--lens", choices=("wide", "zoom", "thermal", "band"), help="which of several cameras (default: the wide one)")
-    add(
-        "--dense",
-        choices=("auto", "on", "off"),
-        default="auto",
-        help="look in the photos for walls that have too few points (default auto: where that is a tenth of them)",
-    )
-    add("--size", type=count, default=1600, metavar="PX", help="longer side that photos are reduced to (default 1600)")
-    add("--seed", type=int, default=0, metavar="N", help="of random choices (default 0)")
+    for each in declared(CoarseRequest).values():
+        add_parameter(parser, each)
     add("--json", action="store_true", help="print one JSON object instead of text")
 
 
@@ -83,11 +77,10 @@ def _origin(text: str) -> tuple[float, float, float]:
 
 def run(options: argparse.Namespace) -> int:
     """Make, write, print; returns the exit status."""
-    from groundstation.services.photos.coarse import SPARSE, CoarseRequest, coarse_files
+    from groundstation.services.photos.coarse import SPARSE, coarse_files
     from planning.geo.frames import Origin
-    from reconstruction.photos.lens import CameraKind
 
-    with in_words_of_options():
+    with in_words_of_options(CoarseRequest):
         request = CoarseRequest(
             options.photos,
             options.out,
@@ -95,12 +88,8 @@ def run(options: argparse.Namespace) -> int:
             options.gcp,
             tuple(options.distance),
             None if options.origin is None else Origin(*options.origin),
-            options.heights,
-            None if options.lens is None else CameraKind(options.lens),
-            options.size,
-            options.seed,
-            options.dense,
         )
+        request = with_values(request, typed_values(options, CoarseRequest))
     result = run_job("coarse", lambda context: coarse_files(request, context))
     report = result.report
     if options.json:

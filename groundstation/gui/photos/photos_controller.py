@@ -11,7 +11,7 @@ from PySide6.QtCore import QObject, Signal
 
 from groundstation.gui.application.context import ApplicationContext
 from groundstation.services.jobs.runner import JobContext
-from groundstation.services.photos.coarse import SPARSE, CoarseFiles, CoarseRequest, coarse_files_in_process
+from groundstation.services.photos.coarse import SPARSE, CoarseFiles, coarse_files_in_process
 from groundstation.services.photos.found_panels import (
     AppliedPoses,
     PanelDraft,
@@ -39,6 +39,7 @@ from planning.base.errors import GroundStationError
 from planning.base.findings import Severity
 from planning.plan import Plan
 from planning.site.records import Facade, SiteModel
+from reconstruction.coarse.parameters import CoarseRequest
 from reconstruction.panels.solving.facades_file import found_facades
 
 if TYPE_CHECKING:

@@ -11,17 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from groundstation.services.photos.dataset import prepare_files
-from planning.base.effects import Decision, EffectSetting
+from planning.base.effects import Decision
 from planning.base.errors import InputError
 from planning.base.files import check_folder_name
 from planning.base.findings import Finding, Severity
 from planning.base.json_file import read_json, write_atomically, write_together
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor, Stop, Trace, never
-from planning.geo.frames import Origin
 from planning.geo.mesh import TriangleMesh, box_mesh, empty_mesh, join, ply_bytes
 from planning.photos.folder import read_photos
-from planning.photos.places import PhotoHeights
 from planning.site.file import site_bytes
 from planning.site.importing.importer import site_of_facades
 from planning.site.importing.options import ImportOptions
@@ -30,6 +28,7 @@ from planning.site.importing.source import SourceModel
 from planning.site.records import NoFlyZone, Obstacle, Site, SiteModel
 from reconstruction.coarse.build import CoarseModel, CoarseParameters, Stated, build_coarse, write_sparse
 from reconstruction.coarse.control_and_camera import read_control_points, read_lens
+from reconstruction.coarse.parameters import CoarseRequest
 from reconstruction.coarse.placing import GUESSED
 from reconstruction.photos.lens import CameraKind
 
@@ -54,37 +53,6 @@ NOT_FLOWN_M = 10.0
 
 LEAST_ZONE_M2, ROUNDED_M = 4.0, 0.5
 """Of zones that nobody has seen: smaller ones are left out, and by how much their sides may be simpler."""
-
-
-@dataclass(frozen=True, slots=True)
-class CoarseRequest:
-    """What is to be made.
-
-    Parameters
-    ----------
-    photos, out
-        Folder of photos, and of what is made of them.
-    camera, control
-        Files of the camera's numbers and of ground control points.
-    distances
-        Names of two photos, and the metres between where they were taken.
-    size_px
-        Longer side that photos are reduced to for matching.
-    dense
-        Whether walls without points are looked for in the photos.
-    """
-
-    photos: Path
-    out: Path
-    camera: Path | None = None
-    control: Path | None = None
-    distances: tuple[tuple[str, str, float], ...] = ()
-    origin: Origin | None = None
-    heights: PhotoHeights = "auto"
-    kind: CameraKind | None = None
-    size_px: int = 1600
-    seed: int = 0
-    dense: EffectSetting = "auto"
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,7 +98,7 @@ def coarse_files(request: CoarseRequest, monitor: Monitor = QUIET) -> CoarseFile
         request.distances,
         request.origin,
         request.heights,
-        request.kind,
+        None if request.lens is None else CameraKind(request.lens),
         request.dense,
     )
     coarse = build_coarse(request.photos, read.photos, request.out / KEPT, stated, parameters, monitor)

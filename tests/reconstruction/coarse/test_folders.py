@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from groundstation.services.photos.coarse import CoarseRequest, coarse_files
+from groundstation.services.photos.coarse import coarse_files
 from planning.base.errors import InputError
+from reconstruction.coarse.parameters import CoarseRequest
 from tests.planning.photos.photo_writer import exif_part, gps_tags, jpeg, packet, save
 
 

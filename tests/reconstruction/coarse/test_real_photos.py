@@ -8,9 +8,10 @@ import shutil
 import numpy as np
 import pytest
 
-from groundstation.services.photos.coarse import CoarseRequest, coarse_files, photos_of
+from groundstation.services.photos.coarse import coarse_files, photos_of
 from planning.base.errors import InputError, OperationCancelled
 from planning.site.file import read_site
+from reconstruction.coarse.parameters import CoarseRequest
 from reconstruction.colmap.folder import read_frame, read_model
 from reconstruction.colmap.georeference import angle_between_deg, fit
 
