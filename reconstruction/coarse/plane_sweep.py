@@ -22,8 +22,8 @@ from planning.base.jit import chunks, kernel, run_parallel
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.geo.mesh import TriangleMesh
+from planning.geo.ray_casting import RayCaster
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.base.ray_casting import RayCaster
 from reconstruction.coarse.buildings import Buildings, Face
 from reconstruction.coarse.cloud import Cloud
 

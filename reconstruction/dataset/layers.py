@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.jit import kernel
+from planning.geo.ray_casting import RayCaster
 from reconstruction.base.cameras import Intrinsics, PosedPhoto
-from reconstruction.base.ray_casting import RayCaster
 
 Array = NDArray[np.float64]
 

@@ -25,9 +25,9 @@ from planning.base.jit import n_threads
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.geo.mesh import join, write_mesh
+from planning.geo.ray_casting import RayCaster
 from planning.site.records import SiteModel, panel_corners
 from reconstruction.base.cameras import Intrinsics, PosedPhoto
-from reconstruction.base.ray_casting import RayCaster
 from reconstruction.dataset.layers import IN_FRONT_M, Scene, draw_layers, facing, normals_to_16_bit, straightened
 from reconstruction.dataset.records import ColouredPoints, start_points, write_records
 from reconstruction.dataset.refined_mesh import RefineParameters, grown_corners, refine_mesh

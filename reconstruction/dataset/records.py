@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 from planning.base.effects import Decision
 from planning.base.json_file import write_atomically
 from planning.geo.mesh import TriangleMesh
+from planning.geo.ray_casting import RayCaster
 from planning.site.records import Site
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.base.ray_casting import RayCaster
 from reconstruction.colmap.folder import write_model
 from reconstruction.colmap.georeference import model_of
 from reconstruction.colmap.record import ColmapPoints

@@ -18,9 +18,9 @@ from planning.base.progress import QUIET, Monitor
 from planning.coverage.model import CoverageModel, exact_sections
 from planning.coverage.sections import NOT_SEEN, sections_of
 from planning.geo.mesh import TriangleMesh
+from planning.geo.ray_casting import RayCaster
 from planning.plan import Viewpoint, viewpoint_arrays
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.base.ray_casting import RayCaster
 
 Array = NDArray[np.float64]
 

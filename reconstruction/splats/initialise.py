@@ -17,9 +17,9 @@ from planning.base.messages import say
 from planning.base.parameters import check, parameter
 from planning.base.progress import QUIET, Monitor
 from planning.geo.mesh import from_corners, join
+from planning.geo.ray_casting import RayCaster
 from planning.site.records import panel_triangles
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.base.ray_casting import RayCaster
 from reconstruction.dataset.layers import unit_normals
 from reconstruction.dataset.records import UNSEEN, ColouredPoints
 from reconstruction.splats.splats import Splats

@@ -21,8 +21,8 @@ from planning.base.errors import InfeasibleError
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.geo.mesh import TriangleMesh
+from planning.geo.ray_casting import RayCaster
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.base.ray_casting import RayCaster
 from reconstruction.panels.rectify.surface import FacadeSurface, Rectification, polynomial_view
 from reconstruction.panels.rectify.view import SurfaceView, TangentView, surface_view
 

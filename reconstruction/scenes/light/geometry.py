@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from planning.base.jit import kernel
 from planning.geo.mesh import TriangleMesh, join
-from reconstruction.base.ray_casting import RayCaster
+from planning.geo.ray_casting import RayCaster
 from reconstruction.scenes.record import Panes, Scene
 
 Array = NDArray[np.float64]

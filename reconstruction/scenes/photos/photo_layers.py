@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from planning.base.jit import chunks
 from planning.geo.mesh import from_corners
+from planning.geo.ray_casting import RayCaster
 from planning.site.records import panel_triangles
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.base.ray_casting import RayCaster
 from reconstruction.dataset.layers import draw_panels, facing, normals_to_16_bit, unit_normals
 from reconstruction.dataset.prepare import layer_path
 from reconstruction.scenes.photos.renderer import RenderedPhoto

@@ -26,9 +26,9 @@ from planning.base.json_file import write_atomically
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.geo.mesh import TriangleMesh, from_corners, join
+from planning.geo.ray_casting import RayCaster
 from planning.site.records import panel_triangles
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.base.ray_casting import RayCaster
 from reconstruction.dataset.records import start_points, transforms, write_records
 from reconstruction.photos.decode import PICTURE_FILE, decoded
 from reconstruction.scenes.effects.registry import decide_effects

@@ -29,7 +29,7 @@ from torch import Tensor, nn
 from torch.nn.functional import grid_sample
 
 from planning.geo.mesh import TriangleMesh
-from reconstruction.base.ray_casting import RayCaster
+from planning.geo.ray_casting import RayCaster
 from reconstruction.light.cube_map import CubeMap
 from reconstruction.light.shading import incidence_cosines, reflected_directions
 from reconstruction.splats.harmonic_colour import N_HARMONICS, display_colours, light_of_display

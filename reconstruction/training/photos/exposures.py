@@ -22,8 +22,8 @@ from planning.base.effects import Assessment, Decision, EffectSetting, decide
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.geo.mesh import TriangleMesh
+from planning.geo.ray_casting import RayCaster
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.base.ray_casting import RayCaster
 from reconstruction.light.photo_set import PhotoSet
 from reconstruction.splats.surfels import SAME_SURFACE_M, panel_proximity
 

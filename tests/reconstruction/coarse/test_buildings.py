@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from planning.geo.mesh import closed_parts
-from reconstruction.base.ray_casting import RayCaster
+from planning.geo.ray_casting import RayCaster
 from reconstruction.coarse.buildings import make_buildings, moved, prism
 from reconstruction.coarse.cloud import in_ring
 from reconstruction.coarse.walls import BuildingParameters, find_ground

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from planning.geo.mesh import TriangleMesh, box_mesh, empty_mesh
+from planning.geo.ray_casting import RayCaster
 from reconstruction.base.cameras import Intrinsics, PosedPhoto
-from reconstruction.base.ray_casting import RayCaster
 from reconstruction.dataset.layers import draw_panels, facing, without_hidden
 from tests.reconstruction.panels.rectify.scenes import BENT, looking_at
 from tests.reconstruction.panels.rectify.test_surface import surface

@@ -18,9 +18,9 @@ from planning.base.errors import InputError, OperationCancelled
 from planning.base.progress import Monitor
 from planning.geo.frames import Origin
 from planning.geo.mesh import TriangleMesh, box_mesh, empty_mesh, join
+from planning.geo.ray_casting import RayCaster
 from planning.site.records import Airspace, Facade, Obstacle, Panel, Site, SiteModel
 from reconstruction.base.cameras import Intrinsics, PosedPhoto
-from reconstruction.base.ray_casting import RayCaster
 from reconstruction.colmap.folder import read_model
 from reconstruction.colmap.record import intrinsics_of
 from reconstruction.dataset.layers import (

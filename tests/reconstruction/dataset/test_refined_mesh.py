@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from planning.geo.mesh import TriangleMesh, empty_mesh
-from reconstruction.base.ray_casting import RayCaster
+from planning.geo.ray_casting import RayCaster
 from reconstruction.dataset.refined_mesh import RefineParameters, drawn_in, refine_mesh
 from tests.reconstruction.panels.rectify.scenes import surface_mesh
 from tests.reconstruction.panels.rectify.test_surface import surface

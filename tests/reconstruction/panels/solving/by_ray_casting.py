@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from planning.geo.ray_casting import RayCaster
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.base.ray_casting import RayCaster
 
 Array = NDArray[np.float64]
 

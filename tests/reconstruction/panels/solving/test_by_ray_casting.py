@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from planning.geo.mesh import TriangleMesh
-from reconstruction.base.ray_casting import RayCaster
+from planning.geo.ray_casting import RayCaster
 from tests.reconstruction.panels.rectify.scenes import looking_at, surface_mesh
 from tests.reconstruction.panels.rectify.test_surface import surface
 from tests.reconstruction.panels.solving.by_ray_casting import averaged, cast_corners

@@ -251,3 +251,8 @@ def test_exposures_that_make_no_sense_are_refused() -> None:
     for wrong in (0.0, -1.0, float("nan")):
         with pytest.raises(ValueError, match="exposure"):
             developed(taken, wrong)
+
+
+def test_an_effect_that_there_is_not_is_refused_by_name() -> None:
+    with pytest.raises(InputError, match="no effect 'fog'; expected one of"):
+        decide_effects(scene(), [photo()], RenderSettings(effects={"fog": "on"}))

@@ -232,7 +232,6 @@ def test_a_lens_bends_the_picture_unless_that_is_switched_off() -> None:
 @pytest.mark.parametrize(
     ("wrong", "said"),
     [
-        ({"effects": {"fog": "on"}}, "no effect 'fog'"),
         ({"samples": 0}, "samples"),
         ({"tolerance": 0.0}, "tolerance"),
         ({"environment_rows": 1}, "environment_rows"),

@@ -13,11 +13,11 @@ from hypothesis import strategies as st
 from planning.base.errors import InputError
 from planning.coverage.sections import panel_frames
 from planning.geo.mesh import TriangleMesh, box_mesh, closed_parts, empty_mesh, from_corners, join
+from planning.geo.ray_casting import RayCaster
 from planning.site.bundled import ORIGIN, arc_grid, panel_grid
 from planning.site.bundled import SCENES as SITES
 from planning.site.free_space import free_space
 from planning.site.records import Airspace, Facade, Panel, Site, SiteModel, panel_corners, panel_triangles
-from reconstruction.base.ray_casting import RayCaster
 from reconstruction.scenes.record import Glass, Layer, Scene
 from reconstruction.scenes.world.build import build_scene, edge_gaps, profile_rings, without_openings
 from reconstruction.scenes.world.look import Look, read_look

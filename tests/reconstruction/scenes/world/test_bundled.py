@@ -12,9 +12,9 @@ import pytest
 from planning.base.errors import InputError
 from planning.coverage.sections import panel_frames
 from planning.geo.mesh import TriangleMesh, from_corners, join
+from planning.geo.ray_casting import RayCaster
 from planning.site.free_space import free_space
 from planning.site.records import panel_corners, panel_triangles
-from reconstruction.base.ray_casting import RayCaster
 from reconstruction.scenes.record import Interiors, Layer, Scene
 from reconstruction.scenes.world.bundled import SCENES, bundled_scene
 from tests.slow import slow

@@ -3,7 +3,7 @@
 import numpy as np
 
 from planning.geo.mesh import TriangleMesh
-from reconstruction.base.ray_casting import RayCaster
+from planning.geo.ray_casting import RayCaster
 from reconstruction.training.methods.ref_gaussian import meets_scene, points_on_mesh
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from planning.geo.mesh import box_mesh, empty_mesh
-from reconstruction.base.ray_casting import RayCaster
+from planning.geo.ray_casting import RayCaster
 
 
 def test_rays_hit_a_box_where_they_should_and_normals_face_them() -> None:
