@@ -12,9 +12,12 @@ from planning.base.parameters import Choice, check, parameter
 Precision = Literal["f32", "f64"]
 """Of the coverage kernel; single precision is faster and differs on section borders only (docs/benchmarks.md)."""
 
+Objective = Literal["image-error", "sections"]
+"""What views are chosen for: the expected error of a model's pictures, or hemisphere sections (paper Eq. 10)."""
+
 DEFAULT_PROFILE = "m3e"
 
-METHOD_NAMES = ("greedy", "pso", "noto", "orbit")
+METHOD_NAMES = ("greedy", "pso", "noto", "orbit", "random")
 """Of `planning.viewpoints.methods`, which takes long to load. A file may ask for one of a later version."""
 
 N_CANDIDATES = 20_000
@@ -33,7 +36,7 @@ LARGEST_SEED = 2**63 - 1
 DEFAULT_SHARE = 0.99
 """Share of the reachable sections that is covered when no number of views is given."""
 
-GOAL, HOW, WHICH, FLIGHT = "how much (one of the first three)", "how", "which views count", "flight"
+GOAL, HOW, WHICH, FLIGHT = "how much (one goal at most)", "how", "which views count", "flight"
 """Headings of the command line's help."""
 
 
@@ -249,6 +252,23 @@ class GreedyParameters:
         group=GOAL,
         row="more",
     )
+    objective: Objective = parameter(
+        "image-error",
+        "what a number of views or batteries is spent on: pictures of a model that are near to the truth, or the "
+        "paper's count of hemisphere sections",
+        label="Views are chosen for",
+        choices=(Choice("image-error", "the model's pictures"), Choice("sections", "hemisphere sections")),
+        option="--objective",
+        group=GOAL,
+        row="more",
+    )
+    surroundings: EffectSetting = parameter(
+        "auto",
+        "whether places of what panes mirror count in the expected error; auto: as the scene calls for",
+        choices=(Choice("auto"), Choice("on"), Choice("off")),
+        option="--surroundings",
+        group=GOAL,
+    )
     improve: bool = parameter(True, "exchange candidates and refine poses after the greedy choice")
     certify: bool = parameter(True, "compute the dual bound for the number of views (about a second)")
 
@@ -258,7 +278,7 @@ class GreedyParameters:
 
 @dataclass(frozen=True, slots=True)
 class PlanParameters:
-    """What is wanted of a plan. At most one of `n_views`, `share` and `n_batteries` is set."""
+    """What is wanted of a plan. At most one of `n_views`, `share`, `n_batteries` and `least_gain_db` is set."""
 
     method: str = parameter(
         "greedy",
@@ -307,6 +327,20 @@ class PlanParameters:
         metavar="N",
         group=GOAL,
         row="first",
+    )
+    least_gain_db: float | None = parameter(
+        None,
+        "as many batteries as are worth it: until another would bring unseen views less than so many dB more",
+        label="Worth another battery",
+        name="good enough",
+        unit="dB",
+        above=0.0,
+        most=100.0,
+        option="--good-enough",
+        metavar="DB",
+        group=GOAL,
+        row="first",
+        step=0.1,
     )
     profile_id: str = parameter(
         DEFAULT_PROFILE,
@@ -358,6 +392,7 @@ class PlanParameters:
     )
 
     def __post_init__(self) -> None:
-        if sum(value is not None for value in (self.n_views, self.share, self.n_batteries)) > 1:
-            raise ValueError("expected at most one of a number of views, a share and a number of batteries")
+        goals = (self.n_views, self.share, self.n_batteries, self.least_gain_db)
+        if sum(value is not None for value in goals) > 1:
+            raise ValueError("expected at most one of a number of views, a share, a number of batteries and a gain")
         check(self)

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from planning.base.effects import Decision
 from planning.base.files import read_input_file
 from planning.base.json_file import JSON_FILE, expect_format, parse_json, plain_values, to_record, write_atomically
-from planning.base.messages import say
+from planning.base.messages import joined, say
 from planning.geo.frames import Origin, Vec3
 from planning.parameters import Constraints, FlightRules
 from planning.site.records import check_point
@@ -207,6 +207,57 @@ class Coverage:
 
 
 @dataclass(frozen=True, slots=True)
+class BatteryWorth:
+    """What a flight brings up to a battery: minutes in the air, photos, and expected PSNR of unseen views, dB."""
+
+    n_batteries: int
+    minutes: float
+    n_photos: int
+    psnr_db: float
+
+    @property
+    def text(self) -> str:
+        """For people."""
+        batteries = say("1 battery") if self.n_batteries == 1 else say("{} batteries", self.n_batteries)
+        return say("{} {:.0f} min: {:.1f} dB", batteries, self.minutes, self.psnr_db)
+
+
+@dataclass(frozen=True, slots=True)
+class FlightWorth:
+    """What the model of a plan's photos is expected to be like, battery by battery (`planning.coverage.image_error`).
+
+    Parameters
+    ----------
+    batteries
+        Up to each of the plan's sorties, in the order flown.
+    another
+        With one battery more, whose photos add most; None where none would add anything.
+    deviation_db
+        Standard deviation of models' PSNR from what is expected.
+    """
+
+    batteries: tuple[BatteryWorth, ...]
+    another: BatteryWorth | None
+    deviation_db: float
+
+    def __post_init__(self) -> None:
+        if not self.batteries:
+            raise ValueError(say("expected at least one battery", place="worth.batteries"))
+
+    @property
+    def gain_db(self) -> float:
+        """What another battery would bring."""
+        return 0.0 if self.another is None else self.another.psnr_db - self.batteries[-1].psnr_db
+
+    @property
+    def text(self) -> str:
+        """For people, in one line."""
+        each = joined("; ", (battery.text for battery in self.batteries))
+        expected = say("{} (± {:.1f} dB)", each, self.deviation_db)
+        return say("{}; another battery would bring {:.1f} dB more", expected, max(0.0, self.gain_db))
+
+
+@dataclass(frozen=True, slots=True)
 class HistoryPoint:
     """Sections covered by the best viewpoint set known `t_s` seconds after the start."""
 
@@ -237,6 +288,8 @@ class Plan:
     effects: tuple[Decision, ...] = ()
     profile: str = ""
     """Identifier of the aircraft-and-camera profile in the catalogue, empty when they were given by hand."""
+    worth: FlightWorth | None = None
+    """What its photos were expected to bring when it was planned."""
 
     def __post_init__(self) -> None:
         if self.format != PLAN_FORMAT:
@@ -254,6 +307,17 @@ class Plan:
                     raise ValueError(
                         say("there is no viewpoint '{}'", viewpoint_id, place=f"sorties[{i}].viewpoint_ids")
                     )
+
+    @property
+    def present_worth(self) -> FlightWorth | None:
+        """What its photos are expected to bring; None where it is not known, or sorties have changed since."""
+        counts, n_photos = [], 0
+        for sortie in self.sorties:
+            n_photos += len(sortie.viewpoint_ids)
+            if sortie.viewpoint_ids:
+                counts.append(n_photos)
+        is_same = self.worth is not None and [battery.n_photos for battery in self.worth.batteries] == counts
+        return self.worth if is_same else None
 
     @property
     def duration_s(self) -> float:

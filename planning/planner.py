@@ -17,10 +17,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.aircraft.catalogue import Profile, profile
+from planning.base.effects import Decision
 from planning.base.errors import InputError
 from planning.base.findings import Finding
 from planning.base.progress import QUIET, Monitor, Stop, TimeLimit, Trace, any_of, never
 from planning.coverage.evaluate import DepthCount, coverage, depth
+from planning.coverage.image_error import ImageErrorModel
 from planning.coverage.model import exact_coverage
 from planning.coverage.positions import rounded
 from planning.coverage.reach_kernel import REACHABLE, UNREACHABLE
@@ -34,8 +36,16 @@ from planning.routing.roadmap import build_roadmap
 from planning.site.free_space import LEG_MARGIN_M, free_space
 from planning.site.records import SiteModel
 from planning.viewpoints.budget import best_flights, views_within_budget, with_fewer_views
-from planning.viewpoints.candidates import places_around
+from planning.viewpoints.candidates import candidate_pool, places_around
 from planning.viewpoints.greedy import greedy, most_covering
+from planning.viewpoints.least_error import (
+    FEW_CANDIDATES,
+    choose_for_least_error,
+    error_state,
+    expected_psnr_db,
+    flight_worth,
+    image_error_model,
+)
 from planning.viewpoints.methods import method_named
 from planning.viewpoints.prepare import Prepared, prepare
 from planning.viewpoints.problem import Goal, Optimiser, ViewProblem, locked_views, nothing_to_see, take
@@ -247,7 +257,12 @@ def plan_flight(
     routing_s = float(np.clip(ROUTING_SHARE * request.time_budget_s, SHORTEST_ROUTING_S, LONGEST_ROUTING_S))
     choosing = any_of(stop, TimeLimit(max(0.1, limit.remaining_s() - routing_s)))
     problem = prepared.problem
-    views, bound = _choose(problem, request, chosen_profile, choosing, trace, monitor)
+    error, decision = image_error_model(problem, site_model, request.greedy.surroundings, request.seed)
+    if request.least_gain_db is not None:
+        n_batteries = _batteries_worth(problem, error, request, chosen_profile, choosing, monitor)
+        request = replace(request, n_batteries=n_batteries, least_gain_db=None)
+    chosen_for = error if request.greedy.objective == "image-error" and error.n_elements else None
+    views, bound = _choose(problem, request, chosen_profile, chosen_for, choosing, trace, monitor)
     if request.greedy.solid_angle_weights:
         bound = None
     n_locked = len(request.locked)
@@ -259,7 +274,9 @@ def plan_flight(
         raise nothing_to_see()
     n_chosen = len(views.heading_rad)
     if limit.remaining_s() < routing_s + ROUTING_SHARE * request.time_budget_s:
-        views = _that_can_be_routed(problem, views, request, chosen_profile, limit.remaining_s() - DRAWING_S)
+        views = _that_can_be_routed(
+            problem, views, chosen_for, request, chosen_profile, limit.remaining_s() - DRAWING_S
+        )
     watch.lap("views")
     flights = _route(problem, views, request, chosen_profile, limit, routing_s, stop, monitor)
     while request.n_batteries is not None and len(flights) > request.n_batteries:
@@ -268,7 +285,8 @@ def plan_flight(
             views = with_fewer_views(problem.model, views, n_locked)
             flights = _route(problem, views, request, chosen_profile, limit, routing_s, stop, monitor)
     watch.lap("routing")
-    plan = _plan(site_model, request, chosen_profile, prepared, views, flights, trace)
+    plan = _plan(site_model, request, chosen_profile, prepared, (*prepared.effects, decision), views, flights, trace)
+    plan = replace(plan, worth=flight_worth(problem, error, plan, request.seed))
     watch.lap("certificate")
     reachability = problem.reachability
     return Planned(
@@ -285,13 +303,23 @@ def plan_flight(
 
 
 def _that_can_be_routed(
-    problem: ViewProblem, views: ViewpointArrays, request: PlanRequest, chosen_profile: Profile, seconds: float
+    problem: ViewProblem,
+    views: ViewpointArrays,
+    error: ImageErrorModel | None,
+    request: PlanRequest,
+    chosen_profile: Profile,
+    seconds: float,
 ) -> ViewpointArrays:
-    """The most telling of the views, as many as ways can be found for in time."""
+    """The most telling of the views, by what they were chosen for, as many as ways can be found for in time."""
     metric = round_trip_metric(motion_limits(chosen_profile.aircraft, request.rules))
     n_locked = len(request.locked)
     n_views = max(FEWEST_ROUTED, n_locked, n_stops_within(problem.roadmap, views.positions_enu_m, metric, seconds))
-    return most_covering(problem.model, views, n_views, n_locked)
+    if error is None or len(views.heading_rad) <= n_views:
+        return most_covering(problem.model, views, n_views, n_locked)
+    is_locked = np.arange(len(views.heading_rad)) < n_locked
+    free = take(views, ~is_locked)
+    chosen = choose_for_least_error(error_state(error, free, take(views, is_locked)), n_views - n_locked, QUIET)
+    return take(views, np.concatenate([np.flatnonzero(is_locked), n_locked + np.sort(chosen)]))
 
 
 def _open_sections(problem: ViewProblem, plan: Plan, request: PlanRequest) -> tuple[OpenSection, ...]:
@@ -328,7 +356,13 @@ def first_reusable(known: Iterable[Prepared], site_model: SiteModel, request: Pl
 
 
 def _choose(
-    problem: ViewProblem, request: PlanRequest, chosen_profile: Profile, stop: Stop, trace: Trace, monitor: Monitor
+    problem: ViewProblem,
+    request: PlanRequest,
+    chosen_profile: Profile,
+    error: ImageErrorModel | None,
+    stop: Stop,
+    trace: Trace,
+    monitor: Monitor,
 ) -> tuple[ViewpointArrays, float | None]:
     """Views, the locked ones first, and an upper bound on what as many could cover."""
     locked = locked_views(problem, request.locked)
@@ -344,23 +378,60 @@ def _choose(
             trace=trace,
             monitor=monitor,
             locked=locked,
+            error=error,
         )
-    optimiser = _optimiser(request, locked, chosen_profile.aircraft.min_waypoint_spacing_m)
+    optimiser = _optimiser(request, locked, chosen_profile.aircraft.min_waypoint_spacing_m, error)
     found = optimiser(problem, _goal(request), seed=request.seed, stop=stop, trace=trace, monitor=monitor)
     return found.views, found.bound
 
 
+PROBED_VIEWS, PROBE_S, MOST_BATTERIES = 120, 1.0, 10
+"""Views that are routed, for so long, to learn how many photos a battery lasts for, and the most batteries that a plan
+takes of its own accord."""
+
+
+def _batteries_worth(
+    problem: ViewProblem,
+    error: ImageErrorModel,
+    request: PlanRequest,
+    chosen_profile: Profile,
+    stop: Stop,
+    monitor: Monitor,
+) -> int:
+    """The fewest batteries beside which another would bring less than the gain asked for."""
+    pool = candidate_pool(problem, request.seed, FEW_CANDIDATES, stop)
+    state = error_state(error, pool.views, locked_views(problem, request.locked))
+    probed = take(pool.views, choose_for_least_error(state, PROBED_VIEWS, monitor))
+    times = flight_times(problem.roadmap, probed, chosen_profile.aircraft, request.rules, monitor)
+    limit = any_of(stop, TimeLimit(PROBE_S))
+    flights = plan_flights(times, probed, chosen_profile.aircraft, request.rules, stop=limit, monitor=monitor)
+    n_routed = sum(len(flight.views) for flight in flights)
+    in_time = int(times.budget_s * n_routed / max(1.0, sum(flight.duration_s for flight in flights)))
+    n_each = max(1, min(in_time, chosen_profile.aircraft.max_waypoints - 2))
+    state = error_state(error, pool.views, locked_views(problem, request.locked))
+    before = None
+    for n_batteries in range(1, MOST_BATTERIES + 1):
+        n_chosen = len(choose_for_least_error(state, n_each, monitor))
+        now = expected_psnr_db(error.error_of(state.sums))
+        if before is not None and (n_chosen == 0 or now - before < (request.least_gain_db or 0.0)):
+            return n_batteries - 1
+        before = now
+    return MOST_BATTERIES
+
+
 def _check_method(request: PlanRequest) -> None:
     method_named(request.method)
-    if request.method != "greedy" and request.n_batteries is not None:
+    if request.method != "greedy" and (request.n_batteries is not None or request.least_gain_db is not None):
         raise InputError.say("method '{}' cannot plan for a number of batteries; 'greedy' can", request.method)
     if request.method != "greedy" and request.locked:
         raise InputError.say("method '{}' cannot keep locked viewpoints; 'greedy' can, or unlock them", request.method)
 
 
-def _optimiser(request: PlanRequest, locked: ViewpointArrays, spacing_m: float) -> Optimiser:
+def _optimiser(
+    request: PlanRequest, locked: ViewpointArrays, spacing_m: float, error: ImageErrorModel | None
+) -> Optimiser:
     if request.method == "greedy":
-        return partial(greedy, parameters=request.greedy, locked=locked, spacing_m=spacing_m)
+        return partial(greedy, parameters=request.greedy, locked=locked, spacing_m=spacing_m, error=error)
     return method_named(request.method)
 
 
@@ -405,6 +476,7 @@ def _plan(
     request: PlanRequest,
     chosen_profile: Profile,
     prepared: Prepared,
+    effects: tuple[Decision, ...],
     views: ViewpointArrays,
     flights: tuple[Flight, ...],
     trace: Trace,
@@ -427,7 +499,7 @@ def _plan(
         origin=site.origin,
         home_enu_m=site.home_enu_m,
         rules=request.rules,
-        effects=prepared.effects,
+        effects=effects,
         profile=chosen_profile.id,
     )
 

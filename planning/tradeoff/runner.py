@@ -216,6 +216,8 @@ class GapAxis:
         Smaller gaps are drawn here, where the line of the bound is: on a logarithmic axis 0 has no place.
     bound_text
         What stands at that line.
+    time_label
+        What the other axis counts.
     """
 
     label: str
@@ -223,6 +225,7 @@ class GapAxis:
     text: Callable[[float], str]
     floor: float
     bound_text: str
+    time_label: str = "time since the start"
 
 
 COVERAGE_AXIS = GapAxis(
@@ -319,7 +322,7 @@ def _draw_panel(axes: Any, panel: Panel, axis: GapAxis, scale: _Scale) -> None:
     axes.minorticks_off()
     axes.grid(color="#dddddd", linewidth=0.6)
     axes.set_axisbelow(True)
-    axes.set_xlabel("time since the start")
+    axes.set_xlabel(axis.time_label)
     axes.set_ylabel(axis.label)
     axes.set_title(panel.title, fontsize=10)
     axes.legend(fontsize=9, loc="upper center", bbox_to_anchor=(0.5, -0.13), frameon=False)

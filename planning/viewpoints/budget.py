@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from planning.base.errors import InfeasibleError
 from planning.base.messages import say
 from planning.base.progress import Monitor, Stop, Trace
+from planning.coverage.image_error import ImageErrorModel
 from planning.coverage.model import CoverageModel, Elements, element_weights
 from planning.parameters import FlightRules, GreedyParameters
 from planning.plan import Aircraft, ViewpointArrays
@@ -25,6 +26,7 @@ from planning.viewpoints import cover_kernel as kernel
 from planning.viewpoints.candidates import Pool, candidate_pool, join_pools, keep
 from planning.viewpoints.greedy import Choice
 from planning.viewpoints.improve import cover_state
+from planning.viewpoints.least_error import ErrorGain, choose_for_least_error, error_state
 from planning.viewpoints.problem import NONE_LOCKED, ViewProblem, covered_by, take
 from planning.viewpoints.spacing import ANYWHERE, SpacingRule, rounding_spacing_m, spacing_rule
 
@@ -91,11 +93,12 @@ def views_within_budget(
     trace: Trace,
     monitor: Monitor,
     locked: ViewpointArrays = NONE_LOCKED,
-) -> tuple[ViewpointArrays, float]:
+    error: ImageErrorModel | None = None,
+) -> tuple[ViewpointArrays, float | None]:
     """Views that fit into `n_batteries` sorties and cover as much as could be found, and an upper bound on that.
 
     The bound holds for the candidates that were compared. Views that are `locked` come first in the result, as they
-    are.
+    are. With `error`, views are chosen that take most off it, and there is no bound of what they could cover.
 
     Raises
     ------
@@ -108,11 +111,19 @@ def views_within_budget(
     n_free, covered = max(0, MAX_CANDIDATES - n_locked), covered_by(problem.model, locked)
     spacing_m = rounding_spacing_m(aircraft.min_waypoint_spacing_m)
     choice = Choice(problem, weights, covered, locked, spacing_m, seed, stop, Trace(trace.clock), monitor)
-    free, _, _ = choice.greedily(candidate_pool(problem, seed, parameters.n_candidates), n_free, np.inf)
-    free = shortlist(free, weights, covered, n_free, spacing=spacing_rule(free.views, locked, spacing_m))
+    free = candidate_pool(problem, seed, parameters.n_candidates)
+    if error is None:
+        free, _, _ = choice.greedily(free, n_free, np.inf)
+        free = shortlist(free, weights, covered, n_free, spacing=spacing_rule(free.views, locked, spacing_m))
+    else:
+        state = error_state(error, free.views, locked, spacing_rule(free.views, locked, spacing_m))
+        kept = np.zeros(len(state.bounds), np.bool_)
+        kept[choose_for_least_error(state, n_free, monitor)] = True
+        free = keep(free, kept)
     pool = join_pools(Pool(locked, problem.model.elements(locked)), free)
     times = flight_times(problem.roadmap, pool.views, aircraft, rules, monitor)
-    gain = CoverGain(pool.elements, weights)
+    cover = CoverGain(pool.elements, weights)
+    gain = cover if error is None else ErrorGain(error_state(error, pool.views))
     selection = solve_orienteering(
         times.travel_s,
         times.service_s,
@@ -123,7 +134,7 @@ def views_within_budget(
         required=_required(times, n_locked, n_batteries, max(1, aircraft.max_waypoints - 2), seed, stop),
         seed=seed,
         stop=stop,
-        trace=Trace(trace.clock, lambda _worth: trace.record(gain.n_covered)),
+        trace=Trace(trace.clock, None if error is not None else lambda _worth: trace.record(cover.n_covered)),
         monitor=monitor,
     )
     chosen = np.array([stop_number for sortie in selection.sorties for stop_number in sortie], np.int64)
@@ -132,8 +143,11 @@ def views_within_budget(
             "no viewpoint that sees a panel can be reached and left again within {:.0f} s of one battery",
             times.budget_s,
         )
-    everything = float(weights[np.unique(pool.elements.items)].sum())
     chosen = np.concatenate([np.arange(n_locked), chosen[chosen >= n_locked]])
+    if error is not None:
+        trace.record(problem.model.covered_count(take(pool.views, chosen)))
+        return take(pool.views, chosen), None
+    everything = float(weights[np.unique(pool.elements.items)].sum())
     return take(pool.views, chosen), min(selection.bound, everything)
 
 

@@ -18,6 +18,7 @@ from scipy.spatial.distance import cdist
 from planning.base.jit import kernel
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor, Stop, Trace, never
+from planning.coverage.image_error import ImageErrorModel
 from planning.coverage.model import CoverageModel, Elements, element_weights
 from planning.coverage.sections import SectionGrid
 from planning.parameters import GreedyParameters
@@ -25,6 +26,7 @@ from planning.plan import ViewpointArrays
 from planning.viewpoints import cover_kernel
 from planning.viewpoints.candidates import Pool, candidate_pool, join_pools, keep
 from planning.viewpoints.improve import Exchange, cover_state, improve_views
+from planning.viewpoints.least_error import choose_for_least_error, error_state
 from planning.viewpoints.problem import NONE_LOCKED, Goal, ViewProblem, ViewSet, concatenate, covered_by, take
 from planning.viewpoints.spacing import ANYWHERE, SpacingRule, rounding_spacing_m, spaced_views, spacing_rule
 
@@ -122,11 +124,13 @@ def greedy(
     parameters: GreedyParameters = GreedyParameters(),
     locked: ViewpointArrays = NONE_LOCKED,
     spacing_m: float = 0.0,
+    error: ImageErrorModel | None = None,
 ) -> ViewSet:
     """Choose views greedily, then improve them. Trace values are covered elements.
 
     Views that are `locked` come first in the result, as they are; they count as views and for what is covered, and
-    the others are chosen for what they leave. Two views stand at one place, or at least `spacing_m` apart.
+    the others are chosen for what they leave. Two views stand at one place, or at least `spacing_m` apart. A number of
+    views is chosen for the least of `error` where that is given, a share of sections never.
 
     Raises
     ------
@@ -147,6 +151,8 @@ def greedy(
         return ViewSet(concatenate([with_present_views.locked, found]))
     assert goal.n_views is not None  # Goal's own check
     n_free = goal.n_views - len(locked.heading_rad)
+    if error is not None:
+        return choice.for_least_error(pool, n_free, error, parameters)
     pool, chosen, value = choice.greedily(pool, n_free, np.inf)
     bound = everything
     if value < everything - 1e-9 and len(chosen) == n_free and parameters.certify:
@@ -229,6 +235,24 @@ class Choice:
             self.trace.record(exchange.n_covered())
             idle = 0 if value > before + 1e-9 else idle + 1
         return pool, chosen, value
+
+    def for_least_error(
+        self, pool: Pool, n_wanted: int, error: ImageErrorModel, parameters: GreedyParameters
+    ) -> ViewSet:
+        """The locked views and those after which the expected error is least; the bound is that of the sections."""
+        state = error_state(error, pool.views, self.locked, spacing_rule(pool.views, self.locked, self.spacing_m))
+        chosen = choose_for_least_error(state, n_wanted, self.monitor)
+        views = concatenate([self.locked, take(pool.views, chosen)])
+        covered = self.covered + np.bincount(
+            np.concatenate([NO_ELEMENTS, *(pool.elements.of(each) for each in chosen)]), minlength=len(self.weights)
+        )
+        self.trace.record(int(np.count_nonzero(covered)))
+        if not parameters.certify:
+            return ViewSet(views)
+        self.monitor.report(say("bounding the optimum"), 0, 1)
+        known = float(self.weights[covered > 0].sum())
+        bound = _bound(pool.elements, self.weights, self.covered, len(chosen), known, self.stop)
+        return ViewSet(views, bound)
 
     def _with_more_places(
         self,

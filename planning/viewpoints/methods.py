@@ -8,8 +8,9 @@ from planning.viewpoints.noto import noto
 from planning.viewpoints.orbit import orbit
 from planning.viewpoints.problem import Optimiser
 from planning.viewpoints.pso import pso
+from planning.viewpoints.unseen import random_oblique
 
-METHODS: dict[str, Optimiser] = {"greedy": greedy, "pso": pso, "noto": noto, "orbit": orbit}
+METHODS: dict[str, Optimiser] = {"greedy": greedy, "pso": pso, "noto": noto, "orbit": orbit, "random": random_oblique}
 
 
 def method_named(name: str) -> Optimiser:

@@ -10,7 +10,7 @@ import numpy as np
 
 from planning.coverage.model import exact_coverage
 from planning.coverage.reach_kernel import UNREACHABLE
-from planning.parameters import Constraints
+from planning.parameters import Constraints, GreedyParameters
 from planning.plan import viewpoint_arrays
 from planning.planner import plan_flight
 from planning.request import PlanRequest
@@ -45,6 +45,7 @@ def measure(context: Context) -> Iterator[Row]:
             request = PlanRequest(
                 n_views=N_VIEWS,
                 constraints=replace(Constraints(), occlusion=occlusion),
+                greedy=GreedyParameters(objective="sections"),
                 time_budget_s=6.0 if context.is_quick else 15.0,
             )
             plan = plan_flight(SCENES[scene](), request).plan

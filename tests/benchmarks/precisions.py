@@ -6,7 +6,7 @@ import time
 from collections.abc import Iterator
 
 from planning.coverage.evaluate import coverage_counts
-from planning.parameters import Precision
+from planning.parameters import GreedyParameters, Precision
 from planning.plan import viewpoint_arrays
 from planning.planner import Planned, plan_flight
 from planning.request import PlanRequest
@@ -25,7 +25,12 @@ def measure(context: Context) -> Iterator[Row]:
         plans: dict[Precision, Planned] = {}
         for precision in ("f64", "f32"):
             started = time.perf_counter()
-            request = PlanRequest(n_views=N_VIEWS, precision=precision, time_budget_s=budget_s)
+            request = PlanRequest(
+                n_views=N_VIEWS,
+                precision=precision,
+                time_budget_s=budget_s,
+                greedy=GreedyParameters(objective="sections"),
+            )
             plans[precision] = plan_flight(SCENES[scene](), request)
             seconds = time.perf_counter() - started
             coverage = plans[precision].plan.coverage

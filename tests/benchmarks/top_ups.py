@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from planning.base.progress import TimeLimit
+from planning.parameters import GreedyParameters
 from planning.plan import Plan, ViewpointArrays, viewpoint_arrays
 from planning.planner import plan_flight
 from planning.request import PlanRequest
@@ -55,7 +56,7 @@ def measure(context: Context) -> Iterator[Row]:
 @functools.cache
 def planned(scene: str, n_views: int, seconds: float) -> Plan:
     """A plan of a bundled scene."""
-    request = PlanRequest(n_views=n_views, time_budget_s=seconds)
+    request = PlanRequest(n_views=n_views, time_budget_s=seconds, greedy=GreedyParameters(objective="sections"))
     plan = plan_flight(prepared(scene).site_model, request, prepared=prepared(scene)).plan
     return replace(plan, constraints=replace(plan.constraints, occlusion="auto"))
 

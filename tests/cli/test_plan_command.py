@@ -40,7 +40,7 @@ def test_text_tells_the_pilot_the_result_and_the_next_command(reflight, pane, tm
     done = reflight("plan", site, "-o", out, "--views", 1, *QUICK)
     assert done.status == 0
     assert f"{out}: 1 view in 1 sortie, " in done.out
-    assert "of 36 sections (36 directions of view for each of 1 panel)" in done.out
+    assert "of 36 directions of view (36 for each of 1 panel)" in done.out
     assert "occlusion: off - " in done.out
     assert done.err.splitlines()[-1] == f"next: app.py check '{out}' '{site}'"
 
@@ -87,7 +87,7 @@ def test_every_other_option_reaches_the_plan(reflight, pane, tmp_path):
     options = ["--profile", "m4e", "--min-distance", 8, "--step", 45, "--occlusion", "on", "--max-distance", 30]
     options += ["--whole-panel", "--reserve", 0.4, "--settle", 1.5, "--speed", 5, "--wind", 3, "--turn-in-flight"]
     options += ["--seed", 7, "--precision", "f64", "--candidates", 500, "--weights", "solid-angle", "--max-gsd", 9]
-    options += ["--wanted-gsd", 4]
+    options += ["--wanted-gsd", 4, "--objective", "sections"]
     told = plan_json(reflight, pane / "site.json", out, "--views", 4, *options)
     plan = read_plan(out)
     assert (plan.profile, plan.aircraft.name, plan.seed) == ("m4e", "DJI M4E", 7)

@@ -340,12 +340,13 @@ def test_a_time_budget_too_small_for_everything_still_gives_a_plan_soon_after(sc
 
 
 def test_bounds_hold_for_what_they_are_stated_for() -> None:
-    certified = replace(REQUESTS["views"], greedy=replace(FEW, certify=True))
+    certified = replace(REQUESTS["views"], greedy=replace(FEW, certify=True, objective="sections"))
     planned = planned_again(kiosk, certified)
     assert planned.bound_for_views is not None
     assert planned.plan.coverage.covered <= planned.bound_for_views + 2
     assert planned.bound_for_views <= 1.3 * planned.plan.coverage.covered
-    batteries = planned_kiosk("batteries")
+    by_sections = replace(REQUESTS["batteries"], greedy=replace(FEW, objective="sections"))
+    batteries = planned_again(kiosk, by_sections)
     assert batteries.bound_for_views is not None
     assert batteries.plan.coverage.covered <= batteries.bound_for_views <= batteries.plan.coverage.reachable_upper_bound
 

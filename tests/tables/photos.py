@@ -100,6 +100,7 @@ def _flown(work: Path, photos: Photos) -> tuple[Path, Path | None]:
         method="noto" if photos.planner == "noto" else "greedy",
         n_views=photos.n_views,
         constraints=Constraints(max_distance_m=FARTHEST_M),
+        greedy=GreedyParameters(objective="sections"),
         seed=photos.seed,
         time_budget_s=PLANNING_S,
     )

@@ -48,7 +48,7 @@ STAGES = {
 }
 """Of planning, by the names of their times in JSON."""
 
-GOALS = ("n_views", "share", "n_batteries")
+GOALS = ("n_views", "share", "n_batteries", "least_gain_db")
 """At most one of them is asked for."""
 
 
@@ -110,7 +110,7 @@ def request_of(options: argparse.Namespace) -> PlanRequest:
             raise InputError.say("there is no planning method '{}'; known are: {}", base.method, known, place=place)
     typed = typed_values(options, PlanParameters)
     if any((name,) in typed for name in GOALS):
-        base = replace(base, n_views=None, share=None, n_batteries=None)
+        base = replace(base, n_views=None, share=None, n_batteries=None, least_gain_db=None)
     with in_words_of_options(PlanParameters):
         parameters = with_values(base, typed)
         if options.max_gsd is not None:
@@ -189,7 +189,7 @@ def print_summary(planned: Planned, out: Path, seconds: float) -> None:
         place=out,
     )
     tell(
-        "covered {} of {} sections ({} directions of view for each of {})",
+        "seen: {} of {} directions of view ({} for each of {})",
         coverage.covered,
         coverage.total,
         n_directions,
@@ -200,6 +200,8 @@ def print_summary(planned: Planned, out: Path, seconds: float) -> None:
         coverage.reachable_upper_bound,
         share,
     )
+    if plan.worth is not None:
+        tell("unseen views of a model of its photos, expected: {}", plan.worth.text)
     wanted_mm = plan.constraints.wanted_gsd_mm
     if coverage.sharp is not None and wanted_mm:
         tell(

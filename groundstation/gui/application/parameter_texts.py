@@ -16,6 +16,11 @@ TEXTS = (
     QT_TRANSLATE_NOOP("Parameters", "share of what can be covered, 0 to 1, with as few views as possible"),
     QT_TRANSLATE_NOOP("Parameters", "Batteries"),
     QT_TRANSLATE_NOOP("Parameters", "number of sorties: as much as can be covered within them"),
+    QT_TRANSLATE_NOOP("Parameters", "Worth another battery"),
+    QT_TRANSLATE_NOOP(
+        "Parameters",
+        "as many batteries as are worth it: until another would bring unseen views less than so many dB more",
+    ),
     QT_TRANSLATE_NOOP("Parameters", "Aircraft"),
     QT_TRANSLATE_NOOP("Parameters", "aircraft and camera, or a .toml file with your own"),
     QT_TRANSLATE_NOOP("Parameters", "Safety distance"),
@@ -40,6 +45,14 @@ TEXTS = (
     QT_TRANSLATE_NOOP("Parameters", "steady wind that is expected, from the worst direction"),
     QT_TRANSLATE_NOOP("Parameters", "Weight sections by solid angle"),
     QT_TRANSLATE_NOOP("Parameters", "weight hemisphere sections by their solid angle instead of equally"),
+    QT_TRANSLATE_NOOP("Parameters", "Views are chosen for"),
+    QT_TRANSLATE_NOOP(
+        "Parameters",
+        "what a number of views or batteries is spent on: pictures of a model that are near to the truth, or the "
+        "paper's count of hemisphere sections",
+    ),
+    QT_TRANSLATE_NOOP("Parameters", "the model's pictures"),
+    QT_TRANSLATE_NOOP("Parameters", "hemisphere sections"),
     QT_TRANSLATE_NOOP("Parameters", "Precision"),
     QT_TRANSLATE_NOOP("Parameters", "of the coverage kernel"),
     QT_TRANSLATE_NOOP("Parameters", "single (fast)"),

@@ -37,6 +37,7 @@ def method_name(method: str) -> str:
         "pso": QCoreApplication.translate("MethodNames", "Particle swarm (paper)"),
         "noto": QCoreApplication.translate("MethodNames", "Nap-of-the-object grid"),
         "orbit": QCoreApplication.translate("MethodNames", "Orbits"),
+        "random": QCoreApplication.translate("MethodNames", "Drawn by lot"),
     }
     return names.get(method, method)
 
@@ -350,10 +351,13 @@ class PlanController(QObject):
         coverage = plan.coverage
         self._context.say(
             Severity.OK,
-            self.tr("Views: {0}, sorties: {1}; covered {2} of at most {3} sections").format(
+            self.tr("Views: {0}, sorties: {1}; {2} of at most {3} directions of view seen").format(
                 len(plan.viewpoints), len(plan.sorties), coverage.covered, coverage.reachable_upper_bound
             ),
         )
+        if plan.worth is not None:
+            expected = say("unseen views of a model of its photos, expected: {}", plan.worth.text)
+            self._context.say(Severity.NOTE, self._context.localized(expected), about="plan.worth.")
         for finding in planned.findings:
             about = f"plan.{finding.code}.{finding.place}"
             self._context.say(finding.severity, self._context.localized(finding.message), about=about)

@@ -84,16 +84,20 @@ def _text(found: Profile) -> str:
     return " / ".join(dict.fromkeys([found.aircraft.name, found.camera.name]))
 
 
-COVERAGE, VIEWS, BATTERIES = range(3)
+COVERAGE, VIEWS, BATTERIES, GOOD_ENOUGH = range(4)
 
-GOALS = {COVERAGE: "share", VIEWS: "n_views", BATTERIES: "n_batteries"}
+GOALS = {COVERAGE: "share", VIEWS: "n_views", BATTERIES: "n_batteries", GOOD_ENOUGH: "least_gain_db"}
 """What each goal is the value of."""
+
+USUAL_GAIN_DB = 0.5
+"""Offered for what another battery has to bring: what eyes begin to see."""
 
 OWN = ("profile_id", "method", "constraints.wanted_gsd_mm")
 """Parameters whose boxes depend on more than themselves."""
 
 FIRST = (
-    *("profile_id", "goal", "share", "n_views", "n_batteries", "constraints.min_distance_m", "method"),
+    *("profile_id", "goal", "share", "n_views", "n_batteries", "least_gain_db"),
+    *("constraints.min_distance_m", "method"),
     "time_budget_s",
 )
 FURTHER = (
@@ -158,7 +162,8 @@ class PlanForm(QWidget):
         self.aircraft = AircraftBox()
         self.aircraft.setToolTip(tip_of(known["profile_id"].parameter))
         self._goal = ChoiceBox()
-        self._goal.addItems([self.tr("coverage wanted"), self.tr("number of views"), self.tr("batteries at hand")])
+        goals = self.tr("coverage wanted"), self.tr("number of views"), self.tr("batteries at hand")
+        self._goal.addItems([*goals, self.tr("a model that is good enough")])
         self._is_gsd_limited = QCheckBox(self.tr("Limit the pixel size"))
         self._gsd = QuantityBox(sampling_unit, *COARSEST_GSD_M, 0.5)
         self._sharp = ParameterRow(known["constraints.wanted_gsd_mm"])
@@ -200,9 +205,9 @@ class PlanForm(QWidget):
         self._value = request
         wrong = self._show_aircraft(request)
         self._method.setValue(request.method)
-        goal = VIEWS if request.n_views is not None else BATTERIES if request.n_batteries is not None else COVERAGE
-        self._goal.setCurrentIndex(goal)
-        usual = {"share": DEFAULT_SHARE, "n_views": DEFAULT_VIEWS, "n_batteries": 1}
+        asked = [goal for goal, name in GOALS.items() if getattr(request, name) is not None]
+        self._goal.setCurrentIndex(asked[0] if asked else COVERAGE)
+        usual = {"share": DEFAULT_SHARE, "n_views": DEFAULT_VIEWS, "n_batteries": 1, "least_gain_db": USUAL_GAIN_DB}
         for name, row in self.rows.items():
             value = row.declared.value_in(request)
             row.setValue(usual.get(name) if value is None else value)
@@ -260,7 +265,7 @@ class PlanForm(QWidget):
         """What the boxes say."""
         goal, before = self._goal.currentIndex(), self._value
         values = {row.declared.path: row.value() for row in self.rows.values()}
-        has_goal = any(value is not None for value in (before.share, before.n_views, before.n_batteries))
+        has_goal = any(getattr(before, name) is not None for name in GOALS.values())
         # What was asked for without a goal is still so while the one that is offered stands.
         is_offered = goal == COVERAGE and not has_goal and values["share",] == DEFAULT_SHARE
         for number, name in GOALS.items():

@@ -199,10 +199,6 @@
         <translation>Flugzeit, alle Einsätze</translation>
     </message>
     <message>
-        <source>Coverage of what can be covered</source>
-        <translation>Abdeckung des Erreichbaren</translation>
-    </message>
-    <message>
         <source>{0}; {1} below {2}</source>
         <translation>{0}; {1} unter {2}</translation>
     </message>
@@ -217,6 +213,18 @@
     <message>
         <source>Temperature</source>
         <translation>Temperatur</translation>
+    </message>
+    <message>
+        <source>Directions of view seen, of those possible</source>
+        <translation>Gesehene Blickrichtungen, von den möglichen</translation>
+    </message>
+    <message>
+        <source>Unseen views of the model, expected, by batteries</source>
+        <translation>Ungesehene Ansichten des Modells, erwartet, nach Akkus</translation>
+    </message>
+    <message>
+        <source>Another battery would bring</source>
+        <translation>Ein weiterer Akku brächte</translation>
     </message>
     <message>
         <source>Pixel on the panel</source>
@@ -2735,6 +2743,10 @@ Scheiben: {2}, je {3} × {4}</translation>
         <source>Orbits</source>
         <translation>Umkreisungen</translation>
     </message>
+    <message>
+        <source>Drawn by lot</source>
+        <translation>Ausgelost</translation>
+    </message>
 </context>
 <context>
     <name>MissionController</name>
@@ -3306,6 +3318,14 @@ Blickrichtung: {3}</translation>
         <translation>Zahl der Flüge: so viel, wie in ihnen abgedeckt werden kann</translation>
     </message>
     <message>
+        <source>Worth another battery</source>
+        <translation>Wert für weiteren Akku</translation>
+    </message>
+    <message>
+        <source>as many batteries as are worth it: until another would bring unseen views less than so many dB more</source>
+        <translation>so viele Akkus, wie es sich lohnt: bis ein weiterer ungesehenen Ansichten weniger als so viele dB mehr brächte</translation>
+    </message>
+    <message>
         <source>Aircraft</source>
         <translation>Fluggerät</translation>
     </message>
@@ -3368,6 +3388,22 @@ Blickrichtung: {3}</translation>
     <message>
         <source>steady wind that is expected, from the worst direction</source>
         <translation>erwarteter gleichmäßiger Wind, aus der ungünstigsten Richtung</translation>
+    </message>
+    <message>
+        <source>Views are chosen for</source>
+        <translation>Ansichten gewählt für</translation>
+    </message>
+    <message>
+        <source>what a number of views or batteries is spent on: pictures of a model that are near to the truth, or the paper&apos;s count of hemisphere sections</source>
+        <translation>wofür eine Anzahl von Ansichten oder Akkus ausgegeben wird: Bilder eines Modells nahe an der Wahrheit, oder die Hemisphärenabschnitte, die der Artikel zählt</translation>
+    </message>
+    <message>
+        <source>the model&apos;s pictures</source>
+        <translation>die Bilder des Modells</translation>
+    </message>
+    <message>
+        <source>hemisphere sections</source>
+        <translation>Hemisphärenabschnitte</translation>
     </message>
     <message>
         <source>Weight sections by solid angle</source>
@@ -4092,8 +4128,8 @@ Blickrichtung: {3}</translation>
         <translation>{0}, Aufnahmen: {1}</translation>
     </message>
     <message>
-        <source>Views: {0}, sorties: {1}; covered {2} of at most {3} sections</source>
-        <translation>Aufnahmen: {0}, Einsätze: {1}; abgedeckt {2} von höchstens {3} Sektoren</translation>
+        <source>Views: {0}, sorties: {1}; {2} of at most {3} directions of view seen</source>
+        <translation>Aufnahmen: {0}, Einsätze: {1}; {2} von höchstens {3} Blickrichtungen gesehen</translation>
     </message>
     <message>
         <source>Look at the plan</source>
@@ -4117,6 +4153,10 @@ Blickrichtung: {3}</translation>
     <message>
         <source>batteries at hand</source>
         <translation>Akkus</translation>
+    </message>
+    <message>
+        <source>a model that is good enough</source>
+        <translation>ein Modell, das gut genug ist</translation>
     </message>
     <message>
         <source>Limit the pixel size</source>
@@ -5996,6 +6036,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>--views, --rectified-by: die Fotos von &apos;{0}&apos; haben keine Posen, die beide brauchen; einen erzeugten Satz nehmen: {1}</translation>
     </message>
     <message>
+        <source>1 battery</source>
+        <translation>1 Akku</translation>
+    </message>
+    <message>
         <source>; {0} panels lost</source>
         <translation>; {0} Scheiben verloren</translation>
     </message>
@@ -6356,10 +6400,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>vorher abgedeckt {0}, zusammen {1} Sektoren</translation>
     </message>
     <message>
-        <source>covered {0} of {1} sections ({2} directions of view for each of {3})</source>
-        <translation>abgedeckt {0} von {1} Sektoren ({2} Blickrichtungen für jede von {3})</translation>
-    </message>
-    <message>
         <source>deciding on effects</source>
         <translation>über Effekte wird entschieden</translation>
     </message>
@@ -6570,6 +6610,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>erwartet wird mindestens ein Wert</translation>
     </message>
     <message>
+        <source>expected at least one battery</source>
+        <translation>mindestens ein Akku wird erwartet</translation>
+    </message>
+    <message>
         <source>expected at least one depot</source>
         <translation>mindestens ein Depot wird erwartet</translation>
     </message>
@@ -6636,6 +6680,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>expected no negative weight, found {0}</source>
         <translation>erwartet: kein negatives Gewicht, gefunden: {0}</translation>
+    </message>
+    <message>
+        <source>expected numbers of photos from 2 on</source>
+        <translation>Anzahlen von Fotos ab 2 werden erwartet</translation>
     </message>
     <message>
         <source>expected numbers, found &apos;{0}&apos;</source>
@@ -6818,6 +6866,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Flug:     {0} ({1}, {2})</translation>
     </message>
     <message>
+        <source>flown</source>
+        <translation>geflogen</translation>
+    </message>
+    <message>
         <source>fusing views: expected at least one rectified view, found none</source>
         <translation>Ansichten verbinden: erwartet wird mindestens eine entzerrte Ansicht, gefunden keine</translation>
     </message>
@@ -6934,6 +6986,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>schon im Format &apos;{0}{1}&apos;, nichts zu tun</translation>
     </message>
     <message>
+        <source>in the air</source>
+        <translation>in der Luft</translation>
+    </message>
+    <message>
         <source>in {0}°</source>
         <translation>in {0}°</translation>
     </message>
@@ -7034,6 +7090,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Schlüssel gespeichert; einem Fluggerät mit &apos;signing give URL&apos; geben, über ein Kabel</translation>
     </message>
     <message>
+        <source>light</source>
+        <translation>Licht</translation>
+    </message>
+    <message>
         <source>light apart from the splats</source>
         <translation>Licht getrennt von den Splats</translation>
     </message>
@@ -7120,6 +7180,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>metering</source>
         <translation>Belichtung wird gemessen</translation>
+    </message>
+    <message>
+        <source>method</source>
+        <translation>Verfahren</translation>
     </message>
     <message>
         <source>method: expected {0}, got &apos;{1}&apos;</source>
@@ -7220,6 +7284,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>no top-up was written; --all writes it all the same</source>
         <translation>kein Ergänzungsflug wurde geschrieben; --all schreibt ihn trotzdem</translation>
+    </message>
+    <message>
+        <source>no view shows a pane</source>
+        <translation>keine Ansicht zeigt eine Scheibe</translation>
     </message>
     <message>
         <source>no wall was found</source>
@@ -7414,6 +7482,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Foto &apos;{0}&apos; ist schon in {1}; eines davon behalten</translation>
     </message>
     <message>
+        <source>photographing unseen views</source>
+        <translation>ungesehene Ansichten werden fotografiert</translation>
+    </message>
+    <message>
         <source>photos</source>
         <translation>Fotos</translation>
     </message>
@@ -7468,6 +7540,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>project: {0}</source>
         <translation>Projekt: {0}</translation>
+    </message>
+    <message>
+        <source>px of parallax</source>
+        <translation>px Parallaxe</translation>
     </message>
     <message>
         <source>reachability</source>
@@ -7594,6 +7670,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>mindestens zweimal gesehen: {0} Sektoren</translation>
     </message>
     <message>
+        <source>seen: {0} of {1} directions of view ({2} for each of {3})</source>
+        <translation>gesehen: {0} von {1} Blickrichtungen ({2} für jede von {3})</translation>
+    </message>
+    <message>
         <source>setting</source>
         <translation>Einstellung</translation>
     </message>
@@ -7664,6 +7744,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>splats begin on points, not on the mesh</source>
         <translation>Splats beginnen auf Punkten, nicht auf dem Netz</translation>
+    </message>
+    <message>
+        <source>spread</source>
+        <translation>Streuung</translation>
     </message>
     <message>
         <source>spread of the gains&apos; logarithms</source>
@@ -7834,6 +7918,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>das Modell verfehlt die Passpunkte im Median um {0} m; ein Empfänger ohne Korrekturen misst sie nicht besser, sonst sehen Sie Koordinaten, Reihenfolge von Ost und Nord und Pixel nach</translation>
     </message>
     <message>
+        <source>the model that a flight brings, on unseen views of &apos;{0}&apos;</source>
+        <translation>das Modell, das ein Flug bringt, in ungesehenen Ansichten von &apos;{0}&apos;</translation>
+    </message>
+    <message>
         <source>the nearest neighbour ends where there is no leg back; take another method</source>
         <translation>der nächste Nachbar endet, wo keine Strecke zurückführt; ein anderes Verfahren nehmen</translation>
     </message>
@@ -7852,6 +7940,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the output cannot be written ({0})</source>
         <translation>die Ausgabe ist nicht zu schreiben ({0})</translation>
+    </message>
+    <message>
+        <source>the panes mirror nothing but sky</source>
+        <translation>die Scheiben spiegeln nur Himmel</translation>
     </message>
     <message>
         <source>the photos are straight</source>
@@ -8002,6 +8094,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>es gibt zu wenige Punkte ({0})</translation>
     </message>
     <message>
+        <source>there is no &apos;{0}&apos;; known are: {1}</source>
+        <translation>&apos;{0}&apos; gibt es nicht; bekannt sind: {1}</translation>
+    </message>
+    <message>
         <source>there is no point {0}</source>
         <translation>es gibt keinen Punkt {0}</translation>
     </message>
@@ -8028,6 +8124,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>two facades at a right angle, whose glass sees glass</source>
         <translation>zwei Fassaden im rechten Winkel, deren Glas Glas sieht</translation>
+    </message>
+    <message>
+        <source>unseen views</source>
+        <translation>ungesehene</translation>
+    </message>
+    <message>
+        <source>unseen views of a model of its photos, expected: {0}</source>
+        <translation>ungesehene Ansichten eines Modells aus seinen Fotos, erwartet: {0}</translation>
     </message>
     <message>
         <source>uploading</source>
@@ -8080,6 +8184,18 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>{0} % of the walls have no points</source>
         <translation>{0} % der Wände haben keine Punkte</translation>
+    </message>
+    <message>
+        <source>{0} % of what the panes mirror is ground and bodies of the site, in the median {1} m away</source>
+        <translation>{0} % dessen, was die Scheiben spiegeln, sind Boden und Körper des Standorts, im Median {1} m entfernt</translation>
+    </message>
+    <message>
+        <source>{0} (± {1} dB)</source>
+        <translation>{0} (± {1} dB)</translation>
+    </message>
+    <message>
+        <source>{0} batteries</source>
+        <translation>{0} Akkus</translation>
     </message>
     <message>
         <source>{0} bytes of the log are no messages and were skipped</source>
@@ -8166,6 +8282,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>{0} Worker endeten beim Rendern, vielleicht aus Mangel an Speicher</translation>
     </message>
     <message>
+        <source>{0} {1} min: {2} dB</source>
+        <translation>{0} {1} min: {2} dB</translation>
+    </message>
+    <message>
         <source>{0}, camera {1}</source>
         <translation>{0}, Kamera {1}</translation>
     </message>
@@ -8184,6 +8304,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>{0}: {1} items, read back and equal</source>
         <translation>{0}: {1} Elemente, zurückgelesen und gleich</translation>
+    </message>
+    <message>
+        <source>{0}; another battery would bring {1} dB more</source>
+        <translation>{0}; ein weiterer Akku brächte {1} dB mehr</translation>
     </message>
     <message>
         <source>{0}; what was flown before is in {1}</source>

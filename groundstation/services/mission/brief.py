@@ -16,7 +16,7 @@ from planning.base.errors import GroundStationError
 from planning.base.findings import Finding, Severity
 from planning.base.messages import say
 from planning.insight.flight_profile import LowFlight, low_flight, lowest_flight
-from planning.plan import Plan
+from planning.plan import FlightWorth, Plan
 from planning.site.records import Site, SiteModel
 
 
@@ -87,6 +87,8 @@ class FlightBrief:
         Of what is covered, by pixels up to `wanted_gsd_mm`; None where the plan does not say.
     coarsest_gsd_mm
         Pixel of the sharpest view of the section that is seen most coarsely.
+    worth
+        What a model of the photos is expected to be like; None where the plan does not say.
     """
 
     site: str
@@ -106,6 +108,7 @@ class FlightBrief:
     sharp_share: float | None
     wanted_gsd_mm: float | None
     coarsest_gsd_mm: float | None
+    worth: FlightWorth | None
     wind_m_s: float
     max_wind_m_s: float
     battery_reserve: float
@@ -174,6 +177,7 @@ def flight_brief(
         sharp_share=None if stated.sharp is None else stated.sharp / max(1, stated.covered),
         wanted_gsd_mm=plan.constraints.wanted_gsd_mm,
         coarsest_gsd_mm=stated.coarsest_gsd_mm,
+        worth=plan.present_worth,
         wind_m_s=plan.rules.wind_m_s,
         max_wind_m_s=plan.aircraft.max_wind_m_s,
         battery_reserve=plan.rules.battery_reserve,

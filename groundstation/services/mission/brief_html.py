@@ -296,7 +296,14 @@ def _overview(brief: FlightBrief, units: UnitSystem, tr: Translate) -> Iterable[
     yield tr("Batteries needed"), str(brief.n_batteries)
     total_s = sum(sortie.duration_s for sortie in brief.sorties)
     yield tr("Flight time, all sorties"), duration_text(total_s)
-    yield tr("Coverage of what can be covered"), f"{per_cent(brief.covered_share, 1.0):.1f} %"
+    if brief.worth is not None:
+        each = (
+            f"{b.n_batteries} ({duration_text(60.0 * b.minutes)}): {b.psnr_db:.1f} dB" for b in brief.worth.batteries
+        )
+        deviation = f" (\u00b1 {brief.worth.deviation_db:.1f} dB)"
+        yield tr("Unseen views of the model, expected, by batteries"), "; ".join(each) + deviation
+        yield tr("Another battery would bring"), f"{brief.worth.gain_db:+.1f} dB"
+    yield tr("Directions of view seen, of those possible"), f"{per_cent(brief.covered_share, 1.0):.1f} %"
     if brief.sharp_share is not None and brief.wanted_gsd_mm and brief.coarsest_gsd_mm is not None:
         pixel = sampling_unit(units)
         yield (

@@ -93,8 +93,8 @@ def plan_tradeoff(
 ) -> ComparisonFiles[PlanRuns]:
     """Plan every site with the base request and every variant; write `tradeoff-plan.csv` and `.png` into `out`.
 
-    Without any goal in `base` every run gets the same number of views, `DEFAULT_VIEWS`. With one process and no cluster
-    the runs follow each other, so that times can be compared.
+    Without any goal in `base` every run gets the same number of views, `DEFAULT_VIEWS`; views are chosen for sections.
+    With one process and no cluster the runs follow each other, so that times can be compared.
 
     Raises
     ------
@@ -103,8 +103,10 @@ def plan_tradeoff(
     InfeasibleError
         No run with the sections asked for could be done on a site.
     """
-    if base.n_views is None and base.share is None and base.n_batteries is None:
+    if all(goal is None for goal in (base.n_views, base.share, base.n_batteries, base.least_gain_db)):
         base = replace(base, n_views=DEFAULT_VIEWS)
+    # Coverage is what is compared; what flights are worth is another question (`groundstation.services.worth`).
+    base = replace(base, greedy=replace(base.greedy, objective="sections"))
     sites = [_timed_site(path) for path in site_paths]
     _check_names([model.site.name for model, _ in sites])
     requests = settings(base, variants, n_seeds)

@@ -18,6 +18,7 @@ from missions.mission.export_choices import LinkLoss
 from planning.base.errors import InputError
 from planning.base.findings import Finding, Severity
 from planning.insight.flight_profile import LowFlight
+from planning.plan import BatteryWorth, FlightWorth
 from tests.missions.plans import HONG_KONG, example_plan
 from tests.planning.plan_cases import kiosk
 from tests.services.map_files import tiles_around, write_map
@@ -117,7 +118,8 @@ def test_every_word_of_the_page_is_there_for_the_translators(application):
     pictures = brief_pictures(MODEL, plan, UNITS, translate)
     near = replace(full, low=LowFlight(6.0, 12.0, 100.0))
     sharp = replace(full, sharp_share=0.8, wanted_gsd_mm=5.0, coarsest_gsd_mm=9.0)
-    for brief in (full, empty, bare, warned, near, sharp, replace(full, sorties=sorties)):
+    worth = replace(full, worth=FlightWorth((BatteryWorth(1, 11.0, 40, 31.0),), None, 0.7))
+    for brief in (full, empty, bare, warned, near, sharp, worth, replace(full, sorties=sorties)):
         brief_html(brief, UNITS, dict.fromkeys(pictures, "x"), translate)
     assert said <= set(WORDS)
     assert set(WORDS) - said == {"Page {0} of {1}"}

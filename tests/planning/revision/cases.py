@@ -25,7 +25,7 @@ from planning.site.records import SiteModel
 from planning.viewpoints.prepare import Prepared, prepare
 from tests.planning.plan_cases import kiosk
 
-QUICK = GreedyParameters(n_candidates=400, improve=False, certify=False)
+QUICK = GreedyParameters(n_candidates=400, improve=False, certify=False, objective="sections")
 
 
 class Setting(NamedTuple):

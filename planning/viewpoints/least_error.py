@@ -1,0 +1,226 @@
+"""Views whose photos make a model's pictures, as far as can be told before, nearest to the truth.
+
+What is expected of pictures is said by `planning.coverage.image_error`.
+
+Greedy choice reaches 1 - 1/e of what the best set of the same candidates takes off the expected error, since what
+views take off it is monotone and submodular; f(S) and the N largest gains beside any S bound that from above.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.base.effects import Assessment, Decision, EffectSetting, decide
+from planning.base.messages import say
+from planning.base.progress import QUIET, Monitor
+from planning.coverage.image_error import COLUMNS, FLOOR, ROWS, TERMS, ImageErrorModel, decibels
+from planning.coverage.mirrored_rays import Surroundings
+from planning.plan import BatteryWorth, Camera, FlightWorth, Plan, ViewpointArrays, viewpoint_arrays
+from planning.site.records import SiteModel
+from planning.viewpoints import error_kernel as kernel
+from planning.viewpoints.candidates import spread_candidates
+from planning.viewpoints.problem import NONE_LOCKED, ViewProblem, concatenate
+from planning.viewpoints.spacing import ANYWHERE, SpacingRule
+from planning.viewpoints.unseen import even_views, random_views, walk_views
+
+N_UNSEEN = 200
+"""Of each kind of unseen views that elements get their weights from."""
+
+SECONDS_FOR_ALL = 20_000
+"""Views that candidates are, for the stated cost."""
+
+FEW_CANDIDATES = 4000
+"""Places that another battery's photos are taken from, for what it would bring."""
+
+CALIBRATION = (16.0, 0.476)
+"""The PSNR of models against that of the expected error: b + a x, fitted to the flights over one scene; errors that are
+left when much is known are the model's own, so further photos bring half of what the colours' variances say."""
+
+DEVIATION_DB = 0.75
+"""Of models' PSNR from that, on scenes that it was not fitted to (`python -m tests.benchmarks --only image-error`)."""
+
+SLICE = 16
+"""Views chosen between two looks at the clock, at least."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MirrorScene:
+    """What the effect looks at: the panes with what they mirror, views of them, and the camera."""
+
+    surroundings: Surroundings
+    views: ViewpointArrays
+    camera: Camera
+
+
+class MirroredSurroundings:
+    """The effect: how far what panes mirror moves, in pixels of the photos, from one pane to the next.
+
+    The mean over mirrored rays: a pane's width over the distance of what they meet, over a pixel's angle (sky: 0).
+    Where it is small, what is mirrored has its place by direction alone.
+    """
+
+    name = say("mirrored surroundings")
+    unit = say("px of parallax")
+    tolerance = 0.5
+
+    def assess(self, scene: MirrorScene) -> Assessment:
+        """By casting some rays."""
+        begun_s = time.perf_counter()
+        rays = scene.surroundings.rays(scene.views, scene.camera, COLUMNS, ROWS)
+        seconds = (time.perf_counter() - begun_s) * SECONDS_FOR_ALL / max(1, rays.n_views)
+        if not len(rays):
+            return Assessment(0.0, say("no view shows a pane"), 0.0)
+        corners = scene.surroundings.frames.corners[rays.panels]
+        width_m = np.linalg.norm(corners[:, 1] - corners[:, 0], axis=1)
+        parallax_px = float(np.mean(width_m / rays.distances_m)) / scene.camera.pixel_angle_rad
+        n_met = int(np.isfinite(rays.distances_m).sum())
+        if n_met == 0:
+            return Assessment(0.0, say("the panes mirror nothing but sky"), seconds)
+        reason = say(
+            "{:.0f} % of what the panes mirror is ground and bodies of the site, in the median {:.0f} m away",
+            *(100.0 * n_met / len(rays), float(np.median(rays.distances_m[np.isfinite(rays.distances_m)]))),
+        )
+        return Assessment(parallax_px, reason, seconds)
+
+
+def image_error_model(
+    problem: ViewProblem, site_model: SiteModel, setting: EffectSetting = "auto", seed: int = 0
+) -> tuple[ImageErrorModel, Decision]:
+    """The expected error of models of a site, and whether places of what is mirrored count in it.
+
+    It is that of pictures from random views, from views even over the hemispheres, and of a walk; of those that are
+    possible.
+    """
+    rng, camera = np.random.default_rng([seed, 3]), problem.model.camera
+    unseen = [
+        random_views(problem, N_UNSEEN, rng),
+        even_views(problem, N_UNSEEN, rng),
+        walk_views(problem, site_model, N_UNSEEN, rng),
+    ]
+    near = Surroundings(site_model, problem.model.frames)
+    decision = decide(MirroredSurroundings(), MirrorScene(near, concatenate(unseen), camera), setting)
+    surroundings = near if decision.on else Surroundings(site_model, problem.model.frames, is_near=False)
+    return ImageErrorModel(surroundings, camera, TERMS, unseen, FLOOR), decision
+
+
+def error_state(
+    model: ImageErrorModel,
+    views: ViewpointArrays,
+    locked: ViewpointArrays = NONE_LOCKED,
+    spacing: SpacingRule = ANYWHERE,
+) -> kernel.ErrorState:
+    """Candidates with nothing chosen yet; what `locked` views show is known all the same."""
+    shown, present = model.shown(views), model.shown(locked)
+    n = len(views.heading_rad)
+    state = kernel.ErrorState(
+        *shown,
+        weights=model.weights,
+        sums=np.bincount(present.items, present.amounts, model.n_elements).astype(np.float64),
+        bounds=np.zeros(n),
+        positions=np.array(spacing.positions_enu_m, np.float64, order="C").reshape(-1, 3),
+        taken=np.array(spacing.present_enu_m, np.float64, order="C").reshape(-1, 3),
+        spacing=float(spacing.spacing_m),
+    )
+    kernel.refresh_bounds(state)
+    return state
+
+
+def choose_for_least_error(
+    state: kernel.ErrorState, n_wanted: int, monitor: Monitor, enough: float = np.inf
+) -> NDArray[np.int64]:
+    """Numbers of candidates chosen greedily, in order, at most `n_wanted`; the state holds them afterwards."""
+    chosen, n_chosen = np.zeros(min(n_wanted, len(state.bounds)), np.int64), 0
+    while n_chosen < len(chosen):
+        monitor.report(say("choosing views"), n_chosen, len(chosen))
+        slice_end = min(len(chosen), n_chosen + SLICE)
+        n_now = int(kernel.greedy_steps(state, chosen, n_chosen, slice_end, enough))
+        if n_now < slice_end:
+            return chosen[:n_now]
+        n_chosen = n_now
+    return chosen
+
+
+def least_error(state: kernel.ErrorState, model: ImageErrorModel, n_more: int) -> float:
+    """No `n_more` further candidates leave less expected error than this, whatever the state holds.
+
+    Gains fall while views are added (submodularity), so the largest ones at this state bound what any views add.
+    """
+    gains = np.sort([kernel.gain_of(state, candidate) for candidate in range(len(state.bounds))])[::-1]
+    left = model.most_error - kernel.value(state)
+    return max(model.floor, left - float(gains[: max(0, n_more)].sum()))
+
+
+class ErrorGain:
+    """Worth of a set of candidates: the expected error that they take away (`CoverageGain` of the routing)."""
+
+    def __init__(self, state: kernel.ErrorState) -> None:
+        self._state, self._is_fresh = state, True
+
+    @property
+    def value(self) -> float:
+        """Mean square error taken away."""
+        return float(kernel.value(self._state))
+
+    def marginals(self) -> NDArray[np.float64]:
+        """What each candidate would take away beside those in the set, shape (n,)."""
+        if not self._is_fresh:
+            kernel.refresh_bounds(self._state)
+            self._is_fresh = True
+        return self._state.bounds
+
+    def add(self, candidate: int) -> None:
+        """Put a candidate into the set."""
+        kernel.change(self._state, candidate, 1.0)
+        self._is_fresh = False
+
+    def remove(self, candidate: int) -> None:
+        """Take a candidate out of the set."""
+        kernel.change(self._state, candidate, -1.0)
+        self._is_fresh = False
+
+
+def expected_psnr_db(error: float) -> float:
+    """Of pictures of unseen views, the mean over kinds of views, from their expected mean square error."""
+    least, slope = CALIBRATION
+    return least + slope * decibels(error)
+
+
+def flight_worth(problem: ViewProblem, error: ImageErrorModel, plan: Plan, seed: int = 0) -> FlightWorth | None:
+    """The worth of a plan; None where it has no photos, or nothing can be said of its site.
+
+    Another battery is taken to last as long, and for as many photos, as the plan's longest sortie.
+    """
+    by_id = {viewpoint.id: viewpoint for viewpoint in plan.viewpoints}
+    sorties = [sortie for sortie in plan.sorties if sortie.viewpoint_ids]
+    if not sorties or not error.n_elements:
+        return None
+    parts = [viewpoint_arrays(tuple(by_id[each] for each in sortie.viewpoint_ids)) for sortie in sorties]
+    sums = np.zeros(error.n_elements)
+    batteries: list[BatteryWorth] = []
+    for number, (sortie, views) in enumerate(zip(sorties, parts, strict=True), 1):
+        shown = error.shown(views)
+        sums += np.bincount(shown.items, shown.amounts, error.n_elements)
+        before = batteries[-1] if batteries else BatteryWorth(0, 0.0, 0, 0.0)
+        batteries.append(
+            BatteryWorth(
+                number,
+                before.minutes + sortie.duration_s / 60.0,
+                before.n_photos + len(views.heading_rad),
+                expected_psnr_db(error.error_of(sums)),
+            )
+        )
+    longest = max(sorties, key=lambda sortie: sortie.duration_s)
+    last, n_more = batteries[-1], len(longest.viewpoint_ids)
+    candidates = spread_candidates(problem, FEW_CANDIDATES, np.random.default_rng([seed, 4]))
+    state = error_state(error, candidates, concatenate(parts))
+    chosen = choose_for_least_error(state, n_more, QUIET)
+    another = None
+    if len(chosen):
+        left = expected_psnr_db(error.error_of(state.sums))
+        minutes = last.minutes + longest.duration_s / 60.0
+        another = BatteryWorth(last.n_batteries + 1, minutes, last.n_photos + len(chosen), left)
+    return FlightWorth(tuple(batteries), another, DEVIATION_DB)

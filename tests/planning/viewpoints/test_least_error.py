@@ -1,0 +1,279 @@
+"""Views chosen for the least expected error: gains, bounds, single against double, and what a site calls for."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from planning.aircraft.catalogue import profile
+from planning.base.progress import QUIET
+from planning.coverage.image_error import ImageErrorModel, decibels
+from planning.coverage.mirrored_rays import Surroundings, pane_reflectance
+from planning.coverage.sections import panel_frames
+from planning.parameters import Constraints, GreedyParameters
+from planning.plan import ViewpointArrays, plan_of, plan_to_json
+from planning.planner import plan_flight
+from planning.request import PlanRequest
+from planning.site.bundled import SCENES
+from planning.site.records import panel_corners
+from planning.viewpoints import error_kernel as kernel
+from planning.viewpoints.candidates import spread_candidates
+from planning.viewpoints.least_error import (
+    ErrorGain,
+    choose_for_least_error,
+    error_state,
+    flight_worth,
+    image_error_model,
+    least_error,
+)
+from planning.viewpoints.prepare import Prepared, prepare
+from planning.viewpoints.problem import take
+from planning.viewpoints.spacing import SpacingRule
+from planning.viewpoints.unseen import random_views, walk_views
+
+
+@cache
+def prepared(name: str = "single-panel") -> Prepared:
+    """A bundled site, ready."""
+    return prepare(SCENES[name](), profile("m3e").camera, Constraints())
+
+
+@cache
+def model(name: str = "single-panel") -> ImageErrorModel:
+    """Its expected error."""
+    ready = prepared(name)
+    return image_error_model(ready.problem, ready.site_model)[0]
+
+
+@cache
+def candidates(name: str = "single-panel", n: int = 300) -> ViewpointArrays:
+    """Views to choose from."""
+    return spread_candidates(prepared(name).problem, n, np.random.default_rng(1))
+
+
+@st.composite
+def made_states(draw: st.DrawFn) -> kernel.ErrorState:
+    """A few candidates that show a few elements, much or next to nothing of them."""
+    n, m = draw(st.integers(1, 8)), draw(st.integers(1, 12))
+    rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
+    rows = [np.sort(rng.choice(m, rng.integers(0, m + 1), replace=False)) for _ in range(n)]
+    items = np.concatenate([np.zeros(0, np.int64), *rows]).astype(np.int32)
+    amounts = (10.0 ** rng.uniform(-6.0, 6.0, len(items))).astype(np.float32)
+    starts = np.concatenate([[0], np.cumsum([len(row) for row in rows])]).astype(np.int64)
+    weights = 10.0 ** rng.uniform(-8.0, 2.0, m)
+    nowhere = np.zeros((n, 3))
+    state = kernel.ErrorState(starts, items, amounts, weights, np.zeros(m), np.zeros(n), nowhere, np.zeros((0, 3)), 0.0)
+    kernel.refresh_bounds(state)
+    return state
+
+
+def value_of(state: kernel.ErrorState, chosen: set[int]) -> float:
+    """f of a set by its definition, in double precision."""
+    sums = np.zeros(len(state.weights))
+    for each in chosen:
+        part = slice(state.starts[each], state.starts[each + 1])
+        sums[state.items[part]] += state.amounts[part].astype(float)
+    return float((state.weights * sums / (1.0 + sums)).sum())
+
+
+@given(made_states(), st.randoms(use_true_random=False))
+def test_what_views_take_away_is_monotone_and_submodular(state, random):
+    n = len(state.bounds)
+    larger = {each for each in range(n) if random.random() < 0.6}
+    smaller = {each for each in larger if random.random() < 0.5}
+    scale = float(state.weights.sum())
+    for candidate in set(range(n)) - larger:
+        less, more = (value_of(state, chosen | {candidate}) - value_of(state, chosen) for chosen in (larger, smaller))
+        assert less >= -1e-12 * scale
+        assert more >= less - 1e-12 * scale
+
+
+@given(made_states(), st.lists(st.integers(0, 7), max_size=6))
+def test_gains_losses_and_values_are_those_of_the_definition(state, steps):
+    chosen: set[int] = set()
+    scale = float(state.weights.sum())
+    for step in steps:
+        candidate = step % len(state.bounds)
+        if candidate in chosen:
+            loss = kernel.loss_of(state, candidate)
+            assert loss == pytest.approx(
+                value_of(state, chosen) - value_of(state, chosen - {candidate}), rel=1e-5, abs=1e-9 * scale
+            )
+            kernel.change(state, candidate, -1.0)
+            chosen.remove(candidate)
+        else:
+            gain = kernel.gain_of(state, candidate)
+            assert gain == pytest.approx(
+                value_of(state, chosen | {candidate}) - value_of(state, chosen), rel=1e-6, abs=1e-9 * scale
+            )
+            kernel.change(state, candidate, 1.0)
+            chosen.add(candidate)
+        assert kernel.value(state) == pytest.approx(value_of(state, chosen), rel=1e-6, abs=1e-9 * scale)
+
+
+@given(made_states(), st.integers(1, 5))
+def test_lazy_greedy_chooses_what_looking_at_all_gains_each_time_does(state, n_wanted):
+    expected: list[int] = []
+    for _ in range(min(n_wanted, len(state.bounds))):
+        gains = [
+            -1.0 if each in expected else value_of(state, {*expected, each}) - value_of(state, set(expected))
+            for each in range(len(state.bounds))
+        ]
+        if max(gains) <= 1e-9 * float(state.weights.sum()):
+            break
+        expected.append(int(np.argmax(gains)))
+    chosen = choose_for_least_error(state, n_wanted, QUIET)[: len(expected)]
+    scale = float(state.weights.sum())
+    # Where gains are equal but for rounding, others may be chosen that take away as much.
+    assert value_of(state, set(chosen.tolist())) == pytest.approx(
+        value_of(state, set(expected)), rel=1e-5, abs=1e-8 * scale
+    )
+
+
+def test_greedy_is_within_its_own_bound_and_far_above_drawn_views():
+    views, error = candidates(), model()
+    state = error_state(error, views)
+    chosen = choose_for_least_error(state, 10, QUIET)
+    left = error.expected_error(take(views, chosen))
+    assert left == pytest.approx(error.most_error - kernel.value(state), rel=1e-6)
+    fresh = error_state(error, views)
+    bound = max(least_error(fresh, error, 10), least_error(state, error, 10))
+    assert error.floor <= bound <= left
+    rng = np.random.default_rng(0)
+    drawn = [
+        error.expected_error(take(views, rng.choice(len(views.heading_rad), 10, replace=False))) for _ in range(30)
+    ]
+    assert left < min(drawn)
+
+
+def test_more_photos_never_leave_more_error_and_none_leave_all_of_it():
+    views, error = candidates(), model()
+    errors = [error.expected_error(take(views, np.arange(n))) for n in (0, 1, 5, 50, 300)]
+    assert errors[0] == pytest.approx(error.most_error)
+    assert errors == sorted(errors, reverse=True)
+    assert errors[-1] > error.floor
+    assert decibels(0.01) == pytest.approx(20.0)
+
+
+def test_amounts_in_single_precision_are_those_in_double():
+    views, error = candidates(), model()
+    shown = error.shown(views)
+    sums = np.bincount(shown.items, shown.amounts.astype(np.float64), error.n_elements)
+    rays = error.surroundings.rays(views, error.camera, 16, 12)
+    looks = np.square(1.0 - rays.reflectances).sum() / (rays.n_pixels * error.terms[0].share)
+    of_first = error.weights[: len(np.unique(rays.panels)) * error.terms[0].places ** 2]
+    assert len(of_first)
+    # Of the first term, every ray of a pane that unseen views show counts once.
+    n_first = len(error._keys[0])
+    assert sums[:n_first].sum() == pytest.approx(looks, rel=1e-5)
+
+
+def test_views_stand_apart_and_locked_ones_are_not_shown_again():
+    views, error = candidates(), model()
+    everywhere = SpacingRule(views.positions_enu_m, np.zeros((0, 3)), 5.0)
+    chosen = choose_for_least_error(error_state(error, views, spacing=everywhere), 12, QUIET)
+    places = views.positions_enu_m[chosen]
+    apart = np.linalg.norm(places[:, None] - places[None], axis=2)
+    assert apart[~np.eye(len(chosen), dtype=bool)].min() >= 5.0
+    locked = take(views, chosen[:4])
+    state = error_state(error, views, locked)
+    assert error.most_error - kernel.value(state) == pytest.approx(error.expected_error(locked), rel=1e-6)
+
+
+def test_the_gain_of_the_routing_falls_and_rises_with_the_set():
+    gain = ErrorGain(error_state(model(), candidates()))
+    first = gain.marginals().copy()
+    gain.add(0)
+    with_it = gain.marginals().copy()
+    assert (with_it <= first + 1e-15).all()
+    gain.remove(0)
+    assert gain.value == pytest.approx(0.0, abs=1e-12)
+    assert np.allclose(gain.marginals(), first, rtol=1e-5, atol=1e-12)
+
+
+def test_panes_mirror_as_two_sheets_of_glass_do():
+    # 1 - (1 - r)^2 / (1 - r^2), twice, with r = ((n - 1) / (n + 1))^2 at normal incidence.
+    r = (0.52 / 2.52) ** 2
+    assert pane_reflectance(np.array([1.0]))[0] == pytest.approx(4.0 * r / (1.0 + 3.0 * r))
+    cosines = np.linspace(0.02, 1.0, 50)
+    found = pane_reflectance(cosines)
+    assert (np.diff(found) <= 1e-12).all()
+    assert found[0] > 0.9
+
+
+@pytest.mark.parametrize(("site", "is_on"), [("single-panel", True), ("roof", False)])
+def test_places_of_what_is_mirrored_count_where_panes_mirror_something_near(site, is_on):
+    found, decision = image_error_model(prepared(site).problem, prepared(site).site_model)
+    assert decision.on == is_on
+    assert (decision.size > decision.tolerance) == is_on
+    other, by_user = image_error_model(prepared(site).problem, prepared(site).site_model, "off" if is_on else "on")
+    assert (by_user.on, by_user.decided_by) == (not is_on, "user")
+    # Directions have other elements than places; where there are no places, they are the same.
+    assert (other.n_elements != found.n_elements) == is_on
+
+
+def test_a_pane_that_mirrors_sky_alone_calls_for_no_places():
+    site = SCENES["single-panel"]()
+    frames = panel_frames(panel_corners(site.site))
+    far = Surroundings(site, frames, is_near=False)
+    rays = far.rays(candidates(), profile("m3e").camera, 16, 12)
+    assert len(rays)
+    assert np.isinf(rays.distances_m).all()
+    near = Surroundings(site, frames).rays(candidates(), profile("m3e").camera, 16, 12)
+    assert np.isfinite(near.distances_m).any()
+    assert np.allclose(np.linalg.norm(near.mirrored_enu, axis=1), 1.0)
+    normals = frames.normals[near.panels]
+    assert np.allclose(
+        np.einsum("nk,nk->n", near.mirrored_enu, normals), -np.einsum("nk,nk->n", near.incoming_enu, normals)
+    )
+
+
+def test_walkers_stand_on_the_ground_before_the_facade_and_see_their_panel():
+    ready = prepared()
+    views = walk_views(ready.problem, ready.site_model, 20, np.random.default_rng(0))
+    assert len(views.heading_rad) == 20
+    ground = ready.site_model.site.airspace.ground_z_m
+    assert np.allclose(views.positions_enu_m[:, 2], ground + 1.7)
+    assert (ready.problem.space.solids.clearance_m(views.positions_enu_m) > 0.8).all()
+    drawn = random_views(ready.problem, 20, np.random.default_rng(0))
+    assert ready.problem.flyable(drawn.positions_enu_m).all()
+
+
+def test_a_plan_says_what_it_is_worth_and_a_changed_one_does_not(tmp_path):
+    request = PlanRequest(n_views=12, greedy=GreedyParameters(n_candidates=300, certify=False), time_budget_s=10.0)
+    planned = plan_flight(prepared().site_model, request, prepared=prepared())
+    worth = planned.plan.present_worth
+    assert worth is not None
+    assert [battery.n_photos for battery in worth.batteries] == [12]
+    assert worth.gain_db > 0.0
+    assert "another battery would bring" in worth.text
+    read = plan_of(json.dumps(plan_to_json(planned.plan)).encode(), tmp_path / "plan.json")
+    assert read.worth == worth
+    sortie = planned.plan.sorties[0]
+    fewer = replace(planned.plan, sorties=(replace(sortie, viewpoint_ids=sortie.viewpoint_ids[1:]),))
+    assert fewer.present_worth is None
+    by_sections = plan_flight(
+        prepared().site_model,
+        replace(request, greedy=replace(request.greedy, objective="sections")),
+        prepared=prepared(),
+    )
+    assert by_sections.plan.coverage.covered >= planned.plan.coverage.covered
+    other = flight_worth(prepared().problem, model(), by_sections.plan)
+    assert other is not None
+    assert other.batteries[-1].psnr_db < worth.batteries[-1].psnr_db
+
+
+def test_good_enough_takes_fewer_batteries_the_more_each_has_to_bring():
+    request = PlanRequest(greedy=GreedyParameters(n_candidates=300, certify=False), time_budget_s=10.0)
+    sorties = [
+        len(plan_flight(prepared().site_model, replace(request, least_gain_db=gain), prepared=prepared()).plan.sorties)
+        for gain in (50.0, 0.05)
+    ]
+    assert sorties[0] == 1
+    assert sorties[1] >= sorties[0]
