@@ -310,6 +310,18 @@ def _value(word: str) -> Any:
         return word
 
 
+WORTH_METHODS = "random,orbit,noto,pso,sections,image-error"
+
+WORTH_EPILOG = """Every flight is planned, photographed over the synthetic scene, and a model is trained of its photos.
+Scores are of the facades in views that no photo was taken from: random oblique ones, ones of another plan by hemisphere
+sections, and those of an inspector's walk. What is finished stays in the folder, and the same call goes on with it.
+
+examples:
+  tradeoff worth planar -o tradeoff
+  tradeoff worth court -o tradeoff --methods random,sections,image-error --counts 100 --lights splats --seconds 300
+  tradeoff worth office.site.json -o tradeoff --flown planned,rtk-fixed,single --seeds 1
+"""
+
 ROUTE_SECONDS = 30.0
 
 PLAN_EPILOG = """what varies, one at a time, all else as the other options say:
@@ -359,6 +371,7 @@ def add_parser(subparsers: Any) -> None:
     _add_segment(kinds)
     _add_scene(kinds)
     _add_train(kinds)
+    _add_worth(kinds)
 
 
 def _add_plan(kinds: Any) -> None:
@@ -664,3 +677,72 @@ def _print_searches(runs: Sequence[SettingScores]) -> None:
         off = "" if off_px is None else say("  off by up to {:.2f} px in the photo", off_px)
         numbers = f"{row['seconds']:>10.3f}{single:>9.4f}{worst:>9.4f}{row['missed']:>8}"
         show(glue(table_row((row["setting"], -24)), numbers, off))
+
+
+def _add_worth(kinds: Any) -> None:
+    parser = kinds.add_parser(
+        "worth",
+        help="quality of the model against minutes in the air",
+        description="Fly plans of several methods over a synthetic scene, train a model of the photos of each, and\n"
+        "score it on unseen views; write tradeoff-worth.csv, tradeoff-worth-mean.csv and tradeoff-worth.png.",
+        epilog=WORTH_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.set_defaults(run=run_worth)
+    add = parser.add_argument
+    add("scene", metavar="SITE|NAME", help="site file, or name of a bundled scene ('scene list')")
+    _add_output(parser)
+    add_profile_argument(parser)
+    add("--look", type=Path, metavar="FILE", help="TOML file with glass, frames, surroundings and light of a site")
+    add("--width", type=count, default=128, metavar="PX", help="of the photos (default %(default)s)")
+    add("--unseen", type=count, default=40, metavar="N", help="views of each kind that models are scored on")
+    add("--seconds", type=above_zero, default=120.0, metavar="S", help="of processor time for joint splats")
+    add("--seeds", type=count, default=3, metavar="N", help="runs of each flight (default %(default)s)")
+    varied = parser.add_argument_group("what varies (lists with commas)").add_argument
+    varied("--methods", type=words, default=WORTH_METHODS, metavar="LIST", help="default: %(default)s")
+    varied("--counts", type=counts, default="50,100,200", metavar="LIST", help="photos (default: %(default)s)")
+    varied("--lights", type=words, default="radiance-grid,mlp", metavar="LIST", help="default: %(default)s; or splats")
+    varied("--flown", type=words, default="planned", metavar="LIST", help="planned, rtk-fixed, single")
+    where = parser.add_argument_group("where").add_argument
+    where("--jobs", type=count, default=1, metavar="N", help="flights at a time (default 1)")
+    where("--cluster", metavar="ADDRESS", help="run on a Dask cluster that shares the folder")
+
+
+def run_worth(options: argparse.Namespace) -> int:
+    """Compare flights and print; returns the exit status."""
+    from groundstation.services.worth import WorthRequest, summary_rows, worth_tradeoff
+
+    with in_words_of_options(WorthRequest):
+        request = WorthRequest(
+            options.scene,
+            options.methods,
+            options.counts,
+            options.lights,
+            options.flown,
+            n_seeds=options.seeds,
+            n_unseen=options.unseen,
+            width_px=options.width,
+            seconds=options.seconds,
+            look=options.look,
+            profile_id=options.profile,
+        )
+    return show_tradeoff(
+        "worth",
+        options.json,
+        lambda context: worth_tradeoff(
+            request, options.out, n_processes=options.jobs, address=options.cluster, monitor=context
+        ),
+        lambda results: {"flights": summary_rows(results)},
+        lambda results: _print_flights(summary_rows(results)),
+    )
+
+
+def _print_flights(rows: Sequence[Mapping[str, Any]]) -> None:
+    heads = (say("light"), -16), (say("flown"), -11), (say("photos"), 7), ("  " + say("method"), -14)
+    print(table_row(*heads, (say("in the air"), 11), (say("unseen views"), 14), (say("spread"), 9)))
+    for row in rows:
+        spread = "" if row["spread_db"] == "" else f"{row['spread_db']:>9.2f}"
+        print(
+            f"  {row['light']:<16}{row['flown']:<11}{row['n_photos']:>7}  {row['method']:<12}"
+            f"{row['minutes']:>7.1f} min{row['mean_db']:>11.2f} dB{spread}"
+        )

@@ -1,0 +1,350 @@
+"""Use case of asking what flights are worth: the quality of the model that each brings, against minutes in the air.
+
+A flight is planned by each method for each number of photos, flown in simulation where that is asked, photographed over
+a synthetic scene, and a model is trained of its photos. What is finished stays in the folder `worth`, so that the same
+call goes on where an earlier one was stopped.
+"""
+
+from __future__ import annotations
+
+import json
+import statistics
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import Any, Literal
+
+from groundstation.services.fly.flying import FlightRequest, fly_plan
+from groundstation.services.scenes.views import scene_of_request, shots_of_flight
+from missions.flight.flight_file import write_flight
+from missions.simulator.conditions import Conditions
+from planning.aircraft.catalogue import profile
+from planning.base.errors import InputError
+from planning.base.files import make_folder
+from planning.base.json_file import read_json, to_record, write_atomically
+from planning.base.messages import say
+from planning.base.parallel_map import sweep
+from planning.base.parameters import check, parameter
+from planning.base.progress import QUIET, Monitor, QualityPoint
+from planning.parameters import DEFAULT_PROFILE, GreedyParameters, Objective
+from planning.plan import Plan
+from planning.planner import plan_flight
+from planning.request import PlanRequest
+from planning.tradeoff.runner import ComparisonFiles, Line, Panel, Subject, compare, falling
+from planning.viewpoints.prepare import Prepared, prepare
+from reconstruction.scenes.parameters import SceneRequest
+from reconstruction.scenes.photos.flight_views import Shot, planned_shots
+from reconstruction.scenes.record import Scene
+from reconstruction.tradeoff.flight_worth import (
+    LIGHTS,
+    UNSEEN_KINDS,
+    Light,
+    UnseenKind,
+    model_quality,
+    photograph,
+    shots_of,
+    unseen_views,
+)
+from reconstruction.tradeoff.scene_tradeoff import ERROR_AXIS
+
+Flown = Literal["planned", "rtk-fixed", "single"]
+
+WORTH_METHODS: dict[str, tuple[str, Objective]] = {
+    "random": ("random", "sections"),
+    "orbit": ("orbit", "sections"),
+    "noto": ("noto", "sections"),
+    "pso": ("pso", "sections"),
+    "sections": ("greedy", "sections"),
+    "image-error": ("greedy", "image-error"),
+}
+"""What flights are compared: a planning method, and what greedy chooses for."""
+
+
+@dataclass(frozen=True, slots=True)
+class WorthRequest:
+    """Which flights are compared, over what, and by which models.
+
+    Parameters
+    ----------
+    methods
+        Of `WORTH_METHODS`.
+    counts
+        Numbers of photos.
+    flown
+        `planned`: photos stand where they are planned; else as flown in simulation with such a receiver. Their poses
+        are known exactly, as aligning photos makes them.
+    n_seeds
+        Each flight is planned, and its model trained, with so many seeds.
+    seconds
+        Of processor time for joint splats.
+    """
+
+    scene: str
+    methods: tuple[str, ...] = tuple(WORTH_METHODS)
+    counts: tuple[int, ...] = (50, 100, 200)
+    lights: tuple[Light, ...] = ("radiance-grid", "mlp")
+    flown: tuple[Flown, ...] = ("planned",)
+    n_seeds: int = parameter(3, least=1, most=100)
+    n_unseen: int = parameter(40, least=3, most=1000)
+    width_px: int = parameter(128, least=32, most=8192)
+    seconds: float = parameter(120.0, above=0.0)
+    plan_s: float = parameter(20.0, above=0.0)
+    look: Path | None = None
+    profile_id: str = DEFAULT_PROFILE
+
+    def __post_init__(self) -> None:
+        check(self)
+        for name, known in (
+            ("methods", WORTH_METHODS),
+            ("lights", LIGHTS),
+            ("flown", ("planned", "rtk-fixed", "single")),
+        ):
+            unknown = [each for each in getattr(self, name) if each not in known]
+            if unknown:
+                raise InputError(say("there is no '{}'; known are: {}", unknown[0], ", ".join(known), place=name))
+        if min(self.counts, default=0) < 2:
+            raise InputError(say("expected numbers of photos from 2 on", place="counts"))
+
+
+@dataclass(frozen=True, slots=True)
+class FlightTrial:
+    """One flight."""
+
+    method: str
+    count: int
+    seed: int
+    flown: Flown
+
+    @property
+    def name(self) -> str:
+        """For its files."""
+        return f"{self.method}-{self.count}-{self.flown}-{self.seed}"
+
+
+@dataclass(frozen=True, slots=True)
+class FlightResult:
+    """What a flight brought.
+
+    Parameters
+    ----------
+    minutes, n_sorties
+        In the air, as planned.
+    covered
+        Share of the hemisphere sections that can be seen at all.
+    psnr_db
+        Of unseen views, by light and kind.
+    """
+
+    scene: str
+    method: str
+    flown: Flown
+    seed: int
+    n_photos: int
+    minutes: float
+    n_sorties: int
+    covered: float
+    psnr_db: dict[str, dict[str, float]]
+
+    def mean_db(self, light: str) -> float:
+        """Over the kinds of unseen views."""
+        return statistics.fmean(self.psnr_db[light].values())
+
+
+def _rows(results: Sequence[FlightResult]) -> list[dict[str, Any]]:
+    rows = []
+    for result in results:
+        for light, kinds in result.psnr_db.items():
+            row = {name: value for name, value in asdict(result).items() if name != "psnr_db"}
+            row |= {"minutes": round(result.minutes, 2), "covered": round(result.covered, 4), "light": light}
+            row |= {f"{kind}_db": round(value, 2) for kind, value in kinds.items()}
+            rows.append({**row, "mean_db": round(result.mean_db(light), 2)})
+    return rows
+
+
+def summary_rows(results: Sequence[FlightResult]) -> list[dict[str, Any]]:
+    """Mean and spread over seeds, a row for each light, way of flying, number of photos and method."""
+    groups: dict[tuple[str, str, int, str], list[FlightResult]] = {}
+    for result in results:
+        for light in result.psnr_db:
+            groups.setdefault((light, result.flown, result.n_photos, result.method), []).append(result)
+    rows = []
+    for (light, flown, n_photos, method), found in sorted(groups.items()):
+        values = [result.mean_db(light) for result in found]
+        kinds = {
+            f"{kind}_db": round(statistics.fmean(result.psnr_db[light][kind] for result in found), 2)
+            for kind in UNSEEN_KINDS
+        }
+        rows.append(
+            {
+                "light": light,
+                "flown": flown,
+                "n_photos": n_photos,
+                "method": method,
+                "minutes": round(statistics.fmean(result.minutes for result in found), 1),
+                "mean_db": round(statistics.fmean(values), 2),
+                "spread_db": round(statistics.stdev(values), 2) if len(values) > 1 else "",
+                **kinds,
+                "seeds": len(found),
+            }
+        )
+    return rows
+
+
+WORTH_AXIS = replace(ERROR_AXIS, time_label=say("time in the air"))
+
+
+def worth_panels(results: Sequence[FlightResult]) -> list[Panel]:
+    """A panel for each light and way of flying, a line for each method: error against time in the air."""
+    rows = summary_rows(results)
+    panels = []
+    for light, flown in dict.fromkeys((row["light"], row["flown"]) for row in rows):
+        chosen = [row for row in rows if (row["light"], row["flown"]) == (light, flown)]
+        lines = []
+        for method in dict.fromkeys(row["method"] for row in chosen):
+            own = sorted((row for row in chosen if row["method"] == method), key=lambda row: row["minutes"])
+            points = [QualityPoint(60.0 * row["minutes"], 10.0 ** (-row["mean_db"] / 20.0)) for row in own]
+            lines.append(Line(method, falling(points, points[-1].t_s), f"{own[-1]['mean_db']:.1f} dB"))
+        panels.append(Panel(f"{light}, {flown}", tuple(lines)))
+    return panels
+
+
+WORTH: Subject[tuple[FlightResult, ...]] = Subject(
+    "worth",
+    WORTH_AXIS,
+    rows=_rows,
+    title=lambda results: say("the model that a flight brings, on unseen views of '{}'", results[0].scene),
+    panels=worth_panels,
+    more=lambda results: {"mean": summary_rows(results)},
+)
+
+
+def worth_tradeoff(
+    request: WorthRequest,
+    out: Path,
+    *,
+    n_processes: int = 1,
+    address: str | None = None,
+    monitor: Monitor = QUIET,
+) -> ComparisonFiles[tuple[FlightResult, ...]]:
+    """Compare flights; write `tradeoff-worth.csv`, `-mean.csv` and `.png` into `out`, and keep photos and results.
+
+    Parameters
+    ----------
+    address
+        Scheduler of a Dask cluster whose workers see `out` under the same name.
+
+    Raises
+    ------
+    InputError
+        There is no such scene, the folder holds other photos or cannot be written into, or no cluster answers.
+    InfeasibleError
+        A method finds no flight over the site.
+    ReconstructionError
+        A training came to nothing.
+    OperationCancelled
+        From `monitor`; what is finished stays.
+    """
+    trials = [
+        FlightTrial(method, n_photos, seed, flown)
+        for seed in range(request.n_seeds)
+        for n_photos in request.counts
+        for method in request.methods
+        for flown in request.flown
+    ]
+    make_folder(out / "worth")
+
+    def run(_folder: Path) -> tuple[FlightResult, ...]:
+        monitor.report(say("photographing unseen views"), 0, 1)
+        prepared = _prepared(request)
+        for kind in UNSEEN_KINDS:
+            _unseen(request, kind, prepared, out / "worth", monitor)
+        arguments = [(request, trial, out / "worth") for trial in trials]
+        return tuple(sweep(run_trial, arguments, n_processes=n_processes, address=address, monitor=monitor))
+
+    return compare(WORTH, out, run)
+
+
+def run_trial(request: WorthRequest, trial: FlightTrial, folder: Path) -> FlightResult:
+    """Plan, fly, photograph and learn, as far as that was not done before."""
+    place = folder / f"{trial.name}-{request.width_px}"
+    path, known = place / RESULT_FILE, None
+    if path.is_file():
+        known = to_record(read_json(path), FlightResult, path)
+        if set(request.lights) <= set(known.psnr_db):
+            return known
+    prepared = _prepared(request)
+    place.mkdir(parents=True, exist_ok=True)
+    plan = _plan(request, trial, prepared)
+    photographed = place / "photos"
+    photograph(prepared.scene, _shots(trial, plan, prepared, place), prepared.site, request.width_px, photographed)
+    unseen = {kind: folder / _unseen_name(kind, request) for kind in UNSEEN_KINDS}
+    scores: dict[str, dict[str, float]] = dict(known.psnr_db) if known else {}
+    for light in request.lights:
+        if light not in scores:
+            found = model_quality(light, photographed, unseen, trial.seed, request.seconds)
+            scores[light] = {str(kind): value for kind, value in found.items()}
+    bound = plan.coverage.reachable_upper_bound
+    result = FlightResult(
+        prepared.scene.name,
+        trial.method,
+        trial.flown,
+        trial.seed,
+        trial.count,
+        plan.duration_s / 60.0,
+        len(plan.sorties),
+        plan.coverage.covered / bound if bound else 0.0,
+        scores,
+    )
+    write_atomically(path, json.dumps(asdict(result), indent=1).encode())
+    return result
+
+
+RESULT_FILE = "result.json"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Ready:
+    """A scene, and its site prepared for planning."""
+
+    scene: Scene
+    site: Prepared
+
+
+def _prepared(request: WorthRequest) -> _Ready:
+    scene, _ = scene_of_request(SceneRequest(request.scene, look=request.look, profile_id=request.profile_id))
+    return _Ready(scene, prepare(scene.site, profile(request.profile_id).camera, PlanRequest().constraints))
+
+
+def _unseen_name(kind: UnseenKind, request: WorthRequest) -> str:
+    return f"unseen-{kind}-{request.n_unseen}-{request.width_px}"
+
+
+def _unseen(request: WorthRequest, kind: UnseenKind, ready: _Ready, folder: Path, monitor: Monitor) -> None:
+    place = folder / _unseen_name(kind, request)
+    if not (place / "dataset.json").is_file():
+        views = unseen_views(kind, ready.site, request.n_unseen)
+        photograph(ready.scene, shots_of(views), ready.site, request.width_px, place, monitor)
+
+
+def _plan(request: WorthRequest, trial: FlightTrial, ready: _Ready) -> Plan:
+    method, objective = WORTH_METHODS[trial.method]
+    wanted = PlanRequest(
+        method=method,
+        n_views=trial.count,
+        profile_id=request.profile_id,
+        greedy=GreedyParameters(objective=objective),
+        seed=trial.seed,
+        time_budget_s=request.plan_s,
+    )
+    return plan_flight(ready.scene.site, wanted, prepared=ready.site).plan
+
+
+def _shots(trial: FlightTrial, plan: Plan, ready: _Ready, folder: Path) -> tuple[Shot, ...]:
+    if trial.flown == "planned":
+        return planned_shots(plan)
+    flight = fly_plan(
+        plan, ready.scene.site, FlightRequest(conditions=Conditions(fix=trial.flown), seed=trial.seed)
+    ).flight
+    path = folder / "flight.json"
+    write_flight(path, flight)
+    return shots_of_flight(path, plan, ready.scene.site)[0]

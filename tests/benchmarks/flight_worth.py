@@ -1,0 +1,93 @@
+"""What flights are worth: the model that each brings, by the objective that its views were chosen for."""
+
+from __future__ import annotations
+
+import math
+import shutil
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from groundstation.services.worth import FlightResult, WorthRequest, worth_tradeoff
+from tests.benchmarks.harness import Benchmark, Context, Row
+
+COUNTS = {"planar": (50, 100, 200), "curved": (50, 100), "court": (50, 100), "planar-far": (100,)}
+"""Photos of the flights over each scene."""
+
+FAR = ("planar-far",)
+NEAR = tuple(scene for scene in COUNTS if scene not in FAR)
+METHODS = ("random", "sections", "image-error")
+N_SEEDS = 1
+BETTER_DB, FAR_DB = 1.0, 0.2
+
+KEPT = Path("benchmark-out") / "worth"
+"""Photos and results, with which the next run goes on: all of it takes hours."""
+
+
+def measure(context: Context) -> Iterator[Row]:
+    """Each scene's flights, then what an objective is above the others in the same minutes."""
+    gains: dict[str, list[float]] = {other: [] for other in METHODS[:-1]}
+    for scene in ("planar",) if context.is_quick else (*NEAR, *FAR):
+        counts = (8, 12) if context.is_quick else COUNTS[scene]
+        request = WorthRequest(
+            scene, METHODS, counts, ("radiance-grid",), n_seeds=N_SEEDS, n_unseen=6 if context.is_quick else 40
+        )
+        compared = worth_tradeoff(request, KEPT / ("quick" if context.is_quick else "full") / scene, n_processes=2)
+        shutil.copy(compared.picture_path, context.folder / f"worth-{scene}.png")
+        results = compared.found
+        for result in results:
+            kinds = ", ".join(f"{kind} {value:.1f}" for kind, value in result.psnr_db["radiance-grid"].items())
+            beside = f"{result.minutes:.1f} min, {100 * result.covered:.0f} % of the sections; {kinds} dB"
+            what = f"{result.n_photos} photos, {result.method}, unseen views"
+            yield Row(scene, what, round(result.mean_db("radiance-grid"), 2), "dB", None, beside, seeds=N_SEEDS)
+        if context.is_quick:
+            return
+        curves = {method: curve_of(results, method) for method in METHODS}
+        for other in METHODS[:-1]:
+            above = [_above(curves, other, n_photos) for n_photos in counts]
+            mean = sum(above) / len(above)
+            if scene in NEAR:
+                gains[other].append(mean)
+            target = (f"at least -{FAR_DB:g} dB", min(above) >= -FAR_DB) if scene in FAR else ("", None)
+            beside = ", ".join(f"{n} photos {value:+.2f}" for n, value in zip(counts, above, strict=True))
+            yield Row(
+                scene, f"image-error above {other} in as many minutes", round(mean, 2), "dB", None, beside, *target
+            )
+    for other, means in gains.items():
+        mean = sum(means) / len(means)
+        target = (f"at least {BETTER_DB:g} dB" if other == "sections" else "above 0 dB",)
+        is_met = mean >= BETTER_DB if other == "sections" else mean > 0.0
+        what = f"image-error above {other} in as many minutes, mean of near scenes"
+        yield Row("near scenes", what, round(mean, 2), "dB", None, "", *target, is_met)
+
+
+Curve = tuple[Sequence[int], Sequence[float], Sequence[float]]
+"""Numbers of photos, logarithms of minutes in the air, and dB, each the mean of the seeds."""
+
+
+def curve_of(results: Sequence[FlightResult], method: str) -> Curve:
+    """Of one method, by number of photos."""
+    counts = sorted({result.n_photos for result in results if result.method == method})
+    found = [[r for r in results if r.method == method and r.n_photos == n] for n in counts]
+    minutes = [math.log(float(np.mean([r.minutes for r in each]))) for each in found]
+    return counts, minutes, [float(np.mean([r.mean_db("radiance-grid") for r in each])) for each in found]
+
+
+def _above(curves: Mapping[str, Curve], other: str, n_photos: int) -> float:
+    """Decibels above another method's curve at the minutes that so many photos take; its ends go on level."""
+    counts, minutes, decibels = curves["image-error"]
+    at = list(counts).index(n_photos)
+    return decibels[at] - float(np.interp(minutes[at], curves[other][1], curves[other][2]))
+
+
+BENCHMARK = Benchmark(
+    "worth",
+    "What flights are worth",
+    "Flights of random oblique views, of greedy choice by hemisphere sections (the paper's objective) and by the "
+    "expected error of a model's pictures, over synthetic scenes: a radiance grid learns from all photos of a flight "
+    "(128 x 96 pixels), and is scored on glass of 40 unseen views of each of three kinds, whose means count alike. "
+    "Other methods are compared at the same minutes in the air: between their own flights, and below the shortest as "
+    "if that took no longer.",
+    measure,
+)

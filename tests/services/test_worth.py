@@ -1,0 +1,103 @@
+"""What flights are worth: tables and curves of results, what is kept, and a whole small comparison."""
+
+from __future__ import annotations
+
+import csv
+import json
+from dataclasses import asdict
+
+import pytest
+
+from groundstation.services.worth import (
+    WORTH_METHODS,
+    FlightResult,
+    FlightTrial,
+    WorthRequest,
+    run_trial,
+    summary_rows,
+    worth_panels,
+    worth_tradeoff,
+)
+from planning.base.errors import InputError
+
+
+def result(method: str, n_photos: int, seed: int, decibels: float, minutes: float = 6.0) -> FlightResult:
+    """One whose kinds of views differ by 1 dB."""
+    kinds = {"random": decibels + 1.0, "hemisphere": decibels, "walk": decibels - 1.0}
+    return FlightResult("planar", method, "planned", seed, n_photos, minutes, 1, 0.5, {"radiance-grid": kinds})
+
+
+def test_seeds_are_averaged_and_their_spread_is_told():
+    found = [result("random", 50, 0, 28.0), result("random", 50, 1, 30.0), result("image-error", 50, 0, 31.0, 5.0)]
+    by_method = {row["method"]: row for row in summary_rows(found)}
+    assert by_method["random"]["mean_db"] == pytest.approx(29.0)
+    assert by_method["random"]["spread_db"] == pytest.approx(1.41)
+    assert (by_method["random"]["seeds"], by_method["random"]["walk_db"]) == (2, 28.0)
+    assert by_method["image-error"]["spread_db"] == ""
+
+
+def test_curves_fall_with_minutes_in_the_air():
+    found = [result("random", 50, 0, 28.0), result("random", 100, 0, 30.0, 11.0), result("sections", 50, 0, 29.0)]
+    (panel,) = worth_panels(found)
+    lines = {line.name: line.curve for line in panel.lines}
+    assert [point.t_s for point in lines["random"].points] == [360.0, 660.0]
+    assert lines["random"].final_gap == pytest.approx(10.0 ** (-30.0 / 20.0))
+    assert lines["random"].gap_at(400.0) > lines["sections"].gap_at(400.0)
+
+
+def test_what_is_finished_is_not_done_again(tmp_path):
+    known = result("random", 50, 0, 28.0)
+    trial = FlightTrial("random", 50, 0, "planned")
+    place = tmp_path / f"{trial.name}-128"
+    place.mkdir()
+    (place / "result.json").write_text(json.dumps(asdict(known)))
+    assert run_trial(WorthRequest("no such scene", lights=("radiance-grid",)), trial, tmp_path) == known
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"methods": ("ants",)}, "there is no 'ants'; known are: random, orbit"),
+        ({"lights": ("candle",)}, "there is no 'candle'; known are: radiance-grid, mlp, splats"),
+        ({"flown": ("by hand",)}, "there is no 'by hand'; known are: planned, rtk-fixed, single"),
+        ({"counts": (1,)}, "expected numbers of photos from 2 on"),
+    ],
+)
+def test_what_does_not_exist_is_refused_in_words(changes, words):
+    with pytest.raises(InputError, match=words):
+        WorthRequest("planar", **changes)
+
+
+def test_a_scene_that_does_not_exist_is_refused(tmp_path):
+    with pytest.raises(InputError, match="neither a site file nor a bundled scene"):
+        worth_tradeoff(WorthRequest("no such scene"), tmp_path)
+
+
+def test_every_method_compared_is_one_of_the_planner():
+    from planning.viewpoints.methods import METHODS
+
+    assert {method for method, _ in WORTH_METHODS.values()} == set(METHODS)
+
+
+@pytest.mark.slow
+def test_a_flight_is_planned_flown_photographed_and_learned_from(tmp_path):
+    request = WorthRequest(
+        "planar",
+        ("random", "image-error"),
+        (4,),
+        ("radiance-grid",),
+        ("planned", "single"),
+        n_seeds=1,
+        n_unseen=3,
+        width_px=64,
+        plan_s=5.0,
+    )
+    compared = worth_tradeoff(request, tmp_path)
+    assert len(compared.found) == 4
+    rows = list(csv.DictReader(compared.csv_path.open(encoding="utf-8")))
+    assert {(row["method"], row["flown"]) for row in rows} == {
+        (method, flown) for method in ("random", "image-error") for flown in ("planned", "single")
+    }
+    assert all(10.0 < float(row["mean_db"]) < 50.0 and float(row["minutes"]) > 0.5 for row in rows)
+    assert all(path.is_file() for path in compared.paths)
+    assert worth_tradeoff(request, tmp_path).found == compared.found
