@@ -277,6 +277,7 @@ def plan_flight(
         views = _that_can_be_routed(
             problem, views, chosen_for, request, chosen_profile, limit.remaining_s() - DRAWING_S
         )
+    n_left_out = n_chosen - len(views.heading_rad)
     watch.lap("views")
     flights = _route(problem, views, request, chosen_profile, limit, routing_s, stop, monitor)
     while request.n_batteries is not None and len(flights) > request.n_batteries:
@@ -298,7 +299,7 @@ def plan_flight(
         watch.seconds,
         prepared,
         _open_sections(problem, plan, request),
-        n_chosen - len(views.heading_rad) if request.n_batteries is None else 0,
+        n_left_out,
     )
 
 
