@@ -270,7 +270,7 @@ def test_a_plan_says_what_it_is_worth_and_a_changed_one_does_not(tmp_path):
 
 
 def test_good_enough_takes_fewer_batteries_the_more_each_has_to_bring():
-    request = PlanRequest(greedy=GreedyParameters(n_candidates=300, certify=False), time_budget_s=10.0)
+    request = PlanRequest(greedy=GreedyParameters(n_candidates=300, certify=False), time_budget_s=3.0)
     sorties = [
         len(plan_flight(prepared().site_model, replace(request, least_gain_db=gain), prepared=prepared()).plan.sorties)
         for gain in (50.0, 0.05)
