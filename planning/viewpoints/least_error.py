@@ -33,7 +33,7 @@ N_UNSEEN = 200
 SECONDS_FOR_ALL = 20_000
 """Views that candidates are, for the stated cost."""
 
-FEW_CANDIDATES = 4000
+FEW_CANDIDATES = 1000
 """Places that another battery's photos are taken from, for what it would bring."""
 
 CALIBRATION = (16.0, 0.476)
