@@ -11,7 +11,7 @@ import time
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
-from functools import partial
+from functools import cache, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,7 +48,7 @@ from planning.viewpoints.least_error import (
 )
 from planning.viewpoints.methods import method_named
 from planning.viewpoints.prepare import Prepared, prepare
-from planning.viewpoints.problem import Goal, Optimiser, ViewProblem, locked_views, nothing_to_see, take
+from planning.viewpoints.problem import Goal, Optimiser, ViewProblem, ViewSet, locked_views, nothing_to_see, take
 from planning.viewpoints.spacing import SpacingRule, merge_close_views
 
 # Chosen views and flights as the records of a plan: rounded as in files, named, in the order of flight.
@@ -167,8 +167,9 @@ def open_sections(
     )
 
 
-REACHABILITY_SHARE, ROUTING_SHARE = 0.3, 0.3
-"""Parts of the time budget: what proofs of what can be reached may take at most, and what is kept for routing."""
+REACHABILITY_SHARE, ROUTING_SHARE, FINISHING_SHARE = 0.3, 0.3, 0.2
+"""Parts of the time budget: what proofs of what can be reached may take at most, what is kept for routing, and what a
+choice of views takes to come to its end once it was asked to."""
 
 SHORTEST_ROUTING_S = 1.0
 LONGEST_ROUTING_S = 4.0
@@ -202,6 +203,9 @@ class Planned:
         Wall time by stage, in order.
     prepared
         The site as it was prepared: planning again with it saves that time.
+    most_psnr_db
+        Expected PSNR of unseen views that no choice as large, of the same candidates, exceeds; None where views were
+        chosen for something else.
     """
 
     plan: Plan
@@ -213,6 +217,7 @@ class Planned:
     prepared: Prepared = field(repr=False, compare=False)
     open_sections: tuple[OpenSection, ...] = ()
     n_left_out: int = 0
+    most_psnr_db: float | None = None
 
 
 def plan_flight(
@@ -255,18 +260,18 @@ def plan_flight(
     watch.lap("reachability")
     trace.record_bound(prepared.problem.reachability.upper_bound)
     routing_s = float(np.clip(ROUTING_SHARE * request.time_budget_s, SHORTEST_ROUTING_S, LONGEST_ROUTING_S))
-    choosing = any_of(stop, TimeLimit(max(0.1, limit.remaining_s() - routing_s)))
+    finishing_s = FINISHING_SHARE * request.time_budget_s
+    choosing = any_of(stop, TimeLimit(max(0.1, limit.remaining_s() - routing_s - finishing_s)))
     problem = prepared.problem
-    error, decision = image_error_model(problem, site_model, request.greedy.surroundings, request.seed)
+    # Loading what casts rays takes a second: where views are chosen for something else, after the time budget.
+    judged = cache(partial(image_error_model, problem, site_model, request.greedy.surroundings, request.seed))
     if request.least_gain_db is not None:
-        n_batteries = _batteries_worth(problem, error, request, chosen_profile, choosing, monitor)
+        n_batteries = _batteries_worth(problem, judged()[0], request, chosen_profile, choosing, monitor)
         request = replace(request, n_batteries=n_batteries, least_gain_db=None)
-    chosen_for = error if request.greedy.objective == "image-error" and error.n_elements else None
-    views, bound = _choose(problem, request, chosen_profile, chosen_for, choosing, trace, monitor)
-    if request.greedy.solid_angle_weights:
-        bound = None
+    chosen_for = judged()[0] if _are_chosen_for_error(request) and judged()[0].n_elements else None
+    found = _choose(problem, request, chosen_profile, chosen_for, choosing, trace, monitor)
     n_locked = len(request.locked)
-    views = as_written(problem, views, n_locked)
+    views = as_written(problem, found.views, n_locked)
     spacing_m = chosen_profile.aircraft.min_waypoint_spacing_m
     if request.method != "greedy" and spacing_m > 0.0:  # greedy keeps it while it chooses
         views = merge_close_views(problem, views, spacing_m)
@@ -281,11 +286,12 @@ def plan_flight(
     watch.lap("views")
     flights = _route(problem, views, request, chosen_profile, limit, routing_s, stop, monitor)
     while request.n_batteries is not None and len(flights) > request.n_batteries:
-        flights = best_flights(problem.model, views, flights, request.n_batteries, n_locked)
+        flights = best_flights(problem.model, views, flights, request.n_batteries, n_locked, chosen_for)
         if len(flights) > request.n_batteries:  # all of them have locked views
             views = with_fewer_views(problem.model, views, n_locked)
             flights = _route(problem, views, request, chosen_profile, limit, routing_s, stop, monitor)
     watch.lap("routing")
+    error, decision = judged()
     plan = _plan(site_model, request, chosen_profile, prepared, (*prepared.effects, decision), views, flights, trace)
     plan = replace(plan, worth=flight_worth(problem, error, plan, request.seed))
     watch.lap("certificate")
@@ -293,14 +299,21 @@ def plan_flight(
     return Planned(
         plan,
         prepared.findings,
-        bound,
+        None if request.greedy.solid_angle_weights else found.bound,
         reachability.n_undecided,
         depth(problem.model, plan.viewpoints),
         watch.seconds,
         prepared,
         _open_sections(problem, plan, request),
         n_left_out,
+        None if found.least_error is None else expected_psnr_db(found.least_error),
     )
+
+
+def _are_chosen_for_error(request: PlanRequest) -> bool:
+    """Whether views are chosen for the least expected error: not where they are to cover a share of the sections."""
+    has_number = request.n_views is not None or request.n_batteries is not None
+    return request.method == "greedy" and request.greedy.objective == "image-error" and has_number
 
 
 def _that_can_be_routed(
@@ -364,8 +377,8 @@ def _choose(
     stop: Stop,
     trace: Trace,
     monitor: Monitor,
-) -> tuple[ViewpointArrays, float | None]:
-    """Views, the locked ones first, and an upper bound on what as many could cover."""
+) -> ViewSet:
+    """Views, the locked ones first, and bounds on what as many could bring."""
     locked = locked_views(problem, request.locked)
     if request.n_batteries is not None:
         return views_within_budget(
@@ -382,8 +395,7 @@ def _choose(
             error=error,
         )
     optimiser = _optimiser(request, locked, chosen_profile.aircraft.min_waypoint_spacing_m, error)
-    found = optimiser(problem, _goal(request), seed=request.seed, stop=stop, trace=trace, monitor=monitor)
-    return found.views, found.bound
+    return optimiser(problem, _goal(request), seed=request.seed, stop=stop, trace=trace, monitor=monitor)
 
 
 PROBED_VIEWS, PROBE_S, MOST_BATTERIES = 120, 1.0, 10

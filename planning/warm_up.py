@@ -37,7 +37,9 @@ def _analyse() -> None:
     space = prepared.problem.space
     obstructions = obstructions_of(model, space)
     route_clearance(Sortie((), ((0.0, -20.0, 5.0), (5.0, -20.0, 5.0)), 5.0, 5.0), space, obstructions)
-    first_obstructions_hit(space.solids, obstructions.solid_owner, space.home_enu_m[None], space.column_top_enu_m[None])
+    ends = space.home_enu_m[None], space.column_top_enu_m[None]
+    first_obstructions_hit(space.solids, obstructions.solid_owner, *ends)
+    space.solids.lines_free(*ends)
 
 
 LONG_ENOUGH_S = 60.0
@@ -46,7 +48,8 @@ LONG_ENOUGH_S = 60.0
 
 def compile_kernels() -> None:
     """Run every kernel on small inputs: the planning methods in both precisions and both widths, and the routing."""
-    few = GreedyParameters(n_candidates=200, improve=False)
+    few = GreedyParameters(n_candidates=200, improve=False, objective="sections")
+    for_error = replace(few, objective="image-error")
     occluded, fine = Constraints(occlusion="on"), Constraints(section_step_deg=15.0)
     requests = (
         PlanRequest(n_views=1, greedy=replace(few, improve=True), time_budget_s=LONG_ENOUGH_S),
@@ -54,6 +57,8 @@ def compile_kernels() -> None:
         PlanRequest(share=0.5, greedy=few, time_budget_s=LONG_ENOUGH_S, constraints=fine),
         PlanRequest(share=0.5, greedy=few, time_budget_s=LONG_ENOUGH_S, precision="f64", constraints=occluded),
         PlanRequest(n_batteries=1, greedy=few, time_budget_s=2.0),
+        PlanRequest(n_views=6, greedy=for_error, time_budget_s=LONG_ENOUGH_S),
+        PlanRequest(n_batteries=1, greedy=for_error, time_budget_s=2.0),
     )
     model = SCENES["roof"]()
     for request in requests:

@@ -7,12 +7,15 @@ call goes on where an earlier one was stopped.
 
 from __future__ import annotations
 
+import hashlib
 import json
 import statistics
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
+
+import numpy as np
 
 from groundstation.services.fly.flying import FlightRequest, fly_plan
 from groundstation.services.scenes.views import scene_of_request, shots_of_flight
@@ -27,7 +30,7 @@ from planning.base.parallel_map import sweep
 from planning.base.parameters import check, parameter
 from planning.base.progress import QUIET, Monitor, QualityPoint
 from planning.parameters import DEFAULT_PROFILE, GreedyParameters, Objective
-from planning.plan import Plan
+from planning.plan import Plan, ViewpointArrays, read_plan, write_plan
 from planning.planner import plan_flight
 from planning.request import PlanRequest
 from planning.tradeoff.runner import ComparisonFiles, Line, Panel, Subject, compare, falling
@@ -84,8 +87,8 @@ class WorthRequest:
     counts: tuple[int, ...] = (50, 100, 200)
     lights: tuple[Light, ...] = ("radiance-grid", "mlp")
     flown: tuple[Flown, ...] = ("planned",)
-    n_seeds: int = parameter(3, least=1, most=100)
-    n_unseen: int = parameter(40, least=3, most=1000)
+    n_seeds: int = parameter(3, least=1, most=100, option="--seeds")
+    n_unseen: int = parameter(40, least=3, most=1000, option="--unseen")
     width_px: int = parameter(128, least=32, most=8192)
     seconds: float = parameter(120.0, above=0.0)
     plan_s: float = parameter(20.0, above=0.0)
@@ -101,9 +104,11 @@ class WorthRequest:
         ):
             unknown = [each for each in getattr(self, name) if each not in known]
             if unknown:
-                raise InputError(say("there is no '{}'; known are: {}", unknown[0], ", ".join(known), place=name))
+                raise InputError(
+                    say("there is no '{}'; known are: {}", unknown[0], ", ".join(known), place=f"--{name}")
+                )
         if min(self.counts, default=0) < 2:
-            raise InputError(say("expected numbers of photos from 2 on", place="counts"))
+            raise InputError(say("expected numbers of photos from 2 on", place="--counts"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,6 +132,8 @@ class FlightResult:
 
     Parameters
     ----------
+    n_photos, n_taken
+        Asked for, and taken.
     minutes, n_sorties
         In the air, as planned.
     covered
@@ -140,6 +147,7 @@ class FlightResult:
     flown: Flown
     seed: int
     n_photos: int
+    n_taken: int
     minutes: float
     n_sorties: int
     covered: float
@@ -251,33 +259,49 @@ def worth_tradeoff(
         for method in request.methods
         for flown in request.flown
     ]
-    make_folder(out / "worth")
+    folder = kept_folder(request, out)
 
     def run(_folder: Path) -> tuple[FlightResult, ...]:
         monitor.report(say("photographing unseen views"), 0, 1)
-        prepared = _prepared(request)
+        ready = _prepared(request)
         for kind in UNSEEN_KINDS:
-            _unseen(request, kind, prepared, out / "worth", monitor)
-        arguments = [(request, trial, out / "worth") for trial in trials]
+            _unseen(request, kind, ready, folder / f"unseen-{kind}", monitor)
+        arguments = [(request, trial, folder) for trial in trials]
         return tuple(sweep(run_trial, arguments, n_processes=n_processes, address=address, monitor=monitor))
 
     return compare(WORTH, out, run)
 
 
+def kept_folder(request: WorthRequest, out: Path) -> Path:
+    """Where photos and results are kept: a folder of its own for all that makes results differ but the flights.
+
+    Raises
+    ------
+    InputError
+        There is no such scene, or the folder cannot be made.
+    """
+    scene, made_from = _scene(request)
+    settings = (request.width_px, request.n_unseen, request.seconds, request.plan_s)
+    parts = (made_from, scene.site.sha256, profile(request.profile_id), settings)
+    folder = out / "worth" / f"{scene.name}-{hashlib.sha256(repr(parts).encode()).hexdigest()[:12]}"
+    make_folder(folder)
+    return folder
+
+
 def run_trial(request: WorthRequest, trial: FlightTrial, folder: Path) -> FlightResult:
-    """Plan, fly, photograph and learn, as far as that was not done before."""
-    place = folder / f"{trial.name}-{request.width_px}"
+    """Plan, fly, photograph and learn, as far as that was not done before in the folder."""
+    place = folder / trial.name
     path, known = place / RESULT_FILE, None
     if path.is_file():
         known = to_record(read_json(path), FlightResult, path)
         if set(request.lights) <= set(known.psnr_db):
             return known
-    prepared = _prepared(request)
-    place.mkdir(parents=True, exist_ok=True)
-    plan = _plan(request, trial, prepared)
-    photographed = place / "photos"
-    photograph(prepared.scene, _shots(trial, plan, prepared, place), prepared.site, request.width_px, photographed)
-    unseen = {kind: folder / _unseen_name(kind, request) for kind in UNSEEN_KINDS}
+    ready = _prepared(request)
+    make_folder(place)
+    plan = _plan(request, trial, ready, place / "plan.json")
+    photographed, shots = place / "photos", _shots(trial, plan, ready, place / "flight.json")
+    photograph(ready.scene, shots, ready.site, request.width_px, photographed)
+    unseen = {kind: folder / f"unseen-{kind}" / "photos" for kind in UNSEEN_KINDS}
     scores: dict[str, dict[str, float]] = dict(known.psnr_db) if known else {}
     for light in request.lights:
         if light not in scores:
@@ -285,11 +309,12 @@ def run_trial(request: WorthRequest, trial: FlightTrial, folder: Path) -> Flight
             scores[light] = {str(kind): value for kind, value in found.items()}
     bound = plan.coverage.reachable_upper_bound
     result = FlightResult(
-        prepared.scene.name,
+        ready.scene.name,
         trial.method,
         trial.flown,
         trial.seed,
         trial.count,
+        len(shots),
         plan.duration_s / 60.0,
         len(plan.sorties),
         plan.coverage.covered / bound if bound else 0.0,
@@ -299,7 +324,7 @@ def run_trial(request: WorthRequest, trial: FlightTrial, folder: Path) -> Flight
     return result
 
 
-RESULT_FILE = "result.json"
+RESULT_FILE, VIEWS_FILE = "result.json", "views.json"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -310,23 +335,32 @@ class _Ready:
     site: Prepared
 
 
+def _scene(request: WorthRequest) -> tuple[Scene, dict[str, Any]]:
+    return scene_of_request(SceneRequest(request.scene, look=request.look, profile_id=request.profile_id))
+
+
 def _prepared(request: WorthRequest) -> _Ready:
-    scene, _ = scene_of_request(SceneRequest(request.scene, look=request.look, profile_id=request.profile_id))
+    scene, _ = _scene(request)
     return _Ready(scene, prepare(scene.site, profile(request.profile_id).camera, PlanRequest().constraints))
 
 
-def _unseen_name(kind: UnseenKind, request: WorthRequest) -> str:
-    return f"unseen-{kind}-{request.n_unseen}-{request.width_px}"
-
-
 def _unseen(request: WorthRequest, kind: UnseenKind, ready: _Ready, folder: Path, monitor: Monitor) -> None:
-    place = folder / _unseen_name(kind, request)
-    if not (place / "dataset.json").is_file():
+    """Photograph unseen views; those that an interrupted run chose, since a search by the clock chooses others."""
+    path, photos = folder / VIEWS_FILE, folder / "photos"
+    if (photos / "dataset.json").is_file():
+        return
+    make_folder(folder)
+    if not path.is_file():
         views = unseen_views(kind, ready.site, request.n_unseen)
-        photograph(ready.scene, shots_of(views), ready.site, request.width_px, place, monitor)
+        write_atomically(path, json.dumps([column.tolist() for column in views]).encode())
+    views = ViewpointArrays(*(np.array(column, np.float64) for column in read_json(path)))
+    photograph(ready.scene, shots_of(views), ready.site, request.width_px, photos, monitor)
 
 
-def _plan(request: WorthRequest, trial: FlightTrial, ready: _Ready) -> Plan:
+def _plan(request: WorthRequest, trial: FlightTrial, ready: _Ready, path: Path) -> Plan:
+    """The plan in a file, made if it is not there: its photos may be, and planning by the clock makes another."""
+    if path.is_file():
+        return read_plan(path)
     method, objective = WORTH_METHODS[trial.method]
     wanted = PlanRequest(
         method=method,
@@ -336,15 +370,18 @@ def _plan(request: WorthRequest, trial: FlightTrial, ready: _Ready) -> Plan:
         seed=trial.seed,
         time_budget_s=request.plan_s,
     )
-    return plan_flight(ready.scene.site, wanted, prepared=ready.site).plan
+    plan = plan_flight(ready.scene.site, wanted, prepared=ready.site).plan
+    write_plan(path, plan)
+    return plan
 
 
-def _shots(trial: FlightTrial, plan: Plan, ready: _Ready, folder: Path) -> tuple[Shot, ...]:
+def _shots(trial: FlightTrial, plan: Plan, ready: _Ready, path: Path) -> tuple[Shot, ...]:
     if trial.flown == "planned":
         return planned_shots(plan)
+    if path.is_file():
+        return shots_of_flight(path, plan, ready.scene.site)[0]
     flight = fly_plan(
         plan, ready.scene.site, FlightRequest(conditions=Conditions(fix=trial.flown), seed=trial.seed)
     ).flight
-    path = folder / "flight.json"
     write_flight(path, flight)
     return shots_of_flight(path, plan, ready.scene.site)[0]

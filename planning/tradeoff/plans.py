@@ -265,7 +265,7 @@ def load_kernels(requests: Sequence[PlanRequest]) -> None:
 @cache
 def _load_kernels(precision: Precision, step_deg: float) -> None:
     """Once in a process."""
-    few = GreedyParameters(n_candidates=50)
+    few = GreedyParameters(n_candidates=50, objective="sections")
     constraints = Constraints(section_step_deg=step_deg, occlusion="on")
     request = PlanRequest(n_views=2, greedy=few, precision=precision, constraints=constraints, time_budget_s=0.1)
     plan_flight(SCENES["single-panel"](), request)

@@ -27,7 +27,7 @@ from planning.viewpoints.candidates import Pool, candidate_pool, join_pools, kee
 from planning.viewpoints.greedy import Choice
 from planning.viewpoints.improve import cover_state
 from planning.viewpoints.least_error import ErrorGain, choose_for_least_error, error_state
-from planning.viewpoints.problem import NONE_LOCKED, ViewProblem, covered_by, take
+from planning.viewpoints.problem import NONE_LOCKED, ViewProblem, ViewSet, covered_by, take
 from planning.viewpoints.spacing import ANYWHERE, SpacingRule, rounding_spacing_m, spacing_rule
 
 Array = NDArray[np.float64]
@@ -94,11 +94,11 @@ def views_within_budget(
     monitor: Monitor,
     locked: ViewpointArrays = NONE_LOCKED,
     error: ImageErrorModel | None = None,
-) -> tuple[ViewpointArrays, float | None]:
-    """Views that fit into `n_batteries` sorties and cover as much as could be found, and an upper bound on that.
+) -> ViewSet:
+    """Views that fit into `n_batteries` sorties and cover as much as could be found; with `error`, take most off it.
 
-    The bound holds for the candidates that were compared. Views that are `locked` come first in the result, as they
-    are. With `error`, views are chosen that take most off it, and there is no bound of what they could cover.
+    The bound on that holds for the candidates that were compared. Views that are `locked` come first in the result, as
+    they are.
 
     Raises
     ------
@@ -144,11 +144,12 @@ def views_within_budget(
             times.budget_s,
         )
     chosen = np.concatenate([np.arange(n_locked), chosen[chosen >= n_locked]])
+    views = take(pool.views, chosen)
     if error is not None:
-        trace.record(problem.model.covered_count(take(pool.views, chosen)))
-        return take(pool.views, chosen), None
+        trace.record(problem.model.covered_count(views))
+        return ViewSet(views, least_error=max(error.floor, error.most_error - selection.bound))
     everything = float(weights[np.unique(pool.elements.items)].sum())
-    return take(pool.views, chosen), min(selection.bound, everything)
+    return ViewSet(views, min(selection.bound, everything))
 
 
 def _required(times: FlightTimes, n_locked: int, n_batteries: int, max_stops: int, seed: int, stop: Stop) -> Sorties:
@@ -169,21 +170,31 @@ def _required(times: FlightTimes, n_locked: int, n_batteries: int, max_stops: in
 
 
 def best_flights(
-    model: CoverageModel, views: ViewpointArrays, flights: tuple[Flight, ...], n_batteries: int, n_locked: int = 0
+    model: CoverageModel,
+    views: ViewpointArrays,
+    flights: tuple[Flight, ...],
+    n_batteries: int,
+    n_locked: int = 0,
+    error: ImageErrorModel | None = None,
 ) -> tuple[Flight, ...]:
     """At most `n_batteries` of the flights, in order: those go without which least is lost.
 
     Views that just fitted into the batteries may need one more once they are rounded, moved together and routed anew.
-    Flights with one of the first `n_locked` views stay, even where they are too many.
+    Flights with one of the first `n_locked` views stay, even where they are too many. What is lost is coverage, or with
+    `error` how much more of that is left.
     """
     kept = list(flights)
     while len(kept) > n_batteries:
-        covered = np.array([model.covered(take(views, flight.views)) for flight in kept])
-        only_here = (covered & (covered.sum(axis=0) == 1)).sum(axis=1)
+        if error is None:
+            covered = np.array([model.covered(take(views, flight.views)) for flight in kept])
+            lost = (covered & (covered.sum(axis=0) == 1)).sum(axis=1).tolist()
+        else:
+            others = (np.concatenate([f.views for f in kept if f is not flight]) for flight in kept)
+            lost = [error.expected_error(take(views, each)) for each in others]
         spare = [number for number, flight in enumerate(kept) if (flight.views >= n_locked).all()]
         if not spare:
             break
-        del kept[min(spare, key=only_here.__getitem__)]
+        del kept[min(spare, key=lost.__getitem__)]
     return tuple(kept)
 
 

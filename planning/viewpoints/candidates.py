@@ -74,6 +74,9 @@ def candidate_pool(problem: ViewProblem, seed: int, n_candidates: int = N_CANDID
     useful = np.diff(pool.elements.starts) > 0
     if not useful.any():
         raise nothing_to_see()
+    # Witnesses of several sections may be one pose, and a second photo of it would not be flown.
+    _, first = np.unique(np.column_stack(pool.views), axis=0, return_index=True)
+    useful[np.setdiff1d(np.arange(len(useful)), first)] = False
     return keep(pool, useful)
 
 

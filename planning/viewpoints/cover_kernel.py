@@ -7,7 +7,7 @@ greedy steps and exchanges cost microseconds.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -133,8 +133,24 @@ def _is_close(places: NDArray[np.float64], i: int, point: NDArray[np.float64], s
     return bool(0.0 < dx * dx + dy * dy + dz * dz < spacing * spacing)
 
 
+class HasPlaces(Protocol):
+    """What says where candidates stand: `CoverState`, or any other tuple with these of its fields."""
+
+    @property
+    def positions(self) -> NDArray[np.float64]:
+        """Of the candidates."""
+
+    @property
+    def taken(self) -> NDArray[np.float64]:
+        """By views that are there in any case."""
+
+    @property
+    def spacing(self) -> float:
+        """Between two places."""
+
+
 @kernel
-def is_too_close(state: CoverState, candidate: int, chosen: NDArray[np.int64], n_chosen: int, but: int) -> bool:
+def is_too_close(state: HasPlaces, candidate: int, chosen: NDArray[np.int64], n_chosen: int, but: int) -> bool:
     """Whether a candidate is too close to what is taken or to a chosen one; number `but` of these does not count."""
     if state.spacing <= 0.0:
         return False

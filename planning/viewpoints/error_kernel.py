@@ -15,7 +15,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.base.jit import inline, kernel
+from planning.base.jit import kernel
+from planning.viewpoints.cover_kernel import is_too_close
 
 NO_GAIN = 1e-12
 """Of all weights together: gains up to it are rounding."""
@@ -61,17 +62,6 @@ def gain_of(state: ErrorState, candidate: int) -> float:
 
 
 @kernel
-def loss_of(state: ErrorState, candidate: int) -> float:
-    """How much f shrinks without a candidate that is chosen."""
-    loss = 0.0
-    for i in range(state.starts[candidate], state.starts[candidate + 1]):
-        j, amount = state.items[i], float(state.amounts[i])
-        with_it = 1.0 + state.sums[j]
-        loss += state.weights[j] * amount / (with_it * max(with_it - amount, 1.0))
-    return loss
-
-
-@kernel
 def change(state: ErrorState, candidate: int, sign: float) -> None:
     """Add a candidate (`sign` 1) or take it away (-1); bounds hold only while candidates are added."""
     for i in range(state.starts[candidate], state.starts[candidate + 1]):
@@ -89,52 +79,29 @@ def value(state: ErrorState) -> float:
 
 
 @kernel
-def refresh_bounds(state: ErrorState) -> None:
-    """Gains of all candidates as they are."""
-    for candidate in range(len(state.bounds)):
-        state.bounds[candidate] = gain_of(state, candidate)
-
-
-@inline
-def _is_close(place: NDArray[np.float64], point: NDArray[np.float64], spacing: float) -> bool:
-    dx, dy, dz = place[0] - point[0], place[1] - point[1], place[2] - point[2]
-    return bool(0.0 < dx * dx + dy * dy + dz * dz < spacing * spacing)
+def fill_gains(state: ErrorState, gains: NDArray[np.float64]) -> None:
+    """Write the gains of all candidates; as the state's own bounds they are exact for a while."""
+    for candidate in range(len(gains)):
+        gains[candidate] = gain_of(state, candidate)
 
 
 @kernel
-def is_apart(state: ErrorState, candidate: int, chosen: NDArray[np.int64], n_chosen: int) -> bool:
-    """Whether a candidate stands at the place of, or far enough from, all that is chosen or taken."""
-    if state.spacing <= 0.0:
-        return True
-    point = state.positions[candidate]
-    for place in state.taken:
-        if _is_close(place, point, state.spacing):
-            return False
-    close = False
-    for k in range(n_chosen):
-        close |= _is_close(state.positions[chosen[k]], point, state.spacing)
-    return not close
-
-
-@kernel
-def greedy_steps(state: ErrorState, chosen: NDArray[np.int64], n_chosen: int, n_wanted: int, enough: float) -> int:
-    """Add the candidate of the largest gain until `n_wanted` are chosen, f reaches `enough`, or nothing is gained.
+def greedy_steps(state: ErrorState, chosen: NDArray[np.int64], n_chosen: int, n_wanted: int) -> int:
+    """Add the candidate of the largest gain until `n_wanted` are chosen or nothing is gained.
 
     None is chosen twice: its bound is minus infinity from then on. So is that of one too close to another.
     """
-    f, least = value(state), NO_GAIN * state.weights.sum()
-    while n_chosen < n_wanted and f < enough:
+    least = NO_GAIN * state.weights.sum()
+    while n_chosen < n_wanted:
         best, looked_at = int(np.argmax(state.bounds)), -1
         while best != looked_at and state.bounds[best] > least:
             state.bounds[best] = gain_of(state, best)
             looked_at, best = best, int(np.argmax(state.bounds))
-        gain = state.bounds[best]
-        if gain <= least:
+        if state.bounds[best] <= least:
             break
         state.bounds[best] = -np.inf
-        if is_apart(state, best, chosen, n_chosen):
+        if not is_too_close(state, best, chosen, n_chosen, -1):
             change(state, best, 1.0)
             chosen[n_chosen] = best
             n_chosen += 1
-            f += gain
     return n_chosen

@@ -26,7 +26,7 @@ from planning.plan import ViewpointArrays
 from planning.viewpoints import cover_kernel
 from planning.viewpoints.candidates import Pool, candidate_pool, join_pools, keep
 from planning.viewpoints.improve import Exchange, cover_state, improve_views
-from planning.viewpoints.least_error import choose_for_least_error, error_state
+from planning.viewpoints.least_error import choose_for_least_error, error_state, least_error
 from planning.viewpoints.problem import NONE_LOCKED, Goal, ViewProblem, ViewSet, concatenate, covered_by, take
 from planning.viewpoints.spacing import ANYWHERE, SpacingRule, rounding_spacing_m, spaced_views, spacing_rule
 
@@ -239,8 +239,9 @@ class Choice:
     def for_least_error(
         self, pool: Pool, n_wanted: int, error: ImageErrorModel, parameters: GreedyParameters
     ) -> ViewSet:
-        """The locked views and those after which the expected error is least; the bound is that of the sections."""
+        """The locked views and those after which the expected error is least, with the bounds of both objectives."""
         state = error_state(error, pool.views, self.locked, spacing_rule(pool.views, self.locked, self.spacing_m))
+        at_first = least_error(state, error, n_wanted)
         chosen = choose_for_least_error(state, n_wanted, self.monitor)
         views = concatenate([self.locked, take(pool.views, chosen)])
         covered = self.covered + np.bincount(
@@ -250,9 +251,11 @@ class Choice:
         if not parameters.certify:
             return ViewSet(views)
         self.monitor.report(say("bounding the optimum"), 0, 1)
+        # Each holds by itself: the one from nothing is closer for few views, the one from the views chosen for many.
+        least = max(at_first, least_error(state, error, n_wanted))
         known = float(self.weights[covered > 0].sum())
         bound = _bound(pool.elements, self.weights, self.covered, len(chosen), known, self.stop)
-        return ViewSet(views, bound)
+        return ViewSet(views, bound, least)
 
     def _with_more_places(
         self,

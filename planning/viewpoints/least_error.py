@@ -23,7 +23,7 @@ from planning.plan import BatteryWorth, Camera, FlightWorth, Plan, ViewpointArra
 from planning.site.records import SiteModel
 from planning.viewpoints import error_kernel as kernel
 from planning.viewpoints.candidates import spread_candidates
-from planning.viewpoints.problem import NONE_LOCKED, ViewProblem, concatenate
+from planning.viewpoints.problem import NONE_LOCKED, ViewProblem, concatenate, take
 from planning.viewpoints.spacing import ANYWHERE, SpacingRule
 from planning.viewpoints.unseen import even_views, random_views, walk_views
 
@@ -69,6 +69,8 @@ class MirroredSurroundings:
 
     def assess(self, scene: MirrorScene) -> Assessment:
         """By casting some rays."""
+        # What casts rays is loaded and built with the first ones, and once only.
+        scene.surroundings.rays(take(scene.views, np.arange(len(scene.views.heading_rad)) < 1), scene.camera, 1, 1)
         begun_s = time.perf_counter()
         rays = scene.surroundings.rays(scene.views, scene.camera, COLUMNS, ROWS)
         seconds = (time.perf_counter() - begun_s) * SECONDS_FOR_ALL / max(1, rays.n_views)
@@ -125,19 +127,17 @@ def error_state(
         taken=np.array(spacing.present_enu_m, np.float64, order="C").reshape(-1, 3),
         spacing=float(spacing.spacing_m),
     )
-    kernel.refresh_bounds(state)
+    kernel.fill_gains(state, state.bounds)
     return state
 
 
-def choose_for_least_error(
-    state: kernel.ErrorState, n_wanted: int, monitor: Monitor, enough: float = np.inf
-) -> NDArray[np.int64]:
+def choose_for_least_error(state: kernel.ErrorState, n_wanted: int, monitor: Monitor) -> NDArray[np.int64]:
     """Numbers of candidates chosen greedily, in order, at most `n_wanted`; the state holds them afterwards."""
     chosen, n_chosen = np.zeros(min(n_wanted, len(state.bounds)), np.int64), 0
     while n_chosen < len(chosen):
         monitor.report(say("choosing views"), n_chosen, len(chosen))
         slice_end = min(len(chosen), n_chosen + SLICE)
-        n_now = int(kernel.greedy_steps(state, chosen, n_chosen, slice_end, enough))
+        n_now = int(kernel.greedy_steps(state, chosen, n_chosen, slice_end))
         if n_now < slice_end:
             return chosen[:n_now]
         n_chosen = n_now
@@ -149,9 +149,10 @@ def least_error(state: kernel.ErrorState, model: ImageErrorModel, n_more: int) -
 
     Gains fall while views are added (submodularity), so the largest ones at this state bound what any views add.
     """
-    gains = np.sort([kernel.gain_of(state, candidate) for candidate in range(len(state.bounds))])[::-1]
-    left = model.most_error - kernel.value(state)
-    return max(model.floor, left - float(gains[: max(0, n_more)].sum()))
+    gains = np.zeros(len(state.bounds))
+    kernel.fill_gains(state, gains)
+    left = model.most_error - float(kernel.value(state))
+    return max(model.floor, left - float(np.sort(gains)[::-1][: max(0, n_more)].sum()))
 
 
 class ErrorGain:
@@ -168,7 +169,7 @@ class ErrorGain:
     def marginals(self) -> NDArray[np.float64]:
         """What each candidate would take away beside those in the set, shape (n,)."""
         if not self._is_fresh:
-            kernel.refresh_bounds(self._state)
+            kernel.fill_gains(self._state, self._state.bounds)
             self._is_fresh = True
         return self._state.bounds
 

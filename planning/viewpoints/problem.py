@@ -59,11 +59,13 @@ class Goal:
 class ViewSet:
     """Chosen views, in no order that matters.
 
-    `bound` is an upper bound on what as many views of the same candidates could cover; None where a method has none.
+    `bound` is an upper bound on what as many views of the same candidates could cover, and `least_error` a lower one on
+    the expected error that they could leave; None where a method has none.
     """
 
     views: ViewpointArrays
     bound: float | None = None
+    least_error: float | None = None
 
 
 class Optimiser(Protocol):

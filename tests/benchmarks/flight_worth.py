@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import shutil
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +22,7 @@ METHODS = ("random", "sections", "image-error")
 N_SEEDS = 1
 BETTER_DB, FAR_DB = 1.0, 0.2
 
-KEPT = Path("benchmark-out") / "worth"
+KEPT = Path("benchmark-out")
 """Photos and results, with which the next run goes on: all of it takes hours."""
 
 
@@ -29,11 +30,11 @@ def measure(context: Context) -> Iterator[Row]:
     """Each scene's flights, then what an objective is above the others in the same minutes."""
     gains: dict[str, list[float]] = {other: [] for other in METHODS[:-1]}
     for scene in ("planar",) if context.is_quick else (*NEAR, *FAR):
-        counts = (8, 12) if context.is_quick else COUNTS[scene]
-        request = WorthRequest(
-            scene, METHODS, counts, ("radiance-grid",), n_seeds=N_SEEDS, n_unseen=6 if context.is_quick else 40
-        )
-        compared = worth_tradeoff(request, KEPT / ("quick" if context.is_quick else "full") / scene, n_processes=2)
+        counts = COUNTS[scene]
+        request = request_of(scene)
+        if context.is_quick:
+            request = replace(request, counts=(8, 12), n_unseen=6)
+        compared = worth_tradeoff(request, KEPT, n_processes=2)
         shutil.copy(compared.picture_path, context.folder / f"worth-{scene}.png")
         results = compared.found
         for result in results:
@@ -60,6 +61,11 @@ def measure(context: Context) -> Iterator[Row]:
         is_met = mean >= BETTER_DB if other == "sections" else mean > 0.0
         what = f"image-error above {other} in as many minutes, mean of near scenes"
         yield Row("near scenes", what, round(mean, 2), "dB", None, "", *target, is_met)
+
+
+def request_of(scene: str) -> WorthRequest:
+    """All flights over a scene."""
+    return WorthRequest(scene, METHODS, COUNTS[scene], ("radiance-grid",), n_seeds=N_SEEDS)
 
 
 Curve = tuple[Sequence[int], Sequence[float], Sequence[float]]

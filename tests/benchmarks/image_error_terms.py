@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import nnls
 
+from groundstation.services.worth import kept_folder
 from planning.aircraft.catalogue import profile
 from planning.coverage.image_error import ImageErrorModel, Term, decibels
 from planning.coverage.mirrored_rays import Surroundings
@@ -26,7 +27,7 @@ from planning.viewpoints.prepare import prepare
 from reconstruction.light.photo_set import read_photo_set
 from reconstruction.scenes.world.bundled import bundled_scene
 from reconstruction.tradeoff.flight_worth import UNSEEN_KINDS
-from tests.benchmarks.flight_worth import FAR, KEPT, NEAR
+from tests.benchmarks.flight_worth import FAR, KEPT, NEAR, request_of
 from tests.benchmarks.harness import Benchmark, Context, Row, Skipped
 
 Array = NDArray[np.float64]
@@ -58,10 +59,10 @@ class Case:
 
 def measure(context: Context) -> Iterator[Row]:
     """Deviations of what is expected by scene, then of a fresh fit, and its terms."""
-    cases = [case for scene in (*NEAR, *FAR) for case in _cases(KEPT / "full" / scene / "worth", scene)]
+    cases = [case for scene in (*NEAR, *FAR) for case in _cases(kept_folder(request_of(scene), KEPT), scene)]
     if not cases:
         raise Skipped("the benchmark `worth` has kept nothing here; run it first")
-    flights = {scene: list(_flights(KEPT / "full" / scene / "worth", scene)) for scene in (*NEAR, *FAR)}
+    flights = {scene: list(_flights(kept_folder(request_of(scene), KEPT), scene)) for scene in (*NEAR, *FAR)}
     for scene, found in flights.items():
         if found:
             measured, expected = (np.array(column) for column in zip(*found, strict=True))
@@ -122,7 +123,7 @@ def _cases(folder: Path, scene: str) -> Iterator[Case]:
         return
     site, camera = bundled_scene(scene).site, profile(DEFAULT_PROFILE).camera
     surroundings = Surroundings(site, panel_frames(panel_corners(site.site)))
-    unseen = {kind: views_of(next(folder.glob(f"unseen-{kind}-*"))) for kind in UNSEEN_KINDS}
+    unseen = {kind: views_of(folder / f"unseen-{kind}" / "photos") for kind in UNSEEN_KINDS}
     tried = {kind: ImageErrorModel(surroundings, camera, TRIED, [views]) for kind, views in unseen.items()}
     for path in results:
         views, scores = views_of(path.parent / "photos"), json.loads(path.read_text("utf-8"))["psnr_db"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
-from dataclasses import asdict
+from dataclasses import asdict, replace
 
 import pytest
 
@@ -13,6 +13,7 @@ from groundstation.services.worth import (
     FlightResult,
     FlightTrial,
     WorthRequest,
+    kept_folder,
     run_trial,
     summary_rows,
     worth_panels,
@@ -24,7 +25,9 @@ from planning.base.errors import InputError
 def result(method: str, n_photos: int, seed: int, decibels: float, minutes: float = 6.0) -> FlightResult:
     """One whose kinds of views differ by 1 dB."""
     kinds = {"random": decibels + 1.0, "hemisphere": decibels, "walk": decibels - 1.0}
-    return FlightResult("planar", method, "planned", seed, n_photos, minutes, 1, 0.5, {"radiance-grid": kinds})
+    return FlightResult(
+        "planar", method, "planned", seed, n_photos, n_photos, minutes, 1, 0.5, {"radiance-grid": kinds}
+    )
 
 
 def test_seeds_are_averaged_and_their_spread_is_told():
@@ -48,10 +51,19 @@ def test_curves_fall_with_minutes_in_the_air():
 def test_what_is_finished_is_not_done_again(tmp_path):
     known = result("random", 50, 0, 28.0)
     trial = FlightTrial("random", 50, 0, "planned")
-    place = tmp_path / f"{trial.name}-128"
+    place = tmp_path / trial.name
     place.mkdir()
     (place / "result.json").write_text(json.dumps(asdict(known)))
     assert run_trial(WorthRequest("no such scene", lights=("radiance-grid",)), trial, tmp_path) == known
+
+
+def test_other_scenes_and_settings_have_folders_of_their_own(tmp_path):
+    base = WorthRequest("planar")
+    others = [replace(base, scene="curved"), replace(base, width_px=64), replace(base, n_unseen=9)]
+    folders = {kept_folder(request, tmp_path) for request in (base, *others)}
+    assert len(folders) == 4
+    assert kept_folder(replace(base, methods=("random",), counts=(9,), lights=("mlp",)), tmp_path) in folders
+    assert kept_folder(replace(base, n_seeds=1, flown=("single",)), tmp_path) in folders
 
 
 @pytest.mark.parametrize(
@@ -74,8 +86,10 @@ def test_a_scene_that_does_not_exist_is_refused(tmp_path):
 
 
 def test_every_method_compared_is_one_of_the_planner():
+    from groundstation.cli.commands import tradeoff
     from planning.viewpoints.methods import METHODS
 
+    assert tuple(tradeoff.WORTH_METHODS.split(",")) == tuple(WORTH_METHODS)
     assert {method for method, _ in WORTH_METHODS.values()} == set(METHODS)
 
 
@@ -88,7 +102,7 @@ def test_a_flight_is_planned_flown_photographed_and_learned_from(tmp_path):
         ("radiance-grid",),
         ("planned", "single"),
         n_seeds=1,
-        n_unseen=3,
+        n_unseen=6,
         width_px=64,
         plan_s=5.0,
     )
@@ -101,3 +115,12 @@ def test_a_flight_is_planned_flown_photographed_and_learned_from(tmp_path):
     assert all(10.0 < float(row["mean_db"]) < 50.0 and float(row["minutes"]) > 0.5 for row in rows)
     assert all(path.is_file() for path in compared.paths)
     assert worth_tradeoff(request, tmp_path).found == compared.found
+    # Another light of the same flights learns from the photos that are there.
+    photos = sorted(tmp_path.glob("worth/*/*/photos/images/*"))
+    taken = [path.stat().st_mtime_ns for path in photos]
+    both = worth_tradeoff(replace(request, lights=("radiance-grid", "mlp")), tmp_path).found
+    assert [path.stat().st_mtime_ns for path in photos] == taken
+    for before, after in zip(compared.found, both, strict=True):
+        assert after.psnr_db["radiance-grid"] == before.psnr_db["radiance-grid"]
+        assert after.n_taken == 4
+        assert set(after.psnr_db) == {"radiance-grid", "mlp"}

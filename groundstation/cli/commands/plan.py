@@ -202,6 +202,11 @@ def print_summary(planned: Planned, out: Path, seconds: float) -> None:
     )
     if plan.worth is not None:
         tell("unseen views of a model of its photos, expected: {}", plan.worth.text)
+    if planned.most_psnr_db is not None:
+        tell(
+            "no choice as large from the viewpoints compared is expected to bring more than {:.1f} dB",
+            planned.most_psnr_db,
+        )
     wanted_mm = plan.constraints.wanted_gsd_mm
     if coverage.sharp is not None and wanted_mm:
         tell(

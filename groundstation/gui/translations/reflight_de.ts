@@ -7242,6 +7242,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>kein Gebäude in dieser Datei hat Fenster; {0}</translation>
     </message>
     <message>
+        <source>no choice as large from the viewpoints compared is expected to bring more than {0} dB</source>
+        <translation>keine ebenso große Auswahl aus den verglichenen Aufnahmeorten lässt mehr als {0} dB erwarten</translation>
+    </message>
+    <message>
         <source>no choice from the views that were compared closes more than {0} on these batteries</source>
         <translation>keine Auswahl aus den verglichenen Aufnahmen schließt mit diesen Akkus mehr als {0}</translation>
     </message>

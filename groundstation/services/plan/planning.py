@@ -246,6 +246,7 @@ def planned_summary(planned: Planned, seconds: float) -> dict[str, Any]:
         "below_10_m_s": None if low is None or low.below_s is None else round(low.below_s, 1),
         "depth": plain_values(planned.depth),
         "worth": plain_values(plan.worth),
+        "most_psnr_db": planned.most_psnr_db,
         "effects": plain_values(plan.effects),
         "open": [
             {"panel": panels[each.panel].id, "section": each.section, "why": each.why.value}

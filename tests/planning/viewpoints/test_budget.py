@@ -68,7 +68,7 @@ def choose(
     trace: Trace | None = None,
     monitor: Monitor = QUIET,
 ) -> tuple[ViewpointArrays, float]:
-    return views_within_budget(
+    found = views_within_budget(
         problem(),
         M3E,
         rules_for(usable_s),
@@ -79,6 +79,8 @@ def choose(
         trace=Trace() if trace is None else trace,
         monitor=monitor,
     )
+    assert found.bound is not None
+    return found.views, found.bound
 
 
 def best_by_force(pool: Pool, usable_s: float, n_batteries: int) -> int:

@@ -281,7 +281,9 @@ def test_more_views_never_show_less_on_a_wall_turned_by_33_degrees(bend_deg: flo
     )
     covered, prepared = [], None
     for n_views in (120, 200, 560):
-        planned = plan_flight(site_model, PlanRequest(n_views=n_views), prepared=prepared)
+        planned = plan_flight(
+            site_model, PlanRequest(n_views=n_views, greedy=GreedyParameters(objective="sections")), prepared=prepared
+        )
         prepared, coverage = planned.prepared, planned.plan.coverage
         covered.append(coverage.covered)
         assert is_flyable(check_plan(planned.plan, site_model))
