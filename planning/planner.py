@@ -48,7 +48,16 @@ from planning.viewpoints.least_error import (
 )
 from planning.viewpoints.methods import method_named
 from planning.viewpoints.prepare import Prepared, prepare
-from planning.viewpoints.problem import Goal, Optimiser, ViewProblem, ViewSet, locked_views, nothing_to_see, take
+from planning.viewpoints.problem import (
+    NONE_LOCKED,
+    Goal,
+    Optimiser,
+    ViewProblem,
+    ViewSet,
+    locked_views,
+    nothing_to_see,
+    take,
+)
 from planning.viewpoints.spacing import SpacingRule, merge_close_views
 
 # Chosen views and flights as the records of a plan: rounded as in files, named, in the order of flight.
@@ -225,6 +234,7 @@ def plan_flight(
     request: PlanRequest,
     *,
     prepared: Prepared | None = None,
+    photos: ViewpointArrays = NONE_LOCKED,
     started_s: float | None = None,
     stop: Stop = never,
     trace: Trace | None = None,
@@ -236,6 +246,8 @@ def plan_flight(
     ----------
     prepared
         The site as an earlier plan left it; used where it serves the request, else the site is prepared anew.
+    photos
+        Poses of photos that are there already: views are chosen, and their worth is told, for what those lack.
     started_s
         When the time budget began, by `time.perf_counter`, where that was before this call: a program that is started
         for one plan spends some of it on itself.
@@ -264,7 +276,7 @@ def plan_flight(
     choosing = any_of(stop, TimeLimit(max(0.1, limit.remaining_s() - routing_s - finishing_s)))
     problem = prepared.problem
     # Loading what casts rays takes a second: where views are chosen for something else, after the time budget.
-    judged = cache(partial(image_error_model, problem, site_model, request.greedy.surroundings, request.seed))
+    judged = cache(partial(image_error_model, problem, site_model, request.greedy.surroundings, request.seed, photos))
     if request.least_gain_db is not None:
         n_batteries = _batteries_worth(problem, judged()[0], request, chosen_profile, choosing, monitor)
         request = replace(request, n_batteries=n_batteries, least_gain_db=None)

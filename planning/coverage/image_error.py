@@ -20,6 +20,7 @@ colours; FisherRF (W. Jiang et al., 2024) takes the Hessian of a field's own par
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
@@ -161,6 +162,7 @@ class ImageErrorModel:
             self._keys.append(known)
             weights.append(np.asarray(term.variance * np.bincount(number, looks, len(known)), np.float64))
         self.weights = np.concatenate(weights)
+        self._known = np.ones(len(self.weights))
 
     @property
     def n_elements(self) -> int:
@@ -172,6 +174,17 @@ class ImageErrorModel:
         """Expected mean square error without any photo."""
         return self.floor + float(self.weights.sum())
 
+    def after(self, views: ViewpointArrays) -> ImageErrorModel:
+        """The same once there are photos from `views`: what further ones leave of what those left.
+
+        v / (1 + s + a) = (v / (1 + s)) / (1 + a / (1 + s)), so that it is a model of the same kind.
+        """
+        shown = self.shown(views)
+        more = 1.0 + np.bincount(shown.items, shown.amounts, self.n_elements)
+        found = copy(self)
+        found.weights, found._known = self.weights / more, self._known * more
+        return found
+
     def shown(self, views: ViewpointArrays) -> Shown:
         """What photos show of the elements that unseen views show."""
         rays, first = self._rays(views), 0
@@ -180,8 +193,9 @@ class ImageErrorModel:
             keys = element_keys(term, rays)
             place = np.minimum(np.searchsorted(known, keys), max(0, len(known) - 1))
             kept = np.flatnonzero(known[place] == keys) if len(known) else np.zeros(0, np.int64)
-            looks = np.asarray(_looks(term, rays)[kept] / (rays.n_pixels * term.share), np.float64)
-            parts.append((rays.views[kept], first + place[kept], looks))
+            items = first + place[kept]
+            looks = np.asarray(_looks(term, rays)[kept] / (rays.n_pixels * term.share * self._known[items]), np.float64)
+            parts.append((rays.views[kept], items, looks))
             first += len(known)
         rows, columns, amounts = (np.concatenate(column) for column in zip(*parts, strict=True))
         # Rays of one view that show the same element are added up.

@@ -92,7 +92,8 @@ class Surroundings:
         ]
 
     @cached_property
-    def _caster(self) -> RayCaster:
+    def caster(self) -> RayCaster:
+        """Of panes, two triangles each in their order, and then of all else."""
         return RayCaster(join([self._panes, *self._others]))
 
     def rays(self, views: ViewpointArrays, camera: Camera, columns: int, rows: int) -> MirroredRays:
@@ -115,7 +116,7 @@ class Surroundings:
         incoming = forward[:, None] + x[None, :, None] * right[:, None] + y[None, :, None] * up[:, None]
         incoming = (incoming / np.linalg.norm(incoming, axis=2, keepdims=True)).reshape(-1, 3)
         origins = np.repeat(views.positions_enu_m[start:stop], len(x), axis=0)
-        hits = self._caster.cast(origins, incoming)
+        hits = self.caster.cast(origins, incoming)
         frames, kept = self.frames, np.flatnonzero(hits.is_hit & (hits.triangles < 2 * len(self.frames)))
         panels = hits.triangles[kept] // 2
         cosines = -np.einsum("nk,nk->n", incoming[kept], frames.normals[panels])
@@ -125,7 +126,7 @@ class Surroundings:
         mirrored = incoming + 2.0 * cosines[:, None] * normals
         distances = np.full(len(kept), np.inf)
         if self._is_near:
-            distances = self._caster.cast(points + OFF_PANE_M * normals, mirrored).distance_m
+            distances = self.caster.cast(points + OFF_PANE_M * normals, mirrored).distance_m
         sides = corners[:, 1] - corners[:, 0], corners[:, 3] - corners[:, 0]
         inside = points - corners[:, 0]
         across = [np.einsum("nk,nk->n", inside, side) / np.einsum("nk,nk->n", side, side) for side in sides]

@@ -90,12 +90,16 @@ class MirroredSurroundings:
 
 
 def image_error_model(
-    problem: ViewProblem, site_model: SiteModel, setting: EffectSetting = "auto", seed: int = 0
+    problem: ViewProblem,
+    site_model: SiteModel,
+    setting: EffectSetting = "auto",
+    seed: int = 0,
+    photos: ViewpointArrays = NONE_LOCKED,
 ) -> tuple[ImageErrorModel, Decision]:
     """The expected error of models of a site, and whether places of what is mirrored count in it.
 
     It is that of pictures from random views, from views even over the hemispheres, and of a walk; of those that are
-    possible.
+    possible. Those of `photos` are there already.
     """
     rng, camera = np.random.default_rng([seed, 3]), problem.model.camera
     unseen = [
@@ -106,7 +110,8 @@ def image_error_model(
     near = Surroundings(site_model, problem.model.frames)
     decision = decide(MirroredSurroundings(), MirrorScene(near, concatenate(unseen), camera), setting)
     surroundings = near if decision.on else Surroundings(site_model, problem.model.frames, is_near=False)
-    return ImageErrorModel(surroundings, camera, TERMS, unseen, FLOOR), decision
+    model = ImageErrorModel(surroundings, camera, TERMS, unseen, FLOOR)
+    return (model.after(photos) if len(photos.heading_rad) else model), decision
 
 
 def error_state(

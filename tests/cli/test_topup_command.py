@@ -188,3 +188,30 @@ def test_a_flight_of_another_plan_and_a_wrong_file_are_refused(reflight, pane, f
     assert "plan.json" in over.error
     assert json.loads((pane / "plan.json").read_text())["method"] == "greedy"
     assert not out.exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ((), "FLIGHT: is missing: a flight file or a log, or --photos with the photos themselves"),
+        (("--learn", 3), "FLIGHT: is missing"),
+        (("--photos", "card", "--resume"), "--resume: is not for --photos"),
+        (("--photos", "card", "--target", "reachable"), "--target: is not for --photos"),
+        (
+            ("--photos", "card", "--battery", 0.5, "--batteries", 2),
+            "--batteries: the battery on board flies one sortie",
+        ),
+        (("--photos", "card", "--learn", 0), "--learn: expected more than 0"),
+        (("--photos", "no-such-folder"), "no-such-folder"),
+    ],
+)
+def test_what_does_not_belong_to_photos_or_to_a_flight_is_said(reflight, pane, tmp_path, arguments, message):
+    done = reflight("topup", pane / "plan.json", pane / "site.json", "-o", tmp_path / "p.json", *arguments)
+    assert done.status == 1
+    assert message in done.err
+
+
+def test_learning_belongs_to_photos(reflight, pane, flown, tmp_path):
+    done = reflight("topup", flown(2), pane / "plan.json", pane / "site.json", "-o", tmp_path / "p.json", "--learn", 3)
+    assert done.status == 1
+    assert "--learn: belongs to --photos" in done.err

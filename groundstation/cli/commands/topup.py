@@ -3,24 +3,35 @@
 from __future__ import annotations
 
 import argparse
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from groundstation.cli.console import counted, print_findings, print_json, print_next, run_job, tell
-from groundstation.cli.options import checked_seed, in_words_of_options, json_file, number
+from groundstation.cli.options import (
+    add_pose_arguments,
+    checked_seed,
+    in_words_of_options,
+    json_file,
+    number,
+    refine_request,
+)
 from planning.base.errors import InputError
 from planning.base.messages import say
 
 if TYPE_CHECKING:
+    from groundstation.services.photos.top_up import PhotoTopUp
     from planning.revision.top_up import TopUp
 
 EPILOG = """What was seen is decided by the poses of the photos, not by the views that they were meant to be. The plan
-that is written is checked, exported and flown like any other.
+that is written is checked, exported and flown like any other. With --photos a quick model of what the panes mirror
+learns from the photos first; the sorties bring most for the model, and the site is compared with what was seen.
 
 examples:
   topup flight.json office.plan.json office.site.json -o topup.plan.json
   topup flight.json office.plan.json office.site.json -o topup.plan.json --battery 0.55
   topup flight.json office.plan.json office.site.json -o rest.plan.json --resume
+  topup office.plan.json office.site.json --photos /media/card/DCIM -o second.plan.json --battery 0.8
 """
 
 
@@ -28,15 +39,16 @@ def add_parser(subparsers: Any) -> None:
     """Describe the command."""
     parser = subparsers.add_parser(
         "topup",
-        help="plan the shortest flight that closes what a flight left open",
+        help="plan the shortest flight that closes what a flight left open, or the one its photos call for",
         description="Compare a flight with its plan and plan the shortest flight that shows what is missing,\n"
-        "within the battery that is left; or write the rest of a sortie that was interrupted.",
+        "within the battery that is left; or write the rest of a sortie that was interrupted; or plan the\n"
+        "next battery from the photos of the last.",
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.set_defaults(run=run)
     add = parser.add_argument
-    add("flight", type=Path, metavar="FLIGHT", help="flight file, or a log (.tlog, .BIN, .ulg)")
+    add("flight", type=Path, nargs="?", metavar="FLIGHT", help="flight file, or a log (.tlog, .BIN, .ulg)")
     add("plan", type=Path, metavar="PLAN", help="plan file that was flown")
     add("site", type=Path, metavar="SITE", help="site file, as the site is now")
     add("-o", "--out", type=json_file, required=True, metavar="PLAN", help="plan file to write")
@@ -45,14 +57,16 @@ def add_parser(subparsers: Any) -> None:
     add(
         "--target",
         choices=("promised", "reachable"),
-        default="promised",
         help="what the plan had promised (default), or everything that can be seen",
     )
     add("--all", action="store_true", help="write a top-up for a negligible rest, too (at most 0.5 %% of the sections)")
-    add("--time-budget", type=number, default=5.0, metavar="S", help="longest wall time (default 5 s)")
+    add("--photos", type=Path, metavar="FOLDER", help="photos of the last flight, or their data set, without FLIGHT")
+    add("--learn", type=number, metavar="S", help="wall time for learning from --photos (default 40 s)")
+    add("--time-budget", type=number, metavar="S", help="longest wall time (default 5 s; 20 s for --photos)")
     add("--seed", type=int, default=0, metavar="N", help="of everything random (default 0)")
     add("--resume", action="store_true", help="the rest of the sortie that was interrupted, as it was planned")
     add("--sortie", type=int, metavar="N", help="with --resume: which sortie (default: the last that is not complete)")
+    add_pose_arguments(parser)
     add("--json", action="store_true", help="print one JSON object instead of text")
 
 
@@ -60,11 +74,95 @@ def run(options: argparse.Namespace) -> int:
     """Plan and write; returns the exit status."""
     if options.battery is not None and not 0.0 <= options.battery <= 1.0:
         raise InputError(say("expected a charge from 0 to 1, got {:g}", options.battery, place="--battery"))
+    if options.photos is not None:
+        return _from_photos(options)
+    if options.flight is None:
+        raise InputError(
+            say("is missing: a flight file or a log, or --photos with the photos themselves", place="FLIGHT")
+        )
+    _check_options(options, {"--learn": options.learn, "--colmap": options.colmap, "--refine": options.refine or None})
     if options.resume:
         return _resume(options)
     if options.sortie is not None:
         raise InputError(say("is for --resume; a top-up closes what all sorties left open", place="--sortie"))
     return _top_up(options)
+
+
+def _check_options(options: argparse.Namespace, given: dict[str, object]) -> None:
+    """What belongs to the other way of asking, and is not None, is refused."""
+    for option, value in given.items():
+        if value is not None:
+            needs = options.photos is None
+            raise InputError(
+                say("belongs to --photos", place=option) if needs else say("is not for --photos", place=option)
+            )
+
+
+def _from_photos(options: argparse.Namespace) -> int:
+    from groundstation.services.photos.top_up import PhotoTopUpRequest, photo_top_up_files, photo_top_up_summary
+
+    others = {
+        "FLIGHT": options.flight,
+        "--target": options.target,
+        "--all": options.all or None,
+        "--resume": options.resume or None,
+        "--sortie": options.sortie,
+    }
+    _check_options(options, others)
+    chosen = {
+        "battery": options.battery,
+        "n_batteries": options.batteries,
+        "learn_s": options.learn,
+        "time_budget_s": options.time_budget,
+    }
+    with in_words_of_options():
+        request = PhotoTopUpRequest(
+            seed=checked_seed(options.seed), **{name: value for name, value in chosen.items() if value is not None}
+        )
+    refine, begun_s = refine_request(options), time.perf_counter()
+    found = run_job(
+        "topup",
+        lambda context: photo_top_up_files(
+            options.photos,
+            options.plan,
+            options.site,
+            options.out,
+            request,
+            heights=options.heights,
+            colmap=options.colmap,
+            refine=refine,
+            stop=context.stop,
+            trace=context.trace,
+            monitor=context,
+        ),
+    )
+    if options.json:
+        print_json(photo_top_up_summary(found, time.perf_counter() - begun_s))
+        return 0
+    _print_from_photos(found, options.out)
+    print_findings(found.findings)
+    print_next("check", options.out, options.site)
+    return 0
+
+
+def _print_from_photos(found: PhotoTopUp, out: Path) -> None:
+    look, plan = found.look, found.planned.plan
+    tell(
+        "{} looked at in {:.0f} s: glass of photos left out is told with {:.1f} dB",
+        counted(look.n_photos, "photo"),
+        look.seconds,
+        look.psnr_db,
+    )
+    tell(
+        "{} in {}, {:.1f} min in the air",
+        counted(len(plan.viewpoints), "view"),
+        counted(len(plan.sorties), "sortie"),
+        plan.duration_s / 60,
+        place=out,
+    )
+    tell("unseen views of a model of the photos, expected: {:.1f} dB", found.before_db)
+    if plan.worth is not None:
+        tell("with this flight: {}", plan.worth.text)
 
 
 def _top_up(options: argparse.Namespace) -> int:
@@ -73,11 +171,11 @@ def _top_up(options: argparse.Namespace) -> int:
 
     with in_words_of_options():
         request = TopUpRequest(
-            Target(options.target),
+            Target(options.target or "promised"),
             options.battery,
             options.batteries,
             checked_seed(options.seed),
-            options.time_budget,
+            5.0 if options.time_budget is None else options.time_budget,
         )
     files = options.flight, options.plan, options.site, options.out
     found, findings = run_job(

@@ -29,6 +29,7 @@ from planning.checks.case import Case, pose_of
 from planning.geo.frames import Vec3, camera_axes
 from planning.plan import Plan
 from planning.planner import resplit_sorties
+from planning.revision.top_up import METHOD as TOP_UP
 from planning.site.records import SiteModel, panel_corners
 
 # Sorties with more photos than an autopilot keeps items for: found before a link is opened, and shared out anew.
@@ -193,6 +194,8 @@ def additional_findings(case: Case) -> tuple[Finding, ...]:
 def _coverage(case: Case) -> Iterator[Finding]:
     covered = int(np.count_nonzero(case.measures.counts))
     bound = case.plan.coverage.reachable_upper_bound
+    if case.plan.method == TOP_UP:  # a top-up adds to photos that are there
+        return
     if bound and covered < FAR_BELOW * bound:
         text = say(
             "{} of the {} sections that flights can cover are covered ({:.0%}): plan with more --views, or a "

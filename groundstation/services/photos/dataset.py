@@ -10,18 +10,15 @@ from groundstation.services.photos.intake import PhotoIntake
 from groundstation.services.photos.poses import (
     RefinedOutcome,
     RefineRequest,
-    choose_poses,
-    findings_that_hold,
+    photos_with_poses,
     refined_summary,
 )
 from groundstation.services.project.input_files import read_input_site
 from planning.base.findings import Finding
 from planning.base.progress import QUIET, Monitor
-from planning.photos.folder import read_photos
 from planning.photos.places import PhotoHeights
 from planning.site.records import SiteModel
 from reconstruction.dataset.prepare import PreparedData, PrepareParameters, prepare
-from reconstruction.photos.poses import pose_photos
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -60,12 +57,9 @@ def prepare_files(
         Photos, site or COLMAP model cannot be used, poses cannot be refined, or the data set cannot be written.
     """
     model = read_input_site(site)
-    read = read_photos(folder, monitor)
-    posed = pose_photos(read.photos, model.site, folder, heights=heights, posed_elsewhere=colmap is not None)
-    better = choose_poses(posed, folder, colmap, refine, monitor)
+    better = photos_with_poses(folder, model.site, heights=heights, colmap=colmap, refine=refine, monitor=monitor)
     prepared = prepare(better.photos, model, out, parameters, monitor, better.points_enu_m)
-    findings = (*read.findings, *findings_that_hold(posed.findings, better), *better.findings, *prepared.findings)
-    return PreparedFiles(prepared, findings, better.refined)
+    return PreparedFiles(prepared, (*better.findings, *prepared.findings), better.refined)
 
 
 def prepare_read(intake: PhotoIntake, model: SiteModel, out: Path, monitor: Monitor = QUIET) -> PreparedData:

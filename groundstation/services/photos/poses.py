@@ -16,6 +16,8 @@ from planning.base.errors import InputError
 from planning.base.findings import Finding, Severity
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
+from planning.photos.folder import read_photos
+from planning.photos.places import Locality, PhotoHeights
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.colmap.folder import Frame, read_frame, read_model
 from reconstruction.colmap.georeference import (
@@ -37,7 +39,7 @@ from reconstruction.colmap.refined_folder import (
     read_refined,
     write_refined,
 )
-from reconstruction.photos.poses import PhotoSet
+from reconstruction.photos.poses import PhotoSet, pose_photos
 
 LENS_UNKNOWN = "lens-distortion-unknown"
 """Code of the finding that advises to refine cameras."""
@@ -132,6 +134,29 @@ class ChosenPoses:
     findings: tuple[Finding, ...] = ()
     refined: RefinedOutcome | None = None
     points_enu_m: NDArray[np.float64] | None = None
+
+
+def photos_with_poses(
+    folder: Path,
+    site: Locality,
+    *,
+    heights: PhotoHeights = "auto",
+    colmap: Path | None = None,
+    refine: RefineRequest | None = None,
+    monitor: Monitor = QUIET,
+) -> ChosenPoses:
+    """The photos of a folder with the best poses asked for, and all findings about both.
+
+    Raises
+    ------
+    InputError, ReconstructionError
+        As `choose_poses`, or photos cannot be used.
+    """
+    read = read_photos(folder, monitor)
+    posed = pose_photos(read.photos, site, folder, heights=heights, posed_elsewhere=colmap is not None)
+    better = choose_poses(posed, folder, colmap, refine, monitor)
+    findings = (*read.findings, *findings_that_hold(posed.findings, better), *better.findings)
+    return replace(better, findings=findings)
 
 
 def choose_poses(

@@ -318,3 +318,28 @@ def test_good_enough_takes_fewer_batteries_the_more_each_has_to_bring():
     ]
     assert sorties[0] == 1
     assert sorties[1] >= sorties[0]
+
+
+@pytest.mark.parametrize("name", ["single-panel", "court"])
+def test_a_model_after_photos_tells_of_further_ones_what_the_model_of_all_tells(name):
+    views = candidates(name)
+    photos, more = take(views, np.arange(20)), take(views, np.arange(20, 60))
+    after = model(name).after(photos)
+    assert after.most_error == pytest.approx(model(name).expected_error(photos), rel=1e-9)
+    assert after.expected_error(more) == pytest.approx(model(name).expected_error(take(views, np.arange(60))), rel=1e-5)
+    # Choosing after photos is choosing beside locked views.
+    beside = choose_for_least_error(error_state(model(name), views, photos), 5, QUIET)
+    assert np.array_equal(choose_for_least_error(error_state(after, views), 5, QUIET), beside)
+    # A second look back is another flight still: the order of flights does not matter.
+    both = after.after(more)
+    assert both.most_error == pytest.approx(model(name).after(more).after(photos).most_error, rel=1e-5)
+
+
+def test_photos_that_are_there_count_in_the_worth_of_a_plan():
+    request = PlanRequest(n_views=6, time_budget_s=2.0)
+    site_model, ready = SCENES["single-panel"](), prepared()
+    photos = take(candidates(), np.arange(40))
+    first = plan_flight(site_model, request, prepared=ready).plan.worth
+    second = plan_flight(site_model, request, prepared=ready, photos=photos).plan.worth
+    assert second.batteries[0].psnr_db > first.batteries[0].psnr_db
+    assert second.gain_db < first.gain_db

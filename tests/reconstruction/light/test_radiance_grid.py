@@ -232,3 +232,42 @@ def test_a_graphics_card_gives_the_same_light():
     points, directions = rays(60)
     here = grid(points, directions)
     assert torch.allclose(grid.cuda()(points.cuda(), directions.cuda()).cpu(), here, atol=1e-4)
+
+
+def test_distances_end_at_the_first_wall_and_nowhere_in_empty_space():
+    grid = grid_of(is_empty_in_parts=False)
+    with torch.no_grad():
+        grid.cells[..., 0] = -1.0
+        grid.cells[:, -1, :, 0] = 30.0 / radiance_grid.DENSITY_SCALE
+    grid.refresh()
+    # The last vertices along y, which the box turns: what is beyond its rim, and a cell before it.
+    directions = grid.box.turned(torch.tensor([[0.0, 1.0, 0.0], [0.0, -1.0, 0.0]]), back=True)
+    points = torch.tensor([[0.1, 0.2, 0.3]]).expand(2, 3)
+    towards, away = grid.distances(points, directions).tolist()
+    assert np.isinf(away)
+    assert 0.0 < towards < np.inf
+    # All that comes from there is light of the wall, and from the other side what is far away.
+    with torch.no_grad():
+        grid.cells[..., 1:], grid.far[:] = 1.0, 0.0
+        light = grid.eval()(points, directions)
+    assert float(light[0].min()) > 0.9
+    assert float(light[1].max()) < 0.1
+
+
+def test_distances_are_where_the_march_lost_half_of_its_light():
+    grid = grid_of(3).eval()
+    points, directions = rays(200)
+    found = grid.distances(points, directions).to(DOUBLE)
+    times, steps = (torch.from_numpy(a).to(DOUBLE) for a in (grid.times, grid.steps))
+    box, cells = torch.from_numpy(grid.numbers).to(DOUBLE), grid.cells.detach().to(DOUBLE)
+    origins, along = grid.box.turned(points.to(DOUBLE)), grid.box.turned(directions.to(DOUBLE))
+    places = origins[:, None] + (times + 0.5 * steps)[:, None] * along[:, None]
+    inside = (places - box[:3]) * box[3:6]
+    sizes = torch.tensor(cells.shape[2::-1], dtype=DOUBLE)
+    corners = (twin.contracted(inside, box[6]) / (1.0 + box[6]) * 0.5 + 0.5) * (sizes - 1.0)
+    density = twin.ramp(twin.DENSITY_SCALE * twin.interpolated(cells, corners)[..., 0]) * grid.unit * steps
+    passed = torch.exp(-torch.cumsum(density, dim=1))
+    for number in range(len(points)):
+        nearer = passed[number][times + 0.5 * steps < found[number] - 1e-4]
+        assert (nearer >= 0.5 - 1e-3).all()
+        assert torch.isinf(found[number]) or float(passed[number][nearer.numel()]) <= 0.5 + 1e-3

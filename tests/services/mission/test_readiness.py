@@ -27,6 +27,7 @@ from planning.geo.frames import camera_axes
 from planning.plan import Viewpoint
 from planning.planner import plan_flight
 from planning.request import PlanRequest
+from planning.revision.top_up import METHOD as TOP_UP
 from tests.planning.plan_cases import kiosk
 from tests.planning.revision.cases import QUICK
 
@@ -80,6 +81,7 @@ def test_a_plan_far_below_what_can_be_covered_is_told():
     (found,) = of("coverage-far", readiness_findings(Case.of(few, model)))
     assert found.severity is Severity.WARNING
     assert found.value == pytest.approx(100.0 * plan.coverage.covered / (10 * bound), rel=0.05)
+    assert not of("coverage-far", readiness_findings(Case.of(replace(few, method=TOP_UP), model)))
     all_of_it = replace(plan, coverage=replace(plan.coverage, reachable_upper_bound=plan.coverage.covered))
     assert not of("coverage-far", readiness_findings(Case.of(all_of_it, model)))
 
