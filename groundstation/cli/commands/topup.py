@@ -115,7 +115,7 @@ def _from_photos(options: argparse.Namespace) -> int:
         "learn_s": options.learn,
         "time_budget_s": options.time_budget,
     }
-    with in_words_of_options():
+    with in_words_of_options(PhotoTopUpRequest):
         request = PhotoTopUpRequest(
             seed=checked_seed(options.seed), **{name: value for name, value in chosen.items() if value is not None}
         )
