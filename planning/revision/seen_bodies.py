@@ -1,7 +1,8 @@
 """Bodies that panes mirror and the site lacks: a neighbour that was never entered, a tree that has grown.
 
 A model of what panes mirror tells by parallax how far away that is. Where two models, each of one half of the photos,
-agree that there is something and the site has nothing, the site is wrong.
+agree that there is something and the site has nothing, the site is wrong. Places that as many rays go through as end
+there are empty (space carving, K. Kutulakos and S. Seitz, 2000).
 """
 
 from __future__ import annotations
@@ -26,8 +27,12 @@ of distances was 2 to 3 % at 30 m (docs/concepts/worth.md)."""
 FARTHEST_M = 80.0
 """From the panes; what is mirrored from further away has hardly any parallax."""
 
-LEAST_RAYS, LEAST_PHOTOS, LEAST_CELLS = 4, 2, 6
-"""Of each half that end in a cell, of how many of its photos; and cells of a body."""
+LEAST_RAYS, LEAST_PHOTOS, LEAST_CELLS = 4, 2, 20
+"""Of each half that end in a cell, of how many of its photos; and cells of a body: false ones had up to 16, fronts of
+houses 170 and more, and single trees are lost."""
+
+BEHIND = 0.1
+"""Part of its length that a ray has to go on behind a cell to have gone through it."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -36,14 +41,15 @@ class MirroredPlaces:
 
     Parameters
     ----------
-    places_enu_m
-        Shape (n, 3).
+    panes_enu_m, places_enu_m
+        Where rays are mirrored, and where they end, shape (n, 3); far away where they do not.
     distances_m
         From the pane, shape (n,).
     photos, halves
         Number of each ray's photo, and 0 or 1 for the half that it is of, shape (n,).
     """
 
+    panes_enu_m: Array
     places_enu_m: Array
     distances_m: Array
     photos: NDArray[np.int64]
@@ -100,6 +106,7 @@ def bodies_not_in(site_model: SiteModel, seen: MirroredPlaces, flown_enu_m: Arra
     present = np.concatenate([np.reshape(flown_enu_m, (-1, 3)), [site_model.site.home_enu_m]])
     is_new &= cKDTree(present).query(middles)[0] > clear_m + CELL_M
     both = both[is_new]
+    both = both[_n_ending(both, cells) > _n_passing(both, seen)]
     if len(both) == 0:
         return []
     first = both.min(axis=0)
@@ -116,6 +123,37 @@ def with_bodies(site_model: SiteModel, bodies: list[SeenBody]) -> SiteModel:
     added = tuple(Obstacle(f"seen-{number:02d}", mesh=f"seen-{number:02d}") for number in range(1, len(bodies) + 1))
     site = replace(site_model.site, obstacles=(*site_model.site.obstacles, *added))
     return replace(site_model, site=site, obstacles=(*site_model.obstacles, *(body.mesh() for body in bodies)))
+
+
+def _codes(cells: NDArray[np.int64]) -> NDArray[np.int64]:
+    """One number for each cell, shape (n,)."""
+    shifted = cells + (1 << 19)
+    return np.asarray((shifted[:, 0] << 40) + (shifted[:, 1] << 20) + shifted[:, 2])
+
+
+def _n_among(cells: NDArray[np.int64], visited: NDArray[np.int64]) -> NDArray[np.int64]:
+    """How often each of some cells, sorted, is among those visited."""
+    codes, found = _codes(cells), _codes(visited)
+    place = np.minimum(np.searchsorted(codes, found), max(0, len(codes) - 1))
+    return np.bincount(place[codes[place] == found], minlength=len(codes)) if len(codes) else np.zeros(0, np.int64)
+
+
+def _n_ending(cells: NDArray[np.int64], ends: NDArray[np.int64]) -> NDArray[np.int64]:
+    """How many rays end in each cell."""
+    return _n_among(cells, ends)
+
+
+def _n_passing(cells: NDArray[np.int64], seen: MirroredPlaces) -> NDArray[np.int64]:
+    """How many rays go through each cell, and end well behind it."""
+    lengths = np.minimum(seen.distances_m, FARTHEST_M)
+    counts = np.zeros(len(cells), np.int64)
+    ways = seen.places_enu_m - seen.panes_enu_m
+    directions = ways / np.maximum(np.linalg.norm(ways, axis=1, keepdims=True), 1e-9)
+    for along in np.arange(CELL_M, FARTHEST_M, CELL_M):
+        passes = along < (1.0 - BEHIND) * lengths - CELL_M
+        places = seen.panes_enu_m[passes] + along * directions[passes]
+        counts += _n_among(cells, np.floor(places / CELL_M).astype(np.int64))
+    return counts
 
 
 def _with_enough_rays(

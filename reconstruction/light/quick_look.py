@@ -43,6 +43,9 @@ minute, and 100 photos of 660 pixels have ten."""
 LOOKED_AT = 60_000
 """Rays of each half that the other half's grid is looked at along."""
 
+FAR_AWAY_M = 1000.0
+"""Places of rays that end nowhere are so far away."""
+
 LEAST_PHOTOS = 8
 """With glass, in both halves together."""
 
@@ -166,10 +169,10 @@ def quick_look(source: PhotoSet, seconds: float = 40.0, seed: int = 0, monitor: 
         errors.append(mean_square_error(trained.panels, looked_at))
         middle = looked_at.middle()
         away_m = light.light.distances(middle.points, middle.omega_r).double() * looked_at.table.half_side_m
-        finite = torch.where(torch.isfinite(away_m), away_m, 0.0)[:, None]
-        places = looked_at.hits().points_m + looked_at.table.middle_m + finite * middle.omega_r.double()
+        panes = looked_at.hits().points_m + looked_at.table.middle_m
+        places = panes + away_m.clamp(max=FAR_AWAY_M)[:, None] * middle.omega_r.double()
         numbers = looked_at.photos.long()
-        parts.append((places, away_m, numbers, torch.full_like(numbers, half)))
+        parts.append((panes, places, away_m, numbers, torch.full_like(numbers, half)))
     columns = [torch.cat(column).numpy() for column in zip(*parts, strict=True)]
     return QuickLook(
         MirroredPlaces(*columns),

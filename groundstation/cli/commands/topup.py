@@ -148,7 +148,7 @@ def _from_photos(options: argparse.Namespace) -> int:
 def _print_from_photos(found: PhotoTopUp, out: Path) -> None:
     look, plan = found.look, found.planned.plan
     tell(
-        "{} looked at in {:.0f} s: glass of photos left out is told with {:.1f} dB",
+        "{} looked at in {:.0f} s; glass of held-out photos: {:.1f} dB",
         counted(look.n_photos, "photo"),
         look.seconds,
         look.psnr_db,

@@ -6280,6 +6280,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>beim Auslösen (Median / schlechteste): {0}</translation>
     </message>
     <message>
+        <source>belongs to --photos</source>
+        <translation>gehört zu --photos</translation>
+    </message>
+    <message>
         <source>belongs to --refine, which was not given</source>
         <translation>gehört zu --refine, das nicht angegeben wurde</translation>
     </message>
@@ -7030,6 +7034,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>ist für --resume; ein Ergänzungsflug schließt, was alle Einsätze offen ließen</translation>
     </message>
     <message>
+        <source>is missing: a flight file or a log, or --photos with the photos themselves</source>
+        <translation>fehlt: eine Flugdatei oder ein Log, oder --photos mit den Fotos selbst</translation>
+    </message>
+    <message>
         <source>is no CSV ({0})</source>
         <translation>ist kein CSV ({0})</translation>
     </message>
@@ -7048,6 +7056,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>is not empty, and has no {0} of photos to go on with; name a new folder</source>
         <translation>ist nicht leer und hat kein {0} von Fotos, mit denen es weitergeht; einen neuen Ordner nennen</translation>
+    </message>
+    <message>
+        <source>is not for --photos</source>
+        <translation>ist nicht für --photos</translation>
     </message>
     <message>
         <source>is not for --resume, which fits one battery</source>
@@ -7308,6 +7320,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>none of its {0} photos says where the camera looked; name the plan that was flown as well (--plan)</source>
         <translation>keines seiner {0} Fotos sagt, wohin die Kamera blickte; auch den geflogenen Plan nennen (--plan)</translation>
+    </message>
+    <message>
+        <source>none of the photos says where it was taken; name their COLMAP model</source>
+        <translation>keines der Fotos sagt, wo es aufgenommen wurde; ihr COLMAP-Modell nennen</translation>
     </message>
     <message>
         <source>none of the {0} images of the COLMAP model is a photo in {1}; are the names in the model the paths below the folder of photos?</source>
@@ -7822,6 +7838,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>dem eingesetzten Akku</translation>
     </message>
     <message>
+        <source>the battery on board flies one sortie; ask for it, or for full ones</source>
+        <translation>der Akku an Bord fliegt einen Einsatz; entweder ihn verlangen oder volle</translation>
+    </message>
+    <message>
         <source>the building without panels</source>
         <translation>das Gebäude ohne Scheiben</translation>
     </message>
@@ -7950,6 +7970,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>die Scheiben spiegeln nur Himmel</translation>
     </message>
     <message>
+        <source>the panes mirror something that the site lacks: {0} x {1} m, {2} m high, {3} m east and {4} m north of the site&apos;s origin; the flight keeps clear of what is seen of it, but look before you fly, and enter it into the site</source>
+        <translation>die Scheiben spiegeln etwas, das dem Standort fehlt: {0} x {1} m, {2} m hoch, {3} m östlich und {4} m nördlich seines Ursprungs; der Flug hält Abstand von dem, was davon zu sehen ist, aber vor dem Flug hinsehen und es in den Standort eintragen</translation>
+    </message>
+    <message>
         <source>the photos are straight</source>
         <translation>die Fotos sind unverzeichnet</translation>
     </message>
@@ -7980,6 +8004,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the picture cannot be written</source>
         <translation>das Bild ist nicht zu schreiben</translation>
+    </message>
+    <message>
+        <source>the picture has another size than its header says; copy it again</source>
+        <translation>das Bild hat eine andere Größe, als sein Kopf sagt; noch einmal kopieren</translation>
     </message>
     <message>
         <source>the picture is distorted, and splats are rendered without distortion; make it straight with `prepare`</source>
@@ -8138,6 +8166,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>ungesehene Ansichten eines Modells aus seinen Fotos, erwartet: {0}</translation>
     </message>
     <message>
+        <source>unseen views of a model of the photos, expected: {0} dB</source>
+        <translation>ungesehene Ansichten eines Modells aus den Fotos, erwartet: {0} dB</translation>
+    </message>
+    <message>
         <source>uploading</source>
         <translation>wird hochgeladen</translation>
     </message>
@@ -8160,6 +8192,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>what only single photos show</source>
         <translation>was nur einzelne Fotos zeigen</translation>
+    </message>
+    <message>
+        <source>with this flight: {0}</source>
+        <translation>mit diesem Flug: {0}</translation>
     </message>
     <message>
         <source>without an element in this file, so not written: {0}</source>
@@ -8244,6 +8280,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>{0} of {1} photos found no place in the model, the first {2}</source>
         <translation>{0} von {1} Fotos fanden keinen Platz im Modell, das erste: {2}</translation>
+    </message>
+    <message>
+        <source>{0} of {1} photos show glass of the site&apos;s panels, and {2} are needed; are they of this site?</source>
+        <translation>{0} von {1} Fotos zeigen Glas der Paneele des Standorts, und {2} sind nötig; sind sie von diesem Standort?</translation>
     </message>
     <message>
         <source>{0} of {1} sides of the building were not seen and are guessed, {2} % of its walls; fly around it before you plan flights there</source>
@@ -10180,6 +10220,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>{0} is {1}, which has no place in MISSION_ITEM_INT; expected {2}</source>
         <translation>{0} ist {1}, wofür MISSION_ITEM_INT keinen Platz hat; erwartet wird {2}</translation>
+    </message>
+    <message>
+        <source>{0} looked at in {1} s; glass of held-out photos: {2} dB</source>
+        <translation>{0} in {1} s betrachtet; Glas zurückgehaltener Fotos: {2} dB</translation>
     </message>
     <message>
         <source>{0} m kept at least</source>

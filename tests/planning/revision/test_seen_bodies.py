@@ -22,13 +22,15 @@ FRONT = np.array([[-6.0, 30.0, 4.0], [6.0, 32.0, 16.0]])
 """Of a neighbour north of the kiosk, which its site does not have."""
 
 
+AWAY = np.array([0.0, 25.0, 0.0])
+
+
 def seen(low, high, n=4000, seed=0, halves=(0, 1)) -> MirroredPlaces:
     """Rays that end all over a box, of twenty photos."""
     rng = np.random.default_rng(seed)
     photos = rng.integers(0, 20, n)
-    return MirroredPlaces(
-        rng.uniform(low, high, (n, 3)), np.full(n, 25.0), photos, np.array(halves)[photos % len(halves)]
-    )
+    places, half = rng.uniform(low, high, (n, 3)), np.array(halves)[photos % len(halves)]
+    return MirroredPlaces(places - AWAY, places, np.full(n, 25.0), photos, half)
 
 
 def test_a_neighbour_that_the_site_lacks_is_found_where_it_stands():
@@ -56,9 +58,24 @@ def test_where_the_aircraft_was_is_nothing():
     assert bodies_not_in(kiosk(), seen(*FRONT), flown, 12.0) == []
 
 
+def test_what_as_many_rays_go_through_as_end_there_is_empty():
+    there = seen(*FRONT)
+    behind = seen(*FRONT, n=12_000, seed=1)
+    through = MirroredPlaces(
+        np.concatenate([there.panes_enu_m, behind.panes_enu_m]),
+        np.concatenate([there.places_enu_m, behind.places_enu_m + 2.0 * AWAY]),
+        np.concatenate([there.distances_m, behind.distances_m + 50.0]),
+        np.concatenate([there.photos, behind.photos]),
+        np.concatenate([there.halves, behind.halves]),
+    )
+    found = bodies_not_in(kiosk(), through, NOWHERE, 8.0)
+    assert all(body.low_enu_m[1] > FRONT[1][1] for body in found)
+    assert found, "what the rays end at is there"
+
+
 def test_nothing_seen_is_no_body():
     none = np.zeros(0, np.int64)
-    assert bodies_not_in(kiosk(), MirroredPlaces(NOWHERE, np.zeros(0), none, none), NOWHERE, 8.0) == []
+    assert bodies_not_in(kiosk(), MirroredPlaces(NOWHERE, NOWHERE, np.zeros(0), none, none), NOWHERE, 8.0) == []
 
 
 @given(seed=st.integers(0, 2**32 - 1), x=st.floats(-40, 40), y=st.floats(-40, 40), side=st.floats(1, 20))
