@@ -223,6 +223,27 @@ class FlightRules:
         option="--turn-in-flight",
         group=FLIGHT,
     )
+    at_once: int = parameter(
+        1,
+        "sorties that are in the air at the same time, each with an aircraft of its own",
+        label="Aircraft at once",
+        least=1,
+        most=10,
+        option="--at-once",
+        metavar="N",
+        group=FLIGHT,
+        row="more",
+    )
+    apart_m: float = parameter(
+        20.0,
+        "distance that aircraft in the air at the same time keep, early or late as they may be",
+        label="Aircraft apart",
+        unit="m",
+        above=0.0,
+        option="--apart",
+        metavar="M",
+        group=FLIGHT,
+    )
 
     def __post_init__(self) -> None:
         check(self)

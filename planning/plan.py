@@ -158,7 +158,8 @@ class Sortie:
 
     `path_enu_m` is the polyline really flown; the sortie's viewpoints are among its vertices, in order. Photos of those
     in `in_passing_ids` are taken without a stop, as missions of other programs do that release the camera by time or
-    distance.
+    distance. Where several aircraft fly at once, `start_s` is when its motors are switched on, from the first start of
+    all on, and `aircraft` by which one, from 1.
     """
 
     viewpoint_ids: tuple[str, ...]
@@ -166,8 +167,14 @@ class Sortie:
     length_m: float
     duration_s: float
     in_passing_ids: tuple[str, ...] = ()
+    start_s: float | None = None
+    aircraft: int | None = None
 
     def __post_init__(self) -> None:
+        if (self.start_s is None) != (self.aircraft is None):
+            raise ValueError(say("expected a start with its aircraft, or neither", place="start_s"))
+        if self.start_s is not None and not 0.0 <= self.start_s < math.inf:
+            raise ValueError(say("expected 0 or more, got {:g}", self.start_s, place="start_s"))
         for i, point in enumerate(self.path_enu_m):
             check_point(point, f"path_enu_m[{i}]")
         unknown = set(self.in_passing_ids).difference(self.viewpoint_ids)
@@ -324,6 +331,13 @@ class Plan:
         """Flight time of all sorties together."""
         return sum(sortie.duration_s for sortie in self.sorties)
 
+    @property
+    def landed_s(self) -> float | None:
+        """When the last of several aircraft has landed, from the first start on; None where not all have starts."""
+        if not self.sorties or any(sortie.start_s is None for sortie in self.sorties):
+            return None
+        return max((sortie.start_s or 0.0) + sortie.duration_s for sortie in self.sorties)
+
 
 class ViewpointArrays(NamedTuple):
     """Viewpoints as arrays: positions shape (n, 3) ENU metres, heading and pitch shape (n,) radians."""
@@ -374,6 +388,8 @@ def plan_to_json(plan: Plan) -> dict[str, Any]:
     for sortie in content["sorties"]:
         if not sortie["in_passing_ids"]:
             del sortie["in_passing_ids"]
+        if sortie["start_s"] is None:
+            del sortie["start_s"], sortie["aircraft"]
     return {key: value for key, value in content.items() if value is not None}
 
 

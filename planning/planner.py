@@ -30,6 +30,7 @@ from planning.motion.timing import motion_limits, round_trip_metric
 from planning.parameters import DEFAULT_SHARE, DEFAULT_VIEWS
 from planning.plan import ANGLE_DECIMALS, HistoryPoint, Plan, Sortie, Viewpoint, ViewpointArrays, viewpoint_arrays
 from planning.request import PlanRequest
+from planning.routing.at_once import share_out
 from planning.routing.flights import Flight, flight_times, plan_flights
 from planning.routing.legs import n_stops_within
 from planning.routing.roadmap import build_roadmap
@@ -104,7 +105,8 @@ def plan_records(
         for vertex, viewpoint in zip(flight.photo_vertices, flown, strict=True):
             path[vertex] = viewpoint.position_enu_m  # locked ones may have more decimals
         ids = tuple(viewpoint.id for viewpoint in flown)
-        sorties.append(Sortie(ids, tuple(path), round(flight.length_m, 3), round(flight.duration_s, 2)))
+        times = round(flight.length_m, 3), round(flight.duration_s, 2)
+        sorties.append(Sortie(ids, tuple(path), *times, start_s=flight.start_s, aircraft=flight.aircraft))
     return tuple(viewpoints), tuple(sorties)
 
 
@@ -485,15 +487,13 @@ def _route(
     looking = any_of(stop, TimeLimit(limit.remaining_s() - searching_s))
     times = flight_times(problem.roadmap, views, aircraft, rules, monitor, stop=looking)
     searching_s = float(np.clip(limit.remaining_s() - DRAWING_S, DRAWING_S, routing_s))
-    return plan_flights(
-        times,
-        views,
-        aircraft,
-        rules,
-        seed=request.seed,
-        stop=any_of(stop, TimeLimit(searching_s)),
-        monitor=monitor,
-    )
+
+    until = any_of(stop, TimeLimit(searching_s))
+    flights = plan_flights(times, views, aircraft, rules, seed=request.seed, stop=until, monitor=monitor)
+    if rules.at_once == 1:
+        return flights
+    sharing = any_of(stop, TimeLimit(limit.remaining_s()))
+    return share_out(times, views, aircraft, rules, flights, request.n_batteries, request.seed, sharing)
 
 
 def _plan(

@@ -5,6 +5,7 @@ First distances and places of what is flown, then sorties, gimbal, waypoints, wi
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections import Counter
 from collections.abc import Iterator
@@ -18,6 +19,7 @@ from planning.checks.case import ROUNDING_M, Array, Case, Gaps, Rule, judge, leg
 from planning.coverage.evaluate import nearest_views_m
 from planning.motion.timing import SAME_PLACE_M, beside_column, motion_limits, photo_stop_s, photo_vertices
 from planning.plan import Sortie, Viewpoint, viewpoint_arrays
+from planning.routing.at_once import nearest_at_once_m
 from planning.routing.rally import RETURN_TOLERANCE_M, rally_findings, return_height
 from planning.site.file import is_planned_on
 from planning.site.records import MIN_HEIGHT_ABOVE_GROUND_M
@@ -368,6 +370,46 @@ def durations(case: Case) -> Iterator[Finding]:
         )
 
 
+def aircraft_apart(case: Case) -> Iterator[Finding]:
+    """Sorties in the air at once keep apart, early or late as they may be; those of one aircraft follow each other."""
+    plan, rules = case.plan, case.plan.rules
+    if rules.at_once == 1:
+        return
+    if plan.landed_s is None:
+        text = say("the sorties of several aircraft have no starts any more; plan the flight again")
+        yield Finding(Severity.ERROR, "at-once", text)
+        return
+    numbered = list(enumerate(plan.sorties, 1))
+    nearest_m, nearest = math.inf, ""
+    for (first, one), (second, other) in itertools.combinations(numbered, 2):
+        if one.aircraft == other.aircraft:
+            before, after = sorted((one, other), key=lambda sortie: sortie.start_s or 0.0)
+            if (before.start_s or 0.0) + before.duration_s > (after.start_s or 0.0):
+                text = say("sorties {} and {} need one aircraft at the same time; plan the flight again", first, second)
+                yield Finding(Severity.ERROR, "at-once", text, say("sortie {}", second))
+            continue
+        try:
+            gap_m = nearest_at_once_m(plan, one, other)
+        except InfeasibleError:  # `durations` says it
+            return
+        if gap_m < nearest_m:
+            nearest_m, nearest = gap_m, say("sorties {} and {}", first, second)
+    if math.isinf(nearest_m):
+        yield Finding(Severity.OK, "at-once", say("no two aircraft are in the air at the same time"))
+        return
+    yield judge(
+        nearest_m >= rules.apart_m - ROUNDING_M,
+        "at-once",
+        say("distance of aircraft in the air at the same time"),
+        nearest_m,
+        rules.apart_m,
+        "m",
+        nearest,
+        say("plan the flight again"),
+        least=True,
+    )
+
+
 def _between_photos(case: Case) -> Iterator[tuple[float, str]]:
     """Shortest time between two photos of each sortie as it is commanded, and before which viewpoint.
 
@@ -543,6 +585,7 @@ FLIGHT_RULES: tuple[Rule, ...] = (
     gimbal_and_heading,
     waypoint_counts,
     durations,
+    aircraft_apart,
     photo_times,
     ground_sampling,
     sharp_views,

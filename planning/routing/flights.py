@@ -49,12 +49,16 @@ class Flight:
         Vertex of each view.
     duration_s
         From switching on to switching off, take-off and landing included.
+    start_s, aircraft
+        As of a plan's sortie.
     """
 
     views: NDArray[np.int64]
     path_enu_m: Array
     photo_vertices: NDArray[np.int64]
     duration_s: float
+    start_s: float | None = None
+    aircraft: int | None = None
 
     @property
     def length_m(self) -> float:
@@ -155,6 +159,14 @@ def draw_flights(
         monitor.report(say("drawing legs"), number, len(sorties))
         flights.append(_draw(times.table, np.array(sortie, np.int64), views, aircraft, rules))
     return tuple(flights)
+
+
+def reversed_flight(flight: Flight, views: ViewpointArrays, aircraft: Aircraft, rules: FlightRules) -> Flight:
+    """The same way flown the other way round."""
+    order, vertices = flight.views[::-1], flight.path_enu_m[::-1]
+    at_photos = len(vertices) - 1 - flight.photo_vertices[::-1]
+    timed = flight_path(vertices, at_photos, views.heading_rad[order], views.pitch_rad[order], aircraft, rules)
+    return Flight(order, vertices, at_photos, stopping_duration_s(timed, aircraft, rules))
 
 
 def _draw(

@@ -174,7 +174,7 @@ def run(options: argparse.Namespace) -> int:
 
 def print_summary(planned: Planned, out: Path, seconds: float) -> None:
     """What a pilot wants to know, in a few lines on stdout."""
-    from groundstation.services.units import per_cent
+    from groundstation.services.units import minutes_text, per_cent
     from planning.coverage.sections import SectionGrid
     from planning.insight.flight_profile import LOW_M, lowest_flight
 
@@ -188,6 +188,20 @@ def print_summary(planned: Planned, out: Path, seconds: float) -> None:
         plan.duration_s / 60,
         place=out,
     )
+    if plan.landed_s is not None:
+        n_flying = len({sortie.aircraft for sortie in plan.sorties})
+        tell(
+            "{} aircraft at once, all landed after {:.1f} min; they keep {:g} m apart, early or late",
+            n_flying,
+            plan.landed_s / 60,
+            plan.rules.apart_m,
+        )
+        if n_flying < plan.rules.at_once:
+            tell(
+                "more aircraft would not have landed earlier, so far apart; --apart lets them fly nearer to each other"
+            )
+        for number, sortie in sorted(enumerate(plan.sorties, 1), key=lambda each: each[1].start_s or 0.0):
+            tell("  sortie {}: aircraft {} starts at {}", number, sortie.aircraft, minutes_text(sortie.start_s or 0.0))
     tell(
         "seen: {} of {} directions of view ({} for each of {})",
         coverage.covered,

@@ -488,6 +488,11 @@ class FlyPage(QObject):
             self.tr("Sortie {0}: photos: {1}, {2}").format(
                 n, len(sortie.viewpoint_ids), minutes_text(sortie.duration_s)
             )
+            + (
+                ""
+                if sortie.start_s is None
+                else self.tr("; aircraft {0} starts at {1}").format(sortie.aircraft, minutes_text(sortie.start_s))
+            )
             for n, sortie in enumerate(() if plan is None else plan.sorties, 1)
         ]
         if [self.sortie.itemText(i) for i in range(self.sortie.count())] != texts:

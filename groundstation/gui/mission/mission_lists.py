@@ -280,6 +280,9 @@ class SortieTable(QTableView):
             for cell in cells:
                 cell.setTextAlignment(Qt.AlignmentFlag.AlignCenter)
             cells[0].setForeground(sortie_colour(number))
+            if sortie.start_s is not None:
+                start = self.tr("Aircraft {0} starts at {1}").format(sortie.aircraft, minutes_text(sortie.start_s))
+                cells[0].setText(f"{number}: {start}")
             self._rows.appendRow(cells)
 
     def _row_picked(self, index: QModelIndex) -> None:

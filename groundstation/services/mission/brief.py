@@ -47,6 +47,8 @@ class SortieBrief:
         To building, panels and obstacles along the path; None where no check measured it.
     takeoff_check
         What the pilot sees at its first waypoint; None where it has no path.
+    start_s, aircraft
+        Of sorties that are flown at once: when it starts, from the first start on, and by which aircraft.
     """
 
     number: int
@@ -59,6 +61,8 @@ class SortieBrief:
     low: LowFlight | None
     smallest_clearance_m: float | None
     takeoff_check: TakeoffCheck | None = None
+    start_s: float | None = None
+    aircraft: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -222,6 +226,8 @@ def _sortie(
         low=low_flight(plan, sortie, site.home_enu_m, site.airspace.ground_z_m),
         smallest_clearance_m=min(near, default=None),
         takeoff_check=takeoff_check(plan, site, number),
+        start_s=sortie.start_s,
+        aircraft=sortie.aircraft,
     )
 
 

@@ -358,7 +358,11 @@ def _sorties(brief: FlightBrief, units: UnitSystem, tr: Translate) -> str:
     )
     rows = [
         (
-            str(sortie.number),
+            str(sortie.number)
+            if sortie.start_s is None
+            else tr("{0}: aircraft {1}, starts at {2}").format(
+                sortie.number, sortie.aircraft, minutes_text(sortie.start_s)
+            ),
             str(sortie.n_photos),
             minutes_text(sortie.duration_s),
             distance.text(sortie.length_m),

@@ -241,6 +241,7 @@ def planned_summary(planned: Planned, seconds: float) -> dict[str, Any]:
         "method": plan.method,
         "sorties": len(plan.sorties),
         "duration_s": round(plan.duration_s, 1),
+        "landed_s": plan.landed_s,
         "length_m": round(sum(sortie.length_m for sortie in plan.sorties), 1),
         "lowest_height_m": None if low is None else round(low.lowest_m, 2),
         "below_10_m_s": None if low is None or low.below_s is None else round(low.below_s, 1),

@@ -1,0 +1,374 @@
+"""Sorties that are in the air at the same time, each with an aircraft of its own, and keep apart in space and time.
+
+While an aircraft is on a leg, it counts as being all along it, from its arrival at the leg's start until it leaves the
+leg's end. Two sorties keep apart if no two legs nearer than the distance asked for are flown at times that may
+coincide, wherever between `TIMING_S` and a share of the way the aircraft are early or late. So for each pair of sorties
+the differences of starts that are forbidden are intervals, and starts are found among their ends; that no two legs meet
+is exact, not sampled.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.base.progress import Stop, TimeLimit, any_of, never
+from planning.motion.timing import FlightPath, flight_path, motion_limits, sortie_flight_path, stopping_times_s
+from planning.parameters import FlightRules
+from planning.plan import Aircraft, Plan, Sortie, ViewpointArrays
+from planning.routing.flights import Flight, FlightTimes, draw_flights, reversed_flight
+from planning.routing.sorties import plan_sorties
+
+Array = NDArray[np.float64]
+
+TIMING_S, TIMING_SHARE = 15.0, 0.05
+"""How early or late an aircraft may be: so much in any case (a pilot's hand on the button), and a share of the time
+since its start."""
+
+CHANGE_S = 120.0
+"""Between a landing and the next take-off of the same aircraft: time for the battery."""
+
+REGION_S = 0.5
+"""Longest time for the way through one region."""
+
+SWEPT = (2, 3, 4, 5, 6, 7, 8)
+"""Numbers of stripes of a swept region that are tried."""
+
+MOST_ORDERS = 720
+"""Orders of sorties that starts are looked for in: all of up to six, else some drawn at random."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LegTimes:
+    """The legs of a sortie and when it may be on them.
+
+    Parameters
+    ----------
+    starts_enu_m, ends_enu_m
+        Shape (k, 3).
+    from_s, until_s
+        Since the motors were switched on, as planned, shape (k,).
+    """
+
+    starts_enu_m: Array
+    ends_enu_m: Array
+    from_s: Array
+    until_s: Array
+
+    @property
+    def earliest_s(self) -> Array:
+        """When the aircraft is there at the earliest, shape (k,)."""
+        return np.asarray(self.from_s - TIMING_S - TIMING_SHARE * self.from_s)
+
+    @property
+    def latest_s(self) -> Array:
+        """When it has left at the latest, shape (k,)."""
+        return np.asarray(self.until_s + TIMING_S + TIMING_SHARE * self.until_s)
+
+
+def leg_times(path: FlightPath, aircraft: Aircraft, rules: FlightRules) -> LegTimes:
+    """Of an aircraft that comes to rest at every vertex.
+
+    Raises
+    ------
+    InfeasibleError
+        The aircraft cannot fly in the expected wind.
+    """
+    path = path.without_passed()
+    arrival_s = stopping_times_s(path, motion_limits(aircraft, rules))
+    # Take-off and landing, together as long as the rules say, may each take all of it.
+    ground_s = rules.takeoff_landing_s
+    from_s, until_s = arrival_s[:-1] + ground_s, arrival_s[1:] + path.hover_s[1:] + ground_s
+    from_s[0], until_s[-1] = 0.0, until_s[-1] + ground_s
+    return LegTimes(path.vertices_enu_m[:-1], path.vertices_enu_m[1:], from_s, until_s)
+
+
+def sortie_leg_times(plan: Plan, sortie: Sortie) -> LegTimes | None:
+    """Of one of a plan's sorties; None where its path is none or misses a viewpoint. Errors as `leg_times`."""
+    by_id = {viewpoint.id: viewpoint for viewpoint in plan.viewpoints}
+    timed = sortie_flight_path(sortie, by_id, plan.aircraft, plan.rules)
+    return None if timed is None else leg_times(timed[0], plan.aircraft, plan.rules)
+
+
+def segment_distances_m(a: Array, b: Array, c: Array, d: Array) -> Array:
+    """Distances of segments a[i] b[i] and c[i] d[i], shape (n,), from ends of shape (n, 3).
+
+    The nearest points are an end and a point of the other segment, or both inside, where the connecting line is at
+    right angles to both.
+    """
+    ends = (
+        _to_segments_m(a, c, d),
+        _to_segments_m(b, c, d),
+        _to_segments_m(c, a, b),
+        _to_segments_m(d, a, b),
+    )
+    u, v, w = b - a, d - c, a - c
+    uu, uv, vv = (np.einsum("nk,nk->n", *pair) for pair in ((u, u), (u, v), (v, v)))
+    uw, vw = np.einsum("nk,nk->n", u, w), np.einsum("nk,nk->n", v, w)
+    volume = uu * vv - uv * uv
+    is_skew = volume > 1e-12 * uu * vv
+    safe = np.where(is_skew, volume, 1.0)
+    s, t = (uv * vw - vv * uw) / safe, (uu * vw - uv * uw) / safe
+    inside = is_skew & (s > 0.0) & (s < 1.0) & (t > 0.0) & (t < 1.0)
+    between = np.linalg.norm(w + s[:, None] * u - t[:, None] * v, axis=1)
+    return np.minimum(np.minimum.reduce(ends), np.where(inside, between, np.inf))
+
+
+def _to_segments_m(points: Array, a: Array, b: Array) -> Array:
+    way = b - a
+    length_2 = np.einsum("nk,nk->n", way, way)
+    share = np.einsum("nk,nk->n", points - a, way) / np.where(length_2 > 0.0, length_2, 1.0)
+    return np.asarray(np.linalg.norm(points - a - np.clip(share, 0.0, 1.0)[:, None] * way, axis=1))
+
+
+def leg_distances_m(one: LegTimes, other: LegTimes) -> Array:
+    """Distance of each leg of one sortie to each of another, shape (k, l)."""
+    k, n = len(one.from_s), len(other.from_s)
+    i, j = (index.ravel() for index in np.indices((k, n)))
+    ends = one.starts_enu_m[i], one.ends_enu_m[i], other.starts_enu_m[j], other.ends_enu_m[j]
+    return segment_distances_m(*ends).reshape(k, n)
+
+
+def forbidden_s(is_near: NDArray[np.bool_], one: LegTimes, other: LegTimes) -> Array:
+    """Differences, start of `other` less start of `one`, that could bring them nearer: open intervals, shape (q, 2).
+
+    Sorted, and none meets another.
+
+    Parameters
+    ----------
+    is_near
+        Whether legs of one are nearer to legs of the other than they may be, shape (k, l).
+    """
+    i, j = np.nonzero(is_near)
+    low = one.earliest_s[i] - other.latest_s[j]
+    high = one.latest_s[i] - other.earliest_s[j]
+    merged: list[list[float]] = []
+    for first, last in sorted(zip(low.tolist(), high.tolist(), strict=True)):
+        if merged and first < merged[-1][1]:
+            merged[-1][1] = max(merged[-1][1], last)
+        else:
+            merged.append([first, last])
+    return np.array(merged, np.float64).reshape(-1, 2)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Ways:
+    """A sortie in both directions of flight."""
+
+    durations_s: tuple[float, float]
+    legs: tuple[LegTimes, LegTimes]
+
+
+@dataclass(frozen=True, slots=True)
+class Start:
+    """When a sortie starts, by which aircraft, from 1, and whether it is flown the other way round."""
+
+    start_s: float
+    aircraft: int
+    is_reversed: bool
+
+
+def earliest_starts(sorties: Sequence[Ways], n_aircraft: int, apart_m: float, seed: int = 0) -> tuple[Start, ...]:
+    """Starts after which the last sortie has landed as early as could be found.
+
+    Sorties are taken in some order, each by the aircraft that is ready first, in the direction in which it has landed
+    first at the earliest start that keeps it apart from all before it; the best of all orders of few sorties, or of
+    many orders.
+    """
+    n = len(sorties)
+    forbidden: dict[tuple[int, int, int, int], Array] = {}
+    for one, other in itertools.combinations(range(n), 2):
+        is_near = leg_distances_m(sorties[one].legs[0], sorties[other].legs[0]) < apart_m
+        for a, b in itertools.product((0, 1), repeat=2):
+            flipped = is_near[:: 1 - 2 * a, :: 1 - 2 * b]
+            spans = forbidden_s(flipped, sorties[one].legs[a], sorties[other].legs[b])
+            forbidden[one, a, other, b], forbidden[other, b, one, a] = spans, -spans[::-1, ::-1]
+    orders = [tuple(sorted(range(n), key=lambda k: -sorties[k].durations_s[0])), tuple(range(n))]
+    if math.factorial(n) <= MOST_ORDERS:
+        orders += itertools.permutations(range(n))
+    else:
+        rng = np.random.default_rng(seed)
+        orders += [tuple(rng.permutation(n).tolist()) for _ in range(MOST_ORDERS)]
+    fleets = range(1, n_aircraft + 1)  # where they would only wait for each other, fewer fly
+    found = (_in_order(order, sorties, forbidden, n) for n, order in itertools.product(fleets, orders))
+    return min(found, key=lambda starts: landed_s(sorties, starts))
+
+
+def landed_s(sorties: Sequence[Ways], starts: Sequence[Start]) -> float:
+    """When the last one has landed."""
+    return max(start.start_s + ways.durations_s[start.is_reversed] for ways, start in zip(sorties, starts, strict=True))
+
+
+def _in_order(
+    order: Sequence[int], sorties: Sequence[Ways], forbidden: dict[tuple[int, int, int, int], Array], n_aircraft: int
+) -> tuple[Start, ...]:
+    ready_s = [0.0] * n_aircraft
+    found: dict[int, Start] = {}
+    for sortie in order:
+        own = min(range(n_aircraft), key=ready_s.__getitem__)
+        others = [(other, start) for other, start in found.items() if start.aircraft != own + 1]
+        ways = []
+        for way in (0, 1):
+            spans = [start.start_s + forbidden[other, int(start.is_reversed), sortie, way] for other, start in others]
+            start_s = ready_s[own]
+            for first, last in sorted(itertools.chain.from_iterable(span.tolist() for span in spans)):
+                if first < start_s < last:
+                    start_s = float(math.ceil(last))  # whole seconds, as pilots read them
+            ways.append((start_s + sorties[sortie].durations_s[way], way, start_s))
+        landed, way, start_s = min(ways)
+        found[sortie] = Start(start_s, own + 1, bool(way))
+        ready_s[own] = float(math.ceil(landed + CHANGE_S))
+    return tuple(found[k] for k in range(len(order)))
+
+
+def share_out(
+    times: FlightTimes,
+    views: ViewpointArrays,
+    aircraft: Aircraft,
+    rules: FlightRules,
+    flights: tuple[Flight, ...],
+    most: int | None = None,
+    seed: int = 0,
+    stop: Stop = never,
+) -> tuple[Flight, ...]:
+    """Sorties through the same views for as many aircraft as the rules say, with starts; the first to have all landed.
+
+    Tried are the sorties given, and as many for each aircraft, in regions side by side and one above the other, on the
+    shortest way or in stripes, which keep apart more easily.
+
+    Parameters
+    ----------
+    most
+        Batteries that there are.
+    """
+    wanted = rules.at_once * -(-len(flights) // rules.at_once)
+    wanted = min(wanted, most or wanted, len(views.heading_rad))
+    options = [flights]
+    middle = views.positions_enu_m - views.positions_enu_m.mean(axis=0)
+    east, north = np.linalg.svd(middle[:, :2], full_matrices=False)[2][0]
+    for axis in (np.array([east, north, 0.0]), np.array([0.0, 0.0, 1.0])):
+        if stop():
+            break
+        regions = np.array_split(np.argsort(middle @ axis, kind="stable"), wanted)
+        shared = tuple(_through(times, region, views, aircraft, rules, seed, stop) for region in regions)
+        swept = tuple(_swept(times, region, middle, axis, views, aircraft, rules) for region in regions)
+        options += [tuple(each[0] for each in option) for option in (shared, swept) if all(len(e) == 1 for e in option)]
+    best, best_s = flights, np.inf
+    for option in options:
+        backwards = tuple(reversed_flight(flight, views, aircraft, rules) for flight in option)
+        ways = [
+            Ways(
+                (one.duration_s, other.duration_s),
+                (_flown(one, views, aircraft, rules), _flown(other, views, aircraft, rules)),
+            )
+            for one, other in zip(option, backwards, strict=True)
+        ]
+        starts = earliest_starts(ways, rules.at_once, rules.apart_m, seed)
+        if landed_s(ways, starts) < best_s:
+            best_s = landed_s(ways, starts)
+            best = tuple(
+                replace(other if start.is_reversed else one, start_s=start.start_s, aircraft=start.aircraft)
+                for one, other, start in zip(option, backwards, starts, strict=True)
+            )
+    return best
+
+
+def _flown(flight: Flight, views: ViewpointArrays, aircraft: Aircraft, rules: FlightRules) -> LegTimes:
+    angles = views.heading_rad[flight.views], views.pitch_rad[flight.views]
+    return leg_times(flight_path(flight.path_enu_m, flight.photo_vertices, *angles, aircraft, rules), aircraft, rules)
+
+
+def _through(
+    times: FlightTimes,
+    region: NDArray[np.int64],
+    views: ViewpointArrays,
+    aircraft: Aircraft,
+    rules: FlightRules,
+    seed: int,
+    stop: Stop,
+) -> tuple[Flight, ...]:
+    """Flights through some of the views; none where they do not fit one battery and the aircraft's waypoints."""
+    places = np.concatenate([[0], region + 1])
+    travel_s, max_stops = times.travel_s[np.ix_(places, places)], max(1, aircraft.max_waypoints - 2)
+    until = any_of(stop, TimeLimit(REGION_S))
+    found = plan_sorties(travel_s, times.service_s[region], times.budget_s, max_stops, seed=seed, stop=until)
+    flights = draw_flights(times, tuple(tuple(region[list(each)].tolist()) for each in found), views, aircraft, rules)
+    return flights if all(_fits(flight, times, aircraft, rules) for flight in flights) else ()
+
+
+def _fits(flight: Flight, times: FlightTimes, aircraft: Aircraft, rules: FlightRules) -> bool:
+    within = flight.duration_s - rules.takeoff_landing_s <= times.budget_s
+    return within and len(flight.path_enu_m) - 2 <= aircraft.max_waypoints
+
+
+def _travel_s(times: FlightTimes, order: NDArray[np.int64]) -> float:
+    places = np.concatenate([[0], order + 1, [0]])
+    return float(times.travel_s[places[:-1], places[1:]].sum())
+
+
+def _swept(
+    times: FlightTimes,
+    region: NDArray[np.int64],
+    middle: Array,
+    axis: Array,
+    views: ViewpointArrays,
+    aircraft: Aircraft,
+    rules: FlightRules,
+) -> tuple[Flight, ...]:
+    """The shortest flight through some of the views, stripe by stripe along an axis; none where it does not fit.
+
+    Longer than the shortest of all, but aircraft that sweep regions side by side stay a region apart.
+    """
+    along = middle[region] @ axis
+    across = middle[region] @ np.array([-axis[1], axis[0], 0.0]) if axis[2] else middle[region, 2]
+    orders = []
+    for n_stripes in SWEPT:
+        stripe = np.minimum(n_stripes - 1, np.argsort(np.argsort(along)) * n_stripes // len(region))
+        orders.append(region[np.lexsort((np.where(stripe % 2, -across, across), stripe))])
+    order = min(orders, key=lambda each: _travel_s(times, each))
+    best = draw_flights(times, (tuple(order.tolist()),), views, aircraft, rules)[0]
+    return (best,) if _fits(best, times, aircraft, rules) else ()
+
+
+def flown_at_once(plan: Plan) -> Plan:
+    """A plan with new starts for its sorties as they are; without any where one aircraft flies.
+
+    Raises
+    ------
+    InfeasibleError
+        The aircraft cannot fly in the expected wind.
+    """
+    legs = [sortie_leg_times(plan, sortie) for sortie in plan.sorties]
+    known = [each for each in legs if each is not None]
+    if plan.rules.at_once == 1 or not legs or len(known) < len(legs):
+        return replace(plan, sorties=tuple(replace(each, start_s=None, aircraft=None) for each in plan.sorties))
+    ways = [Ways((sortie.duration_s, math.inf), (each, each)) for sortie, each in zip(plan.sorties, known, strict=True)]
+    starts = earliest_starts(ways, plan.rules.at_once, plan.rules.apart_m, plan.seed)
+    timed = (
+        replace(sortie, start_s=start.start_s, aircraft=start.aircraft)
+        for sortie, start in zip(plan.sorties, starts, strict=True)
+    )
+    return replace(plan, sorties=tuple(timed))
+
+
+def nearest_at_once_m(plan: Plan, one: Sortie, other: Sortie) -> float:
+    """Smallest distance of legs of two sorties that may be flown at the same time; inf where none may.
+
+    0 where either has no start, or cannot be timed.
+
+    Raises
+    ------
+    InfeasibleError
+        The aircraft cannot fly in the expected wind.
+    """
+    first, second = sortie_leg_times(plan, one), sortie_leg_times(plan, other)
+    if first is None or second is None or one.start_s is None or other.start_s is None:
+        return 0.0
+    meets = (one.start_s + first.earliest_s)[:, None] < other.start_s + second.latest_s
+    meets &= (one.start_s + first.latest_s)[:, None] > other.start_s + second.earliest_s
+    return float(np.where(meets, leg_distances_m(first, second), np.inf).min())

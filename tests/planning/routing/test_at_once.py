@@ -1,0 +1,158 @@
+"""Sorties in the air at once: they keep apart whoever is early or late, and land earlier than one after the other."""
+
+from __future__ import annotations
+
+import itertools
+import json
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from planning.base.findings import Severity, is_flyable
+from planning.checks import check_plan
+from planning.insight.flight_profile import sortie_profile
+from planning.parameters import FlightRules
+from planning.plan import Plan, Sortie, read_plan, write_plan
+from planning.planner import plan_flight
+from planning.request import PlanRequest
+from planning.routing.at_once import (
+    CHANGE_S,
+    TIMING_S,
+    TIMING_SHARE,
+    LegTimes,
+    Ways,
+    earliest_starts,
+    flown_at_once,
+    forbidden_s,
+    landed_s,
+    leg_distances_m,
+    nearest_at_once_m,
+    segment_distances_m,
+)
+from planning.site.bundled import SCENES
+from planning.site.records import SiteModel
+
+RULES = FlightRules(at_once=2, apart_m=12.0)
+
+
+@cache
+def flown() -> tuple[SiteModel, Plan]:
+    """Two aircraft before two facades."""
+    site_model = SCENES["court"]()
+    return site_model, plan_flight(site_model, PlanRequest(n_views=60, rules=RULES, time_budget_s=6.0)).plan
+
+
+points = st.lists(st.floats(-20, 20).map(lambda x: round(x, 2)), min_size=12, max_size=12)
+
+
+@given(points)
+@settings(max_examples=200)
+def test_distances_of_segments_are_those_of_their_nearest_points(coordinates):
+    a, b, c, d = np.array(coordinates).reshape(4, 1, 3)
+    (found,) = segment_distances_m(a, b, c, d)
+    shares = np.linspace(0.0, 1.0, 101)
+    first, second = (p + shares[:, None] * (q - p) for p, q in ((a, b), (c, d)))
+    sampled = np.linalg.norm(first[:, None] - second[None], axis=2).min()
+    step = 0.005 * (np.linalg.norm(b - a) + np.linalg.norm(d - c))
+    assert found <= sampled + 1e-9
+    assert found >= sampled - step - 1e-9
+
+
+def test_aircraft_keep_apart_whoever_is_early_or_late():
+    """By the closed form of the motion, which starts were not found by."""
+    _, plan = flown()
+    rng = np.random.default_rng(0)
+    assert {sortie.aircraft for sortie in plan.sorties} == {1, 2}
+    for one, other in itertools.combinations(plan.sorties, 2):
+        if one.aircraft == other.aircraft:
+            continue
+        for _ in range(60):
+            places = []
+            for sortie in (one, other):
+                profile = sortie_profile(plan, sortie)
+                # Its own clock, fast or slow, and early or late.
+                rate, late = rng.uniform(1.0 - TIMING_SHARE, 1.0 + TIMING_SHARE), rng.uniform(-TIMING_S, TIMING_S)
+                ground_s = rng.uniform(0.0, plan.rules.takeoff_landing_s)
+                t = np.arange(0.0, plan.landed_s + 60.0, 0.5)
+                own = (t - sortie.start_s - late) / rate - ground_s
+                there = profile.at(own).positions_enu_m
+                is_flying = (own > 0.0) & (own < profile.duration_s)
+                places.append(np.where(is_flying[:, None], there, np.nan))
+            gaps = np.linalg.norm(places[0] - places[1], axis=1)
+            assert not (gaps < plan.rules.apart_m).any()
+
+
+def test_two_aircraft_land_earlier_than_one_and_the_check_says_how_near_they_come(tmp_path):
+    site_model, plan = flown()
+    findings = check_plan(plan, site_model)
+    assert is_flyable(findings)
+    (found,) = [finding for finding in findings if finding.code == "at-once"]
+    assert found.severity is Severity.OK
+    assert found.value >= RULES.apart_m
+    assert plan.landed_s < 0.9 * plan.duration_s
+    write_plan(tmp_path / "plan.json", plan)
+    assert read_plan(tmp_path / "plan.json") == plan
+
+
+def changed(plan: Plan, number: int, **changes: object) -> Plan:
+    sorties = list(plan.sorties)
+    sorties[number] = replace(sorties[number], **changes)
+    return replace(plan, sorties=tuple(sorties))
+
+
+def test_starts_that_were_changed_or_lost_are_errors():
+    site_model, plan = flown()
+    together = changed(changed(plan, 0, start_s=0.0), 1, start_s=0.0)
+    lost = changed(plan, 0, start_s=None, aircraft=None)
+    same = changed(changed(plan, 0, start_s=0.0, aircraft=1), 1, start_s=10.0, aircraft=1)
+    for wrong, text in ((together, "at the same time"), (lost, "no starts any more"), (same, "need one aircraft")):
+        found = [finding for finding in check_plan(wrong, site_model) if finding.code == "at-once"]
+        assert any(finding.severity is Severity.ERROR and text in finding.message for finding in found)
+    assert not [f for f in check_plan(flown_at_once(lost), site_model) if f.severity is Severity.ERROR]
+
+
+def test_a_plan_of_one_aircraft_says_nothing_of_starts(tmp_path):
+    _, plan = flown()
+    alone = flown_at_once(replace(plan, rules=replace(plan.rules, at_once=1)))
+    write_plan(tmp_path / "plan.json", alone)
+    sorties = json.loads((tmp_path / "plan.json").read_text())["sorties"]
+    assert all("start_s" not in sortie and "aircraft" not in sortie for sortie in sorties)
+    assert alone.landed_s is None
+    with pytest.raises(ValueError, match="a start with its aircraft"):
+        Sortie((), (), 0.0, 0.0, start_s=3.0)
+
+
+def straight(x: float, seconds: float) -> LegTimes:
+    """One leg along north, at x."""
+    ends = np.array([[x, 0.0, 0.0]]), np.array([[x, 50.0, 0.0]])
+    return LegTimes(*ends, np.zeros(1), np.array([seconds]))
+
+
+@given(
+    st.lists(st.tuples(st.integers(0, 4), st.integers(30, 600)), min_size=1, max_size=5),
+    st.integers(1, 3),
+)
+@settings(max_examples=60, deadline=None)
+def test_starts_keep_every_pair_apart_and_every_aircraft_busy_with_one_sortie(shapes, n_aircraft):
+    ways = [Ways((float(seconds), float(seconds)), (straight(8.0 * lane, seconds),) * 2) for lane, seconds in shapes]
+    starts = earliest_starts(ways, n_aircraft, 10.0)
+    for (a, one), (b, other) in itertools.combinations(enumerate(starts), 2):
+        if one.aircraft == other.aircraft:
+            early, late = sorted(((one.start_s, shapes[a][1]), (other.start_s, shapes[b][1])))
+            assert late[0] >= early[0] + early[1] + CHANGE_S
+            continue
+        first, second = ways[a].legs[0], ways[b].legs[0]
+        for low, high in forbidden_s(leg_distances_m(first, second) < 10.0, first, second):
+            assert not low < other.start_s - one.start_s < high
+    alone = sum(seconds for _, seconds in shapes) + CHANGE_S * (len(shapes) - 1)
+    assert landed_s(ways, starts) <= alone + len(shapes)
+
+
+def test_sorties_without_a_path_are_never_said_to_be_apart():
+    _, plan = flown()
+    nothing = replace(plan.sorties[0], viewpoint_ids=(), path_enu_m=())
+    assert nearest_at_once_m(plan, nothing, plan.sorties[-1]) == 0.0
