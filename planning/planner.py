@@ -30,7 +30,7 @@ from planning.motion.timing import motion_limits, round_trip_metric
 from planning.parameters import DEFAULT_SHARE, DEFAULT_VIEWS
 from planning.plan import ANGLE_DECIMALS, HistoryPoint, Plan, Sortie, Viewpoint, ViewpointArrays, viewpoint_arrays
 from planning.request import PlanRequest
-from planning.routing.at_once import share_out
+from planning.routing.at_once import flown_at_once, share_out
 from planning.routing.flights import Flight, flight_times, plan_flights
 from planning.routing.legs import n_stops_within
 from planning.routing.roadmap import build_roadmap
@@ -548,7 +548,7 @@ def resplit_sorties(plan: Plan, site_model: SiteModel, max_views: int, monitor: 
         replace(sortie, viewpoint_ids=tuple(ids[view] for view in flight.views))
         for sortie, flight in zip(plan_records(views, flights)[1], flights, strict=True)
     )
-    return replace(plan, sorties=sorties)
+    return flown_at_once(replace(plan, sorties=sorties))
 
 
 class _Timer:

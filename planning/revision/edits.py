@@ -9,6 +9,7 @@ import itertools
 import math
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -47,6 +48,7 @@ from planning.plan import (
     ViewpointArrays,
     viewpoint_arrays,
 )
+from planning.routing.at_once import flown_at_once
 from planning.routing.legs import joined_nodes, pull_tight
 from planning.routing.roadmap import LegMetric, Roadmap, leg_length
 from planning.site.free_space import LEG_MARGIN_M
@@ -251,6 +253,9 @@ def _with_route(revision: Revision, viewpoints: Iterable[Viewpoint], sorties: It
         sorties=tuple(sortie if id(sortie) in known else _stated(case, sortie) for sortie in case.plan.sorties),
         coverage=coverage_of_sights(case.model, case.measures.seen.values(), revision.prepared.problem.reachability),
     )
+    if plan.rules.at_once > 1:
+        with suppress(InfeasibleError):  # no flying in this wind, as the check says
+            plan = flown_at_once(plan)
     case = replace(case, plan=plan)
     return replace(revision, case=case, findings=check_case(case))
 

@@ -343,9 +343,10 @@ def flown_at_once(plan: Plan) -> Plan:
     InfeasibleError
         The aircraft cannot fly in the expected wind.
     """
-    legs = [sortie_leg_times(plan, sortie) for sortie in plan.sorties]
+    several = plan.rules.at_once > 1
+    legs = [sortie_leg_times(plan, sortie) for sortie in plan.sorties] if several else []
     known = [each for each in legs if each is not None]
-    if plan.rules.at_once == 1 or not legs or len(known) < len(legs):
+    if not legs or len(known) < len(legs):
         return replace(plan, sorties=tuple(replace(each, start_s=None, aircraft=None) for each in plan.sorties))
     ways = [Ways((sortie.duration_s, math.inf), (each, each)) for sortie, each in zip(plan.sorties, known, strict=True)]
     starts = earliest_starts(ways, plan.rules.at_once, plan.rules.apart_m, plan.seed)

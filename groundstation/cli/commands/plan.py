@@ -197,11 +197,7 @@ def print_summary(planned: Planned, out: Path, seconds: float) -> None:
             plan.rules.apart_m,
         )
         if n_flying < plan.rules.at_once:
-            tell(
-                "more aircraft would not have landed earlier, so far apart; --apart lets them fly nearer to each other"
-            )
-        for number, sortie in sorted(enumerate(plan.sorties, 1), key=lambda each: each[1].start_s or 0.0):
-            tell("  sortie {}: aircraft {} starts at {}", number, sortie.aircraft, minutes_text(sortie.start_s or 0.0))
+            tell("more aircraft would not land earlier, so far apart; --apart lets them fly nearer")
     tell(
         "seen: {} of {} directions of view ({} for each of {})",
         coverage.covered,
@@ -236,13 +232,12 @@ def print_summary(planned: Planned, out: Path, seconds: float) -> None:
     if twice is not None:
         tell("seen at least twice: {} sections", twice.covered)
     for position, sortie in enumerate(plan.sorties, 1):
-        tell(
-            "  sortie {}: {}, {:.0f} m, {:.1f} min",
-            position,
-            counted(len(sortie.viewpoint_ids), "view"),
-            sortie.length_m,
-            sortie.duration_s / 60,
-        )
+        what = counted(len(sortie.viewpoint_ids), "view"), sortie.length_m, sortie.duration_s / 60
+        if sortie.start_s is None:
+            tell("  sortie {}: {}, {:.0f} m, {:.1f} min", position, *what)
+            continue
+        starts = sortie.aircraft, minutes_text(sortie.start_s)
+        tell("  sortie {}: {}, {:.0f} m, {:.1f} min, aircraft {} starts at {}", position, *what, *starts)
     site = planned.prepared.site_model.site
     low = lowest_flight(plan, site.home_enu_m, site.airspace.ground_z_m)
     if low is not None:

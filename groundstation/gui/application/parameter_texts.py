@@ -43,6 +43,8 @@ TEXTS = (
     QT_TRANSLATE_NOOP("Parameters", "hover between the end of all turning and the shutter"),
     QT_TRANSLATE_NOOP("Parameters", "Wind"),
     QT_TRANSLATE_NOOP("Parameters", "steady wind that is expected, from the worst direction"),
+    QT_TRANSLATE_NOOP("Parameters", "Aircraft at once"),
+    QT_TRANSLATE_NOOP("Parameters", "sorties that are in the air at the same time, each with an aircraft of its own"),
     QT_TRANSLATE_NOOP("Parameters", "Weight sections by solid angle"),
     QT_TRANSLATE_NOOP("Parameters", "weight hemisphere sections by their solid angle instead of equally"),
     QT_TRANSLATE_NOOP("Parameters", "Views are chosen for"),

@@ -1728,6 +1728,10 @@ Um trotzdem zu fliegen, {1} eintippen:</translation>
         <translation>Einsatz {0}: Fotos: {1}, {2}</translation>
     </message>
     <message>
+        <source>; aircraft {0} starts at {1}</source>
+        <translation>; Fluggerät {0} startet bei {1}</translation>
+    </message>
+    <message>
         <source>Findings ({0})</source>
         <translation>Befunde ({0})</translation>
     </message>
@@ -5992,6 +5996,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>--effects, --wind und --speedup sind für --link sim; das Fluggerät an einem Link hat eigene</translation>
     </message>
     <message>
+        <source>  sortie {0}: {1}, {2} m, {3} min, aircraft {4} starts at {5}</source>
+        <translation>  Einsatz {0}: {1}, {2} m, {3} min, Fluggerät {4} startet bei {5}</translation>
+    </message>
+    <message>
         <source>% of the walls</source>
         <translation>% der Wände</translation>
     </message>
@@ -6412,6 +6420,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>dichte Tiefen</translation>
     </message>
     <message>
+        <source>distance of aircraft in the air at the same time</source>
+        <translation>Abstand von Fluggeräten, die zugleich in der Luft sind</translation>
+    </message>
+    <message>
         <source>distortion: {0} folds the picture or bends it too far: a place in it belongs to no one direction; expected a lens that can be undistorted up to its corners (k1, k2, p1, p2, k3 for lengths in units of the focal length)</source>
         <translation>distortion: {0} faltet das Bild oder biegt es zu weit: eine Stelle darin gehört zu keiner eindeutigen Richtung; erwartet wird ein Objektiv, das bis in die Ecken zu entzerren ist (k1, k2, p1, p2, k3 für Längen in Einheiten der Brennweite)</translation>
     </message>
@@ -6564,6 +6576,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>expected a setting and its values, such as n_splats=4000,8000</source>
         <translation>erwartet wird eine Einstellung mit ihren Werten, etwa n_splats=4000,8000</translation>
+    </message>
+    <message>
+        <source>expected a start with its aircraft, or neither</source>
+        <translation>ein Start mit seinem Fluggerät wird erwartet, oder keins von beiden</translation>
     </message>
     <message>
         <source>expected a time such as 2026-06-21T10:30, got &apos;{0}&apos;</source>
@@ -7210,6 +7226,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Missionen: {0}</translation>
     </message>
     <message>
+        <source>more aircraft would not land earlier, so far apart; --apart lets them fly nearer</source>
+        <translation>mehr Fluggeräte würden bei diesem Abstand nicht früher landen; mit --apart dürfen sie näher fliegen</translation>
+    </message>
+    <message>
         <source>more than {0}</source>
         <translation>mehr als {0}</translation>
     </message>
@@ -7300,6 +7320,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>no top-up was written; --all writes it all the same</source>
         <translation>kein Ergänzungsflug wurde geschrieben; --all schreibt ihn trotzdem</translation>
+    </message>
+    <message>
+        <source>no two aircraft are in the air at the same time</source>
+        <translation>keine zwei Fluggeräte sind zugleich in der Luft</translation>
     </message>
     <message>
         <source>no view shows a pane</source>
@@ -7534,6 +7558,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Plan fertig</translation>
     </message>
     <message>
+        <source>plan the flight again</source>
+        <translation>den Flug neu planen</translation>
+    </message>
+    <message>
         <source>plane facade of 20 x 8 panels, street, buildings opposite, trees and cars before it</source>
         <translation>ebene Fassade aus 20 x 8 Scheiben, Straße, Häuser gegenüber, Bäume und Autos davor</translation>
     </message>
@@ -7748,6 +7776,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>something stands in front of panels in {0} of {1} photos looked at</source>
         <translation>auf {0} von {1} betrachteten Fotos steht etwas vor Scheiben</translation>
+    </message>
+    <message>
+        <source>sorties {0} and {1}</source>
+        <translation>Einsätze {0} und {1}</translation>
+    </message>
+    <message>
+        <source>sorties {0} and {1} need one aircraft at the same time; plan the flight again</source>
+        <translation>Einsätze {0} und {1} brauchen zugleich dasselbe Fluggerät; den Flug neu planen</translation>
     </message>
     <message>
         <source>sound</source>
@@ -8090,6 +8126,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>die Größe des Modells ist nur auf {0} % bekannt: die Empfänger liegen zu weit daneben für Fotos, die {1} m auseinander sind; geben Sie eine Strecke oder Passpunkte an</translation>
     </message>
     <message>
+        <source>the sorties of several aircraft have no starts any more; plan the flight again</source>
+        <translation>die Einsätze mehrerer Fluggeräte haben keine Startzeiten mehr; den Flug neu planen</translation>
+    </message>
+    <message>
         <source>the table is empty; expected a line with the names of its columns</source>
         <translation>die Tabelle ist leer; erwartet wird eine Zeile mit den Namen ihrer Spalten</translation>
     </message>
@@ -8232,6 +8272,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>{0} (± {1} dB)</source>
         <translation>{0} (± {1} dB)</translation>
+    </message>
+    <message>
+        <source>{0} aircraft at once, all landed after {1} min; they keep {2} m apart, early or late</source>
+        <translation>{0} Fluggeräte zugleich, alle gelandet nach {1} min; sie halten {2} m Abstand, ob früh oder spät</translation>
     </message>
     <message>
         <source>{0} batteries</source>
@@ -16530,6 +16574,10 @@ Größe: {3}; Dreiecke: {4}</translation>
     <message>
         <source>Part of the battery&apos;s endurance that the sortie takes</source>
         <translation>Anteil der Flugzeit eines Akkus, den der Einsatz braucht</translation>
+    </message>
+    <message>
+        <source>Aircraft {0} starts at {1}</source>
+        <translation>Fluggerät {0} startet bei {1}</translation>
     </message>
     <message>
         <source>Length of the flight</source>

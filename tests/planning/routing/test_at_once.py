@@ -19,6 +19,7 @@ from planning.parameters import FlightRules
 from planning.plan import Plan, Sortie, read_plan, write_plan
 from planning.planner import plan_flight
 from planning.request import PlanRequest
+from planning.revision import delete, revise
 from planning.routing.at_once import (
     CHANGE_S,
     TIMING_S,
@@ -35,6 +36,7 @@ from planning.routing.at_once import (
 )
 from planning.site.bundled import SCENES
 from planning.site.records import SiteModel
+from planning.viewpoints.prepare import prepare
 
 RULES = FlightRules(at_once=2, apart_m=12.0)
 
@@ -156,3 +158,11 @@ def test_sorties_without_a_path_are_never_said_to_be_apart():
     _, plan = flown()
     nothing = replace(plan.sorties[0], viewpoint_ids=(), path_enu_m=())
     assert nearest_at_once_m(plan, nothing, plan.sorties[-1]) == 0.0
+
+
+def test_an_edited_plan_has_starts_again():
+    site_model, plan = flown()
+    prepared = prepare(site_model, plan.camera, plan.constraints)
+    edited = delete(revise(plan, prepared), [plan.viewpoints[0].id])
+    assert edited.plan.landed_s is not None
+    assert is_flyable(edited.findings)
