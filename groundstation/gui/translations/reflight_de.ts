@@ -3414,6 +3414,14 @@ Blickrichtung: {3}</translation>
         <translation>Raumwinkel gewichten</translation>
     </message>
     <message>
+        <source>Aircraft at once</source>
+        <translation>Fluggeräte zugleich</translation>
+    </message>
+    <message>
+        <source>sorties that are in the air at the same time, each with an aircraft of its own</source>
+        <translation>Einsätze, die zugleich in der Luft sind, jeder mit eigenem Fluggerät</translation>
+    </message>
+    <message>
         <source>weight hemisphere sections by their solid angle instead of equally</source>
         <translation>Abschnitte der Halbkugeln nach ihrem Raumwinkel gewichten statt alle gleich</translation>
     </message>

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -30,7 +30,9 @@ from planning.viewpoints.least_error import expected_psnr_db, image_error_model
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.dataset.prepare import DATA_SET
 from reconstruction.light.photo_set import PhotoSet, read_photo_set
-from reconstruction.light.quick_look import CardPhotos, QuickLook, quick_look
+
+if TYPE_CHECKING:
+    from reconstruction.light.quick_look import QuickLook
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,6 +118,8 @@ def photo_top_up(
     OperationCancelled
         From `monitor`.
     """
+    from reconstruction.light.quick_look import quick_look  # loads torch
+
     photos = poses_of(source.photos)
     look = quick_look(source, request.learn_s, request.seed, monitor)
     clear_m = flown.constraints.min_distance_m
@@ -184,6 +188,8 @@ def photo_top_up_files(
     InputError, InfeasibleError, ReconstructionError
         A file cannot be read or written, or as `photo_top_up`.
     """
+    from reconstruction.light.quick_look import CardPhotos  # loads torch
+
     check_output(out, [plan_path, site_path])
     flown, site_model = read_input_plan(plan_path), read_input_site(site_path)
     require_panels(site_model.site)
