@@ -62,7 +62,7 @@ def add_parser(subparsers: Any) -> None:
     add("--all", action="store_true", help="write a top-up for a negligible rest, too (at most 0.5 %% of the sections)")
     add("--photos", type=Path, metavar="FOLDER", help="photos of the last flight, or their data set, without FLIGHT")
     add("--learn", type=number, metavar="S", help="wall time for learning from --photos (default 40 s)")
-    add("--time-budget", type=number, metavar="S", help="longest wall time (default 5 s; 20 s for --photos)")
+    add("--time-budget", type=number, metavar="S", help="longest wall time (default 5 s; 60 s for --photos)")
     add("--seed", type=int, default=0, metavar="N", help="of everything random (default 0)")
     add("--resume", action="store_true", help="the rest of the sortie that was interrupted, as it was planned")
     add("--sortie", type=int, metavar="N", help="with --resume: which sortie (default: the last that is not complete)")

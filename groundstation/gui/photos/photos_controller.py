@@ -30,13 +30,14 @@ from groundstation.services.photos.intake import (
     recounted,
 )
 from groundstation.services.photos.poses import ChosenPoses
+from groundstation.services.photos.top_up import PhotoTopUpRequest, photo_top_up_in_process
 from groundstation.services.photos.tradeoff import Trial, facade_trials
-from groundstation.services.project.document import Document
+from groundstation.services.project.document import Document, PlanEntry
 from groundstation.services.project.input_files import read_input_site
 from groundstation.services.project.session import History
 from groundstation.services.site.sources import with_new_site
 from planning.base.errors import GroundStationError
-from planning.base.findings import Severity
+from planning.base.findings import Finding, Severity
 from planning.plan import Plan
 from planning.site.records import Facade, SiteModel
 from reconstruction.coarse.parameters import CoarseRequest
@@ -207,6 +208,31 @@ class PhotosController(QObject):
             self._context.say(Severity.OK, text.format(len(prepared.photos), folder))
 
         self._start(self.tr("Make the data set"), work, done)
+
+    def plan_next_battery(self) -> None:
+        """Look at what the photos tell of mirrored surroundings, and plan what adds most to them, as a new plan."""
+        model, intake, entry = self._context.document.site, self.intake, self._context.document.current
+        if model is None or intake is None or entry is None:
+            return
+        arguments = intake.photos, intake.folder, entry.plan, model, PhotoTopUpRequest()
+
+        def work(context: JobContext) -> tuple[Plan, float, tuple[Finding, ...]]:
+            return context.run_in_process(photo_top_up_in_process, *arguments)
+
+        def done(result: tuple[Plan, float, tuple[Finding, ...]]) -> None:
+            plan, before_db, findings = result
+            if not _is_same_place(model, self._context.document.site):
+                return
+            for found in findings:
+                self._context.say(found.severity, self._context.localized(found.message))
+            document, title = self._context.document, self.tr("Next battery")
+            self._context.change(title, document.with_plan(PlanEntry(document.free_plan_id(), title, plan)))
+            worth = plan.worth
+            after_db = before_db if worth is None else worth.batteries[-1].psnr_db
+            text = self.tr("Next battery planned, photos: {0}; unseen views, expected: {1:.1f} dB to {2:.1f} dB")
+            self._context.say(Severity.OK, text.format(len(plan.viewpoints), before_db, after_db))
+
+        self._start(self.tr("Plan the next battery"), work, done)
 
     def count(self) -> None:
         """Count the coverage again where the panels or the plan are others now; once for each, should it fail."""

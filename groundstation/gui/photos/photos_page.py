@@ -250,6 +250,7 @@ class PhotosPage(QObject):
         self.coarse = QPushButton(self.tr("From photos alone ..."))
         self.find, self.use = QPushButton(self.tr("Find panels")), QPushButton(self.tr("Use these panels"))
         self.data_set = QPushButton(self.tr("Make data set ..."))
+        self.next_battery = QPushButton(self.tr("Plan the next battery"))
         self.folder, self.coverage, self.state = QLabel(), QLabel(), QLabel()
         self.coverage_shown = CoverageDisplay(context, self.controller, self.pane.scene, self.sightings, self)
         self.left = self._make_page()
@@ -327,7 +328,10 @@ class PhotosPage(QObject):
         self.state.setProperty("role", "muted")
         self.table.setMinimumHeight(80)
         self.data_set.setToolTip(self.tr("Photos, poses and the site's panels together: what a model is trained on"))
-        for widget in (self.table, self.tools, self.state, self.use, self.data_set):
+        self.next_battery.setToolTip(
+            self.tr("Looks at what the panes mirror in these photos, and plans the flight that adds most to them")
+        )
+        for widget in (self.table, self.tools, self.state, self.use, self.data_set, self.next_battery):
             layout.addWidget(widget, int(widget is self.table))
         self.details = QTabWidget()
         self.details.addTab(scrolled(detail), self.tr("Panels"))
@@ -344,6 +348,7 @@ class PhotosPage(QObject):
         self.find.clicked.connect(controller.find)
         self.use.clicked.connect(self._use)
         self.data_set.clicked.connect(self._make_data_set)
+        self.next_battery.clicked.connect(controller.plan_next_battery)
         self.strip.chosen.connect(self._show_photo)
         self.map.chosen.connect(self.strip.choose)
         self.findings.placePicked.connect(self._go_to_place)
@@ -507,6 +512,9 @@ class PhotosPage(QObject):
         self.trials.measure.setEnabled(self.pane.place() is not None and not controller.is_busy)
         draft = controller.draft
         self.data_set.setEnabled(self.find.isEnabled())
+        document = self._context.document
+        can_plan = document.current is not None and document.site is not None and document.site.site.n_panels > 0
+        self.next_battery.setEnabled(self.find.isEnabled() and can_plan)
         self.use.setEnabled(draft is not None and not draft.unsolved)
         self.state.setText(self._where_it_stands())
         self.coverage.setText(self.coverage_shown.words())

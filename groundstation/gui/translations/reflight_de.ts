@@ -3911,6 +3911,18 @@ Blickrichtung: {3}</translation>
         <translation>Datensatz anlegen</translation>
     </message>
     <message>
+        <source>Next battery</source>
+        <translation>Nächster Akku</translation>
+    </message>
+    <message>
+        <source>Next battery planned, photos: {0}; unseen views, expected: {1:.1f} dB to {2:.1f} dB</source>
+        <translation>Nächster Akku geplant, Fotos: {0}; ungesehene Ansichten, erwartet: {1:.1f} dB auf {2:.1f} dB</translation>
+    </message>
+    <message>
+        <source>Plan the next battery</source>
+        <translation>Nächsten Akku planen</translation>
+    </message>
+    <message>
         <source>Count coverage</source>
         <translation>Abdeckung zählen</translation>
     </message>
@@ -3958,6 +3970,10 @@ Blickrichtung: {3}</translation>
         <translation>Datensatz anlegen ...</translation>
     </message>
     <message>
+        <source>Plan the next battery</source>
+        <translation>Nächsten Akku planen</translation>
+    </message>
+    <message>
         <source>Poses, sharpness, exposure and the coverage that was achieved</source>
         <translation>Lagen, Schärfe, Belichtung und die erreichte Abdeckung</translation>
     </message>
@@ -3980,6 +3996,10 @@ Blickrichtung: {3}</translation>
     <message>
         <source>Photos, poses and the site&apos;s panels together: what a model is trained on</source>
         <translation>Fotos, Posen und Scheiben des Standorts zusammen: woraus ein Modell lernt</translation>
+    </message>
+    <message>
+        <source>Looks at what the panes mirror in these photos, and plans the flight that adds most to them</source>
+        <translation>Betrachtet, was die Scheiben in diesen Fotos spiegeln, und plant den Flug, der am meisten hinzufügt</translation>
     </message>
     <message>
         <source>Panels</source>

@@ -55,7 +55,7 @@ class PhotoTopUpRequest:
     n_batteries: int = like(PlanParameters, "n_batteries", 1)
     seed: int = like(PlanParameters, "seed", 0)
     learn_s: float = parameter(40.0, above=0.0, option="--learn")
-    time_budget_s: float = like(PlanParameters, "time_budget_s", 20.0)
+    time_budget_s: float = like(PlanParameters, "time_budget_s", 60.0)
 
     def __post_init__(self) -> None:
         check(self)
@@ -165,6 +165,28 @@ def _finding(body: SeenBody) -> Finding:
         *(body.low_enu_m + 0.5 * body.size_m)[:2],
     )
     return Finding(Severity.WARNING, "site-lacks", text, "", float(body.size_m.max()), 0.0, "m")
+
+
+def photo_top_up_in_process(
+    photos: tuple[PosedPhoto, ...],
+    folder: Path,
+    flown: Plan,
+    site_model: SiteModel,
+    request: PhotoTopUpRequest,
+    *,
+    stop: Stop = never,
+    trace: Trace | None = None,
+    monitor: Monitor = QUIET,
+) -> tuple[Plan, float, tuple[Finding, ...]]:
+    """The plan of `photo_top_up` of photos from a card, what is expected before it, and its findings.
+
+    For a process of its own: learning would keep a window waiting.
+    """
+    from reconstruction.light.quick_look import CardPhotos  # loads torch
+
+    source = CardPhotos.of(photos, site_model, folder)
+    found = photo_top_up(source, flown, site_model, request, stop=stop, trace=trace, monitor=monitor)
+    return found.planned.plan, found.before_db, found.findings
 
 
 def photo_top_up_files(

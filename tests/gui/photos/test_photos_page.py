@@ -10,10 +10,19 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
 from groundstation.services.photos.intake import PhotoMark
-from groundstation.services.project.document import Document
+from groundstation.services.project.document import Document, PlanEntry
 from groundstation.services.site.edits import HeightReference, set_origin
+from planning.aircraft.catalogue import profile
 from planning.base.findings import Severity
+from planning.parameters import Constraints
+from planning.planner import plan_flight
+from planning.request import PlanRequest
+from planning.viewpoints.prepare import prepare
+from reconstruction.scenes.photos.flight_views import planned_shots
+from reconstruction.scenes.world.bundled import bundled_scene
+from reconstruction.tradeoff.flight_worth import photograph
 from tests.gui.driving import choose, click_on, clicked, escape, turn_until, turn_until_idle
+from tests.gui.photos.photos_tab import PhotosTab
 from tests.services.photo_cases import site_model
 
 
@@ -220,3 +229,24 @@ def test_photos_alone_become_a_site_by_one_button(page, controller, shared_data,
     assert controller.context.document.site.site.name == "coarse"
     assert len(page.tab.controller.intake.photos) == 6
     assert page.tab.data_set.isEnabled()
+
+
+@pytest.mark.slow
+def test_the_next_battery_is_planned_from_photos_by_a_click(application, controller, tmp_path):
+    scene = bundled_scene("planar")
+    ready = prepare(scene.site, profile("m3e").camera, Constraints())
+    plan = plan_flight(scene.site, PlanRequest(n_views=16, time_budget_s=4.0), prepared=ready).plan
+    photograph(scene, planned_shots(plan), ready, 128, tmp_path / "set")
+    tab = PhotosTab(application, controller, tmp_path / "set" / "images", scene.site)
+    assert not tab.tab.next_battery.isEnabled(), "nothing says what was flown"
+    context = controller.context
+    context.change("Plan", context.document.with_plan(PlanEntry("p1", "First", plan)))
+    tab.idle()
+    turn_until(application, tab.tab.next_battery.isEnabled)
+    tab.tab.next_battery.click()
+    turn_until_idle(application, controller, 300.0)
+    entry = context.document.current
+    assert entry.title == "Next battery"
+    assert entry.plan.method == "top-up"
+    assert any("Next battery planned, photos:" in str(message) for message in tab.messages)
+    controller.context.messageShown.disconnect(tab.messages.append)
