@@ -102,8 +102,8 @@ def test_a_flight_is_planned_flown_photographed_and_learned_from(tmp_path):
         ("radiance-grid",),
         ("planned", "single"),
         n_seeds=1,
-        n_unseen=6,
-        width_px=64,
+        n_unseen=12,
+        width_px=96,
         plan_s=5.0,
     )
     compared = worth_tradeoff(request, tmp_path)
