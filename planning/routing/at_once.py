@@ -251,19 +251,21 @@ def share_out(
     options = [flights]
     middle = views.positions_enu_m - views.positions_enu_m.mean(axis=0)
     east, north = np.linalg.svd(middle[:, :2], full_matrices=False)[2][0]
-    for axis in (np.array([east, north, 0.0]), np.array([0.0, 0.0, 1.0])):
-        if stop():
+    beside, above = np.array([east, north, 0.0]), np.array([0.0, 0.0, 1.0])
+    for axis, other in ((beside, above), (above, beside)):
+        if stop() and axis is above:  # regions side by side are tried in any case
             break
         regions = np.array_split(np.argsort(middle @ axis, kind="stable"), wanted)
         shared = tuple(_through(times, region, views, aircraft, rules, seed, stop) for region in regions)
-        swept = tuple(_swept(times, region, middle, axis, views, aircraft, rules) for region in regions)
+        along, across = middle @ axis, middle @ other
+        swept = tuple(_swept(times, region, along, across, views, aircraft, rules) for region in regions)
         options += [tuple(each[0] for each in option) for option in (shared, swept) if all(len(e) == 1 for e in option)]
     best, best_s = flights, np.inf
     for option in options:
         backwards = tuple(reversed_flight(flight, views, aircraft, rules) for flight in option)
         ways = [
             Ways(
-                (one.duration_s, other.duration_s),
+                (one.duration_s, other.duration_s if _fits(other, times, aircraft, rules) else math.inf),
                 (_flown(one, views, aircraft, rules), _flown(other, views, aircraft, rules)),
             )
             for one, other in zip(option, backwards, strict=True)
@@ -314,8 +316,8 @@ def _travel_s(times: FlightTimes, order: NDArray[np.int64]) -> float:
 def _swept(
     times: FlightTimes,
     region: NDArray[np.int64],
-    middle: Array,
-    axis: Array,
+    along: Array,
+    across: Array,
     views: ViewpointArrays,
     aircraft: Aircraft,
     rules: FlightRules,
@@ -324,12 +326,11 @@ def _swept(
 
     Longer than the shortest of all, but aircraft that sweep regions side by side stay a region apart.
     """
-    along = middle[region] @ axis
-    across = middle[region] @ np.array([-axis[1], axis[0], 0.0]) if axis[2] else middle[region, 2]
+    rank, beside = np.argsort(np.argsort(along[region])), across[region]
     orders = []
     for n_stripes in SWEPT:
-        stripe = np.minimum(n_stripes - 1, np.argsort(np.argsort(along)) * n_stripes // len(region))
-        orders.append(region[np.lexsort((np.where(stripe % 2, -across, across), stripe))])
+        stripe = rank * n_stripes // len(region)
+        orders.append(region[np.lexsort((np.where(stripe % 2, -beside, beside), stripe))])
     order = min(orders, key=lambda each: _travel_s(times, each))
     best = draw_flights(times, (tuple(order.tolist()),), views, aircraft, rules)[0]
     return (best,) if _fits(best, times, aircraft, rules) else ()

@@ -108,7 +108,7 @@ def test_a_flight_is_planned_flown_photographed_and_learned_from(tmp_path):
     )
     compared = worth_tradeoff(request, tmp_path)
     assert len(compared.found) == 4
-    rows = list(csv.DictReader(compared.csv_path.open(encoding="utf-8")))
+    rows = list(csv.DictReader(compared.csv_path.read_text("utf-8").splitlines()))
     assert {(row["method"], row["flown"]) for row in rows} == {
         (method, flown) for method in ("random", "image-error") for flown in ("planned", "single")
     }

@@ -45,7 +45,7 @@ RULES = FlightRules(at_once=2, apart_m=12.0)
 def flown() -> tuple[SiteModel, Plan]:
     """Two aircraft before two facades."""
     site_model = SCENES["court"]()
-    return site_model, plan_flight(site_model, PlanRequest(n_views=60, rules=RULES, time_budget_s=6.0)).plan
+    return site_model, plan_flight(site_model, PlanRequest(n_views=60, rules=RULES, time_budget_s=10.0)).plan
 
 
 points = st.lists(st.floats(-20, 20).map(lambda x: round(x, 2)), min_size=12, max_size=12)
