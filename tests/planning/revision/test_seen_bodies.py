@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -89,6 +90,7 @@ def test_no_body_touches_what_the_site_has(seed, x, y, side):
         assert (body.cells_m[:, 2] > site_model.site.airspace.ground_z_m).all()
 
 
+@pytest.mark.slow
 def test_a_flight_over_the_site_with_its_bodies_keeps_clear_of_them():
     plain: SiteModel = kiosk()
     near = Constraints(min_distance_m=5.0)

@@ -320,7 +320,7 @@ def test_good_enough_takes_fewer_batteries_the_more_each_has_to_bring():
     assert sorties[1] >= sorties[0]
 
 
-@pytest.mark.parametrize("name", ["single-panel", "court"])
+@pytest.mark.parametrize("name", ["single-panel", pytest.param("court", marks=pytest.mark.slow)])
 def test_a_model_after_photos_tells_of_further_ones_what_the_model_of_all_tells(name):
     views = candidates(name)
     photos, more = take(views, np.arange(20)), take(views, np.arange(20, 60))

@@ -23,10 +23,10 @@ from tests.reconstruction.light.synthetic_folder import (
 )
 
 
-@pytest.mark.parametrize(("light", "is_near"), [(near, True), (far, False)])
+@pytest.mark.parametrize(("light", "is_near"), [(near, True), pytest.param(far, False, marks=pytest.mark.slow)])
 def test_what_is_mirrored_is_as_far_away_as_it_is(tmp_path, light, is_near):
     write_folder(tmp_path / "set", light, 24)
-    look = quick_look(read_photo_set(tmp_path / "set"), 4.0)
+    look = quick_look(read_photo_set(tmp_path / "set"), 3.0)
     distances = look.places.distances_m
     before_m = -look.places.places_enu_m[np.isfinite(distances), 1]
     assert set(look.places.halves.tolist()) == {0, 1}
@@ -52,7 +52,7 @@ def site_of(corners) -> SiteModel:
     return SiteModel(site, TriangleMesh(np.zeros((0, 3)), np.zeros((0, 3), np.int64)))
 
 
-@pytest.mark.parametrize("times", [1, 20, 40])
+@pytest.mark.parametrize("times", [1, 20, pytest.param(40, marks=pytest.mark.slow)])
 def test_photos_of_a_card_are_read_at_a_part_of_their_size_and_show_the_panels(tmp_path, times):
     lens = Intrinsics(*(times * value for value in (40, 30, 36.0, 36.0, 20.0, 15.0)))
     photos = cameras(tmp_path, 2, lens=lens)
