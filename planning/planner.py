@@ -217,6 +217,8 @@ class Planned:
     most_psnr_db
         Expected PSNR of unseen views that no choice as large, of the same candidates, exceeds; None where views were
         chosen for something else.
+    before_db
+        The same with the photos alone that were there already; None without any.
     """
 
     plan: Plan
@@ -229,6 +231,7 @@ class Planned:
     open_sections: tuple[OpenSection, ...] = ()
     n_left_out: int = 0
     most_psnr_db: float | None = None
+    before_db: float | None = None
 
 
 def plan_flight(
@@ -321,6 +324,7 @@ def plan_flight(
         _open_sections(problem, plan, request),
         n_left_out,
         None if found.least_error is None else expected_psnr_db(found.least_error),
+        expected_psnr_db(error.most_error) if len(photos.heading_rad) else None,
     )
 
 

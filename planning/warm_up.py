@@ -21,7 +21,7 @@ from planning.parameters import DEFAULT_PROFILE, Constraints, GreedyParameters, 
 from planning.plan import Sortie, ViewpointArrays
 from planning.planner import plan_flight
 from planning.request import PlanRequest
-from planning.routing import lower_bound, orienteering, sorties, tour
+from planning.routing import at_once, lower_bound, orienteering, sorties, tour
 from planning.site.bundled import SCENES
 from planning.site.records import panel_corners
 from planning.viewpoints.prepare import prepare
@@ -65,7 +65,7 @@ def compile_kernels() -> None:
         check_plan(plan_flight(model, request).plan, model)
     _analyse()
     _count_coverage(panel_frames(panel_corners(model.site)))
-    for module in (lower_bound, orienteering, sorties, speed_profile, tour):
+    for module in (at_once, lower_bound, orienteering, sorties, speed_profile, tour):
         module.compile_kernels()
 
 

@@ -19,7 +19,7 @@ from planning.checks.case import ROUNDING_M, Array, Case, Gaps, Rule, judge, leg
 from planning.coverage.evaluate import nearest_views_m
 from planning.motion.timing import SAME_PLACE_M, beside_column, motion_limits, photo_stop_s, photo_vertices
 from planning.plan import Sortie, Viewpoint, viewpoint_arrays
-from planning.routing.at_once import nearest_at_once_m
+from planning.routing.at_once import nearest_at_once_m, sortie_leg_times
 from planning.routing.rally import RETURN_TOLERANCE_M, rally_findings, return_height
 from planning.site.file import is_planned_on
 from planning.site.records import MIN_HEIGHT_ABOVE_GROUND_M
@@ -379,21 +379,24 @@ def aircraft_apart(case: Case) -> Iterator[Finding]:
         text = say("the sorties of several aircraft have no starts any more; plan the flight again")
         yield Finding(Severity.ERROR, "at-once", text)
         return
-    numbered = list(enumerate(plan.sorties, 1))
+    try:
+        legs = [sortie_leg_times(plan, sortie) for sortie in plan.sorties]
+    except InfeasibleError:  # `durations` says it
+        return
+    timed = [
+        (number, sortie, sortie.start_s, leg)
+        for number, (sortie, leg) in enumerate(zip(plan.sorties, legs, strict=True), 1)
+        if leg is not None and sortie.start_s is not None  # `sorties` says which path misses its viewpoints
+    ]
     nearest_m, nearest = math.inf, ""
-    for (first, one), (second, other) in itertools.combinations(numbered, 2):
-        if one.aircraft == other.aircraft:
-            before, after = sorted((one, other), key=lambda sortie: sortie.start_s or 0.0)
-            if (before.start_s or 0.0) + before.duration_s > (after.start_s or 0.0):
-                text = say("sorties {} and {} need one aircraft at the same time; plan the flight again", first, second)
-                yield Finding(Severity.ERROR, "at-once", text, say("sortie {}", second))
-            continue
-        try:
-            gap_m = nearest_at_once_m(plan, one, other)
-        except InfeasibleError:  # `durations` says it
-            return
-        if gap_m < nearest_m:
-            nearest_m, nearest = gap_m, say("sorties {} and {}", first, second)
+    for (first, one, one_s, leg), (second, other, other_s, another) in itertools.combinations(timed, 2):
+        if one.aircraft != other.aircraft:
+            gap_m = nearest_at_once_m(leg, one_s, another, other_s)
+            if gap_m < nearest_m:
+                nearest_m, nearest = gap_m, say("sorties {} and {}", first, second)
+        elif one_s < other_s + other.duration_s and other_s < one_s + one.duration_s:
+            text = say("sorties {} and {} need one aircraft at the same time; plan the flight again", first, second)
+            yield Finding(Severity.ERROR, "at-once", text, say("sortie {}", second))
     if math.isinf(nearest_m):
         yield Finding(Severity.OK, "at-once", say("no two aircraft are in the air at the same time"))
         return

@@ -92,9 +92,14 @@ class Surroundings:
         ]
 
     @cached_property
-    def caster(self) -> RayCaster:
-        """Of panes, two triangles each in their order, and then of all else."""
+    def _caster(self) -> RayCaster:
         return RayCaster(join([self._panes, *self._others]))
+
+    def panes_met(self, origins_enu_m: Array, directions_enu: Array) -> tuple[NDArray[np.int64], Array]:
+        """Which pane each ray meets first, -1 for none, and how far away what it meets is, shape (n,)."""
+        hits = self._caster.cast(origins_enu_m, directions_enu)
+        is_pane = hits.is_hit & (hits.triangles < 2 * len(self.frames))
+        return np.where(is_pane, hits.triangles // 2, -1).astype(np.int64), hits.distance_m
 
     def rays(self, views: ViewpointArrays, camera: Camera, columns: int, rows: int) -> MirroredRays:
         """Through `columns` x `rows` pixels of each view, those that show a pane from before it."""
@@ -116,17 +121,17 @@ class Surroundings:
         incoming = forward[:, None] + x[None, :, None] * right[:, None] + y[None, :, None] * up[:, None]
         incoming = (incoming / np.linalg.norm(incoming, axis=2, keepdims=True)).reshape(-1, 3)
         origins = np.repeat(views.positions_enu_m[start:stop], len(x), axis=0)
-        hits = self.caster.cast(origins, incoming)
-        frames, kept = self.frames, np.flatnonzero(hits.is_hit & (hits.triangles < 2 * len(self.frames)))
-        panels = hits.triangles[kept] // 2
+        met, distance_m = self.panes_met(origins, incoming)
+        frames, kept = self.frames, np.flatnonzero(met >= 0)
+        panels = met[kept]
         cosines = -np.einsum("nk,nk->n", incoming[kept], frames.normals[panels])
         kept, panels, cosines = (each[cosines > LEAST_COSINE] for each in (kept, panels, cosines))
         incoming, normals, corners = incoming[kept], frames.normals[panels], frames.corners[panels]
-        points = origins[kept] + hits.distance_m[kept, None] * incoming
+        points = origins[kept] + distance_m[kept, None] * incoming
         mirrored = incoming + 2.0 * cosines[:, None] * normals
         distances = np.full(len(kept), np.inf)
         if self._is_near:
-            distances = self.caster.cast(points + OFF_PANE_M * normals, mirrored).distance_m
+            distances = self._caster.cast(points + OFF_PANE_M * normals, mirrored).distance_m
         sides = corners[:, 1] - corners[:, 0], corners[:, 3] - corners[:, 0]
         inside = points - corners[:, 0]
         across = [np.einsum("nk,nk->n", inside, side) / np.einsum("nk,nk->n", side, side) for side in sides]

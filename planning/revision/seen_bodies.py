@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import label
 from scipy.spatial import cKDTree
 
+from planning.coverage.image_error import FAR_M
 from planning.geo.mesh import TriangleMesh, box_mesh, join
 from planning.site.free_space import unchecked_space
 from planning.site.records import Obstacle, SiteModel
@@ -23,9 +24,6 @@ Array = NDArray[np.float64]
 CELL_M, GAP_M = 2.0, 3.0
 """Side of the cells that bodies are made of, and how far they have to be from all that the site has: the median error
 of distances was 2 to 3 % at 30 m (docs/concepts/worth.md)."""
-
-FARTHEST_M = 80.0
-"""From the panes; what is mirrored from further away has hardly any parallax."""
 
 LEAST_RAYS, LEAST_PHOTOS, LEAST_CELLS = 4, 2, 20
 """Of each half that end in a cell, of how many of its photos; and cells of a body: false ones had up to 16, fronts of
@@ -96,7 +94,7 @@ def bodies_not_in(site_model: SiteModel, seen: MirroredPlaces, flown_enu_m: Arra
     flown_enu_m
         Where the aircraft was, shape (p, 3): within `clear_m` of these places, and of home, is nothing.
     """
-    kept = seen.distances_m < FARTHEST_M
+    kept = seen.distances_m < FAR_M
     cells = np.floor(seen.places_enu_m[kept] / CELL_M).astype(np.int64)
     agreed = [_with_enough_rays(cells, seen.photos[kept], seen.halves[kept] == half) for half in (0, 1)]
     both = np.array(sorted(agreed[0] & agreed[1]), np.int64).reshape(-1, 3)
@@ -106,7 +104,7 @@ def bodies_not_in(site_model: SiteModel, seen: MirroredPlaces, flown_enu_m: Arra
     present = np.concatenate([np.reshape(flown_enu_m, (-1, 3)), [site_model.site.home_enu_m]])
     is_new &= cKDTree(present).query(middles)[0] > clear_m + CELL_M
     both = both[is_new]
-    both = both[_n_ending(both, cells) > _n_passing(both, seen)]
+    both = both[_n_among(both, cells) > _n_passing(both, seen)]
     if len(both) == 0:
         return []
     first = both.min(axis=0)
@@ -138,18 +136,13 @@ def _n_among(cells: NDArray[np.int64], visited: NDArray[np.int64]) -> NDArray[np
     return np.bincount(place[codes[place] == found], minlength=len(codes)) if len(codes) else np.zeros(0, np.int64)
 
 
-def _n_ending(cells: NDArray[np.int64], ends: NDArray[np.int64]) -> NDArray[np.int64]:
-    """How many rays end in each cell."""
-    return _n_among(cells, ends)
-
-
 def _n_passing(cells: NDArray[np.int64], seen: MirroredPlaces) -> NDArray[np.int64]:
     """How many rays go through each cell, and end well behind it."""
-    lengths = np.minimum(seen.distances_m, FARTHEST_M)
+    lengths = np.minimum(seen.distances_m, FAR_M)
     counts = np.zeros(len(cells), np.int64)
     ways = seen.places_enu_m - seen.panes_enu_m
     directions = ways / np.maximum(np.linalg.norm(ways, axis=1, keepdims=True), 1e-9)
-    for along in np.arange(CELL_M, FARTHEST_M, CELL_M):
+    for along in np.arange(CELL_M, FAR_M, CELL_M):
         passes = along < (1.0 - BEHIND) * lengths - CELL_M
         places = seen.panes_enu_m[passes] + along * directions[passes]
         counts += _n_among(cells, np.floor(places / CELL_M).astype(np.int64))

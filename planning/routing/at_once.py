@@ -17,7 +17,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from planning.base.jit import kernel
 from planning.base.progress import Stop, TimeLimit, any_of, never
+from planning.geo.bvh import segment_segment_d2
 from planning.motion.timing import FlightPath, flight_path, motion_limits, sortie_flight_path, stopping_times_s
 from planning.parameters import FlightRules
 from planning.plan import Aircraft, Plan, Sortie, ViewpointArrays
@@ -95,43 +97,22 @@ def sortie_leg_times(plan: Plan, sortie: Sortie) -> LegTimes | None:
     return None if timed is None else leg_times(timed[0], plan.aircraft, plan.rules)
 
 
-def segment_distances_m(a: Array, b: Array, c: Array, d: Array) -> Array:
-    """Distances of segments a[i] b[i] and c[i] d[i], shape (n,), from ends of shape (n, 3).
-
-    The nearest points are an end and a point of the other segment, or both inside, where the connecting line is at
-    right angles to both.
-    """
-    ends = (
-        _to_segments_m(a, c, d),
-        _to_segments_m(b, c, d),
-        _to_segments_m(c, a, b),
-        _to_segments_m(d, a, b),
-    )
-    u, v, w = b - a, d - c, a - c
-    uu, uv, vv = (np.einsum("nk,nk->n", *pair) for pair in ((u, u), (u, v), (v, v)))
-    uw, vw = np.einsum("nk,nk->n", u, w), np.einsum("nk,nk->n", v, w)
-    volume = uu * vv - uv * uv
-    is_skew = volume > 1e-12 * uu * vv
-    safe = np.where(is_skew, volume, 1.0)
-    s, t = (uv * vw - vv * uw) / safe, (uu * vw - uv * uw) / safe
-    inside = is_skew & (s > 0.0) & (s < 1.0) & (t > 0.0) & (t < 1.0)
-    between = np.linalg.norm(w + s[:, None] * u - t[:, None] * v, axis=1)
-    return np.minimum(np.minimum.reduce(ends), np.where(inside, between, np.inf))
-
-
-def _to_segments_m(points: Array, a: Array, b: Array) -> Array:
-    way = b - a
-    length_2 = np.einsum("nk,nk->n", way, way)
-    share = np.einsum("nk,nk->n", points - a, way) / np.where(length_2 > 0.0, length_2, 1.0)
-    return np.asarray(np.linalg.norm(points - a - np.clip(share, 0.0, 1.0)[:, None] * way, axis=1))
+@kernel
+def _distances_m(a: Array, b: Array, c: Array, d: Array, found: Array) -> None:
+    for i in range(len(a)):
+        for j in range(len(c)):
+            found[i, j] = np.sqrt(segment_segment_d2(a[i], b[i], c[j], d[j]))
 
 
 def leg_distances_m(one: LegTimes, other: LegTimes) -> Array:
-    """Distance of each leg of one sortie to each of another, shape (k, l)."""
-    k, n = len(one.from_s), len(other.from_s)
-    i, j = (index.ravel() for index in np.indices((k, n)))
-    ends = one.starts_enu_m[i], one.ends_enu_m[i], other.starts_enu_m[j], other.ends_enu_m[j]
-    return segment_distances_m(*ends).reshape(k, n)
+    """Distance of each leg of one sortie to each of another, shape (k, l), exact."""
+    found = np.empty((len(one.from_s), len(other.from_s)))
+    a, b, c, d = (
+        np.ascontiguousarray(ends, np.float64)
+        for ends in (one.starts_enu_m, one.ends_enu_m, other.starts_enu_m, other.ends_enu_m)
+    )
+    _distances_m(a, b, c, d, found)
+    return found
 
 
 def forbidden_s(is_near: NDArray[np.bool_], one: LegTimes, other: LegTimes) -> Array:
@@ -256,10 +237,14 @@ def share_out(
         if stop() and axis is above:  # regions side by side are tried in any case
             break
         regions = np.array_split(np.argsort(middle @ axis, kind="stable"), wanted)
-        shared = tuple(_through(times, region, views, aircraft, rules, seed, stop) for region in regions)
         along, across = middle @ axis, middle @ other
-        swept = tuple(_swept(times, region, along, across, views, aircraft, rules) for region in regions)
-        options += [tuple(each[0] for each in option) for option in (shared, swept) if all(len(e) == 1 for e in option)]
+        for orders in (
+            tuple(_shortest(times, region, aircraft, seed, stop) for region in regions),
+            tuple(_swept(times, region, along, across) for region in regions),
+        ):
+            option = draw_flights(times, orders, views, aircraft, rules)
+            if all(_fits(flight, times, aircraft, rules) for flight in option):
+                options.append(option)
     best, best_s = flights, np.inf
     for option in options:
         backwards = tuple(reversed_flight(flight, views, aircraft, rules) for flight in option)
@@ -285,22 +270,15 @@ def _flown(flight: Flight, views: ViewpointArrays, aircraft: Aircraft, rules: Fl
     return leg_times(flight_path(flight.path_enu_m, flight.photo_vertices, *angles, aircraft, rules), aircraft, rules)
 
 
-def _through(
-    times: FlightTimes,
-    region: NDArray[np.int64],
-    views: ViewpointArrays,
-    aircraft: Aircraft,
-    rules: FlightRules,
-    seed: int,
-    stop: Stop,
-) -> tuple[Flight, ...]:
-    """Flights through some of the views; none where they do not fit one battery and the aircraft's waypoints."""
+def _shortest(
+    times: FlightTimes, region: NDArray[np.int64], aircraft: Aircraft, seed: int, stop: Stop
+) -> tuple[int, ...]:
+    """Some of the views in the order of the shortest flight; of several, one after the other, which is too long."""
     places = np.concatenate([[0], region + 1])
     travel_s, max_stops = times.travel_s[np.ix_(places, places)], max(1, aircraft.max_waypoints - 2)
     until = any_of(stop, TimeLimit(REGION_S))
     found = plan_sorties(travel_s, times.service_s[region], times.budget_s, max_stops, seed=seed, stop=until)
-    flights = draw_flights(times, tuple(tuple(region[list(each)].tolist()) for each in found), views, aircraft, rules)
-    return flights if all(_fits(flight, times, aircraft, rules) for flight in flights) else ()
+    return tuple(region[list(itertools.chain.from_iterable(found))].tolist())
 
 
 def _fits(flight: Flight, times: FlightTimes, aircraft: Aircraft, rules: FlightRules) -> bool:
@@ -313,16 +291,8 @@ def _travel_s(times: FlightTimes, order: NDArray[np.int64]) -> float:
     return float(times.travel_s[places[:-1], places[1:]].sum())
 
 
-def _swept(
-    times: FlightTimes,
-    region: NDArray[np.int64],
-    along: Array,
-    across: Array,
-    views: ViewpointArrays,
-    aircraft: Aircraft,
-    rules: FlightRules,
-) -> tuple[Flight, ...]:
-    """The shortest flight through some of the views, stripe by stripe along an axis; none where it does not fit.
+def _swept(times: FlightTimes, region: NDArray[np.int64], along: Array, across: Array) -> tuple[int, ...]:
+    """Some of the views stripe by stripe along an axis, in the quickest number of stripes.
 
     Longer than the shortest of all, but aircraft that sweep regions side by side stay a region apart.
     """
@@ -331,9 +301,7 @@ def _swept(
     for n_stripes in SWEPT:
         stripe = rank * n_stripes // len(region)
         orders.append(region[np.lexsort((np.where(stripe % 2, -beside, beside), stripe))])
-    order = min(orders, key=lambda each: _travel_s(times, each))
-    best = draw_flights(times, (tuple(order.tolist()),), views, aircraft, rules)[0]
-    return (best,) if _fits(best, times, aircraft, rules) else ()
+    return tuple(min(orders, key=lambda order: _travel_s(times, order)).tolist())
 
 
 def flown_at_once(plan: Plan) -> Plan:
@@ -358,19 +326,14 @@ def flown_at_once(plan: Plan) -> Plan:
     return replace(plan, sorties=tuple(timed))
 
 
-def nearest_at_once_m(plan: Plan, one: Sortie, other: Sortie) -> float:
-    """Smallest distance of legs of two sorties that may be flown at the same time; inf where none may.
-
-    0 where either has no start, or cannot be timed.
-
-    Raises
-    ------
-    InfeasibleError
-        The aircraft cannot fly in the expected wind.
-    """
-    first, second = sortie_leg_times(plan, one), sortie_leg_times(plan, other)
-    if first is None or second is None or one.start_s is None or other.start_s is None:
-        return 0.0
-    meets = (one.start_s + first.earliest_s)[:, None] < other.start_s + second.latest_s
-    meets &= (one.start_s + first.latest_s)[:, None] > other.start_s + second.earliest_s
+def nearest_at_once_m(first: LegTimes, first_s: float, second: LegTimes, second_s: float) -> float:
+    """Smallest distance of legs of two sorties that may be flown at the same time; inf where none may."""
+    meets = (first_s + first.earliest_s)[:, None] < second_s + second.latest_s
+    meets &= (first_s + first.latest_s)[:, None] > second_s + second.earliest_s
     return float(np.where(meets, leg_distances_m(first, second), np.inf).min())
+
+
+def compile_kernels() -> None:
+    """Compile what this module runs."""
+    leg = LegTimes(np.zeros((1, 3)), np.ones((1, 3)), np.zeros(1), np.ones(1))
+    leg_distances_m(leg, leg)

@@ -110,8 +110,7 @@ class PhotoSet:
         InputError
             The file is missing, damaged, or of another size than its camera.
         """
-        bgr = _image(photo.path, cv2.IMREAD_COLOR | cv2.IMREAD_IGNORE_ORIENTATION, photo)
-        return np.ascontiguousarray(bgr[..., ::-1])
+        return rgb_picture(photo)
 
     def panel_numbers(self, photo: PosedPhoto) -> NDArray[np.int64]:
         """Shape (h, w): which panel each pixel shows, from 0; -1 for none.
@@ -237,6 +236,18 @@ def held_out_names(names: Sequence[str], share: float, seed: int) -> tuple[str, 
     n_held = min(max(1, round(share * len(names))), len(names) - 1)
     ranked = sorted(names, key=lambda name: hashlib.sha256(f"{seed} {name}".encode()).digest())
     return tuple(sorted(ranked[:n_held]))
+
+
+def rgb_picture(photo: PosedPhoto, flags: int = cv2.IMREAD_COLOR) -> NDArray[np.uint8]:
+    """Red, green and blue of a photo as large as its camera, shape (h, w, 3); errors as `PhotoSet.picture`.
+
+    Parameters
+    ----------
+    flags
+        Of OpenCV, of a picture decoded at a part of its size, too; as it lies in the file.
+    """
+    bgr = _image(photo.path, flags | cv2.IMREAD_IGNORE_ORIENTATION, photo)
+    return np.ascontiguousarray(bgr[..., ::-1], np.uint8)
 
 
 def _image(path: Path, flags: int, photo: PosedPhoto) -> NDArray[np.uint8] | NDArray[np.uint16]:

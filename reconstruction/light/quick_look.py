@@ -12,29 +12,26 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
-import cv2
 import numpy as np
 import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
 from planning.base.errors import InputError
-from planning.base.files import read_input_file
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.coverage.mirrored_rays import Surroundings
 from planning.coverage.sections import panel_frames
-from planning.geo.ray_casting import RayCaster
 from planning.revision.seen_bodies import MirroredPlaces
 from planning.site.records import SiteModel, panel_corners
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.light.config import GlassLearned, ReflectionConfig
 from reconstruction.light.glass_rays import GlassRays, glass_rays
-from reconstruction.light.photo_set import PanelPlanes, PhotoSet
+from reconstruction.light.photo_set import PanelPlanes, PhotoSet, rgb_picture
 from reconstruction.light.radiance_grid import RadianceGrid
 from reconstruction.light.training import mean_square_error, train_reflections
 from reconstruction.metrics.image_metrics import psnr_db
-from reconstruction.photos.decode import COLOUR_FLAGS, PICTURE_FILE, Scale, decoded
+from reconstruction.photos.decode import COLOUR_FLAGS, Scale
 
 WIDEST_PX = 700
 """Photos are decoded at the largest part of their size that is no wider: a grid learns from 2 million rays in half a
@@ -89,26 +86,19 @@ class CardPhotos(PhotoSet):
         return CardPhotos(folder, small, PanelPlanes(panel_corners(site_model.site)), 1.0, {}, scales, site_model)
 
     @cached_property
-    def caster(self) -> RayCaster:
-        """Of panes, and of what may hide them."""
-        return Surroundings(self.site_model, panel_frames(self.panels.corners_enu_m)).caster
+    def _surroundings(self) -> Surroundings:
+        return Surroundings(self.site_model, panel_frames(self.panels.corners_enu_m))
 
     def picture(self, photo: PosedPhoto) -> NDArray[np.uint8]:
         """As of `PhotoSet`."""
-        flags = COLOUR_FLAGS[self.scales[photo.name]] | cv2.IMREAD_IGNORE_ORIENTATION
-        found = decoded(read_input_file(photo.path, PICTURE_FILE), flags, str(photo.path))
-        lens = photo.intrinsics
-        if found.shape[:2] != (lens.height_px, lens.width_px):
-            raise InputError(say("the picture has another size than its header says; copy it again", place=photo.path))
-        return np.ascontiguousarray(found[..., ::-1])
+        return rgb_picture(photo, COLOUR_FLAGS[self.scales[photo.name]])
 
     def panel_numbers(self, photo: PosedPhoto) -> NDArray[np.int64]:
-        """As of `PhotoSet`."""
+        """As of `PhotoSet`; what the site's bodies hide is none."""
         lens = photo.intrinsics
         columns, rows = np.meshgrid(np.arange(lens.width_px) + 0.5, np.arange(lens.height_px) + 0.5)
-        hits = self.caster.cast(*photo.rays(np.stack([columns.ravel(), rows.ravel()], axis=1)))
-        is_pane = hits.is_hit & (hits.triangles < 2 * len(self.panels.corners_enu_m))
-        return np.where(is_pane, hits.triangles // 2, -1).reshape(lens.height_px, lens.width_px)
+        met, _ = self._surroundings.panes_met(*photo.rays(np.stack([columns.ravel(), rows.ravel()], axis=1)))
+        return met.reshape(lens.height_px, lens.width_px)
 
 
 def _scale(width_px: int) -> Scale:

@@ -160,8 +160,8 @@ def _print_from_photos(found: PhotoTopUp, out: Path) -> None:
         plan.duration_s / 60,
         place=out,
     )
-    tell("unseen views of a model of the photos, expected: {:.1f} dB", found.before_db)
-    if plan.worth is not None:
+    if found.planned.before_db is not None and plan.worth is not None:
+        tell("unseen views of a model of the photos, expected: {:.1f} dB", found.planned.before_db)
         tell("with this flight: {}", plan.worth.text)
 
 

@@ -259,13 +259,16 @@ class SortieTable(QTableView):
             unit.symbol,
             self.tr("Used"),
         ]
+        if self._plan is not None and self._plan.landed_s is not None:
+            titles.insert(1, self.tr("Start"))
         self._rows.setHorizontalHeaderLabels(titles)
+        time, length, used = (self._rows.horizontalHeaderItem(len(titles) - k) for k in (3, 2, 1))
         if self._plan is not None:
             extra_s = self._plan.rules.takeoff_landing_s
             text = self.tr("With {0:.0f} s for take-off and landing, which the height profile does not show")
-            self._rows.horizontalHeaderItem(2).setToolTip(text.format(extra_s))
-        self._rows.horizontalHeaderItem(3).setToolTip(self.tr("Length of the flight"))
-        self._rows.horizontalHeaderItem(4).setToolTip(self.tr("Part of the battery's endurance that the sortie takes"))
+            time.setToolTip(text.format(extra_s))
+        length.setToolTip(self.tr("Length of the flight"))
+        used.setToolTip(self.tr("Part of the battery's endurance that the sortie takes"))
         if self._plan is None:
             return
         for number, sortie in enumerate(self._plan.sorties, 1):
@@ -277,12 +280,13 @@ class SortieTable(QTableView):
                 f"{sortie.duration_s / self._plan.aircraft.endurance_s:.0%}",
             ]
             cells = [QStandardItem(text) for text in texts]
+            if sortie.start_s is not None:
+                start = minutes_text(sortie.start_s)
+                cells.insert(1, QStandardItem(f"{sortie.aircraft}: {start}"))
+                cells[1].setToolTip(self.tr("Aircraft {0} starts at {1}").format(sortie.aircraft, start))
             for cell in cells:
                 cell.setTextAlignment(Qt.AlignmentFlag.AlignCenter)
             cells[0].setForeground(sortie_colour(number))
-            if sortie.start_s is not None:
-                start = self.tr("Aircraft {0} starts at {1}").format(sortie.aircraft, minutes_text(sortie.start_s))
-                cells[0].setText(f"{number}: {start}")
             self._rows.appendRow(cells)
 
     def _row_picked(self, index: QModelIndex) -> None:

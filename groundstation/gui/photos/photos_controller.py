@@ -30,7 +30,6 @@ from groundstation.services.photos.intake import (
     recounted,
 )
 from groundstation.services.photos.poses import ChosenPoses
-from groundstation.services.photos.top_up import PhotoTopUpRequest, photo_top_up_in_process
 from groundstation.services.photos.tradeoff import Trial, facade_trials
 from groundstation.services.project.document import Document, PlanEntry
 from groundstation.services.project.input_files import read_input_site
@@ -214,9 +213,11 @@ class PhotosController(QObject):
         model, intake, entry = self._context.document.site, self.intake, self._context.document.current
         if model is None or intake is None or entry is None:
             return
-        arguments = intake.photos, intake.folder, entry.plan, model, PhotoTopUpRequest()
 
         def work(context: JobContext) -> tuple[Plan, float, tuple[Finding, ...]]:
+            from groundstation.services.photos.top_up import PhotoTopUpRequest, photo_top_up_in_process
+
+            arguments = intake.photos, intake.folder, entry.plan, model, PhotoTopUpRequest()
             return context.run_in_process(photo_top_up_in_process, *arguments)
 
         def done(result: tuple[Plan, float, tuple[Finding, ...]]) -> None:

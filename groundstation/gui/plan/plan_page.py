@@ -348,6 +348,10 @@ class PlanPage(QObject):
                 distance_unit(units).text(sum(sortie.length_m for sortie in plan.sorties)),
             ),
         ]
+        if plan.landed_s is not None:
+            n_flying = len({sortie.aircraft for sortie in plan.sorties})
+            text = self.tr("Aircraft at once: {0}, all landed after {1}")
+            lines.append(text.format(n_flying, minutes_text(plan.landed_s)))
         gaps = [float(m) for sortie in plan.sorties for m in active.revision.leg_clearances_m(sortie)]
         if gaps:
             lines.append(self.tr("smallest clearance {0}").format(length_unit(units).text(min(gaps))))

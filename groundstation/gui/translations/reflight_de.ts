@@ -4393,6 +4393,10 @@ Blickrichtung: {3}</translation>
         <translation>Flugzeit {0}, Flugweg {1}</translation>
     </message>
     <message>
+        <source>Aircraft at once: {0}, all landed after {1}</source>
+        <translation>Fluggeräte zugleich: {0}, alle gelandet nach {1}</translation>
+    </message>
+    <message>
         <source>smallest clearance {0}</source>
         <translation>kleinster Abstand {0}</translation>
     </message>
@@ -8070,10 +8074,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>das Bild ist nicht zu schreiben</translation>
     </message>
     <message>
-        <source>the picture has another size than its header says; copy it again</source>
-        <translation>das Bild hat eine andere Größe, als sein Kopf sagt; noch einmal kopieren</translation>
-    </message>
-    <message>
         <source>the picture is distorted, and splats are rendered without distortion; make it straight with `prepare`</source>
         <translation>das Bild ist verzeichnet, und Splats werden ohne Verzeichnung gerendert; mit `prepare` entzerren</translation>
     </message>
@@ -9996,6 +9996,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>sections seen only with pixels larger than {0} mm: {1} of {2} covered</source>
         <translation>Sektoren, nur mit Pixeln über {0} mm gesehen: {1} von {2} abgedeckten</translation>
+    </message>
+    <message>
+        <source>the plan&apos;s aircraft is not the one of its profile &apos;{0}&apos; now; plan the first flight again</source>
+        <translation>das Fluggerät des Plans ist nicht mehr das seines Profils &apos;{0}&apos;; den ersten Flug neu planen</translation>
     </message>
     <message>
         <source>the tour does not fit {0}: expected each of its {1} points once, found {2}, missing {3}, unknown {4}</source>
@@ -16594,6 +16598,10 @@ Größe: {3}; Dreiecke: {4}</translation>
     <message>
         <source>Used</source>
         <translation>Akku</translation>
+    </message>
+    <message>
+        <source>Start</source>
+        <translation>Start</translation>
     </message>
     <message>
         <source>With {0:.0f} s for take-off and landing, which the height profile does not show</source>

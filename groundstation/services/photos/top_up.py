@@ -26,7 +26,6 @@ from planning.request import PlanRequest
 from planning.revision.seen_bodies import SeenBody, bodies_not_in, with_bodies
 from planning.revision.top_up import METHOD
 from planning.site.records import SiteModel, require_panels
-from planning.viewpoints.least_error import expected_psnr_db, image_error_model
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.dataset.prepare import DATA_SET
 from reconstruction.light.photo_set import PhotoSet, read_photo_set
@@ -77,14 +76,11 @@ class PhotoTopUp:
         What the photos told.
     bodies
         That the panes mirror and the site lacks.
-    before_db
-        Expected PSNR of unseen views with the photos that there are; `planned.plan.worth` tells it with more.
     """
 
     planned: Planned
     look: QuickLook
     bodies: tuple[SeenBody, ...]
-    before_db: float
     findings: tuple[Finding, ...]
 
 
@@ -137,13 +133,16 @@ def photo_top_up(
         seed=request.seed,
         time_budget_s=request.time_budget_s,
     )
-    profile(flown.profile)
+    known = profile(flown.profile)
+    if (known.aircraft, known.camera) != (flown.aircraft, flown.camera):
+        raise InputError(
+            say("the plan's aircraft is not the one of its profile '{}' now; plan the first flight again", known.id)
+        )
     seen_site = with_bodies(site_model, bodies)
     planned = plan_flight(seen_site, wanted, photos=photos, stop=stop, trace=trace, monitor=monitor)
-    error, _ = image_error_model(planned.prepared.problem, seen_site, seed=request.seed, photos=photos)
     planned = replace(planned, plan=replace(planned.plan, rules=flown.rules, method=METHOD))
     findings = (*planned.findings, *(_finding(body) for body in bodies))
-    return PhotoTopUp(planned, look, tuple(bodies), expected_psnr_db(error.most_error), findings)
+    return PhotoTopUp(planned, look, tuple(bodies), findings)
 
 
 def poses_of(photos: tuple[PosedPhoto, ...]) -> ViewpointArrays:
@@ -186,7 +185,7 @@ def photo_top_up_in_process(
 
     source = CardPhotos.of(photos, site_model, folder)
     found = photo_top_up(source, flown, site_model, request, stop=stop, trace=trace, monitor=monitor)
-    return found.planned.plan, found.before_db, found.findings
+    return found.planned.plan, found.planned.before_db or 0.0, found.findings
 
 
 def photo_top_up_files(
@@ -237,7 +236,7 @@ def photo_top_up_summary(found: PhotoTopUp, seconds: float) -> dict[str, Any]:
         **planned_summary(found.planned, seconds),
         "photos": found.look.n_photos,
         "left_out_psnr_db": round(found.look.psnr_db, 2),
-        "expected_before_db": round(found.before_db, 2),
+        "expected_before_db": found.planned.before_db,
         "bodies": [{"low_enu_m": body.low_enu_m.tolist(), "size_m": body.size_m.tolist()} for body in found.bodies],
         "findings": [finding_summary(finding) for finding in found.findings],
     }
