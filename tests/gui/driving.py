@@ -12,6 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import ClassVar
 
+import numpy as np
 import shiboken6
 from PySide6.QtCore import QPoint, Qt, QTimer
 from PySide6.QtGui import QAction
@@ -337,6 +338,34 @@ def _plain(text: str) -> str:
 def _name(widget: QWidget) -> str:
     text = widget.text() if isinstance(widget, QAbstractButton) else widget.accessibleName()
     return _plain(text) or type(widget).__name__
+
+
+class TurnGaps:
+    """Gaps between turns of the event loop, by a timer of 2 ms.
+
+    A machine that others use, or that gives a container no more than its share, takes the processor away from all
+    threads of this process. So a gap is as long as this process worked in it, on any thread that may hold the
+    interpreter; a wait that costs no processor is seen by the clock, which is given `TAKEN_AWAY` times as long.
+    """
+
+    TAKEN_AWAY = 4.0
+
+    def __init__(self) -> None:
+        self._ticks: list[tuple[float, float]] = []
+        self._timer = QTimer()
+        self._timer.setTimerType(Qt.TimerType.PreciseTimer)
+        self._timer.timeout.connect(lambda: self._ticks.append((time.perf_counter(), time.process_time())))
+        self._timer.start(2)
+
+    def start(self) -> None:
+        """Forget all gaps so far."""
+        self._ticks.clear()
+
+    def longest_ms(self) -> float:
+        """The longest since the start, but for the last turn, in which the test itself went on."""
+        assert len(self._ticks) > 50
+        clock, worked = np.diff(np.array(self._ticks[:-1]), axis=0).max(axis=0)
+        return 1e3 * float(max(worked, clock / self.TAKEN_AWAY))
 
 
 def turn_until(application, condition: Callable[[], bool], timeout_s: float = PATIENCE_S) -> float:

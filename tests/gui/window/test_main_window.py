@@ -18,7 +18,7 @@ from groundstation.services.settings import Language, Theme
 from groundstation.services.units import UnitSystem
 from planning.parameters import GreedyParameters
 from planning.request import PlanRequest
-from tests.gui.driving import clicked, close_controller, press_in, trigger, turn_until, turn_until_idle
+from tests.gui.driving import TurnGaps, clicked, close_controller, press_in, trigger, turn_until, turn_until_idle
 
 GUI = Path(menus.__file__).parents[1]
 
@@ -300,26 +300,18 @@ def test_the_list_of_keys_is_shown_and_scrolls(application, controller):
 
 @pytest.mark.alone
 def test_the_window_answers_within_50_ms_while_a_plan_runs(application, controller):
-    """Other processes only ever make gaps longer, so the best of a few plans is what the window itself needs."""
-    from PySide6.QtCore import Qt, QTimer
-
+    """What a job's thread does now and then, such as loading a module, counts; so the best of a few plans is taken."""
     opened(application, controller, "office")
     controller.window.show_tab("plan")
     page = controller.window.tab("plan")
     turn_until_idle(application, controller)
-    ticks = []
-    timer = QTimer()
-    timer.setTimerType(Qt.TimerType.PreciseTimer)
-    timer.timeout.connect(lambda: ticks.append(time.perf_counter()))
-    timer.start(2)
-    longest_ms = []
+    gaps, longest_ms = TurnGaps(), []
     for seed in range(6):
         page.controller.set_request(PlanRequest(n_views=560, time_budget_s=4.0, seed=seed))
-        ticks.clear()
+        gaps.start()
         page.controller.plan()
         turn_until(application, lambda: not page.controller.is_planning)
-        longest_ms.append(1e3 * float(np.diff(ticks[:-1]).max()))
-        assert len(ticks) > 100
+        longest_ms.append(gaps.longest_ms())
         turn_until_idle(application, controller)
         if longest_ms[-1] < 50.0:
             return
