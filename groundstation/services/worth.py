@@ -52,7 +52,7 @@ from reconstruction.tradeoff.scene_tradeoff import ERROR_AXIS
 
 Flown = Literal["planned", "rtk-fixed", "single"]
 
-WORTH_METHODS: dict[str, tuple[str, Objective]] = {
+WORTH_PLANNERS: dict[str, tuple[str, Objective]] = {
     "random": ("random", "sections"),
     "orbit": ("orbit", "sections"),
     "noto": ("noto", "sections"),
@@ -69,10 +69,10 @@ class WorthRequest:
 
     Parameters
     ----------
-    methods
-        Of `WORTH_METHODS`.
-    counts
-        Numbers of photos.
+    planners
+        Of `WORTH_PLANNERS`.
+    views
+        Numbers of viewpoints to plan.
     flown
         `planned`: photos stand where they are planned; else as flown in simulation with such a receiver. Their poses
         are known exactly, as aligning photos makes them.
@@ -83,8 +83,8 @@ class WorthRequest:
     """
 
     scene: str
-    methods: tuple[str, ...] = tuple(WORTH_METHODS)
-    counts: tuple[int, ...] = (50, 100, 200)
+    planners: tuple[str, ...] = tuple(WORTH_PLANNERS)
+    views: tuple[int, ...] = (50, 100, 200)
     lights: tuple[Light, ...] = ("radiance-grid", "mlp")
     flown: tuple[Flown, ...] = ("planned",)
     n_seeds: int = parameter(3, least=1, most=100, option="--seeds")
@@ -98,7 +98,7 @@ class WorthRequest:
     def __post_init__(self) -> None:
         check(self)
         for name, known in (
-            ("methods", WORTH_METHODS),
+            ("planners", WORTH_PLANNERS),
             ("lights", LIGHTS),
             ("flown", ("planned", "rtk-fixed", "single")),
         ):
@@ -107,23 +107,23 @@ class WorthRequest:
                 raise InputError(
                     say("there is no '{}'; known are: {}", unknown[0], ", ".join(known), place=f"--{name}")
                 )
-        if min(self.counts, default=0) < 2:
-            raise InputError(say("expected numbers of photos from 2 on", place="--counts"))
+        if min(self.views, default=0) < 2:
+            raise InputError(say("expected numbers of photos from 2 on", place="--views"))
 
 
 @dataclass(frozen=True, slots=True)
 class FlightTrial:
     """One flight."""
 
-    method: str
-    count: int
+    planner: str
+    n_views: int
     seed: int
     flown: Flown
 
     @property
     def name(self) -> str:
         """For its files."""
-        return f"{self.method}-{self.count}-{self.flown}-{self.seed}"
+        return f"{self.planner}-{self.n_views}-{self.flown}-{self.seed}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,8 +132,8 @@ class FlightResult:
 
     Parameters
     ----------
-    n_photos, n_taken
-        Asked for, and taken.
+    n_views, n_taken
+        Photos asked for, and taken.
     minutes, n_sorties
         In the air, as planned.
     covered
@@ -143,10 +143,10 @@ class FlightResult:
     """
 
     scene: str
-    method: str
+    planner: str
     flown: Flown
     seed: int
-    n_photos: int
+    n_views: int
     n_taken: int
     minutes: float
     n_sorties: int
@@ -159,24 +159,36 @@ class FlightResult:
 
 
 def _rows(results: Sequence[FlightResult]) -> list[dict[str, Any]]:
-    rows = []
-    for result in results:
-        for light, kinds in result.psnr_db.items():
-            row = {name: value for name, value in asdict(result).items() if name != "psnr_db"}
-            row |= {"minutes": round(result.minutes, 2), "covered": round(result.covered, 4), "light": light}
-            row |= {f"{kind}_db": round(value, 2) for kind, value in kinds.items()}
-            rows.append({**row, "mean_db": round(result.mean_db(light), 2)})
-    return rows
+    """A row for each flight, light and kind of unseen views."""
+    return [
+        {
+            "scene": result.scene,
+            "planner": result.planner,
+            "views": result.n_views,
+            "minutes": round(result.minutes, 2),
+            "light": light,
+            "unseen": kind,
+            "seed": result.seed,
+            "db": round(value, 2),
+            "flown": result.flown,
+            "taken": result.n_taken,
+            "sorties": result.n_sorties,
+            "covered": round(result.covered, 4),
+        }
+        for result in results
+        for light, kinds in result.psnr_db.items()
+        for kind, value in kinds.items()
+    ]
 
 
 def summary_rows(results: Sequence[FlightResult]) -> list[dict[str, Any]]:
-    """Mean and spread over seeds, a row for each light, way of flying, number of photos and method."""
+    """Mean and spread over seeds, a row for each light, way of flying, number of views and planner."""
     groups: dict[tuple[str, str, int, str], list[FlightResult]] = {}
     for result in results:
         for light in result.psnr_db:
-            groups.setdefault((light, result.flown, result.n_photos, result.method), []).append(result)
+            groups.setdefault((light, result.flown, result.n_views, result.planner), []).append(result)
     rows = []
-    for (light, flown, n_photos, method), found in sorted(groups.items()):
+    for (light, flown, n_views, planner), found in sorted(groups.items()):
         values = [result.mean_db(light) for result in found]
         kinds = {
             f"{kind}_db": round(statistics.fmean(result.psnr_db[light][kind] for result in found), 2)
@@ -186,8 +198,8 @@ def summary_rows(results: Sequence[FlightResult]) -> list[dict[str, Any]]:
             {
                 "light": light,
                 "flown": flown,
-                "n_photos": n_photos,
-                "method": method,
+                "views": n_views,
+                "planner": planner,
                 "minutes": round(statistics.fmean(result.minutes for result in found), 1),
                 "mean_db": round(statistics.fmean(values), 2),
                 "spread_db": round(statistics.stdev(values), 2) if len(values) > 1 else "",
@@ -202,16 +214,16 @@ WORTH_AXIS = replace(ERROR_AXIS, time_label=say("time in the air"))
 
 
 def worth_panels(results: Sequence[FlightResult]) -> list[Panel]:
-    """A panel for each light and way of flying, a line for each method: error against time in the air."""
+    """A panel for each light and way of flying, a line for each planner: error against time in the air."""
     rows = summary_rows(results)
     panels = []
     for light, flown in dict.fromkeys((row["light"], row["flown"]) for row in rows):
         chosen = [row for row in rows if (row["light"], row["flown"]) == (light, flown)]
         lines = []
-        for method in dict.fromkeys(row["method"] for row in chosen):
-            own = sorted((row for row in chosen if row["method"] == method), key=lambda row: row["minutes"])
+        for planner in dict.fromkeys(row["planner"] for row in chosen):
+            own = sorted((row for row in chosen if row["planner"] == planner), key=lambda row: row["minutes"])
             points = [QualityPoint(60.0 * row["minutes"], 10.0 ** (-row["mean_db"] / 20.0)) for row in own]
-            lines.append(Line(method, falling(points, points[-1].t_s), f"{own[-1]['mean_db']:.1f} dB"))
+            lines.append(Line(planner, falling(points, points[-1].t_s), f"{own[-1]['mean_db']:.1f} dB"))
         panels.append(Panel(f"{light}, {flown}", tuple(lines)))
     return panels
 
@@ -223,6 +235,7 @@ WORTH: Subject[tuple[FlightResult, ...]] = Subject(
     title=lambda results: say("the model that a flight brings, on unseen views of '{}'", results[0].scene),
     panels=worth_panels,
     more=lambda results: {"mean": summary_rows(results)},
+    stem="worth",
 )
 
 
@@ -234,7 +247,7 @@ def worth_tradeoff(
     address: str | None = None,
     monitor: Monitor = QUIET,
 ) -> ComparisonFiles[tuple[FlightResult, ...]]:
-    """Compare flights; write `tradeoff-worth.csv`, `-mean.csv` and `.png` into `out`, and keep photos and results.
+    """Compare flights; write `worth.csv`, `worth-mean.csv` and `worth.png` into `out`, and keep photos and results.
 
     Parameters
     ----------
@@ -253,10 +266,10 @@ def worth_tradeoff(
         From `monitor`; what is finished stays.
     """
     trials = [
-        FlightTrial(method, n_photos, seed, flown)
+        FlightTrial(planner, n_views, seed, flown)
         for seed in range(request.n_seeds)
-        for n_photos in request.counts
-        for method in request.methods
+        for n_views in request.views
+        for planner in request.planners
         for flown in request.flown
     ]
     folder = kept_folder(request, out)
@@ -310,10 +323,10 @@ def run_trial(request: WorthRequest, trial: FlightTrial, folder: Path) -> Flight
     bound = plan.coverage.reachable_upper_bound
     result = FlightResult(
         ready.scene.name,
-        trial.method,
+        trial.planner,
         trial.flown,
         trial.seed,
-        trial.count,
+        trial.n_views,
         len(shots),
         plan.duration_s / 60.0,
         len(plan.sorties),
@@ -361,10 +374,10 @@ def _plan(request: WorthRequest, trial: FlightTrial, ready: _Ready, path: Path) 
     """The plan in a file, made if it is not there: its photos may be, and planning by the clock makes another."""
     if path.is_file():
         return read_plan(path)
-    method, objective = WORTH_METHODS[trial.method]
+    method, objective = WORTH_PLANNERS[trial.planner]
     wanted = PlanRequest(
         method=method,
-        n_views=trial.count,
+        n_views=trial.n_views,
         profile_id=request.profile_id,
         greedy=GreedyParameters(objective=objective),
         seed=trial.seed,

@@ -352,7 +352,7 @@ class Subject(Generic[Found]):
     Parameters
     ----------
     name
-        For the files: `plan` makes `tradeoff-plan.csv`.
+        For the files: `plan` makes `tradeoff-plan.csv`, where no other `stem` is stated.
     axis
         How its gaps are shown.
     rows, title, panels
@@ -367,6 +367,7 @@ class Subject(Generic[Found]):
     title: Callable[[Found], str]
     panels: Callable[[Found], Sequence[Panel]]
     more: Callable[[Found], Mapping[str, Rows]] = lambda found: {}
+    stem: str = ""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -397,7 +398,7 @@ def compare(subject: Subject[Found], out: Path, run: Callable[[Path], Found]) ->
     InputError
         The folder cannot be made or written into.
     """
-    stem = f"tradeoff-{subject.name}"
+    stem = subject.stem or f"tradeoff-{subject.name}"
     with output_folder(out) as folder:
         found = run(folder)
         write_rows(folder / f"{stem}.csv", subject.rows(found))

@@ -33,14 +33,14 @@ def measure(context: Context) -> Iterator[Row]:
         counts = COUNTS[scene]
         request = request_of(scene)
         if context.is_quick:
-            request = replace(request, counts=(8, 12), n_unseen=6)
+            request = replace(request, views=(8, 12), n_unseen=6)
         compared = worth_tradeoff(request, KEPT, n_processes=2)
         shutil.copy(compared.picture_path, context.folder / f"worth-{scene}.png")
         results = compared.found
         for result in results:
             kinds = ", ".join(f"{kind} {value:.1f}" for kind, value in result.psnr_db["radiance-grid"].items())
             beside = f"{result.minutes:.1f} min, {100 * result.covered:.0f} % of the sections; {kinds} dB"
-            what = f"{result.n_photos} photos, {result.method}, unseen views"
+            what = f"{result.n_views} photos, {result.planner}, unseen views"
             yield Row(scene, what, round(result.mean_db("radiance-grid"), 2), "dB", None, beside, seeds=N_SEEDS)
         if context.is_quick:
             return
@@ -74,8 +74,8 @@ Curve = tuple[Sequence[int], Sequence[float], Sequence[float]]
 
 def curve_of(results: Sequence[FlightResult], method: str) -> Curve:
     """Of one method, by number of photos."""
-    counts = sorted({result.n_photos for result in results if result.method == method})
-    found = [[r for r in results if r.method == method and r.n_photos == n] for n in counts]
+    counts = sorted({result.n_views for result in results if result.planner == method})
+    found = [[r for r in results if r.planner == method and r.n_views == n] for n in counts]
     minutes = [math.log(float(np.mean([r.minutes for r in each]))) for each in found]
     return counts, minutes, [float(np.mean([r.mean_db("radiance-grid") for r in each])) for each in found]
 

@@ -9,7 +9,8 @@ from dataclasses import asdict, replace
 import pytest
 
 from groundstation.services.worth import (
-    WORTH_METHODS,
+    WORTH,
+    WORTH_PLANNERS,
     FlightResult,
     FlightTrial,
     WorthRequest,
@@ -22,21 +23,19 @@ from groundstation.services.worth import (
 from planning.base.errors import InputError
 
 
-def result(method: str, n_photos: int, seed: int, decibels: float, minutes: float = 6.0) -> FlightResult:
+def result(planner: str, n_views: int, seed: int, decibels: float, minutes: float = 6.0) -> FlightResult:
     """One whose kinds of views differ by 1 dB."""
     kinds = {"random": decibels + 1.0, "hemisphere": decibels, "walk": decibels - 1.0}
-    return FlightResult(
-        "planar", method, "planned", seed, n_photos, n_photos, minutes, 1, 0.5, {"radiance-grid": kinds}
-    )
+    return FlightResult("planar", planner, "planned", seed, n_views, n_views, minutes, 1, 0.5, {"radiance-grid": kinds})
 
 
 def test_seeds_are_averaged_and_their_spread_is_told():
     found = [result("random", 50, 0, 28.0), result("random", 50, 1, 30.0), result("image-error", 50, 0, 31.0, 5.0)]
-    by_method = {row["method"]: row for row in summary_rows(found)}
-    assert by_method["random"]["mean_db"] == pytest.approx(29.0)
-    assert by_method["random"]["spread_db"] == pytest.approx(1.41)
-    assert (by_method["random"]["seeds"], by_method["random"]["walk_db"]) == (2, 28.0)
-    assert by_method["image-error"]["spread_db"] == ""
+    by_planner = {row["planner"]: row for row in summary_rows(found)}
+    assert by_planner["random"]["mean_db"] == pytest.approx(29.0)
+    assert by_planner["random"]["spread_db"] == pytest.approx(1.41)
+    assert (by_planner["random"]["seeds"], by_planner["random"]["walk_db"]) == (2, 28.0)
+    assert by_planner["image-error"]["spread_db"] == ""
 
 
 def test_curves_fall_with_minutes_in_the_air():
@@ -62,17 +61,17 @@ def test_other_scenes_and_settings_have_folders_of_their_own(tmp_path):
     others = [replace(base, scene="curved"), replace(base, width_px=64), replace(base, n_unseen=9)]
     folders = {kept_folder(request, tmp_path) for request in (base, *others)}
     assert len(folders) == 4
-    assert kept_folder(replace(base, methods=("random",), counts=(9,), lights=("mlp",)), tmp_path) in folders
+    assert kept_folder(replace(base, planners=("random",), views=(9,), lights=("mlp",)), tmp_path) in folders
     assert kept_folder(replace(base, n_seeds=1, flown=("single",)), tmp_path) in folders
 
 
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"methods": ("ants",)}, "there is no 'ants'; known are: random, orbit"),
+        ({"planners": ("ants",)}, "there is no 'ants'; known are: random, orbit"),
         ({"lights": ("candle",)}, "there is no 'candle'; known are: radiance-grid, mlp, splats"),
         ({"flown": ("by hand",)}, "there is no 'by hand'; known are: planned, rtk-fixed, single"),
-        ({"counts": (1,)}, "expected numbers of photos from 2 on"),
+        ({"views": (1,)}, "expected numbers of photos from 2 on"),
     ],
 )
 def test_what_does_not_exist_is_refused_in_words(changes, words):
@@ -89,8 +88,19 @@ def test_every_method_compared_is_one_of_the_planner():
     from groundstation.cli.commands import tradeoff
     from planning.viewpoints.methods import METHODS
 
-    assert tuple(tradeoff.WORTH_METHODS.split(",")) == tuple(WORTH_METHODS)
-    assert {method for method, _ in WORTH_METHODS.values()} == set(METHODS)
+    assert tuple(tradeoff.WORTH_PLANNERS.split(",")) == tuple(WORTH_PLANNERS)
+    assert {method for method, _ in WORTH_PLANNERS.values()} == set(METHODS)
+
+
+def test_the_table_has_a_row_for_each_flight_light_and_kind_of_unseen_views():
+    rows = WORTH.rows((result("random", 50, 3, 28.0),))
+    columns = {"scene", "planner", "views", "minutes", "light", "unseen", "seed", "db"}
+    assert all(columns <= set(row) for row in rows)
+    assert {(row["unseen"], row["db"], row["seed"]) for row in rows} == {
+        ("random", 29.0, 3),
+        ("hemisphere", 28.0, 3),
+        ("walk", 27.0, 3),
+    }
 
 
 @pytest.mark.slow
@@ -108,11 +118,12 @@ def test_a_flight_is_planned_flown_photographed_and_learned_from(tmp_path):
     )
     compared = worth_tradeoff(request, tmp_path)
     assert len(compared.found) == 4
+    assert compared.csv_path == tmp_path / "worth.csv"
     rows = list(csv.DictReader(compared.csv_path.read_text("utf-8").splitlines()))
-    assert {(row["method"], row["flown"]) for row in rows} == {
-        (method, flown) for method in ("random", "image-error") for flown in ("planned", "single")
+    assert {(row["planner"], row["flown"]) for row in rows} == {
+        (planner, flown) for planner in ("random", "image-error") for flown in ("planned", "single")
     }
-    assert all(10.0 < float(row["mean_db"]) < 50.0 and float(row["minutes"]) > 0.5 for row in rows)
+    assert all(10.0 < float(row["db"]) < 50.0 and float(row["minutes"]) > 0.5 for row in rows)
     assert all(path.is_file() for path in compared.paths)
     assert worth_tradeoff(request, tmp_path).found == compared.found
     # Another light of the same flights learns from the photos that are there.

@@ -310,7 +310,7 @@ def _value(word: str) -> Any:
         return word
 
 
-WORTH_METHODS = "random,orbit,noto,pso,sections,image-error"
+WORTH_PLANNERS = "random,orbit,noto,pso,sections,image-error"
 
 WORTH_EPILOG = """Every flight is planned, photographed over the synthetic scene, and a model is trained of its photos.
 Scores are of the facades in views that no photo was taken from: random oblique ones, ones of another plan by hemisphere
@@ -318,7 +318,7 @@ sections, and those of an inspector's walk. What is finished stays in the folder
 
 examples:
   tradeoff worth planar -o tradeoff
-  tradeoff worth court -o tradeoff --methods random,sections,image-error --counts 100 --lights splats --seconds 300
+  tradeoff worth court -o tradeoff --planners random,sections,image-error --views 100 --lights splats --seconds 300
   tradeoff worth office.site.json -o tradeoff --flown planned,rtk-fixed,single --seeds 1
 """
 
@@ -683,8 +683,8 @@ def _add_worth(kinds: Any) -> None:
     parser = kinds.add_parser(
         "worth",
         help="quality of the model against minutes in the air",
-        description="Fly plans of several methods over a synthetic scene, train a model of the photos of each, and\n"
-        "score it on unseen views; write tradeoff-worth.csv, tradeoff-worth-mean.csv and tradeoff-worth.png.",
+        description="Fly plans of several planners over a synthetic scene, train a model of the photos of each, and\n"
+        "score it on unseen views; write worth.csv, worth-mean.csv and worth.png.",
         epilog=WORTH_EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
@@ -699,8 +699,8 @@ def _add_worth(kinds: Any) -> None:
     add("--seconds", type=above_zero, default=120.0, metavar="S", help="of processor time for joint splats")
     add("--seeds", type=count, default=3, metavar="N", help="runs of each flight (default %(default)s)")
     varied = parser.add_argument_group("what varies (lists with commas)").add_argument
-    varied("--methods", type=words, default=WORTH_METHODS, metavar="LIST", help="default: %(default)s")
-    varied("--counts", type=counts, default="50,100,200", metavar="LIST", help="photos (default: %(default)s)")
+    varied("--planners", type=words, default=WORTH_PLANNERS, metavar="LIST", help="default: %(default)s")
+    varied("--views", type=counts, default="50,100,200", metavar="LIST", help="numbers of them (default: %(default)s)")
     varied("--lights", type=words, default="radiance-grid,mlp", metavar="LIST", help="default: %(default)s; or splats")
     varied("--flown", type=words, default="planned", metavar="LIST", help="planned, rtk-fixed, single")
     where = parser.add_argument_group("where").add_argument
@@ -715,8 +715,8 @@ def run_worth(options: argparse.Namespace) -> int:
     with in_words_of_options(WorthRequest):
         request = WorthRequest(
             options.scene,
-            options.methods,
-            options.counts,
+            options.planners,
+            options.views,
             options.lights,
             options.flown,
             n_seeds=options.seeds,
@@ -738,11 +738,11 @@ def run_worth(options: argparse.Namespace) -> int:
 
 
 def _print_flights(rows: Sequence[Mapping[str, Any]]) -> None:
-    heads = (say("light"), -16), (say("flown"), -11), (say("photos"), 7), ("  " + say("method"), -14)
+    heads = (say("light"), -16), (say("flown"), -11), (say("views"), 7), ("  " + say("planner"), -14)
     print(table_row(*heads, (say("in the air"), 11), (say("unseen views"), 14), (say("spread"), 9)))
     for row in rows:
         spread = "" if row["spread_db"] == "" else f"{row['spread_db']:>9.2f}"
         print(
-            f"  {row['light']:<16}{row['flown']:<11}{row['n_photos']:>7}  {row['method']:<12}"
+            f"  {row['light']:<16}{row['flown']:<11}{row['views']:>7}  {row['planner']:<12}"
             f"{row['minutes']:>7.1f} min{row['mean_db']:>11.2f} dB{spread}"
         )
