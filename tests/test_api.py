@@ -1,4 +1,4 @@
-"""The public API: its examples run, and its page names all of it and shows the examples as they are."""
+"""The public API: its examples run, and its page names all of it and includes the examples."""
 
 import os
 import subprocess
@@ -44,7 +44,7 @@ def test_a_small_model_is_trained_and_exported(tmp_path):
 def test_examples_are_short_and_the_page_shows_them(path):
     text = path.read_text("utf-8")
     assert len(text.splitlines()) <= 18
-    assert f"```python\n{text}```" in PAGE
+    assert f"```{{literalinclude}} examples/{path.name}\n" in PAGE
 
 
 def test_the_page_names_everything_that_is_public():
