@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
@@ -12,7 +13,7 @@ from numpy.typing import NDArray
 
 from missions.flight.matching import counts_by_more, n_lost
 from missions.flight.outcome import Ending, Reason, SortieOutcome, Summary, ViewOutcome
-from missions.flight.record import FlightRecord
+from missions.flight.record import FlightRecord, Track
 from planning.base.findings import Finding, Severity
 from planning.base.messages import joined, say
 from planning.checks.case import Case, judge
@@ -99,6 +100,7 @@ def flight_findings(
         *_poses(views, limits),
         *_coverage(summary, limits),
         *_distances(case, sorties),
+        *_aircraft_apart(case, records, sorties),
         *_durations(sorties, limits),
         *_batteries(case, records, sorties),
     )
@@ -314,6 +316,73 @@ def _distances(case: Case, sorties: Sequence[SortieOutcome]) -> Iterator[Finding
 
 DISTANCE_TOLERANCE_M = 0.5
 """Plans go right up to the minimum distance, and positions may be off by this much at views."""
+
+
+def nearest_in_time_m(one: Track, other: Track, later_s: float) -> tuple[float, float] | None:
+    """Smallest distance of two aircraft in the air at the same time, and when, in seconds of the first track.
+
+    Both fly straight and evenly between their samples, so that the smallest distance between two times at which either
+    has one has a closed form. Of samples at one time the last counts. None where they are never recorded at the same
+    time.
+
+    Parameters
+    ----------
+    later_s
+        When the other's record starts, less when the first's does.
+    """
+    known, other_known = (_last_known(track) for track in (one, other))
+    time_s, other_s = one.time_s[known], other.time_s[other_known] + later_s
+    if len(time_s) == 0 or len(other_s) == 0:
+        return None
+    times_s = np.union1d(time_s, other_s)
+    times_s = times_s[(times_s >= max(time_s[0], other_s[0])) & (times_s <= min(time_s[-1], other_s[-1]))]
+    if len(times_s) == 0:
+        return None
+    between = np.stack(
+        [
+            np.interp(times_s, other_s, other.position_enu_m[other_known, axis])
+            - np.interp(times_s, time_s, one.position_enu_m[known, axis])
+            for axis in range(3)
+        ],
+        axis=1,
+    )
+    start, moved = between[:-1], np.diff(between, axis=0)
+    squared = np.einsum("ij,ij->i", moved, moved)
+    part = np.clip(-np.einsum("ij,ij->i", start, moved) / np.where(squared > 0.0, squared, 1.0), 0.0, 1.0)
+    distances_m = np.linalg.norm(np.vstack([start + part[:, None] * moved, between[-1:]]), axis=1)
+    at = int(np.argmin(distances_m))
+    moments_s = np.append(times_s[:-1] + part * np.diff(times_s), times_s[-1])
+    return float(distances_m[at]), float(moments_s[at])
+
+
+def _last_known(track: Track) -> NDArray[np.int64]:
+    """Samples that have a place, the last one of each time."""
+    known = np.flatnonzero(np.isfinite(track.position_enu_m).all(axis=1))
+    return known[np.diff(track.time_s[known], append=np.inf) > 0.0]
+
+
+def _aircraft_apart(case: Case, records: Sequence[FlightRecord], sorties: Sequence[SortieOutcome]) -> Iterator[Finding]:
+    """How far apart aircraft that fly at the same time were, each from the start that the plan gives it."""
+    planned = {number: sortie for number, sortie in enumerate(case.plan.sorties, 1) if sortie.start_s is not None}
+    flown = [
+        (planned[outcome.sortie], outcome, record)
+        for record, outcome in zip(records, sorties, strict=True)
+        if outcome.sortie in planned
+    ]
+    found = []
+    for (one, first, record), (other, second, beside) in itertools.combinations(flown, 2):
+        assert one.start_s is not None
+        assert other.start_s is not None
+        if one.aircraft != other.aircraft:
+            nearest = nearest_in_time_m(record.track, beside.track, other.start_s - one.start_s)
+            if nearest is not None:
+                place = say("sorties {} and {}", first.sortie, second.sortie)
+                found.append((nearest[0], one.start_s + nearest[1], place))
+    if found:
+        value, at_s, place = min(found)
+        subject = say("smallest distance between aircraft that start as planned, {:.0f} s after the first start", at_s)
+        limit, advice = case.plan.rules.apart_m, say("plan them further apart, or one after the other")
+        yield judge(value >= limit, "aircraft-apart", subject, value, limit, "m", place, advice, least=True)
 
 
 def _durations(sorties: Sequence[SortieOutcome], limits: Limits) -> Iterator[Finding]:

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from missions.flight.outcome import Ending, FlightReport, Reason
 from missions.flight.record import FlightEvent, FlightRecord, TakenPhoto, Track
 from missions.flight.report import Limits, closest, report_case, report_text, report_to_json
-from missions.flight.report_rules import ENDED_BADLY, ENDINGS, REASONS
+from missions.flight.report_rules import ENDED_BADLY, ENDINGS, REASONS, nearest_in_time_m
 from planning.base.findings import Finding, Severity
 from planning.checks.case import Case
 from planning.geo.frames import aim
@@ -192,6 +192,41 @@ def test_inside_a_solid_the_distance_is_negative() -> None:
     least = closest(case().space.solids, sparse_track(np.array([[0.0, 4.0, 5.0]]), np.zeros(1)))
     assert least is not None
     assert least[0] == pytest.approx(-4.0)
+
+
+def test_two_aircraft_that_cross_are_nearest_between_their_samples() -> None:
+    """One flies east, the other north 8 m higher; each would be at the crossing 2 s after the other."""
+    time_s = np.array([0.0, 20.0])
+    east = sparse_track(np.array([[-50.0, 0.0, 10.0], [50.0, 0.0, 10.0]]), time_s)
+    north = sparse_track(np.array([[0.0, -50.0, 18.0], [0.0, 50.0, 18.0]]), time_s)
+    distance_m, at_s = nearest_in_time_m(east, north, 2.0) or (math.nan, math.nan)
+    assert distance_m == pytest.approx(math.hypot(8.0, 10.0 / math.sqrt(2.0)))
+    assert at_s == pytest.approx(11.0)
+    assert nearest_in_time_m(east, north, 20.5) is None
+    assert nearest_in_time_m(east, sparse_track(np.full((2, 3), np.nan), time_s), 0.0) is None
+
+
+@given(st.integers(1, 9), st.integers(1, 9), st.floats(-30.0, 30.0), st.integers(0, 2**32 - 1))
+def test_no_moment_of_two_tracks_is_nearer_than_the_nearest(n: int, m: int, later_s: float, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    one, other = (
+        sparse_track(
+            np.round(rng.normal(scale=30.0, size=(k, 3))), np.sort(rng.choice(30, k, replace=False)).astype(float)
+        )
+        for k in (n, m)
+    )
+    found = nearest_in_time_m(one, other, later_s)
+    first, last = (end(one.time_s[pick], other.time_s[pick] + later_s) for end, pick in ((max, 0), (min, -1)))
+    assert (found is None) == (first > last)
+    if found is not None:
+        moments_s = np.concatenate([np.linspace(first, last, 400), [found[1]]])
+        gaps = [
+            np.interp(moments_s, one.time_s, one.position_enu_m[:, axis])
+            - np.interp(moments_s, other.time_s + later_s, other.position_enu_m[:, axis])
+            for axis in range(3)
+        ]
+        sampled_m = np.linalg.norm(gaps, axis=0)
+        assert found[0] <= sampled_m.min() + 1e-6
 
 
 @pytest.mark.parametrize(("short_m", "severity"), [(0.3, Severity.WARNING), (0.8, Severity.ERROR)])

@@ -11,6 +11,7 @@ from groundstation.vehicle.sortie.run_records import Phase
 from groundstation.vehicle.state import LINK_LOST_S, Landed
 from missions.flight.flight_file import read_flight
 from missions.flight.outcome import Reason
+from missions.flight.report import report_flight
 from missions.mavlink.autopilots import Autopilot
 from missions.simulator.build import EFFECTS
 from missions.simulator.conditions import Conditions
@@ -22,10 +23,12 @@ from planning.base.errors import (
     MissionError,
     OperationCancelled,
 )
+from planning.base.findings import Severity
+from planning.parameters import FlightRules
 from planning.plan import read_plan, write_plan
 from planning.planner import plan_flight
 from planning.request import PlanRequest
-from planning.site.bundled import office, single_panel, write_scene
+from planning.site.bundled import court, office, single_panel, write_scene
 from planning.site.file import read_site
 from tests.planning.revision.cases import QUICK
 from tests.slow import slow
@@ -101,6 +104,22 @@ def test_the_whole_office_is_flown_as_planned_in_several_sorties(model, autopilo
     flown = fly_plan(plan, model, FlightRequest(autopilot=autopilot))
     assert len(flown.sorties) > 1
     assert_kept(flown, plan)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("wind_m_s", [0.0, 6.0])
+def test_two_aircraft_in_the_air_at_once_keep_apart_as_they_are_flown(wind_m_s):
+    site = court()
+    rules = FlightRules(at_once=2, apart_m=12.0, wind_m_s=wind_m_s)
+    plan = plan_flight(site, PlanRequest(n_views=60, rules=rules, time_budget_s=10.0)).plan
+    assert {sortie.aircraft for sortie in plan.sorties} == {1, 2}
+    flight = fly_plan(plan, site, FlightRequest(conditions=Conditions(wind_m_s=wind_m_s))).flight
+    (found,) = (finding for finding in flight.report.findings if finding.code == "aircraft-apart")
+    assert found.severity is Severity.OK
+    assert 12.0 <= found.value < 60.0
+    wider = replace(plan, rules=replace(rules, apart_m=found.value + 0.1))
+    (short,) = (f for f in report_flight(wider, site, flight.sorties).findings if f.code == "aircraft-apart")
+    assert (short.severity, short.value) == (Severity.ERROR, found.value)
 
 
 @pytest.mark.slow
