@@ -20,6 +20,19 @@ FAR = ("planar-far",)
 NEAR = tuple(scene for scene in COUNTS if scene not in FAR)
 METHODS = ("random", "sections", "image-error")
 N_SEEDS = 3
+
+N_FURTHER = 100
+FURTHER = {
+    "other planners": ("planar", {"planners": ("orbit", "noto", "pso")}),
+    "flown with RTK": ("planar", {"flown": ("rtk-fixed",)}),
+    "flown with single GNSS": ("planar", {"flown": ("single",)}),
+    "256 px": ("planar", {"width_px": 256}),
+    "far": ("curved-far", {}),
+    "Reflection MLP": ("planar", {"lights": ("mlp",)}),
+    "joint splats": ("planar", {"lights": ("splats",)}),
+}
+"""What else models and flights may be, each with one seed and so many photos: the scene, and what differs there."""
+
 BETTER_DB, FAR_DB = 1.0, 0.2
 
 KEPT = Path("benchmark-out")
@@ -55,12 +68,33 @@ def measure(context: Context) -> Iterator[Row]:
             yield Row(
                 scene, f"image-error above {other} in as many minutes", round(mean, 2), "dB", None, beside, *target
             )
+    yield from _further()
     for other, means in gains.items():
         mean = sum(means) / len(means)
         target = (f"at least {BETTER_DB:g} dB" if other == "sections" else "above 0 dB",)
         is_met = mean >= BETTER_DB if other == "sections" else mean > 0.0
         what = f"image-error above {other} in as many minutes, mean of near scenes"
         yield Row("near scenes", what, round(mean, 2), "dB", None, "", *target, is_met)
+
+
+def _further() -> Iterator[Row]:
+    """The same question asked of other planners, flights, pictures and models."""
+    for name in FURTHER:
+        request = further_request(name)
+        (light,) = request.lights
+        results = worth_tradeoff(request, KEPT).found
+        for result in results:
+            beside = f"{result.minutes:.1f} min; " + ", ".join(
+                f"{kind} {value:.1f}" for kind, value in result.psnr_db[light].items()
+            )
+            what = f"{name}: {result.n_views} photos, {result.planner}, unseen views"
+            yield Row(result.scene, what, round(result.mean_db(light), 2), "dB", None, f"{beside} dB", seeds=1)
+
+
+def further_request(name: str) -> WorthRequest:
+    """Flights of one of `FURTHER`."""
+    scene, changes = FURTHER[name]
+    return replace(WorthRequest(scene, METHODS, (N_FURTHER,), ("radiance-grid",), n_seeds=1), **changes)
 
 
 def request_of(scene: str) -> WorthRequest:

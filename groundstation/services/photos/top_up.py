@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,6 +19,7 @@ from planning.base.json_file import check_output
 from planning.base.messages import say
 from planning.base.parameters import check, like, parameter
 from planning.base.progress import QUIET, Monitor, Stop, Trace, never
+from planning.geo.frames import Vec3
 from planning.parameters import GreedyParameters, PlanParameters
 from planning.photos.places import PhotoHeights
 from planning.plan import Plan, ViewpointArrays, write_plan
@@ -141,7 +143,7 @@ def photo_top_up(
     seen_site = with_bodies(site_model, bodies)
     planned = plan_flight(seen_site, wanted, photos=photos, stop=stop, trace=trace, monitor=monitor)
     planned = replace(planned, plan=replace(planned.plan, rules=flown.rules, method=METHOD))
-    findings = (*planned.findings, *(_finding(body) for body in bodies))
+    findings = (*planned.findings, *(lacking(body, site_model.site.home_enu_m) for body in bodies))
     return PhotoTopUp(planned, look, tuple(bodies), findings)
 
 
@@ -155,13 +157,16 @@ def poses_of(photos: tuple[PosedPhoto, ...]) -> ViewpointArrays:
     )
 
 
-def _finding(body: SeenBody) -> Finding:
+def lacking(body: SeenBody, home_enu_m: Vec3) -> Finding:
+    """That the site lacks a body, and where it is from where the pilot stands."""
+    east_m, north_m = (body.low_enu_m + 0.5 * body.size_m - np.array(home_enu_m))[:2]
     text = say(
-        "the panes mirror something that the site lacks: {:.0f} x {:.0f} m, {:.0f} m high, {:.0f} m east and {:.0f} m "
-        "north of the site's origin; the flight keeps clear of what is seen of it, but look before you fly, and enter "
-        "it into the site",
+        "the panes mirror something that the site lacks: {:.0f} x {:.0f} m, {:.0f} m high, {:.0f} m from home at "
+        "bearing {:03.0f}; the flight keeps clear of what is seen of it, but look before you fly, and enter it into "
+        "the site",
         *body.size_m,
-        *(body.low_enu_m + 0.5 * body.size_m)[:2],
+        math.hypot(east_m, north_m),
+        math.degrees(math.atan2(east_m, north_m)) % 360.0,
     )
     return Finding(Severity.WARNING, "site-lacks", text, "", float(body.size_m.max()), 0.0, "m")
 
