@@ -7242,10 +7242,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Belichtung wird gemessen</translation>
     </message>
     <message>
-        <source>method</source>
-        <translation>Verfahren</translation>
-    </message>
-    <message>
         <source>method: expected {0}, got &apos;{1}&apos;</source>
         <translation>Methode: erwartet {0}, gefunden &apos;{1}&apos;</translation>
     </message>
@@ -7594,12 +7590,20 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>den Flug neu planen</translation>
     </message>
     <message>
+        <source>plan them further apart, or one after the other</source>
+        <translation>weiter auseinander oder nacheinander planen</translation>
+    </message>
+    <message>
         <source>plane facade of 20 x 8 panels, street, buildings opposite, trees and cars before it</source>
         <translation>ebene Fassade aus 20 x 8 Scheiben, Straße, Häuser gegenüber, Bäume und Autos davor</translation>
     </message>
     <message>
         <source>planned in {0} s ({1})</source>
         <translation>geplant in {0} s ({1})</translation>
+    </message>
+    <message>
+        <source>planner</source>
+        <translation>Planer</translation>
     </message>
     <message>
         <source>plans:   {0}</source>
@@ -7804,6 +7808,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>smallest clearance</source>
         <translation>kleinster Abstand</translation>
+    </message>
+    <message>
+        <source>smallest distance between aircraft that start as planned, {0} s after the first start</source>
+        <translation>kleinster Abstand zwischen Fluggeräten, die wie geplant starten, {0} s nach dem ersten Start</translation>
     </message>
     <message>
         <source>something stands in front of panels in {0} of {1} photos looked at</source>
@@ -8036,10 +8044,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the panes mirror nothing but sky</source>
         <translation>die Scheiben spiegeln nur Himmel</translation>
-    </message>
-    <message>
-        <source>the panes mirror something that the site lacks: {0} x {1} m, {2} m high, {3} m east and {4} m north of the site&apos;s origin; the flight keeps clear of what is seen of it, but look before you fly, and enter it into the site</source>
-        <translation>die Scheiben spiegeln etwas, das dem Standort fehlt: {0} x {1} m, {2} m hoch, {3} m östlich und {4} m nördlich seines Ursprungs; der Flug hält Abstand von dem, was davon zu sehen ist, aber vor dem Flug hinsehen und es in den Standort eintragen</translation>
     </message>
     <message>
         <source>the photos are straight</source>
@@ -9996,6 +10000,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>sections seen only with pixels larger than {0} mm: {1} of {2} covered</source>
         <translation>Sektoren, nur mit Pixeln über {0} mm gesehen: {1} von {2} abgedeckten</translation>
+    </message>
+    <message>
+        <source>the panes mirror something that the site lacks: {0} x {1} m, {2} m high, {3} m from home at bearing {4}; the flight keeps clear of what is seen of it, but look before you fly, and enter it into the site</source>
+        <translation>die Scheiben spiegeln etwas, das dem Standort fehlt: {0} x {1} m, {2} m hoch, {3} m vom Startplatz in Peilung {4}; der Flug hält Abstand von dem, was davon zu sehen ist, aber vor dem Flug hinsehen und es in den Standort eintragen</translation>
     </message>
     <message>
         <source>the plan&apos;s aircraft is not the one of its profile &apos;{0}&apos; now; plan the first flight again</source>
