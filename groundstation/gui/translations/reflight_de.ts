@@ -7598,12 +7598,12 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>ebene Fassade aus 20 x 8 Scheiben, Straße, Häuser gegenüber, Bäume und Autos davor</translation>
     </message>
     <message>
-        <source>planned in {0} s ({1})</source>
-        <translation>geplant in {0} s ({1})</translation>
+        <source>planned by</source>
+        <translation>geplant von</translation>
     </message>
     <message>
-        <source>planner</source>
-        <translation>Planer</translation>
+        <source>planned in {0} s ({1})</source>
+        <translation>geplant in {0} s ({1})</translation>
     </message>
     <message>
         <source>plans:   {0}</source>
