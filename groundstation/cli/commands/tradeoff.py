@@ -738,7 +738,7 @@ def run_worth(options: argparse.Namespace) -> int:
 
 
 def _print_flights(rows: Sequence[Mapping[str, Any]]) -> None:
-    heads = (say("light"), -16), (say("flown"), -11), (say("views"), 7), ("  " + say("planned by"), -14)
+    heads = (say("light"), -16), (say("flown"), -11), (say("photos"), 7), ("  " + say("planned by"), -14)
     print(table_row(*heads, (say("in the air"), 11), (say("unseen views"), 14), (say("spread"), 9)))
     for row in rows:
         spread = "" if row["spread_db"] == "" else f"{row['spread_db']:>9.2f}"
