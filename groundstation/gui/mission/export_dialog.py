@@ -44,15 +44,22 @@ KNOWN = declared(ExportOptions)
 
 
 class ExportForm(QWidget):
-    """`value()`, `setValue()` and `valueChanged` of a format with its options; what a format lacks is hidden."""
+    """`value()`, `setValue()` and `valueChanged` of a format with its options; what a format lacks is hidden.
+
+    Parameters
+    ----------
+    only
+        The one format that there is to choose; None for all.
+    """
 
     valueChanged = Signal()  # noqa: N815  (Qt's own way of naming)
 
-    def __init__(self, units: UnitSystem, parent: QWidget | None = None) -> None:
+    def __init__(self, units: UnitSystem, parent: QWidget | None = None, only: str | None = None) -> None:
         super().__init__(parent)
         self._format = ChoiceBox()
         for name, each in mission_formats().items():
-            self._format.addItem(translated(each.title, units), name)
+            if only in (None, name):
+                self._format.addItem(translated(each.title, units), name)
         self._rows = rows_of(KNOWN, but=("rth_height_m",))
         known = KNOWN["rth_height_m"].parameter
         self._return_auto = QCheckBox(self.tr("above everything on the site"))
@@ -62,6 +69,7 @@ class ExportForm(QWidget):
         form = self._form = Form(self)
         form.setContentsMargins(0, 0, 0, 0)
         form.addRow(self.tr("Format"), self._format)
+        form.setRowVisible(self._format, only is None)
         add_rows(form, self._rows)
         form.addRow(title_of(known), self._return_auto)
         form.addRow(self.tr("Above take-off"), self._return)

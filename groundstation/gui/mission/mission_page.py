@@ -24,6 +24,7 @@ from groundstation.gui.map.map_view import MapView
 from groundstation.gui.mission.export_dialog import ExportDialog
 from groundstation.gui.mission.mission_controller import MissionController
 from groundstation.gui.mission.mission_lists import MissionLists, SortieTable
+from groundstation.gui.mission.send_dialog import SendDialog
 from groundstation.gui.shared_view import SharedView
 from groundstation.gui.widgets.findings_list import SIZE_PX, FindingsList, severity_icon
 from groundstation.gui.widgets.inputs import NumberBox, calm, moment_of
@@ -307,6 +308,16 @@ class MissionPage(QObject):
         dialog.open()
         return dialog
 
+    def send(self) -> SendDialog | None:
+        """Ask which card or remote controller the current plan is to be put on; None where there is none."""
+        document, plan = self._context.document, self.controller.plan
+        if plan is None or document.site is None or document.current is None:
+            return None
+        name = document.current.title
+        dialog = SendDialog(self._context, plan, document.site, name, self._shared_view.window())
+        dialog.open()
+        return dialog
+
     def print_brief(self) -> None:
         """Show the flight brief of the current plan, to be printed or saved as PDF."""
         if self._preflight is None:
@@ -353,6 +364,12 @@ class MissionPage(QObject):
         for text, key, tip, slot in (
             (self.tr("Export mission files ..."), "Ctrl+E", self.tr("For DJI, QGroundControl, ..."), self.export),
             (
+                self.tr("Send to controller ..."),
+                "Ctrl+Shift+E",
+                self.tr("Onto an SD card or a connected remote controller of DJI, read back and compared"),
+                self.send,
+            ),
+            (
                 self.tr("Import mission files ..."),
                 "Ctrl+Shift+I",
                 self.tr("As a plan of this project; without a site, on a bare one of its own"),
@@ -372,7 +389,8 @@ class MissionPage(QObject):
             action.setToolTip(tip)
             action.triggered.connect(lambda _checked=False, slot=slot: slot())
             actions.append(action)
-        self._export, self._import, self._compare, self._brief, self._check = self._actions = tuple(actions)
+        self._export, self._send, self._import, self._compare, self._brief, self._check = actions
+        self._actions = tuple(actions)
 
     def _make_left(self) -> QWidget:
         left = QWidget()
@@ -383,7 +401,7 @@ class MissionPage(QObject):
             label.setWordWrap(True)
             layout.addWidget(label)
         layout.addWidget(self.sorties, 1)
-        for action in (self._export, self._import, self._compare, self._brief):
+        for action in (self._export, self._send, self._import, self._compare, self._brief):
             button = QPushButton(action.text())
             button.setToolTip(action.toolTip())
             button.clicked.connect(action.trigger)
@@ -444,7 +462,7 @@ class MissionPage(QObject):
             if is_checking:
                 self.findings.set_checking()
         self.findings.set_can_check(self.controller.can_check and not is_checking)
-        for action in (self._export, self._compare):
+        for action in (self._export, self._send, self._compare):
             action.setEnabled(plan is not None)
         self._check.setEnabled(self.controller.can_check and not is_checking)
         self._brief.setEnabled(plan is not None and self._is_fresh())
