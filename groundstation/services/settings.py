@@ -79,7 +79,7 @@ MAX_RECENT_PROJECTS = 10
 HEADER = """\
 # Settings of Reflight. Edit them while no window is open; what they mean is in docs/guide/projects.md.
 # theme: system, light, dark, sunlight; language: system, en, de; units: metric, imperial
-# text_scale: 0.8 to 2.0; autosave_s: 5 to 3600, or 0 for never; map_tiles: an MBTiles file, or empty
+# text_scale: 0.8 to 2.0; autosave_s: 5 to 3600, or 0 for never; map_tiles: an MBTiles or PMTiles file, or empty
 
 """
 
@@ -114,7 +114,7 @@ class Settings:
     recent_projects
         Folders, the latest first.
     map_tiles
-        Path of an MBTiles file for maps without network; empty for none.
+        Path of an MBTiles or PMTiles file for maps without network; empty for none.
     default_profile
         Aircraft and camera that a new plan starts with: see `planning.aircraft.catalogue.profile`.
     window_layouts

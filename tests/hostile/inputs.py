@@ -145,6 +145,7 @@ def written() -> list[Input]:
         _input("signing key", "text", "config/mavlink-signing-key", f"{HERE}:signer", "config/", quick=True),
         _input("signing time", "text", "config/mavlink-signing-timestamp", f"{HERE}:signer", "config/"),
         _input("map", "binary", "map.mbtiles", f"{HERE}:map_tiles", quick=True),
+        _input("map of vectors", "binary", "map.pmtiles", f"{HERE}:map_tiles", quick=True),
         _input("SPZ", "binary", "m.spz", "tests.reconstruction.exports.spz.reading:read_spz"),
         _input("SOG", "zip", "m.sog", "tests.reconstruction.exports.sog.reading:read_sog"),
         _input("LPIPS", "binary", "heads.pth", f"{HERE}:lpips"),
@@ -313,7 +314,8 @@ def _meshes() -> None:
 def _pictures_and_tables() -> None:
     import cv2
 
-    from tests.services.map_files import tiles_around, write_map
+    from groundstation.services.map.web_mercator import Tile
+    from tests.services.map_files import square, tiles_around, vector_layer, write_map, write_pmtiles
 
     rng = np.random.default_rng(1)
     picture = np.full((120, 160, 3), 90, np.uint8)
@@ -323,6 +325,9 @@ def _pictures_and_tables() -> None:
     for name in ("photo.png", "photo.tif", "photo.bmp", "picture.png"):
         cv2.imwrite(name, picture)
     write_map(Path("map.mbtiles"), tiles_around(22.3, 114.2, (1, 14)))
+    layer = vector_layer("water", [(3, square(0, 2048), {"name": "Lake"})])
+    tiles = {Tile(1, column, row): layer for column in (0, 1) for row in (0, 1)}
+    write_pmtiles(Path("map.pmtiles"), tiles, tile_type=1, leaf_size=2)
     places = "\n".join(f"{n} {rng.integers(0, 1000)} {rng.integers(0, 1000)}" for n in range(1, 31))
     Path("t.tsp").write_text(
         f"NAME : t\nTYPE : TSP\nDIMENSION : 30\nEDGE_WEIGHT_TYPE : EUC_2D\nNODE_COORD_SECTION\n{places}\nEOF\n"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 
 
@@ -30,11 +31,16 @@ def signer(path: Path) -> None:
 
 def map_tiles(path: Path) -> None:
     """A map file, and a tile of it."""
-    from groundstation.services.map.tiles import MapTiles
+    from groundstation.services.map.tiles import open_map_file
+    from groundstation.services.map.vector_tiles import decode_vector_tile
     from groundstation.services.map.web_mercator import Tile
 
-    tiles = MapTiles(path)
-    tiles.image(Tile(1, 1, 0))
+    tiles = open_map_file(path)
+    data = tiles.image(Tile(1, 1, 0))
+    if tiles.info.is_vector and data is not None:
+        # A damaged tile is a hole in the map.
+        with suppress(ValueError):
+            decode_vector_tile(data)
     tiles.close()
 
 

@@ -14,7 +14,8 @@ from PySide6.QtGui import QBrush, QColor, QImage, QPainter, QPainterPath, QPen, 
 from groundstation.gui.map.viewport import Viewport
 from groundstation.gui.widgets.theme import FACADES, SORTIES, Colours
 from groundstation.services.map.shapes import Area, PlanShapes, SiteShapes, round_length
-from groundstation.services.map.web_mercator import Tile
+from groundstation.services.map.tile_source import TileSetInfo
+from groundstation.services.map.web_mercator import TILE_POINTS, Tile
 from groundstation.services.units import UnitSystem, distance_unit, length_unit
 
 WEDGE_PX, WEDGE_HALF_RAD = 15.0, math.radians(20.0)
@@ -34,20 +35,21 @@ MAX_OVERZOOM = 6
 BUILDING, OBSTACLE, RALLY, PAPER = (QColor("#8d96a0"), QColor("#b5793f"), QColor("#7a4fa3"), QColor(255, 255, 255, 220))
 
 
-def tile_level(viewport: Viewport, min_zoom: int, max_zoom: int) -> int:
-    """Level of the tiles that fit a viewport best."""
-    return min(max(round(viewport.zoom), min_zoom), max_zoom)
+def tile_level(viewport: Viewport, min_zoom: int, max_zoom: int, tile_points: int = TILE_POINTS) -> int:
+    """Level of the tiles, so many points wide, that fit a viewport best."""
+    return min(max(round(viewport.zoom - math.log2(tile_points / TILE_POINTS)), min_zoom), max_zoom)
 
 
 def paint_tiles(
     painter: QPainter,
     viewport: Viewport,
-    levels: tuple[int, int],
+    info: TileSetInfo,
     picture: Callable[[Tile], QImage | None],
     knows: Callable[[Tile], bool],
 ) -> list[Tile]:
     """Paint the tiles that are at hand, else a piece of a tile above; returns the tiles that are missed."""
-    level = tile_level(viewport, *levels)
+    levels = info.levels
+    level = tile_level(viewport, *levels, info.tile_points)
     in_sight = viewport.tiles(level) if viewport.scale / 2**level * MAX_TILES**0.5 > viewport.width_px else []
     size_px = viewport.scale / 2**level
     missed: dict[Tile, None] = {}
@@ -56,9 +58,12 @@ def paint_tiles(
         # Edges on whole pixels leave no seams between neighbours.
         left, top, right, bottom = round(x), round(y), round(x + size_px), round(y + size_px)
         target = QRectF(left, top, right - left, bottom - top)
+        is_waited_for = False
         for above in range(min(MAX_OVERZOOM, level - levels[0]) + 1):
             parent = tile.parent(above)
-            if not knows(parent):
+            # A tile above is asked for only where there is none below it.
+            if not is_waited_for and not knows(parent):
+                is_waited_for = True
                 missed[parent] = None
             found = picture(parent)
             if found is not None:

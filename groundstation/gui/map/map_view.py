@@ -33,7 +33,7 @@ from groundstation.gui.map.viewport import MapCanvas, Viewport
 from groundstation.gui.widgets.questions import choose_file
 from groundstation.gui.widgets.theme import Colours, colours
 from groundstation.services.map.shapes import Area, PlanShapes, SiteShapes, airspace_outline, plan_shapes, site_shapes
-from groundstation.services.map.tiles import MapTiles
+from groundstation.services.map.tiles import open_map_file
 from groundstation.services.map.web_mercator import MAX_LAT_DEG, geodetic_from_world, world_from_geodetic
 from groundstation.services.project.document import Document, Item, ItemKind
 from groundstation.services.units import UnitSystem
@@ -292,7 +292,7 @@ class MapView(MapCanvas):
     def open_map(self, path: Path) -> bool:
         """Put tiles of a file under the site; False where it cannot be used, which `refused` tells."""
         try:
-            source = MapTiles(path)
+            source = open_map_file(path)
         except InputError as error:
             self._refusal = translated(str(error), self._units)
             self.update()
@@ -339,7 +339,7 @@ class MapView(MapCanvas):
         if source is None and self._model is None:
             return self.tr("Open or import a site on the Site tab, or a map with “Map file”; no network is used.")
         if source is None:
-            return self.tr('No map is loaded. "Map file" opens one (MBTiles); no network is used.')
+            return self.tr('No map is loaded. "Map file" opens one (MBTiles, PMTiles); no network is used.')
         if self._site is not None and not _covers(source.info.bounds_deg, self._viewport):
             return self.tr('The map "{0}" does not cover this place.').format(source.info.name)
         return ""
@@ -359,8 +359,7 @@ class MapView(MapCanvas):
         painter.fillRect(event.rect(), QColor(found.scene))
         source = self._tiles.source()
         if source is not None:
-            levels = source.info.min_zoom, source.info.max_zoom
-            self._tiles.want(paint_tiles(painter, viewport, levels, self._tiles.picture, self._tiles.knows))
+            self._tiles.want(paint_tiles(painter, viewport, source.info, self._tiles.picture, self._tiles.knows))
         if self._site is not None and (source is None or not _covers(source.info.bounds_deg, viewport)):
             paint_grid(painter, viewport, self._site.home, self._units, found.line)
         self._paint_layer(painter)
@@ -395,7 +394,11 @@ class MapView(MapCanvas):
             ("+", self.tr("Nearer (+)"), lambda: self.zoom_by(1.0)),
             ("−", self.tr("Further away (-)"), lambda: self.zoom_by(-1.0)),
             (self.tr("Fit"), self.tr("Show the whole site (F)"), self.look_at_all),
-            (self.tr("Map file"), self.tr("Open an MBTiles file to put under the site"), self._choose_map),
+            (
+                self.tr("Map file"),
+                self.tr("Open a map file (MBTiles or PMTiles) to put under the site"),
+                self._choose_map,
+            ),
         ):
             button = QToolButton(self)
             button.setText(text)
@@ -422,7 +425,7 @@ class MapView(MapCanvas):
         self.update()
 
     def _choose_map(self) -> None:
-        path = choose_file(self, self.tr("Open map"), self.tr("Offline maps (*.mbtiles);;All files (*)"))
+        path = choose_file(self, self.tr("Open map"), self.tr("Offline maps (*.mbtiles *.pmtiles);;All files (*)"))
         if path is not None:
             self.open_map(path)
 

@@ -31,7 +31,7 @@ from groundstation.gui.map.map_paint import (
     paint_text_box,
     paint_tiles,
 )
-from groundstation.gui.map.tile_store import decode_tile
+from groundstation.gui.map.tile_store import TileReader
 from groundstation.gui.map.viewport import Viewport
 from groundstation.gui.widgets.inputs import ChoiceBox
 from groundstation.gui.widgets.job_bar import DialogFoot
@@ -39,7 +39,7 @@ from groundstation.gui.widgets.questions import choose_new_file, file_name
 from groundstation.gui.widgets.theme import LIGHT
 from groundstation.services.jobs.runner import JobContext
 from groundstation.services.map.shapes import PlanShapes, SiteShapes, plan_shapes, site_shapes
-from groundstation.services.map.tiles import MapTiles
+from groundstation.services.map.tiles import open_map_file
 from groundstation.services.map.web_mercator import Tile
 from groundstation.services.mission.brief import flight_brief
 from groundstation.services.mission.brief_html import MAP, brief_html, brief_pictures
@@ -252,7 +252,8 @@ def painted_map(site: SiteShapes, plan: PlanShapes, tiles_path: Path, units: Uni
     InputError
         The map file cannot be used.
     """
-    tiles = MapTiles(tiles_path)
+    tiles = open_map_file(tiles_path)
+    reader = TileReader(tiles)
     try:
         width, height = (round(size * PICTURE_SCALE) for size in MAP_PX)
         picture = QImage(width, height, QImage.Format.Format_RGB32)
@@ -263,13 +264,12 @@ def painted_map(site: SiteShapes, plan: PlanShapes, tiles_path: Path, units: Uni
 
         def picture_of(tile: Tile) -> QImage | None:
             if tile not in decoded:
-                decoded[tile] = decode_tile(tiles.image(tile))
+                decoded[tile] = reader.picture(tile)
             return decoded[tile]
 
         painter = QPainter(picture)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        levels = tiles.info.min_zoom, tiles.info.max_zoom
-        paint_tiles(painter, viewport, levels, picture_of, lambda _tile: True)
+        paint_tiles(painter, viewport, tiles.info, picture_of, lambda _tile: True)
         paint_site(painter, viewport, site, LIGHT)
         paint_plan(painter, viewport, plan)
         paint_landings(painter, viewport.screen(site.landings()), LIGHT)

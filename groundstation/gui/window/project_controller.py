@@ -161,7 +161,7 @@ class ProjectController(QObject):
 
     def open_map_tiles(self) -> None:
         """Ask for a file with map tiles."""
-        name = self._questions.file(self.window, self.tr("Map tiles"), self.tr("Map tiles (*.mbtiles)"))
+        name = self._questions.file(self.window, self.tr("Map tiles"), self.tr("Map tiles (*.mbtiles *.pmtiles)"))
         if name is not None:
             self.window.shared_view.open_tiles(name)
 

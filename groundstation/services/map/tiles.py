@@ -1,4 +1,4 @@
-"""Offline map tiles from MBTiles files (MBTiles 1.3: an SQLite database with tables `metadata` and `tiles`).
+"""Offline map tiles: opens map files, and reads MBTiles (1.3: an SQLite database with tables `metadata` and `tiles`).
 
 Nothing in a file is trusted: queries are read-only and end after `MAX_QUERY_S`, values have a largest size, and a map
 that is not what it says is refused when it is opened, with what to do.
@@ -7,16 +7,25 @@ that is not what it says is refused when it is opened, with what to do.
 from __future__ import annotations
 
 import math
-import re
 import sqlite3
 import threading
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
+from groundstation.services.map.pmtiles import PmTiles, is_pmtiles
+from groundstation.services.map.tile_source import (
+    GZIP,
+    MAX_TILE_BYTES,
+    VECTOR_FORMAT,
+    TileSetInfo,
+    TileSource,
+    area_of,
+    picture_format,
+    plain_text,
+)
 from groundstation.services.map.web_mercator import MAX_ZOOM, Tile
 from planning.base.errors import InputError
 from planning.base.files import real_path
@@ -25,46 +34,22 @@ from planning.base.messages import say
 MAX_QUERY_S = 2.0
 """Longest that one query may take; with the index that the format asks for it takes under a millisecond."""
 
-MAX_TILE_BYTES = 4 * 2**20
-"""A 512 x 512 PNG in true colour that does not compress has 1 MiB."""
-
 MAX_METADATA = 200
 """Rows of metadata that are looked at; the format knows about 15."""
 
 INSTRUCTIONS_PER_LOOK = 10_000
 """SQLite instructions between two looks at the clock, well under a millisecond."""
 
-_HEADS = {
-    "png": re.compile(rb"\x89PNG\r\n\x1a\n"),
-    "jpg": re.compile(rb"\xff\xd8\xff"),
-    "webp": re.compile(rb"RIFF.{4}WEBP", re.S),
-}
-"""How the pictures begin that can be drawn."""
 
-_GZIP = b"\x1f\x8b"
+def open_map_file(path: Path) -> TileSource:
+    """Open a map file, PMTiles where its name or its content says so, else MBTiles.
 
-
-@dataclass(frozen=True, slots=True)
-class TileSetInfo:
-    """What a map file says about itself.
-
-    Parameters
-    ----------
-    bounds_deg
-        West, south, east, north; None where the file does not say, or says nonsense.
-    min_zoom, max_zoom
-        Levels that there are tiles of.
-    attribution
-        Whose data it is, without markup; must be shown with the map.
+    Raises
+    ------
+    InputError
+        As `MapTiles` and `PmTiles`.
     """
-
-    path: Path
-    name: str
-    image_format: str
-    min_zoom: int
-    max_zoom: int
-    bounds_deg: tuple[float, float, float, float] | None
-    attribution: str
+    return PmTiles(path) if is_pmtiles(path) else MapTiles(path)
 
 
 class MapTiles:
@@ -76,12 +61,12 @@ class MapTiles:
         Raises
         ------
         InputError
-            The file is missing or damaged, no MBTiles file, holds vector tiles or no tiles, or is too slow to use.
+            The file is missing or damaged, no MBTiles file, holds no tiles, or is too slow to use.
         """
         self._path, self._clock, self._deadline_s = path, clock, math.inf
         self._lock = threading.Lock()
         if not path.is_file():
-            raise InputError(say("there is no such file; choose an MBTiles file", place=path))
+            raise InputError(say("there is no such file; choose an MBTiles or PMTiles file", place=path))
         # Immutable: no lock and no journal beside the file, which may be on a stick that is write-protected.
         place = f"file:{quote(str(real_path(path)))}?mode=ro&immutable=1"
         self._connection = sqlite3.connect(place, uri=True, check_same_thread=False)
@@ -95,7 +80,7 @@ class MapTiles:
             raise
 
     def image(self, tile: Tile) -> bytes | None:
-        """The picture of a tile; None where the file has none, or none that can be read."""
+        """Content of a tile; None where the file has none, or none that can be read."""
         row_from_south = 2**tile.zoom - 1 - tile.row
         try:
             return self._tile_data("zoom_level = ? AND tile_column = ? AND tile_row = ?", (*tile[:2], row_from_south))
@@ -127,11 +112,11 @@ class MapTiles:
             )
         return TileSetInfo(
             self._path,
-            _plain(metadata.get("name", "")) or self._path.stem,
+            plain_text(metadata.get("name", "")) or self._path.stem,
             self._image_format(metadata.get("format", "")),
             *levels,
             _bounds(metadata.get("bounds", "")),
-            _plain(metadata.get("attribution", "")),
+            plain_text(metadata.get("attribution", "")),
         )
 
     def _metadata(self) -> dict[str, str]:
@@ -140,26 +125,21 @@ class MapTiles:
 
     def _image_format(self, stated: str) -> str:
         data = self._tile_data("1", ())
-        if stated.lower() == "pbf" or (data is not None and data.startswith(_GZIP)):
-            raise InputError(
-                say(
-                    "the map holds vector tiles (pbf), which Reflight does not draw; export it with picture tiles "
-                    "(PNG, JPEG or WebP)",
-                    place=self._path,
-                )
-            )
-        found = next((name for name, head in _HEADS.items() if head.match(data or b"")), None)
+        if data is not None and (stated.lower() == VECTOR_FORMAT or data.startswith(GZIP)):
+            return VECTOR_FORMAT
+        found = picture_format(data)
         if found is None:
             raise InputError(
                 say(
-                    "expected tiles in PNG, JPEG or WebP, found something else (the file says {}); export the map "
-                    "again",
+                    "expected tiles in PNG, JPEG, WebP or PBF, found something else (the file says {}); export the "
+                    "map again",
                     repr(stated),
                     place=self._path,
                 )
                 if stated
                 else say(
-                    "expected tiles in PNG, JPEG or WebP, found something else; export the map again", place=self._path
+                    "expected tiles in PNG, JPEG, WebP or PBF, found something else; export the map again",
+                    place=self._path,
                 )
             )
         return found
@@ -198,17 +178,10 @@ class MapTiles:
         return self._clock() > self._deadline_s
 
 
-def _plain(text: str) -> str:
-    """A text of a file without markup and control characters, no longer than a line."""
-    text = re.sub(r"<[^<>]*>", "", text).replace("&copy;", "©").replace("&amp;", "&")
-    return " ".join("".join(c if c.isprintable() else " " for c in text).split())[:200]
-
-
 def _bounds(text: str) -> tuple[float, float, float, float] | None:
     """Bounds from "west,south,east,north"; None unless they are an area on the globe."""
     try:
         west, south, east, north = (float(part) for part in text.split(","))
     except ValueError:
         return None
-    is_area = -180.0 <= west < east <= 180.0 and -90.0 <= south < north <= 90.0
-    return (west, south, east, north) if is_area else None
+    return area_of(west, south, east, north)

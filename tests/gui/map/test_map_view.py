@@ -1,6 +1,7 @@
 """The map: projection on screen, tiles under the site, pan and zoom, picking, and what it says without a map."""
 
 import contextlib
+import gzip
 import math
 import sqlite3
 import threading
@@ -19,7 +20,15 @@ from planning.geo.frames import Origin
 from tests.gui.driving import turn_until
 from tests.missions.plans import example_plan
 from tests.planning.plan_cases import kiosk
-from tests.services.map_files import colour_of, picture, tiles_around, write_map
+from tests.services.map_files import (
+    colour_of,
+    picture,
+    square,
+    tiles_around,
+    vector_layer,
+    write_map,
+    write_pmtiles,
+)
 
 HERE = (22.3372, 114.2636)
 
@@ -167,6 +176,25 @@ def test_missing_levels_are_filled_from_above(view, settle, tmp_path):
     assert np.abs(pixel(view, 350, 200) - expected).max() <= 3
 
 
+def test_vector_tiles_are_drawn_sharp_far_below_their_last_level(view, settle, tmp_path):
+    """A square of water: its edge is one pixel wide at a level 6 below that of the tile."""
+    world = world_from_geodetic(*HERE)[0]
+    tile = Tile(12, int(world[0] * 2**12), int(world[1] * 2**12))
+    layer = vector_layer("water", [(3, square(1024, 2048), {})])
+    damaged = tile._replace(column=tile.column + 1)
+    tiles = {tile: gzip.compress(layer), damaged: layer[:-9]}
+    view.open_map(write_pmtiles(tmp_path / "m.pmtiles", tiles, tile_type=1))
+    corner = (tile.column + 0.5) / 2**12, (tile.row + 0.4) / 2**12
+    view.set_viewport(_viewport(corner, 18.0, 700, 500))
+    settle()
+    water, land = np.array([0xA9, 0xCF, 0xE0]), np.array([0xF4, 0xF1, 0xEA])
+    assert np.abs(pixel(view, 347, 250) - water).max() <= 3
+    assert np.abs(pixel(view, 352, 250) - land).max() <= 3
+    view.set_viewport(_viewport(((damaged.column + 0.4) / 2**12, corner[1]), 12.0, 700, 500))
+    settle()
+    assert np.abs(pixel(view, 350, 250) - water).max() > 20
+
+
 def test_a_hole_in_a_level_shows_the_level_above(view, settle, tmp_path):
     world = world_from_geodetic(*HERE)[0]
     above = Tile(16, int(world[0] * 2**16), int(world[1] * 2**16))
@@ -299,9 +327,9 @@ def test_maps_that_cannot_be_used_are_refused_in_sight_and_the_old_one_stays(vie
     view.open_map(good)
     heard = []
     view.refused.connect(heard.append)
-    vector = write_map(tmp_path / "v.mbtiles", {Tile(1, 0, 0): b"\x1f\x8b\x08\x00"}, {"format": "pbf"})
-    assert not view.open_map(vector)
-    assert "vector tiles" in heard[0]
+    foreign = write_map(tmp_path / "v.mbtiles", {Tile(1, 0, 0): b"GIF89a"}, {"format": "gif"})
+    assert not view.open_map(foreign)
+    assert "expected tiles in PNG" in heard[0]
     assert view.note() == heard[0]
     assert view.map_file() == good
     view.open_map(good)

@@ -1,6 +1,7 @@
 """MBTiles files: good, lying, damaged and hostile ones."""
 
 import contextlib
+import gzip
 import itertools
 import sqlite3
 
@@ -11,7 +12,7 @@ import pytest
 from groundstation.services.map.tiles import MAX_TILE_BYTES, MapTiles
 from groundstation.services.map.web_mercator import Tile
 from planning.base.errors import InputError
-from tests.services.map_files import colour_of, picture, tiles_around, write_map
+from tests.services.map_files import colour_of, picture, square, tiles_around, vector_layer, write_map
 
 
 @pytest.fixture
@@ -66,11 +67,13 @@ def test_levels_are_those_of_the_tiles_whatever_the_metadata_says(opened, tmp_pa
     assert (info.min_zoom, info.max_zoom) == (4, 6)
 
 
-def test_vector_tiles_are_refused_with_what_to_do(tmp_path):
-    path = write_map(tmp_path / "v.mbtiles", {Tile(1, 0, 0): b"\x1f\x8b\x08\x00rest"}, {"format": "pbf"})
-    assert "vector tiles (pbf)" in refused(path)
-    hidden = write_map(tmp_path / "w.mbtiles", {Tile(1, 0, 0): b"\x1f\x8b\x08\x00rest"}, {"format": "png"})
-    assert "PNG, JPEG or WebP" in refused(hidden)
+def test_vector_tiles_are_known_by_what_they_are(opened, tmp_path):
+    tile = gzip.compress(vector_layer("water", [(3, square(0, 4096), {})]))
+    for name, stated in (("v.mbtiles", "pbf"), ("w.mbtiles", "png")):
+        source = opened(write_map(tmp_path / name, {Tile(1, 0, 0): tile}, {"format": stated}))
+        assert source.info.is_vector
+        assert source.image(Tile(1, 0, 0)) == tile
+        assert source.info.levels == (1, 24)
 
 
 def test_no_map_is_refused(tmp_path):
