@@ -355,9 +355,6 @@ class PlanController(QObject):
                 len(plan.viewpoints), len(plan.sorties), coverage.covered, coverage.reachable_upper_bound
             ),
         )
-        if plan.worth is not None:
-            expected = say("unseen views of a model of its photos, expected: {}", plan.worth.text)
-            self._context.say(Severity.NOTE, self._context.localized(expected), about="plan.worth.")
         for finding in planned.findings:
             about = f"plan.{finding.code}.{finding.place}"
             self._context.say(finding.severity, self._context.localized(finding.message), about=about)

@@ -14,6 +14,7 @@ from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import QLabel, QPushButton, QTabWidget, QVBoxLayout, QWidget
 
 from groundstation.gui.application.context import ApplicationContext
+from groundstation.gui.charts.axes import Line, LinesPlot
 from groundstation.gui.charts.quality_chart import QualityChart
 from groundstation.gui.plan.plan_controller import EffectsController, PlanController
 from groundstation.gui.plan.plan_form import PlanForm
@@ -35,7 +36,7 @@ from planning.base.effects import EffectSetting
 from planning.base.findings import Severity, is_flyable
 from planning.base.progress import QualityPoint
 from planning.insight.sections import PlanInsight, SectionState
-from planning.plan import Plan
+from planning.plan import FlightWorth, Plan
 from planning.request import PlanRequest
 
 # What the 3-D view paints on panels and routes; a value of two choices.
@@ -183,6 +184,11 @@ class PlanPage(QObject):
             PlanLists(context, self.controller),
             ViewpointPage(context, self.controller, shared_view),
         )
+        self.worth = LinesPlot(
+            self.tr("Minutes in the air"),
+            self.tr("Expected PSNR [dB]"),
+            self.tr("What this plan is worth is not known, or it was changed since; plan it again."),
+        )
         self._result, self._verdict = QLabel(), QLabel()
         self._plan_button = QPushButton(self.tr("Plan"))
         self._make_actions()
@@ -225,6 +231,7 @@ class PlanPage(QObject):
     def _make_right(self) -> QTabWidget:
         self._detail = QTabWidget()
         self._detail.addTab(self.chart, self.tr("Quality"))
+        self._detail.addTab(self.worth, self.tr("Worth"))
         self._detail.addTab(self.effects, self.tr("Effects"))
         self._detail.addTab(self.panel, self.tr("Panel"))
         self._detail.addTab(scrolled(self.viewpoint), self.tr("View"))
@@ -307,6 +314,7 @@ class PlanPage(QObject):
     def _show_active(self, active: ActivePlan | None) -> None:
         self.panel.set_plan(None if active is None else active.insight, None if active is None else active.plan)
         self._paint()
+        self.worth.set_lines(() if active is None else self._worth_lines(active.plan.present_worth))
         if active is None:
             if self._context.document.current is not None:
                 why = self.controller.why_not_active
@@ -358,7 +366,26 @@ class PlanPage(QObject):
         known = finest[finest == finest]
         if len(known):
             lines.append(self.tr("pixels from {0}").format(sampling_unit(units).text(float(known.min()))))
+        worth = plan.present_worth
+        if worth is not None:
+            lines.append(self.tr("Unseen views of its model: {0}").format(self._context.localized(worth.text)))
         self._result.setText("\n".join(lines))
+
+    def _worth_lines(self, worth: FlightWorth | None) -> tuple[Line, ...]:
+        """Expected quality against minutes in the air, battery by battery, and how wrong it may be."""
+        if worth is None:
+            return ()
+        minutes = np.array([battery.minutes for battery in worth.batteries])
+        decibels = np.array([battery.psnr_db for battery in worth.batteries])
+        lines = [Line(self.tr("this plan, battery by battery"), minutes, decibels)]
+        if worth.another is not None:
+            x, y = np.array([minutes[-1], worth.another.minutes]), np.array([decibels[-1], worth.another.psnr_db])
+            lines.append(Line(self.tr("one battery more"), x, y))
+            minutes, decibels = np.append(minutes, x[1]), np.append(decibels, y[1])
+        off = self.tr("{0:.1f} dB better"), self.tr("{0:.1f} dB worse")
+        for text, sign in zip(off, (1.0, -1.0), strict=True):
+            lines.append(Line(text.format(worth.deviation_db), minutes, decibels + sign * worth.deviation_db))
+        return tuple(lines)
 
     def _say_verdict(self, text: str, role: str) -> None:
         self._verdict.setText(text)

@@ -81,6 +81,23 @@ def test_undo_of_the_first_plan_leaves_nothing_of_it(application, controller, pa
 
 
 @pytest.mark.slow
+def test_what_a_plan_is_worth_stands_beside_it_until_its_sorties_change(application, controller, page_of_new_plan):
+    page, plan = page_of_new_plan, controller.context.document.current.plan
+    last = plan.worth.batteries[-1]
+    assert f"{last.psnr_db:.1f} dB" in page.verdict()
+    lines = page.worth.lines()
+    assert (lines[0].x[-1], lines[0].y[-1]) == (last.minutes, last.psnr_db)
+    assert [line.y[0] - last.psnr_db for line in lines[-2:]] == pytest.approx(
+        [plan.worth.deviation_db, -plan.worth.deviation_db]
+    )
+    (viewpoint,) = first_views(controller)
+    page.controller.delete_viewpoint(viewpoint.id)
+    turn_until_idle(application, controller)
+    assert page.worth.lines() == ()
+    assert "dB" not in page.verdict()
+
+
+@pytest.mark.slow
 def test_a_panel_of_the_site_before_is_not_taken_for_one_of_the_next(application, controller, page):
     controller.context.select(Item(ItemKind.PANEL, controller.context.document.site.site.panels[3].id))
     opened(application, controller, "office")
