@@ -2825,6 +2825,14 @@ Scheiben: {2}, je {3} × {4}</translation>
         <translation>Für DJI, QGroundControl, ...</translation>
     </message>
     <message>
+        <source>Send to controller ...</source>
+        <translation>An Fernsteuerung senden ...</translation>
+    </message>
+    <message>
+        <source>Onto an SD card or a connected remote controller of DJI, read back and compared</source>
+        <translation>Auf eine SD-Karte oder eine angeschlossene DJI-Fernsteuerung, zurückgelesen und verglichen</translation>
+    </message>
+    <message>
         <source>Import mission files ...</source>
         <translation>Mission importieren ...</translation>
     </message>
@@ -4317,6 +4325,18 @@ Blickrichtung: {3}</translation>
 <context>
     <name>PlanPage</name>
     <message>
+        <source>Minutes in the air</source>
+        <translation>Minuten in der Luft</translation>
+    </message>
+    <message>
+        <source>Expected PSNR [dB]</source>
+        <translation>Erwartetes PSNR [dB]</translation>
+    </message>
+    <message>
+        <source>What this plan is worth is not known, or it was changed since; plan it again.</source>
+        <translation>Was dieser Plan wert ist, ist nicht bekannt, oder er wurde seitdem geändert; neu planen.</translation>
+    </message>
+    <message>
         <source>Plan</source>
         <translation>Planen</translation>
     </message>
@@ -4335,6 +4355,10 @@ Blickrichtung: {3}</translation>
     <message>
         <source>Quality</source>
         <translation>Güte</translation>
+    </message>
+    <message>
+        <source>Worth</source>
+        <translation>Wert</translation>
     </message>
     <message>
         <source>Effects</source>
@@ -4403,6 +4427,26 @@ Blickrichtung: {3}</translation>
     <message>
         <source>pixels from {0}</source>
         <translation>Pixel ab {0}</translation>
+    </message>
+    <message>
+        <source>Unseen views of its model: {0}</source>
+        <translation>Neue Ansichten seines Modells: {0}</translation>
+    </message>
+    <message>
+        <source>this plan, battery by battery</source>
+        <translation>dieser Plan, Akku für Akku</translation>
+    </message>
+    <message>
+        <source>one battery more</source>
+        <translation>ein Akku mehr</translation>
+    </message>
+    <message>
+        <source>{0:.1f} dB better</source>
+        <translation>{0:.1f} dB besser</translation>
+    </message>
+    <message>
+        <source>{0:.1f} dB worse</source>
+        <translation>{0:.1f} dB schlechter</translation>
     </message>
 </context>
 <context>
@@ -5752,6 +5796,137 @@ Damit weiterarbeiten?</translation>
     </message>
 </context>
 <context>
+    <name>SendDialog</name>
+    <message>
+        <source>Send to controller</source>
+        <translation>An Fernsteuerung senden</translation>
+    </message>
+    <message>
+        <source>DJI Pilot 2, imports files</source>
+        <translation>DJI Pilot 2, importiert Dateien</translation>
+    </message>
+    <message>
+        <source>DJI Fly, a route is replaced</source>
+        <translation>DJI Fly, eine Route wird ersetzt</translation>
+    </message>
+    <message>
+        <source>FlightHub 2, folder waylines</source>
+        <translation>FlightHub 2, Ordner waylines</translation>
+    </message>
+    <message>
+        <source>Look again</source>
+        <translation>Erneut suchen</translation>
+    </message>
+    <message>
+        <source>Look for cards and remote controllers that were connected meanwhile</source>
+        <translation>Nach Karten und Fernsteuerungen suchen, die inzwischen angeschlossen wurden</translation>
+    </message>
+    <message>
+        <source>Folder ...</source>
+        <translation>Ordner ...</translation>
+    </message>
+    <message>
+        <source>Send into a folder that you choose</source>
+        <translation>In einen Ordner senden, den Sie wählen</translation>
+    </message>
+    <message>
+        <source>No objections to these files.</source>
+        <translation type="unfinished">Keine Einwände gegen diese Dateien.</translation>
+    </message>
+    <message>
+        <source>Send</source>
+        <translation>Senden</translation>
+    </message>
+    <message>
+        <source>Close</source>
+        <translation type="unfinished">Schließen</translation>
+    </message>
+    <message>
+        <source>Device</source>
+        <translation>Gerät</translation>
+    </message>
+    <message>
+        <source>Read by</source>
+        <translation>Gelesen von</translation>
+    </message>
+    <message>
+        <source>Name there</source>
+        <translation>Name dort</translation>
+    </message>
+    <message>
+        <source>Looking for cards and remote controllers ...</source>
+        <translation>Suche nach Karten und Fernsteuerungen ...</translation>
+    </message>
+    <message>
+        <source>Look for devices</source>
+        <translation>Geräte suchen</translation>
+    </message>
+    <message>
+        <source>Send into this folder</source>
+        <translation>In diesen Ordner senden</translation>
+    </message>
+    <message>
+        <source>No card or remote controller is connected. On Windows and macOS a controller that is connected by USB has no path: use its card, or choose a folder.</source>
+        <translation>Keine Karte oder Fernsteuerung ist angeschlossen. Unter Windows und macOS hat eine per USB angeschlossene Fernsteuerung keinen Pfad: Nehmen Sie ihre Karte oder wählen Sie einen Ordner.</translation>
+    </message>
+    <message>
+        <source>Making the files ...</source>
+        <translation type="unfinished">Dateien werden erstellt ...</translation>
+    </message>
+    <message>
+        <source>Prepare export</source>
+        <translation type="unfinished">Export vorbereiten</translation>
+    </message>
+    <message>
+        <source>Cannot be sent: {0}</source>
+        <translation>Kann nicht gesendet werden: {0}</translation>
+    </message>
+    <message>
+        <source>Replaced by sortie {0}</source>
+        <translation>Ersetzt durch Flug {0}</translation>
+    </message>
+    <message>
+        <source>{0}, waypoints: {1}, {2}</source>
+        <translation>{0}, Wegpunkte: {1}, {2}</translation>
+    </message>
+    <message>
+        <source>Ready to be sent, files: {0}. Read the warnings.</source>
+        <translation>Bereit zum Senden, Dateien: {0}. Lesen Sie die Warnungen.</translation>
+    </message>
+    <message>
+        <source>Ready to be sent, files: {0}</source>
+        <translation>Bereit zum Senden, Dateien: {0}</translation>
+    </message>
+    <message>
+        <source>These files are replaced on {0}: {1}
+
+Copies of them are kept on this computer.</source>
+        <translation>Diese Dateien werden auf {0} ersetzt: {1}
+
+Kopien von ihnen bleiben auf diesem Computer.</translation>
+    </message>
+    <message>
+        <source>Replace files?</source>
+        <translation type="unfinished">Dateien ersetzen?</translation>
+    </message>
+    <message>
+        <source>Writing and reading back ...</source>
+        <translation>Schreiben und Zurücklesen ...</translation>
+    </message>
+    <message>
+        <source>Sent, read back and equal to the plan: {0}. Eject the device before you pull it out.</source>
+        <translation>Gesendet, zurückgelesen und gleich dem Plan: {0}. Werfen Sie das Gerät aus, bevor Sie es abziehen.</translation>
+    </message>
+    <message>
+        <source>What was replaced is kept: {0}</source>
+        <translation>Was ersetzt wurde, ist aufbewahrt: {0}</translation>
+    </message>
+    <message>
+        <source>Not sent: {0}</source>
+        <translation>Nicht gesendet: {0}</translation>
+    </message>
+</context>
+<context>
     <name>Sentences</name>
     <message>
         <source>the profile &apos;{0}&apos;</source>
@@ -6032,6 +6207,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>  Einsatz {0}: {1}, {2} m, {3} min, Fluggerät {4} startet bei {5}</translation>
     </message>
     <message>
+        <source>  what it replaced is kept: {0}</source>
+        <translation>  was sie ersetzt hat, ist aufbewahrt: {0}</translation>
+    </message>
+    <message>
+        <source>  {0}  {1}  {2}</source>
+        <translation>  {0}  {1}  {2}</translation>
+    </message>
+    <message>
         <source>% of the walls</source>
         <translation>% der Wände</translation>
     </message>
@@ -6102,6 +6285,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>DJI (.kmz)</source>
         <translation>DJI (.kmz)</translation>
+    </message>
+    <message>
+        <source>DJI Fly has no import, so each sortie replaces a route that is there: choose {0} of the {1} routes; make more in DJI Fly where there are too few</source>
+        <translation>DJI Fly hat keinen Import, also ersetzt jeder Flug eine Route, die dort ist: wählen Sie {0} der {1} Routen; legen Sie in DJI Fly weitere an, wo es zu wenige sind</translation>
+    </message>
+    <message>
+        <source>DJI Fly was not tried with this route: it is written for {0}, which DJI Pilot 2 flies; look at every waypoint in DJI Fly before take-off</source>
+        <translation>DJI Fly wurde mit dieser Route nicht erprobt: Sie ist für {0} geschrieben, das DJI Pilot 2 fliegt; sehen Sie vor dem Start jeden Wegpunkt in DJI Fly an</translation>
     </message>
     <message>
         <source>Google Earth (.kml), to look at</source>
@@ -6304,6 +6495,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>einer unbekannten Kamera</translation>
     </message>
     <message>
+        <source>another mission of this name is there; send it under another name, or allow to replace it</source>
+        <translation>eine andere Mission dieses Namens ist dort; senden Sie sie unter einem anderen Namen, oder erlauben Sie das Ersetzen</translation>
+    </message>
+    <message>
         <source>argument %(argument_name)s: %(message)s</source>
         <translation>Argument %(argument_name)s: %(message)s</translation>
     </message>
@@ -6350,6 +6545,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>cannot be run ({0}); name an arducopter</source>
         <translation>nicht ausführbar ({0}); ein arducopter nennen</translation>
+    </message>
+    <message>
+        <source>cannot be sent: {0}</source>
+        <translation>kann nicht gesendet werden: {0}</translation>
+    </message>
+    <message>
+        <source>cannot be written ({0}); send again</source>
+        <translation>kann nicht geschrieben werden ({0}); senden Sie erneut</translation>
     </message>
     <message>
         <source>cannot be written; check the folder, or that no other program holds the file</source>
@@ -6596,6 +6799,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>expected a picture and a focal length above 0, got {0} x {1} and {2}</source>
         <translation>erwartet werden ein Bild und eine Brennweite über 0, gefunden {0} x {1} und {2}</translation>
+    </message>
+    <message>
+        <source>expected a plan or a DJI mission (.kmz); remote controllers of DJI take nothing else</source>
+        <translation>erwartet wurde ein Plan oder eine DJI-Mission (.kmz); DJI-Fernsteuerungen nehmen nichts anderes</translation>
     </message>
     <message>
         <source>expected a positive number of millimetres, got {0}</source>
@@ -6954,6 +7161,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>hat kein Foto &apos;{0}&apos;, das bewertet werden soll; mit score --views all bewerten</translation>
     </message>
     <message>
+        <source>has no routes of DJI Fly (expected the folder {0}); make one route in DJI Fly and save it, then connect the remote controller again</source>
+        <translation>hat keine Routen von DJI Fly (erwartet wurde der Ordner {0}); legen Sie in DJI Fly eine Route an und speichern Sie sie, dann schließen Sie die Fernsteuerung erneut an</translation>
+    </message>
+    <message>
         <source>has no splat within {0} m of the panels of {1}; are both in one frame?</source>
         <translation>hat keinen Splat bis {0} m vor den Scheiben von {1}; sind beide in einem Bezugssystem?</translation>
     </message>
@@ -6968,6 +7179,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>has splats on panel {0}, and {1} has {2} panels; name a file of the same site</source>
         <translation>hat Splats auf Scheibe {0}, und {1} hat {2} Scheiben; eine Datei desselben Standorts nennen</translation>
+    </message>
+    <message>
+        <source>has {0} MB free, the files need {1} MB; delete something there</source>
+        <translation>hat {0} MB frei, die Dateien brauchen {1} MB; löschen Sie dort etwas</translation>
     </message>
     <message>
         <source>heading</source>
@@ -7080,6 +7295,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>is for --resume; a top-up closes what all sorties left open</source>
         <translation>ist für --resume; ein Ergänzungsflug schließt, was alle Einsätze offen ließen</translation>
+    </message>
+    <message>
+        <source>is full; delete something there and send again</source>
+        <translation>ist voll; löschen Sie dort etwas und senden Sie erneut</translation>
     </message>
     <message>
         <source>is missing: a flight file or a log, or --photos with the photos themselves</source>
@@ -7234,6 +7453,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>matter Beton mit Lochfenstern</translation>
     </message>
     <message>
+        <source>may not be written ({0}); is the card locked by its slider, or the device by its screen?</source>
+        <translation>darf nicht beschrieben werden ({0}); ist die Karte durch ihren Schieber gesperrt oder das Gerät durch seinen Bildschirm?</translation>
+    </message>
+    <message>
         <source>mean</source>
         <translation>Mittel</translation>
     </message>
@@ -7270,6 +7493,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>der Schwarm bewegt sich</translation>
     </message>
     <message>
+        <source>name a plan or missions to send, or --list</source>
+        <translation>nennen Sie einen Plan oder Missionen zum Senden, oder --list</translation>
+    </message>
+    <message>
+        <source>name with --to where the mission goes; connected: {0}</source>
+        <translation>nennen Sie mit --to, wohin die Mission soll; angeschlossen: {0}</translation>
+    </message>
+    <message>
         <source>name: expected the name of an object of the model, got &apos;{0}&apos;</source>
         <translation>name: erwartet wird der Name eines Objekts des Modells, gefunden &apos;{0}&apos;</translation>
     </message>
@@ -7300,6 +7531,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>no building in this file has windows; {0}</source>
         <translation>kein Gebäude in dieser Datei hat Fenster; {0}</translation>
+    </message>
+    <message>
+        <source>no card or remote controller is connected; on Windows and macOS a controller that is connected by USB has no path: use its card</source>
+        <translation>keine Karte oder Fernsteuerung ist angeschlossen; unter Windows und macOS hat eine per USB angeschlossene Fernsteuerung keinen Pfad: nehmen Sie ihre Karte</translation>
     </message>
     <message>
         <source>no choice as large from the viewpoints compared is expected to bring more than {0} dB</source>
@@ -7370,6 +7605,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>niemand hat gesagt, wo der Standort ist, oder wie groß: machen Sie sein Grobmodell noch einmal mit --origin und mit einer Strecke oder Passpunkten, oder setzen Sie seinen Ursprung im Reiter Standort, sobald seine Größe bekannt ist</translation>
     </message>
     <message>
+        <source>none begins so</source>
+        <translation>keine beginnt so</translation>
+    </message>
+    <message>
         <source>none of its {0} photos says where the camera looked; name the plan that was flown as well (--plan)</source>
         <translation>keines seiner {0} Fotos sagt, wohin die Kamera blickte; auch den geflogenen Plan nennen (--plan)</translation>
     </message>
@@ -7398,8 +7637,16 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>nicht zusammen mit Argument %s erlaubt</translation>
     </message>
     <message>
+        <source>not readable</source>
+        <translation>nicht lesbar</translation>
+    </message>
+    <message>
         <source>not ready to fly: see the errors above</source>
         <translation>nicht flugbereit: siehe die Fehler oben</translation>
+    </message>
+    <message>
+        <source>not sent, the aircraft would refuse it: {0}</source>
+        <translation>nicht gesendet, das Luftfahrzeug würde es ablehnen: {0}</translation>
     </message>
     <message>
         <source>not supported; expected an instance without fixed edges</source>
@@ -7634,6 +7881,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Erreichbarkeit</translation>
     </message>
     <message>
+        <source>read back and compared, files: {0}; take the device out by the system&apos;s eject before you pull it</source>
+        <translation>zurückgelesen und verglichen, Dateien: {0}; werfen Sie das Gerät aus, bevor Sie es abziehen</translation>
+    </message>
+    <message>
         <source>reading the IFC file</source>
         <translation>die IFC-Datei wird gelesen</translation>
     </message>
@@ -7682,8 +7933,24 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>die Wahrheit wird berechnet</translation>
     </message>
     <message>
+        <source>replaces what DJI Fly has as route {0}; its name and picture in DJI Fly stay the old ones; do not save it again in DJI Fly, which would write it anew</source>
+        <translation>ersetzt, was DJI Fly als Route {0} hat; Name und Bild in DJI Fly bleiben die alten; speichern Sie sie in DJI Fly nicht erneut, das würde sie neu schreiben</translation>
+    </message>
+    <message>
         <source>rest of sortie {0} from {1} on, {2}, {3} m, {4} min</source>
         <translation>Rest von Einsatz {0} ab {1}, {2}, {3} m, {4} min</translation>
+    </message>
+    <message>
+        <source>route &apos;{0}&apos;: expected the beginning of one route&apos;s id, {1}</source>
+        <translation>Route '{0}': erwartet wurde der Anfang der Kennung einer Route, {1}</translation>
+    </message>
+    <message>
+        <source>route {0} is named twice; each sortie needs one of its own</source>
+        <translation>Route {0} ist zweimal genannt; jeder Flug braucht eine eigene</translation>
+    </message>
+    <message>
+        <source>routes are named for DJI Fly only; {0} takes files by their names</source>
+        <translation>Routen werden nur für DJI Fly genannt; {0} nimmt Dateien nach ihrem Namen</translation>
     </message>
     <message>
         <source>routing</source>
@@ -7950,6 +8217,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>die Daten der Datei enden nicht (ENDSEC fehlt)</translation>
     </message>
     <message>
+        <source>the device was removed, or no longer answers ({0}); connect it and send again</source>
+        <translation>das Gerät wurde entfernt oder antwortet nicht mehr ({0}); schließen Sie es an und senden Sie erneut</translation>
+    </message>
+    <message>
         <source>the facade&apos;s horizon runs through its middle: it is seen edge-on, or the lines are wrong</source>
         <translation>der Horizont der Fassade geht durch ihre Mitte: sie ist von der Kante zu sehen, oder die Linien sind falsch</translation>
     </message>
@@ -8012,6 +8283,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the lower bound</source>
         <translation>die untere Schranke</translation>
+    </message>
+    <message>
+        <source>the mission is called &apos;{0}&apos; there: DJI&apos;s apps take no dots and underscores in names</source>
+        <translation>die Mission heißt dort '{0}': DJIs Apps nehmen keine Punkte und Unterstriche in Namen</translation>
     </message>
     <message>
         <source>the model misses the control points by {0} m in the median; a receiver without corrections measures them no better, else look at their coordinates, the order of east and north, and their pixels</source>
@@ -8146,6 +8421,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>der Standort hat keine Paneele</translation>
     </message>
     <message>
+        <source>the site that this plan was made for is not beside it; name its file, too</source>
+        <translation>der Ort, für den dieser Plan gemacht ist, liegt nicht daneben; nennen Sie auch seine Datei</translation>
+    </message>
+    <message>
         <source>the site would be written over the file it is imported from; name another file</source>
         <translation>der Standort würde über die Datei geschrieben, aus der er importiert wird; eine andere Datei nennen</translation>
     </message>
@@ -8202,8 +8481,16 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>&apos;{0}&apos; gibt es nicht; bekannt sind: {1}</translation>
     </message>
     <message>
+        <source>there is no folder or device &apos;{0}&apos;; connected: {1}</source>
+        <translation>es gibt keinen Ordner und kein Gerät '{0}'; angeschlossen: {1}</translation>
+    </message>
+    <message>
         <source>there is no point {0}</source>
         <translation>es gibt keinen Punkt {0}</translation>
+    </message>
+    <message>
+        <source>there is no such folder or device; connect it and look again</source>
+        <translation>diesen Ordner oder dieses Gerät gibt es nicht; schließen Sie es an und sehen Sie erneut nach</translation>
     </message>
     <message>
         <source>there is one photo</source>
@@ -8212,6 +8499,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>this folder cannot be made or written into ({0}); name another</source>
         <translation>dieser Ordner kann nicht angelegt oder beschrieben werden ({0}); einen anderen nennen</translation>
+    </message>
+    <message>
+        <source>this looks like the card of a camera (it has a folder DCIM); DJI Pilot 2 reads the card in the remote controller</source>
+        <translation>das sieht nach der Karte einer Kamera aus (sie hat einen Ordner DCIM); DJI Pilot 2 liest die Karte in der Fernsteuerung</translation>
     </message>
     <message>
         <source>time goes back in the log, by {0} s at most; what it says was put in order</source>
@@ -8262,6 +8553,22 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Flugweg</translation>
     </message>
     <message>
+        <source>waypoints: {0}</source>
+        <translation>Wegpunkte: {0}</translation>
+    </message>
+    <message>
+        <source>what is read back is not what was written (it differs from byte {0} on); the card may be broken: use another one</source>
+        <translation>was zurückgelesen wird, ist nicht, was geschrieben wurde (es weicht ab Byte {0} ab); die Karte kann defekt sein: nehmen Sie eine andere</translation>
+    </message>
+    <message>
+        <source>what is there now is not the plan when it is read; do not fly it</source>
+        <translation>was jetzt dort ist, liest sich nicht als der Plan; fliegen Sie es nicht</translation>
+    </message>
+    <message>
+        <source>what is to be replaced cannot be copied here first ({0}); nothing was sent</source>
+        <translation>was ersetzt werden soll, kann nicht zuerst hierher kopiert werden ({0}); nichts wurde gesendet</translation>
+    </message>
+    <message>
         <source>what only single photos show</source>
         <translation>was nur einzelne Fotos zeigen</translation>
     </message>
@@ -8272,6 +8579,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>without an element in this file, so not written: {0}</source>
         <translation>ohne Element in dieser Datei, also nicht geschrieben: {0}</translation>
+    </message>
+    <message>
+        <source>writing</source>
+        <translation>schreiben</translation>
     </message>
     <message>
         <source>writing the coarse model</source>
@@ -8302,6 +8613,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>{0} % dessen, was die Scheiben spiegeln, sind Boden und Körper des Standorts, im Median {1} m entfernt</translation>
     </message>
     <message>
+        <source>{0} ({1}): {2}</source>
+        <translation>{0} ({1}): {2}</translation>
+    </message>
+    <message>
         <source>{0} (± {1} dB)</source>
         <translation>{0} (± {1} dB)</translation>
     </message>
@@ -8312,6 +8627,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>{0} batteries</source>
         <translation>{0} Akkus</translation>
+    </message>
+    <message>
+        <source>{0} begin so</source>
+        <translation>{0} beginnen so</translation>
     </message>
     <message>
         <source>{0} bytes of the log are no messages and were skipped</source>
@@ -8396,6 +8715,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>{0} was {1} and is {2} now</source>
         <translation>{0} war {1} und ist jetzt {2}</translation>
+    </message>
+    <message>
+        <source>{0} waypoints in a route; remote controllers with DJI Fly fail above {1}</source>
+        <translation>{0} Wegpunkte in einer Route; Fernsteuerungen mit DJI Fly versagen über {1}</translation>
     </message>
     <message>
         <source>{0} workers ended while they rendered it, perhaps for want of memory</source>
