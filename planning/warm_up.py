@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import itertools
 from dataclasses import replace
+from datetime import UTC, datetime, timedelta
 
 import numpy as np
 
@@ -12,13 +13,15 @@ from planning.aircraft.catalogue import profile
 from planning.checks import check_plan
 from planning.coverage.model import CoverageModel
 from planning.coverage.sections import PanelFrames, SectionGrid, panel_frames
+from planning.geo.sun import sun_track
 from planning.insight.clearance import route_clearance
 from planning.insight.obstructions import first_obstructions_hit, obstructions_of
 from planning.insight.reasons import section_reasons
 from planning.insight.sections import panel_sampling
+from planning.insight.sunlight import MIRRORS, SunSite, sun_day
 from planning.motion import speed_profile
 from planning.parameters import DEFAULT_PROFILE, Constraints, GreedyParameters, Precision
-from planning.plan import Sortie, ViewpointArrays
+from planning.plan import Sortie, Viewpoint, ViewpointArrays
 from planning.planner import plan_flight
 from planning.request import PlanRequest
 from planning.routing import at_once, lower_bound, orienteering, sorties, tour
@@ -40,6 +43,10 @@ def _analyse() -> None:
     ends = space.home_enu_m[None], space.column_top_enu_m[None]
     first_obstructions_hit(space.solids, obstructions.solid_owner, *ends)
     space.solids.lines_free(*ends)
+    noon = datetime(2026, 6, 21, 4, tzinfo=UTC)
+    track = sun_track(model.site.origin.lat_deg, model.site.origin.lon_deg, noon, noon + timedelta(minutes=10))
+    view = Viewpoint("v", (0.0, -20.0, 5.0), 0.0, 0.0)
+    sun_day(SunSite(model), track, (view,), camera, {MIRRORS: "on"})
 
 
 LONG_ENOUGH_S = 60.0

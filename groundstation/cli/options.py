@@ -321,7 +321,7 @@ def checked_seed(seed: int) -> int:
 def add_day(parser: argparse.ArgumentParser) -> None:
     """Options that say what is known of the day of the flight."""
     add = parser.add_argument
-    add("--at", metavar="TIME", help="middle of the flight, such as 2026-06-21T10:30 or 2026-06-21T10:30+02:00")
+    add("--at", metavar="TIME", help="take-off of the first sortie, such as 2026-06-21T10:30 or 2026-06-21T10:30+02:00")
     add("--temperature", type=number, metavar="C", help="of air and batteries, degrees Celsius")
 
 

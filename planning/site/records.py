@@ -35,6 +35,9 @@ MIN_PANEL_AREA_M2 = 1e-4
 MAX_PANEL_WARP_M = 0.05
 """A corner may lie this far off the mean plane of its panel (cold-bent glass reaches a few centimetres)."""
 
+MAX_TILT_DEG = 10.0
+"""A pane that leans further from its corners was not measured but mistaken."""
+
 
 def check_point(point: Vec3, name: str) -> None:
     """Raise `ValueError` naming `name` unless `point` is finite and local."""
@@ -59,17 +62,30 @@ class Panel:
     """One glass panel: four corners, counter-clockwise seen from outside, so (c2-c0) x (c3-c1) points outwards.
 
     `source_id` names the object the panel was imported from (an IFC GlobalId, a gml:id), where it was imported.
+    `tilt_deg` is how far its glass leans from the plane of its corners to the right (along the edge from c0 to c1) and
+    upwards, where that was measured: its normal is along n + tilt_right right + tilt_up up.
     """
 
     id: str
     corners_enu_m: tuple[Vec3, Vec3, Vec3, Vec3]
     source_id: str | None = None
+    tilt_deg: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
         if not self.id:
             raise ValueError(say("expected a name, got an empty text", place="id"))
         for i, corner in enumerate(self.corners_enu_m):
             check_point(corner, f"corners_enu_m[{i}]")
+        if self.tilt_deg is not None and not all(abs(tilt) <= MAX_TILT_DEG for tilt in self.tilt_deg):
+            raise ValueError(
+                say(
+                    "expected -{:g} to {:g} degrees, got {}",
+                    MAX_TILT_DEG,
+                    MAX_TILT_DEG,
+                    self.tilt_deg,
+                    place="tilt_deg",
+                )
+            )
         # Plain numbers: NumPy takes ten times as long for four points, and large sites have thousands of panels.
         corners = self.corners_enu_m
         area_vector = _scaled(0.5, _cross(_minus(corners[2], corners[0]), _minus(corners[3], corners[1])))

@@ -42,6 +42,8 @@ COMMANDS = {
     "export --site": (("export", "plan.json", "--format", "csv", "-o", "out", "--site", ...), "a site file", {"site"}),
     "brief PLAN": (("brief", ..., "site.json", "-o", "out.html"), "a plan file", {"plan"}),
     "brief SITE": (("brief", "plan.json", ..., "-o", "out.html"), "a site file", {"site"}),
+    "sun PLAN": (("sun", ..., "site.json"), "a plan file", {"plan"}),
+    "sun SITE": (("sun", ...), "a site file", {"site"}),
     "compare first": (("compare", ..., "other.json", "--site", "site.json"), "a plan file", {"plan"}),
     "compare next": (("compare", "other.json", ..., "--site", "site.json"), "a plan file", {"plan", *MISSIONS}),
     "compare --site": (("compare", "plan.json", "other.json", "--site", ...), "a site file", {"site"}),

@@ -17,10 +17,10 @@ from groundstation.services.jobs.runner import JobRunner
 from groundstation.services.project.document import Document, Item, ItemKind, PlanEntry
 from groundstation.services.project.session import Session
 from groundstation.services.scenes import preview as photo_preview
-from groundstation.services.site.sun import sun_place_deg
 from groundstation.services.units import UnitSystem
 from planning.base.errors import InputError
 from planning.geo.frames import Origin
+from planning.geo.sun import sun_place_deg
 from planning.plan import Coverage, Plan
 from planning.site.bundled import office
 from planning.site.records import SiteModel

@@ -23,8 +23,8 @@ from PySide6.QtWidgets import (
 from groundstation.gui.view3d.orbit import Pinhole
 from groundstation.gui.widgets.inputs import ChoiceBox, NumberBox, calm, moment_of
 from groundstation.gui.widgets.theme import colours
-from groundstation.services.site.sun import sun_place_deg
 from planning.geo.frames import Origin
+from planning.geo.sun import sun_place_deg
 from reconstruction.scenes.world.look import Look
 
 # What lies over the preview: the rendered photo with panels' outlines, cross, horizon, figures, and the shutter.

@@ -17,20 +17,21 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from groundstation.services.site.sun import sun_place_deg
 from groundstation.services.units import UnitSystem, length_unit, minutes_text, sampling_unit, speed_unit
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.items import photos_that_fit
 from planning.base.findings import Finding, Severity, is_flyable
-from planning.base.messages import say
+from planning.base.messages import Message, glue, say
 from planning.base.progress import QUIET, Monitor
 from planning.checks import check_case
 from planning.checks.case import Case, pose_of
-from planning.geo.frames import Vec3, camera_axes
+from planning.geo.sun import is_within, sun_place_deg, sun_track
+from planning.insight.sun_times import PAUSE_S, SortieSun, flight_times, flown_from, sorties_in_sun
+from planning.insight.sunlight import BLINDING_RAD, SunDay, SunSite, sun_day
 from planning.plan import Plan
 from planning.planner import resplit_sorties
 from planning.revision.top_up import METHOD as TOP_UP
-from planning.site.records import SiteModel, panel_corners
+from planning.site.records import SiteModel
 
 # Sorties with more photos than an autopilot keeps items for: found before a link is opened, and shared out anew.
 
@@ -129,11 +130,6 @@ NEAR_GLASS_M = 6.0
 WARM_C, LOST_PER_C = 27.0, 0.5 / 45.0
 """Lithium-ion cells give half of their charge of 27 C at -18 C, evenly in between (Battery University, BU-502)."""
 
-SHADOW_M = 500.0
-"""How far along the way to the sun something that hides it is looked for."""
-
-DAY_STEP = timedelta(minutes=30)
-
 
 class Readiness(StrEnum):
     """The verdict."""
@@ -158,7 +154,7 @@ class FlightDay:
     Parameters
     ----------
     at
-        The middle of the flight, with its time zone; None where nobody said.
+        Take-off of the first sortie, with its time zone; None where nobody said.
     temperature_c
         Of air and batteries; None where nobody said.
     """
@@ -266,136 +262,79 @@ def _glass(case: Case) -> Iterator[Finding]:
 
 
 def _sun(case: Case, at: datetime | None) -> Iterator[Finding]:
-    if not case.plan.viewpoints:
+    plan = case.plan
+    if not plan.viewpoints:
         return
     if at is None:
         yield Finding(Severity.NOTE, "sun", say("where the sun stands is not looked at: no time is planned (--at)"))
         return
     origin = case.site_model.site.origin
-    _, elevation_deg = sun_place_deg(origin.lat_deg, origin.lon_deg, at)
-    if elevation_deg <= 0.0:
+    flight_s = sum(sortie.duration_s + PAUSE_S for sortie in plan.sorties)
+    midnight = at.replace(hour=0, minute=0, second=0, microsecond=0)
+    stop = max(midnight + timedelta(days=1), at + timedelta(seconds=flight_s + 60.0))
+    site = SunSite(case.site_model)
+    day = sun_day(site, sun_track(origin.lat_deg, origin.lon_deg, midnight, stop), plan.viewpoints, plan.camera)
+    start_s = day.track.seconds(at)
+    if not is_within(day.track.up, start_s):
+        _, elevation_deg = sun_place_deg(origin.lat_deg, origin.lon_deg, at)
         text = say("the sun is below the horizon ({:.0f} degrees) at the planned time", elevation_deg)
         yield Finding(Severity.WARNING, "sun", text, "", elevation_deg, 0.0, "deg")
         return
-    dazzled = dazzled_views(case, at)
-    total = len(case.plan.viewpoints)
-    if not dazzled.all():
-        best, n_best = _best_time(case, at)
-        better = say("; at {:%H:%M} it would be {}", best, n_best) if n_best < dazzled.count else ""
-        if dazzled.direct:
-            text = say(
-                "the sun is in the picture of {} of {} photos at the planned time{}", len(dazzled.direct), total, better
-            )
-            n = float(len(dazzled.direct))
-            yield Finding(Severity.WARNING, "sun-direct", text, dazzled.direct[0], n, 0.0, "photos")
-        if dazzled.mirrored:
-            text = say(
-                "glass mirrors the sun into {} of {} photos at the planned time{}", len(dazzled.mirrored), total, better
-            )
-            n = float(len(dazzled.mirrored))
-            yield Finding(Severity.WARNING, "sun-mirrored", text, dazzled.mirrored[0], n, 0.0, "photos")
-    else:
+    sorties = sorties_in_sun(site, day, plan)
+    found = flown_from(sorties, day, start_s)
+    spoiled = [*found.direct, *found.mirrored, *found.uneven]
+    better = _better_times(sorties, day, len(set(spoiled))) if spoiled or found.blinded_s else glue()
+    total = len(plan.viewpoints)
+    for code, ids, text in (
+        (
+            "sun-direct",
+            found.direct,
+            say("the sun is in the picture of {} of {} photos with take-off at {:%H:%M}", len(found.direct), total, at),
+        ),
+        (
+            "sun-mirrored",
+            found.mirrored,
+            say("glass mirrors the sun into {} of {} photos with take-off at {:%H:%M}", len(found.mirrored), total, at),
+        ),
+        (
+            "sun-uneven",
+            found.uneven,
+            say(
+                "{} of {} photos show a facade half in the sun with take-off at {:%H:%M}", len(found.uneven), total, at
+            ),
+        ),
+    ):
+        if ids:
+            yield Finding(Severity.WARNING, code, glue(text, better), ids[0], float(len(ids)), 0.0, "photos")
+    if found.blinded_s:
+        text = say(
+            "the sun stands within {:.0f} degrees of the aircraft as the pilot sees it from home for {:.0f} s with "
+            "take-off at {:%H:%M}: fly at another time, or with an observer who stands elsewhere",
+            *(math.degrees(BLINDING_RAD), found.blinded_s, at),
+        )
+        yield Finding(Severity.WARNING, "sun-pilot", glue(text, better), "", found.blinded_s, 0.0, "s")
+    if not found.landed_in_light:
+        yield Finding(Severity.WARNING, "sun", say("the sun sets before the last sortie has landed"))
+    if not spoiled and not found.blinded_s and found.landed_in_light:
         text = say("the sun is in no photo at the planned time, and no glass mirrors it into one")
+        _, elevation_deg = sun_place_deg(origin.lat_deg, origin.lon_deg, at)
         yield Finding(Severity.OK, "sun", text, "", elevation_deg, 0.0, "deg")
 
 
-@dataclass(frozen=True, slots=True)
-class Dazzled:
-    """Viewpoints whose photos show the sun itself, or its mirror image in a panel."""
-
-    direct: tuple[str, ...]
-    mirrored: tuple[str, ...]
-
-    @property
-    def count(self) -> int:
-        """Photos that show it in either way."""
-        return len({*self.direct, *self.mirrored})
-
-    def all(self) -> bool:
-        """Whether no photo does."""
-        return not self.direct and not self.mirrored
+MOST_TIMES = 4
+"""Of take-offs that a finding names."""
 
 
-def sun_direction_enu(lat_deg: float, lon_deg: float, at: datetime) -> Vec3:
-    """Unit vector towards the sun, local ENU."""
-    heading_deg, elevation_deg = sun_place_deg(lat_deg, lon_deg, at)
-    heading, elevation = math.radians(heading_deg), math.radians(elevation_deg)
-    flat = math.cos(elevation)
-    return (flat * math.sin(heading), flat * math.cos(heading), math.sin(elevation))
-
-
-def dazzled_views(case: Case, at: datetime) -> Dazzled:
-    """The viewpoints of a plan whose photos show the sun at a time, directly or mirrored by a panel.
-
-    A pane mirrors a sun in direction s, in front of it, for whoever looks along d = s - 2 (s . n) n; it does so into a
-    photo where the ray from the camera along d meets the pane, d lies in the picture, and nothing hides the sun there.
-    """
-    origin = case.site_model.site.origin
-    sun = np.array(sun_direction_enu(origin.lat_deg, origin.lon_deg, at))
-    views = case.plan.viewpoints
-    if sun[2] <= 0.0 or not views:
-        return Dazzled((), ())
-    places = np.array([view.position_enu_m for view in views])
-    axes = camera_axes(
-        np.radians([view.heading_deg for view in views]), np.radians([view.gimbal_pitch_deg for view in views])
-    )
-    camera = case.plan.camera
-    half = (
-        camera.sensor_width_mm / (2.0 * camera.focal_length_mm),
-        camera.sensor_height_mm / (2.0 * camera.focal_length_mm),
-    )
-    direct = [
-        views[n].id for n in np.flatnonzero(_in_picture(axes, sun, half)) if _is_lit(case, places[n : n + 1], sun)[0]
-    ]
-    mirrored: set[int] = set()
-    corners = panel_corners(case.site_model.site)
-    across = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
-    normals = across / np.linalg.norm(across, axis=1, keepdims=True)
-    for normal in np.unique(np.round(normals, 6), axis=0):
-        if sun @ normal <= 0.0:
-            continue
-        ray = sun - 2.0 * (sun @ normal) * normal
-        seen = np.flatnonzero(_in_picture(axes, ray, half))
-        of_normal = np.flatnonzero(np.abs(normals - normal).max(axis=1) < 1e-5)
-        for n in seen:
-            points = _meets(places[n], ray, corners[of_normal], normal)
-            if len(points) and _is_lit(case, points + 1e-3 * normal, sun).any():
-                mirrored.add(int(n))
-    return Dazzled(tuple(direct), tuple(views[n].id for n in sorted(mirrored)))
-
-
-def _in_picture(axes: tuple[Array, Array, Array], direction: Array, half: tuple[float, float]) -> NDArray[np.bool_]:
-    """Whether a direction lies in the picture of each camera, shape (n,)."""
-    forward, right, up = axes
-    depth = forward @ direction
-    return (depth > 0.0) & (np.abs(right @ direction) <= half[0] * depth) & (np.abs(up @ direction) <= half[1] * depth)
-
-
-def _meets(place: Array, ray: Array, corners: Array, normal: Array) -> Array:
-    """Where a ray from a place meets panels of one normal, shape (k, 3); corners of shape (m, 4, 3)."""
-    ahead = ((corners[:, 0] - place) @ normal) / (ray @ normal)
-    points = place + ahead[:, None] * ray
-    edges = np.roll(corners, -1, axis=1) - corners
-    inward = np.cross(normal, edges)
-    is_inside = (np.einsum("mki,mki->mk", inward, points[:, None] - corners) >= 0.0).all(axis=1)
-    return np.asarray(points[is_inside & (ahead > 0.0)])
-
-
-def _is_lit(case: Case, points: Array, sun: Array) -> NDArray[np.bool_]:
-    """Whether nothing of the site stands between points, shape (n, 3), and the sun."""
-    start = points + 1e-2 * sun
-    return np.asarray(case.space.solids.segment_distances_m(start, start + SHADOW_M * sun, 1.0) > 0.0)
-
-
-def _best_time(case: Case, at: datetime) -> tuple[datetime, int]:
-    """The time of that day with the fewest dazzled photos, the nearest to `at` of equals, while the sun is well up."""
-    origin = case.site_model.site.origin
-    start = at.replace(hour=0, minute=0, second=0, microsecond=0)
-    times = [start + n * DAY_STEP for n in range(48)]
-    up = [time for time in times if sun_place_deg(origin.lat_deg, origin.lon_deg, time)[1] > 10.0] or [at]
-    counts = [(dazzled_views(case, time).count, abs(time - at), time) for time in up]
-    n_best, _, best = min(counts)
-    return best, n_best
+def _better_times(sorties: Sequence[SortieSun], day: SunDay, n_now: int) -> Message:
+    """Take-offs of that day that spoil fewer photos, and how many; nothing where there are none."""
+    times = flight_times(sorties, day)
+    starts = [each.start_s for each in times.sorties if each.start_s is not None]
+    n_best = sum(int(each.spoiled.photos[0]) for each in times.sorties if each.spoiled is not None)
+    if len(starts) < len(times.sorties) or n_best >= n_now:
+        return glue()
+    texts = [f"{day.track.time(start):%H:%M}" for start in starts]
+    more = ["..."] if len(texts) > MOST_TIMES else []
+    return say("; with take-off at {} it would be {}", ", ".join((*texts[:MOST_TIMES], *more)), n_best)
 
 
 # Cold

@@ -1,33 +1,32 @@
 """One verdict on a plan: what the day, the place and the aircraft add to the rules of planning."""
 
-import math
+import re
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from functools import cache
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from groundstation.services.mission.readiness import (
     FlightDay,
     Readiness,
     charge_at,
-    dazzled_views,
     preflight,
     readiness_findings,
     readiness_of,
-    sun_direction_enu,
 )
 from groundstation.services.site.edits import HeightReference, set_origin
 from planning.base.findings import Finding, Severity
 from planning.checks.case import Case
-from planning.geo.frames import camera_axes
+from planning.geo.sun import sun_directions_enu
 from planning.plan import Viewpoint
 from planning.planner import plan_flight
 from planning.request import PlanRequest
 from planning.revision.top_up import METHOD as TOP_UP
+from tests.planning.insight.sun_cases import aimed
 from tests.planning.plan_cases import kiosk
 from tests.planning.revision.cases import QUICK
 
@@ -122,110 +121,15 @@ def test_glass_is_not_seen_by_obstacle_sensing_and_near_it_that_is_a_warning():
 # Sun
 
 
-def aimed(name, place, direction):
-    """A view from a place along a direction."""
-    d = np.array(direction) / np.linalg.norm(direction)
-    return Viewpoint(
-        name, tuple(map(float, place)), math.degrees(math.atan2(d[0], d[1])), math.degrees(math.asin(d[2]))
-    )
-
-
-def panel_of(model):
-    """Centre and outward normal of a panel."""
+def into_the_mirror(model, at):
+    """A view of a panel, from where it shows the sun at a time."""
     corners = np.array(model.site.panels[0].corners_enu_m)
     normal = np.cross(corners[2] - corners[0], corners[3] - corners[1])
-    return corners.mean(axis=0), normal / np.linalg.norm(normal)
-
-
-def sunny_time(model, normal):
-    """A time at which the sun stands low, in front of a panel."""
+    normal /= np.linalg.norm(normal)
     origin = model.site.origin
-    for hours in range(24 * 365):
-        at = datetime(2026, 1, 1, tzinfo=UTC) + timedelta(hours=hours)
-        sun = np.array(sun_direction_enu(origin.lat_deg, origin.lon_deg, at))
-        if 0.05 < sun[2] < 0.25 and sun @ normal > 0.5:
-            return at, sun
-    raise AssertionError("the panel never looks into the sun")
-
-
-def test_a_view_into_the_sun_and_one_into_its_mirror_image_are_found_and_others_are_not():
-    model, _ = planned()
-    centre, normal = panel_of(model)
-    at, sun = sunny_time(model, normal)
-    mirror_ray = sun - 2.0 * (sun @ normal) * normal
-    place = centre - 12.0 * mirror_ray
-    views = (
-        aimed("into-the-sun", place, sun),
-        aimed("into-the-mirror", place, mirror_ray),
-        aimed("away", place, np.cross(sun, mirror_ray) + np.array([0.0, 0.0, 0.01])),
-    )
-    found = dazzled_views(with_views(*views), at)
-    assert found.direct == ("into-the-sun",)
-    assert "into-the-mirror" in found.mirrored
-    assert "away" not in (*found.direct, *found.mirrored)
-    assert not dazzled_views(with_views(*views, obstacles=planned()[0].site.obstacles), at).mirrored, (
-        "the tree shades it"
-    )
-    # A metre beside the pane there is no glass to mirror it.
-    corners = np.array(model.site.facades[0].panels[0].corners_enu_m)
-    aside = aimed(
-        "beside", place + 40.0 * (corners[1] - corners[0]) / np.linalg.norm(corners[1] - corners[0]), mirror_ray
-    )
-    assert not dazzled_views(with_views(aside), at).mirrored
-
-
-def slow_mirrored(case, views, sun):
-    """Views whose picture shows the sun in a pane, by reflecting many rays through each picture one by one."""
-    camera, found = case.plan.camera, set()
-    corners = np.array([panel.corners_enu_m for panel in case.site_model.site.panels])
-    for view in views:
-        forward, right, up = (
-            axis.reshape(3) for axis in camera_axes(math.radians(view.heading_deg), math.radians(view.gimbal_pitch_deg))
-        )
-        for quad in corners:
-            normal = np.cross(quad[2] - quad[0], quad[3] - quad[1])
-            normal = normal / np.linalg.norm(normal)
-            # The sun's mirror image lies as far behind the pane as the sun before it.
-            image = np.array(view.position_enu_m) + 1e9 * sun
-            image = image - 2.0 * ((image - quad[0]) @ normal) * normal
-            ray = image - np.array(view.position_enu_m)
-            ray = ray / np.linalg.norm(ray)
-            depth = ray @ forward
-            if depth <= 0.0 or sun @ normal <= 0.0:
-                continue
-            if abs(ray @ right) > camera.sensor_width_mm / (2 * camera.focal_length_mm) * depth:
-                continue
-            if abs(ray @ up) > camera.sensor_height_mm / (2 * camera.focal_length_mm) * depth:
-                continue
-            ahead = ((quad[0] - view.position_enu_m) @ normal) / (ray @ normal)
-            if ahead <= 0.0:
-                continue
-            point = np.array(view.position_enu_m) + ahead * ray
-            if all(np.cross(quad[(k + 1) % 4] - quad[k], point - quad[k]) @ normal >= -1e-6 for k in range(4)):
-                found.add(view.id)
-    return found
-
-
-@pytest.mark.slow
-@settings(max_examples=20)
-@given(st.integers(0, 8759), st.integers(0, 2**32 - 1))
-def test_mirrored_suns_are_those_of_a_slow_reference(hour, seed):
-    model, _ = planned()
-    origin = model.site.origin
-    at = datetime(2026, 1, 1, tzinfo=UTC) + timedelta(hours=hour)
-    sun = np.array(sun_direction_enu(origin.lat_deg, origin.lon_deg, at))
-    rng = np.random.default_rng(seed)
-    centre, normal = panel_of(model)
-    views = []
-    for n in range(12):
-        place = centre + rng.uniform(6, 20) * (normal + 0.6 * rng.standard_normal(3))
-        views.append(aimed(f"v{n}", place, centre + rng.uniform(-3, 3, 3) - place))
-    scene = with_views(*views)
-    found = set(dazzled_views(scene, at).mirrored)
-    expected = slow_mirrored(scene, views, sun) if sun[2] > 0.0 else set()
-    # The reference knows no shadows: what it finds besides must lie in one.
-    assert found <= expected
-    assert found == expected or sun[2] < 0.9
+    sun = sun_directions_enu(origin.lat_deg, origin.lon_deg, at, 0.0)
+    ray = sun - 2.0 * (sun @ normal) * normal
+    return aimed("v0", corners.mean(axis=0) - 12.0 * ray, ray), aimed("v1", corners.mean(axis=0) - 12.0 * ray, sun)
 
 
 def test_without_a_time_the_sun_is_said_not_to_be_looked_at_and_at_night_that_it_is_down():
@@ -236,14 +140,23 @@ def test_without_a_time_the_sun_is_said_not_to_be_looked_at_and_at_night_that_it
 
 
 def test_a_dazzled_flight_is_told_with_a_better_time_of_the_day():
-    model, _ = planned()
-    centre, normal = panel_of(model)
-    at, sun = sunny_time(model, normal)
-    ray = sun - 2.0 * (sun @ normal) * normal
-    view = aimed("v0", centre - 12.0 * ray, ray)
-    found = of("sun-mirrored", readiness_findings(with_views(view), FlightDay(at)))
-    assert [finding.value for finding in found] == [1.0]
-    assert "it would be 0" in found[0].message
+    at = datetime(2026, 12, 21, 1, 0, tzinfo=UTC)
+    mirrored, direct = into_the_mirror(planned()[0], at)
+    found = readiness_findings(with_views(mirrored, direct), FlightDay(at))
+    (glass,), (sun,) = of("sun-mirrored", found), of("sun-direct", found)
+    assert (glass.value, glass.place, sun.value, sun.place) == (1.0, "v0", 1.0, "v1")
+    assert "it would be 0" in glass.message
+    better = re.search(r"take-off at (\d\d):(\d\d) it", glass.message)
+    later = at.replace(hour=int(better[1]), minute=int(better[2]))
+    assert [
+        each.severity for each in of("sun", readiness_findings(with_views(mirrored, direct), FlightDay(later)))
+    ] == [Severity.OK]
+
+
+def test_a_flight_into_the_night_is_told():
+    at = datetime(2026, 12, 21, 9, 43, tzinfo=UTC)
+    (found,) = of("sun", readiness_findings(case(), FlightDay(at)))
+    assert "sets before the last sortie has landed" in found.message
 
 
 @pytest.mark.parametrize("at", [datetime(2026, 1, 1), "now"])
