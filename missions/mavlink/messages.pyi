@@ -286,6 +286,14 @@ class MissionSetCurrent(Message):
     target_component: int
     seq: int
 
+# FILE_TRANSFER_PROTOCOL (110). `payload` is MAVFTP's own frame (`ftp.py`).
+@dataclass(frozen=True, slots=True)
+class FileTransferProtocol(Message):
+    target_system: int
+    target_component: int
+    payload: tuple[int, ...]
+    target_network: int = ...
+
 # GLOBAL_POSITION_INT (33). `alt` is above mean sea level.
 @dataclass(frozen=True, slots=True)
 class GlobalPositionInt(Message):

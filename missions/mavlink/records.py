@@ -92,6 +92,8 @@ MESSAGES: Mapping[str, Mapping[str, Any]] = {
     "MissionCurrent": _zeros(_LISTS),
     "MissionItemReached": {},
     "MissionSetCurrent": {},
+    # Files on the vehicle
+    "FileTransferProtocol": {"target_network": 0},
     # Where it is and how it does
     "GlobalPositionInt": {},
     "LocalPositionNed": {},

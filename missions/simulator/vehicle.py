@@ -16,6 +16,7 @@ from missions.mavlink.messages import (
     Address,
     CommandInt,
     CommandLong,
+    FileTransferProtocol,
     Heartbeat,
     Message,
     MissionItemReached,
@@ -33,11 +34,13 @@ from missions.simulator.airframe.state import Airframe, Pose
 from missions.simulator.autopilot.ardupilot_scheduler import ArduPilotScheduler
 from missions.simulator.autopilot.commands import Commands
 from missions.simulator.autopilot.failsafe import Failsafe
+from missions.simulator.autopilot.file_server import FileServer
 from missions.simulator.autopilot.guidance import DEG, Guidance, Place
 from missions.simulator.autopilot.instruments import Instruments, Telemetry
 from missions.simulator.autopilot.manoeuvres import CM, Manoeuvres, Returning
 from missions.simulator.autopilot.mission_store import MissionStores, TransferMessage
 from missions.simulator.autopilot.modes import FlightModes, ModeContext
+from missions.simulator.autopilot.onboard_log import Event, OnboardLog
 from missions.simulator.autopilot.parameters import ParameterTable
 from missions.simulator.autopilot.payload import Actions, CameraControl, GimbalControl
 from missions.simulator.autopilot.profiles import vehicle_profile
@@ -147,6 +150,8 @@ class SimulatedVehicle:
             lambda: len(self.stores.mission), unix_start_s,
         )  # fmt: skip
         self._telemetry = Telemetry(self.instruments)
+        self.log = OnboardLog(autopilot, self.place, unix_start_s)
+        self._file_server = FileServer(self.log.files)
         self._commands = Commands(
             autopilot, profile, self.modes, self.scheduler, actions, self.instruments, self._telemetry, self._say
         )
@@ -182,6 +187,8 @@ class SimulatedVehicle:
                 self._out += self._commands.receive_set_mode(message, source)
             case ParamSet() | ParamRequestRead() | ParamRequestList():
                 self._out += self.parameters.receive(message)
+            case FileTransferProtocol():
+                self._out += self._file_server.receive(message, source)
             case MissionSetCurrent():
                 self.scheduler.set_current(message.seq)
                 self._out.append(self.instruments.mission_current())
@@ -214,6 +221,8 @@ class SimulatedVehicle:
         self.camera.tick()
         self._failsafe.update()
         self.modes.update()
+        self.log.update(guidance.now_s, self.modes.is_armed, self.modes.mode, self._believed)
+        self._out += self._file_server.tick()
         if self._lift_off_s == math.inf and not self.modes.is_landed:
             self._lift_off_s = guidance.now_s
         if self.stores.is_receiving:
@@ -239,7 +248,12 @@ class SimulatedVehicle:
         return system in (0, self.address.system) and component in (0, self.address.component)
 
     def _say(self, severity: int, text: str) -> None:
+        self.log.note(Event(self.now_s, "text", text))
         self._out.append(Statustext(severity, text[:MAX_TEXT]))
+
+    def _believed(self) -> tuple[Pose, float]:
+        """Where the autopilot believes to be, its camera turned, and the charge that is left."""
+        return self.gimbal.turned(self.airframe.estimate), self.airframe.battery.remaining
 
     def _note_reached(self, seq: int) -> None:
         if self.autopilot is Autopilot.PX4:
@@ -270,3 +284,4 @@ class SimulatedVehicle:
         true = self.gimbal.turned(pose)
         self.shots.append(Shot(number, self._start_s + pose.time_s, true, exposure_s))
         self._out.append(self.instruments.photo_taken(number))
+        self.log.note(Event(self.now_s, "photo", number=number, pose=self._believed()[0]))

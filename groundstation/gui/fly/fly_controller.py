@@ -27,6 +27,7 @@ from groundstation.services.fly.events import (
     LinkState,
     LiveEvent,
     LiveView,
+    LogFetched,
     LogProblem,
     PhotoCounted,
     Request,
@@ -34,6 +35,7 @@ from groundstation.services.fly.events import (
     WarningRaised,
 )
 from groundstation.services.fly.flight import LiveFlight
+from groundstation.services.fly.flying import report_of_log
 from groundstation.services.fly.options import (
     ConnectionChoice,
     FlightSettings,
@@ -166,6 +168,13 @@ class AfterFlight(QObject):
         self._flown[id(plan)] = (plan, (*self.flown(plan), record))
         self._last, self._battery = (plan, site_model), battery
         self._on_board = None
+
+    def correct(self, plan: Plan, record: FlightRecord) -> None:
+        """The sortie that was flown last, as the vehicle's own log tells it: what the link lost is in it."""
+        known = self.flown(plan)
+        if known:
+            told = replace(record, sortie=known[-1].sortie, vehicle=known[-1].vehicle)
+            self._flown[id(plan)] = (plan, (*known[:-1], told))
 
     def charge(self, plan: Plan, number: int) -> float:
         """Charge of the battery that a sortie, from 1, begins with, 1 full: of a top-up, what the flight before left.
@@ -570,6 +579,8 @@ class FlyController(QObject):
             case LogProblem():
                 self._note(Severity.WARNING, self._words(event.text))
                 self._say(Severity.WARNING, event.text, "flight.log")
+            case LogFetched():
+                self._take_log(active, event)
             case FlightEnded():
                 self._take_end(active, event)
 
@@ -615,6 +626,29 @@ class FlyController(QObject):
             self._say(Severity.WARNING, event.problem, "flight.kept")
         active.took_off_s = None
         self.flightEnded.emit(event)
+
+    def _take_log(self, active: ActiveFlight, event: LogFetched) -> None:
+        """The vehicle's own log is here: report from it."""
+        path, case = event.path, active.sortie.case
+        if path is None:
+            self._note(Severity.ERROR, self._words(event.problem))
+            self._say(Severity.ERROR, event.problem, "flight.log")
+            return
+        proof = self.tr("proved by its checksum") if event.is_checked else self.tr("not proved: it knows no checksums")
+        self._note(Severity.OK, self.tr("vehicle's log: {0}, {1}").format(path, proof))
+
+        def work(context: JobContext) -> FlightEnded:
+            record, report, out = report_of_log(case, path, context)
+            return FlightEnded(active.sortie.orders.number, None, record, report, out)
+
+        def done(ended: FlightEnded) -> None:
+            if self.active is active and ended.record is not None:
+                active.ended = ended
+                self.after.correct(case.plan, ended.record)
+                self._context.say(Severity.OK, self.tr("The report is made from the vehicle's own log."))
+                self.flightEnded.emit(ended)
+
+        self._context.start(self.tr("Report"), work, done)
 
     def _note(self, severity: Severity, text: str) -> None:
         active = self.active

@@ -96,6 +96,9 @@ class FlightTexts(QObject):
         text = texts[view.phase]
         if not self._controller.is_for_shown_plan and not view.state.is_armed:
             return self.tr("This connection is for another plan. Disconnect, and connect for the plan that is shown.")
+        if view.fetching is not None:
+            what, done, total = view.fetching
+            return self.tr("{0} ({1:.1f} of {2:.1f} MB)").format(self._context.localized(what), done / 1e6, total / 1e6)
         what, done, total = view.doing
         if view.phase is Phase.UPLOADING and total > 0.0:
             return self.tr("{0} {1} ({2:.0f} of {3:.0f})").format(text, self._context.localized(what), done, total)
@@ -387,6 +390,7 @@ class FlyPage(QObject):
         self.report.topUpRequested.connect(controller.after.top_up)
         controller.after.restFound.connect(self._rest_found)
         self.report.resumeRequested.connect(controller.after.resume_sortie)
+        self.report.logRequested.connect(lambda: controller.request(Request.LOG))
         controller.stateChanged.connect(self._show_all)
         controller.viewChanged.connect(self._show_view)
         controller.photoCounted.connect(self._show_photo)
@@ -543,6 +547,7 @@ class FlyPage(QObject):
         )
         if not controller.is_connected:
             self.buttons.set_allowed(frozenset())
+            self.report.set_log(may_fetch=False, is_fetching=False)
             self.checks.set_checks(())
             self.band.hide()
         self._phase.setText(self._words.where_it_stands())
@@ -559,6 +564,8 @@ class FlyPage(QObject):
         else:
             self.checks.set_checks(())
         self.buttons.set_allowed(may if is_connected else frozenset())
+        may_fetch = is_connected and Request.LOG in view.may
+        self.report.set_log(may_fetch=may_fetch, is_fetching=view.fetching is not None)
         text = self._words.where_it_stands()
         if self._phase.text() != text:
             self._phase.setText(text)

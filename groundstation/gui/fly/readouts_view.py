@@ -16,6 +16,7 @@ from PySide6.QtWidgets import (
 )
 
 from groundstation.gui.widgets.scrolling import scrolled
+from groundstation.gui.widgets.tab_order import set_enabled
 from groundstation.gui.widgets.table_view import Column, RowModel, table_of
 from groundstation.services.fly.events import FlightEnded, LiveView, PhotoCounted, Readouts, ViewState
 from groundstation.services.units import UnitSystem, length_unit, minutes_text, per_cent, speed_unit
@@ -35,12 +36,13 @@ class ReportView(QWidget):
     -------
     picked(str)
         Identifier of a view.
-    topUpRequested(), resumeRequested()
+    topUpRequested(), resumeRequested(), logRequested()
     """
 
     picked = Signal(str)
     topUpRequested = Signal()  # noqa: N815  (Qt's own way of naming)
     resumeRequested = Signal()  # noqa: N815
+    logRequested = Signal()  # noqa: N815
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -60,17 +62,30 @@ class ReportView(QWidget):
         self.resume.setToolTip(self.tr("Plan the rest of the sortie that was interrupted, for a full battery"))
         self.top_up.clicked.connect(self.topUpRequested)
         self.resume.clicked.connect(self.resumeRequested)
+        self.log = QPushButton()
+        self.log.setToolTip(
+            self.tr("Fetch the autopilot's own log from its card, and report from it: it knows what the link lost")
+        )
+        self.log.clicked.connect(self.logRequested)
         side = QVBoxLayout()
         side.addWidget(scrolled(self._words), 1)
         buttons = QHBoxLayout()
-        for button in (self.top_up, self.resume):
+        for button in (self.top_up, self.resume, self.log):
             buttons.addWidget(button)
         side.addLayout(buttons)
         layout = QHBoxLayout(self)
         layout.setContentsMargins(4, 4, 4, 4)
         layout.addLayout(side, 2)
         layout.addWidget(self.table, 3)
+        self.set_log(may_fetch=False, is_fetching=False)
         self.set_ended(None)
+
+    def set_log(self, *, may_fetch: bool, is_fetching: bool) -> None:
+        """Offer to fetch the vehicle's own log, or to stop that."""
+        text = self.tr("Stop fetching") if is_fetching else self.tr("Vehicle's log")
+        if self.log.text() != text:
+            self.log.setText(text)
+        set_enabled(self.log, may_fetch)
 
     def set_ended(self, ended: FlightEnded | None) -> None:
         """Show a flight, or none."""

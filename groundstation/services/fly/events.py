@@ -38,6 +38,8 @@ class Request(StrEnum):
     RESUME = "resume"
     RETURN = "return"
     LAND = "land"
+    LOG = "log"
+    """Fetch the vehicle's own log of the last flight; asked for again while it comes: stop that."""
     DISCONNECT = "disconnect"
 
 
@@ -100,6 +102,8 @@ class LiveView:
         By identifier, in the order of flight.
     speed_up
         Of a simulation; 1 for a real vehicle.
+    fetching
+        How far the vehicle's own log has come, as `doing`; None while none is fetched.
     """
 
     link: LinkState
@@ -114,6 +118,7 @@ class LiveView:
     readouts: Readouts
     view_states: tuple[tuple[str, ViewState], ...]
     speed_up: float = 1.0
+    fetching: tuple[str, float, float] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -227,6 +232,23 @@ class FlightEnded:
     problem: str = ""
 
 
+@dataclass(frozen=True, slots=True)
+class LogFetched:
+    """The vehicle's own log is here, or did not come.
+
+    Parameters
+    ----------
+    path
+        None where it did not come; `problem` says why then.
+    is_checked
+        The vehicle's checksum proved it.
+    """
+
+    path: Path | None
+    is_checked: bool = False
+    problem: str = ""
+
+
 LiveEvent = (
     FlightChanged
     | PhotoCounted
@@ -236,5 +258,6 @@ LiveEvent = (
     | LinkChanged
     | LinkProblem
     | LogProblem
+    | LogFetched
     | FlightEnded
 )

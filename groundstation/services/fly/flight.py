@@ -30,6 +30,7 @@ from groundstation.services.fly.events import (
     LinkState,
     LiveEvent,
     LiveView,
+    LogFetched,
     LogProblem,
     PhotoCounted,
     Request,
@@ -37,11 +38,13 @@ from groundstation.services.fly.events import (
     WarningCleared,
     WarningRaised,
 )
+from groundstation.services.fly.onboard_logs import keep_logs
 from groundstation.services.fly.options import USUAL, FlightSettings
 from groundstation.services.fly.readouts import BEFORE_TAKE_OFF, allowed_requests, link_state, readouts
 from groundstation.services.fly.signing import signing_problem
 from groundstation.services.fly.sortie import LiveSortie
 from groundstation.vehicle.commands import CommandCall, CommandOutcome, set_mode_command
+from groundstation.vehicle.onboard_logs import NewestLog
 from groundstation.vehicle.preflight import OnBoard, is_ready, preflight_checks
 from groundstation.vehicle.setup import ParameterChange, message_requests
 from groundstation.vehicle.sortie.flight_run import FlightRun
@@ -55,6 +58,7 @@ from missions.flight.report_rules import DEFAULT_LIMITS, Limits
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.link import GROUND_HEARTBEAT, GROUND_STATION, HEARTBEAT_EVERY_S
 from missions.mavlink.messages import Address, Message, Received
+from missions.mavlink.transfer.exchange import Route
 from planning.base.errors import GroundStationError, LinkError
 from planning.base.messages import say
 from planning.base.progress import Clock
@@ -313,6 +317,7 @@ REFUSALS = {
     Request.RESUME: say("the vehicle is not in flight, so there is nothing to resume"),
     Request.RETURN: say("no vehicle was heard yet, so none can return"),
     Request.LAND: say("no vehicle was heard yet, so none can land"),
+    Request.LOG: say("logs are fetched on the ground only, from a vehicle that is heard and disarmed"),
     Request.DISCONNECT: say("there is no link"),
 }
 REACHED = {Request.UPLOAD: (Phase.CHECKING, Phase.READY), Request.START: (Phase.FLYING,)}
@@ -397,6 +402,8 @@ class LiveFlight:
         self._is_closing = False
         self._wire = LoggedLink(connection, folder, lambda text: publish(LogProblem(text)), clock, unix_clock)
         self._recordings = FlightRecordings(sortie.case, folder, flown)
+        self._folder = folder
+        self._log: NewestLog | None = None
         self._link = LinkState.OPENING
         self._view: LiveView | None = None
         self._shown_s = -math.inf
@@ -492,7 +499,11 @@ class LiveFlight:
                 break
             wait_s = 0.0
             yield from self._machine.receive(received)
+            if self._log is not None:
+                yield from self._log.receive(received)
         yield from self._machine.tick(self._wire.now_s())
+        if self._log is not None:
+            yield from self._log.cancel() if self._machine.state.is_armed else self._log.tick(self._wire.now_s())
 
     @property
     def _machine(self) -> FlightRun | Listener:
@@ -532,6 +543,8 @@ class LiveFlight:
             self._is_closing = True
         elif request is Request.UPLOAD:
             self._begin_run()
+        elif request is Request.LOG:
+            self._fetch_log()
         elif request is Request.START and self._run is not None:
             self._awaited = request
             self._run.begin()
@@ -555,11 +568,46 @@ class LiveFlight:
         for message in run.start(self._wire.now_s()):
             self._wire.send(message)
 
+    def _fetch_log(self) -> None:
+        """Begin to fetch the vehicle's own log, or stop that."""
+        autopilot, address = self._machine.state.autopilot, self._machine.state.address
+        if self._log is not None:
+            sent, self._log = self._log.cancel(), None
+            self._publish(Answered(Request.LOG, False, say("the log was not fetched: stopped")))
+        elif autopilot is not None and address is not None:
+            self._log = NewestLog(Route(GROUND_STATION, address), autopilot)
+            sent = self._log.start(self._wire.now_s())
+        else:
+            sent = []
+        for message in sent:
+            self._wire.send(message)
+
+    def _notice_log(self) -> None:
+        """Keep the vehicle's own log once it has come."""
+        log = self._log
+        if log is not None and self._machine.state.is_armed:
+            self._log = None
+            self._publish(LogFetched(None, problem=say("the log was not fetched: the vehicle is armed")))
+            return
+        if log is None or log.outcome is None:
+            return
+        self._log = None
+        try:
+            kept = keep_logs(log.outcome, self._folder)
+        except GroundStationError as error:
+            self._publish(LogFetched(None, problem=str(error)))
+            return
+        if kept:
+            self._publish(LogFetched(kept[0].path, kept[0].is_checked))
+        else:
+            self._publish(LogFetched(None, problem=log.outcome.problem))
+
     # What has happened
 
     def _notice(self) -> None:
         """Publish what is new."""
         self._notice_link()
+        self._notice_log()
         self._signing.look(self._wire.opened, is_heard=self._machine.state.heartbeat is not None)
         machine, run = self._machine, self._run
         self._events.photos(machine.state.photos, self._sortie.viewpoint_ids)
@@ -663,4 +711,5 @@ class LiveFlight:
             readouts=readouts(state, orders.surroundings[state.autopilot or Autopilot.ARDUPILOT]),
             view_states=self._coverage.states(self._sortie.viewpoint_ids, missing),
             speed_up=self._connection.speed_up,
+            fetching=None if self._log is None else self._log.progress,
         )

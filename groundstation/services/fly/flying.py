@@ -28,9 +28,10 @@ from groundstation.vehicle.sortie.run_records import RunOptions, RunOutcome, Run
 from missions.flight.flight_file import Flight, flight_of, write_flight
 from missions.flight.logs.flights import LogFlights
 from missions.flight.logs.read import read_log
+from missions.flight.outcome import FlightReport
 from missions.flight.photo_folder import read_photo_flights
 from missions.flight.record import FlightEvent, FlightRecord
-from missions.flight.report import report_flight
+from missions.flight.report import report_case, report_flight
 from missions.formats.encode import default_autopilot
 from missions.formats.options import ExportOptions
 from missions.mavlink.autopilots import Autopilot
@@ -57,6 +58,7 @@ from planning.base.findings import Finding
 from planning.base.json_file import check_output
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
+from planning.checks.case import Case
 from planning.photos.places import PhotoHeights
 from planning.plan import Plan
 from planning.site.file import is_planned_on
@@ -247,6 +249,23 @@ def report_files(
     if out is not None:
         write_flight(out, flight)
     return ReportedFlight(flight, found.findings, time.perf_counter() - started_s)
+
+
+def report_of_log(case: Case, path: Path, monitor: Monitor = QUIET) -> tuple[FlightRecord, FlightReport, Path]:
+    """The last flight of the vehicle's own log, compared with a plan; the flight file stands beside the log.
+
+    Raises
+    ------
+    InputError
+        The log cannot be read, holds no flight over this site, or the flight file cannot be written.
+    """
+    found = read_log(path, case.site_model.site, "takeoff", monitor)
+    record = found.records[-1]
+    timed = case.plan if found.autopilot is None else _timed(case.plan, case.site_model, found.autopilot)
+    report = report_case(case.with_plan(timed), (record,))
+    out = path.with_suffix(".json")
+    write_flight(out, flight_of(case.plan, case.site_model, (record,), report))
+    return record, report, out
 
 
 def _of_logs(logs: Sequence[Path], site: Site, heights: PhotoHeights, monitor: Monitor) -> LogFlights:

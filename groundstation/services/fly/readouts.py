@@ -36,7 +36,7 @@ def allowed_requests(
     if link is LinkState.LOST:
         return frozenset(allowed)
     if phase in BEFORE_TAKE_OFF and not state.is_armed:
-        allowed.add(Request.UPLOAD)
+        allowed |= {Request.UPLOAD, Request.LOG}
     if phase is Phase.READY and is_ready and not state.is_armed:
         allowed.add(Request.START)
     if state.is_armed and phase is not Phase.STARTING:

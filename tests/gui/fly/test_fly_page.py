@@ -800,3 +800,22 @@ def test_after_disconnecting_no_battery_and_no_height_is_shown_for_that_of_now(a
     assert "0/6" in shown, "what was photographed stays"
     connect(application, page)
     turn_until(application, lambda: "100%" in page.readouts.text())
+
+
+@pytest.mark.slow
+def test_the_vehicles_own_log_is_fetched_by_its_button_and_the_report_is_made_from_it(application, controller, page):
+    assert not page.report.log.isEnabled()
+    connect(application, page, speed_up=20.0)
+    take_off(application, page)
+    assert not page.report.log.isEnabled()
+    turn_until(application, lambda: has_landed(page))
+    turn_until(application, page.report.log.isEnabled)
+    live = page.controller.active.ended
+    click_on(controller.window, page.report.log)
+    turn_until(application, lambda: "vehicle's log: " in page.notes.texts())
+    assert "proved by its checksum" in page.notes.texts()
+    turn_until(application, lambda: page.controller.active.ended is not live)
+    ended = page.controller.active.ended
+    assert "Photos: 6 of 6 views" in page.report.text()
+    assert ended.path.with_suffix(".BIN").exists()
+    assert page.controller.after.flown(page.controller.plan)[-1].photos == ended.record.photos

@@ -59,10 +59,6 @@ def test_a_message_that_is_not_used_is_no_record() -> None:
         messages.Dragon  # type: ignore[attr-defined]  # noqa: B018
 
 
-if __name__ == "__main__":
-    STUB.write_text(stub())
-
-
 NOTES: Mapping[str, str] = {
     "Statustext": "`severity` 0 emergency to 7 debug; longer texts come in chunks with one `id`.",
     "RadioStatus": "Made by a telemetry radio itself: signal and noise at both ends, buffer left in percent.",
@@ -78,6 +74,7 @@ NOTES: Mapping[str, str] = {
     "MissionWritePartialList": "A part of the list will be written anew.",
     "MissionChanged": "Deprecated: the vehicle says that a list was changed, and by whom.",
     "MissionCurrent": "`total` 65535: no mission, 0: not told; the numbers of the lists are 0 where not told.",
+    "FileTransferProtocol": "`payload` is MAVFTP's own frame (`ftp.py`).",
     "GlobalPositionInt": "`alt` is above mean sea level.",
     "Attitude": "Yaw is clockwise from north.",
     "GpsRawInt": "`fix_type` 3 is 3-D, 4 DGPS, 5 RTK float, 6 RTK fixed.",
@@ -97,3 +94,7 @@ NOTES: Mapping[str, str] = {
     "MountOrientation": "Of older PX4s: `yaw` counts from the nose, `yaw_absolute` from north.",
 }
 """What autopilots make of a message, which its XML does not say."""
+
+
+if __name__ == "__main__":
+    STUB.write_text(stub())

@@ -13,12 +13,14 @@ from groundstation.services.fly.events import (
     FlightEnded,
     LinkChanged,
     LinkState,
+    LogFetched,
     LogProblem,
     PhotoCounted,
     Request,
     ViewState,
 )
 from groundstation.services.fly.flight import LiveFlight
+from groundstation.services.fly.flying import report_of_log
 from groundstation.services.fly.sortie import prepare_sortie
 from groundstation.vehicle.duration import items_duration_s
 from groundstation.vehicle.preflight import Verdict
@@ -306,3 +308,37 @@ def test_a_plan_that_breaks_a_rule_is_not_prepared_for_flight():
     wider = replace(plan.constraints, min_distance_m=80.0)
     with pytest.raises(MissionError, match="pre-flight rules, such as: smallest distance"):
         prepare_sortie(replace(plan, constraints=wider), model, 1)
+
+
+def test_the_vehicles_own_log_is_fetched_after_the_landing_and_reported(flight, tmp_path):
+    live, follower = flight()
+    fly(live, follower)
+    follower.until(lambda event: isinstance(event, PhotoCounted))
+    live.request(Request.LOG)
+    refused = follower.until(lambda event: isinstance(event, Answered) and event.request is Request.LOG)
+    assert (refused.is_accepted, "on the ground only" in refused.text) == (False, True)
+    ended = follower.until_ended()
+    follower.until_may(Request.LOG)
+    live.request(Request.LOG)
+    follower.until(lambda event: isinstance(event, FlightChanged) and event.view.fetching is not None)
+    fetched = follower.until(lambda event: isinstance(event, LogFetched))
+    assert fetched.is_checked
+    assert fetched.path.parent == tmp_path / "flights"
+    record, report, out = report_of_log(sortie().case, fetched.path)
+    assert [view.view_id for view in report.views if view.reason is Reason.TAKEN] == list(sortie().viewpoint_ids)
+    assert len(record.photos) == len(ended.record.photos)
+    assert read_flight(out).report.summary.n_taken == len(record.photos)
+
+
+@pytest.mark.slow
+def test_fetching_the_log_can_be_stopped_and_begun_again(flight):
+    live, follower = flight()
+    fly(live, follower)
+    follower.until_ended()
+    follower.until_may(Request.LOG)
+    live.request(Request.LOG)
+    live.request(Request.LOG)
+    stopped = follower.until(lambda event: isinstance(event, Answered) and event.request is Request.LOG)
+    assert "stopped" in stopped.text
+    live.request(Request.LOG)
+    assert follower.until(lambda event: isinstance(event, LogFetched)).is_checked
