@@ -20,6 +20,7 @@ from groundstation.gui.application.translate import QT_TRANSLATE_NOOP
 if TYPE_CHECKING:
     from groundstation.gui.application.context import ApplicationContext
     from groundstation.gui.shared_view import SharedView
+    from groundstation.services.project.steps import Act
 
 CONTEXT = "Tabs"
 """Translation context of the titles and tips of all tabs."""
@@ -53,6 +54,9 @@ class Tab(Protocol):
 
     def actions(self) -> tuple[QAction, ...]:
         """What stands in the tab's menu, with shortcuts."""
+
+    def take_step(self, act: Act) -> None:
+        """Do what leads on from here, where that is something of this tab: see `services.project.steps`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,6 +93,14 @@ class TabSpec:
 
 
 TABS = (
+    TabSpec(
+        "start",
+        QT_TRANSLATE_NOOP("Tabs", "Start"),
+        QT_TRANSLATE_NOOP("Tabs", "Where to begin: a sample, your projects, and three ways to a new one"),
+        Place.WHOLE_PAGE,
+        "groundstation.gui.start_page",
+        "StartPage",
+    ),
     TabSpec(
         "site",
         QT_TRANSLATE_NOOP("Tabs", "Site"),
@@ -146,4 +158,4 @@ TABS = (
         "ModelPage",
     ),
 )
-"""They stand in this order; shortcut Ctrl+1 is the first."""
+"""They stand in this order; the shortcut of the start page is Ctrl+0, of the first step Ctrl+1."""

@@ -308,7 +308,7 @@ def _stated(code: str, action: FailsafeAction | None, when: str, set_so: str) ->
     """One line: what happens then, as the parameters have it."""
     match action:
         case FailsafeAction.GO_ON:
-            verdict, text = Verdict.OK, say("{}, and it flies the mission on ({})", when, set_so)
+            verdict, text = Verdict.OK, say("{}: continue mission ({})", when, set_so)
         case FailsafeAction.RETURN:
             verdict, text = Verdict.OK, say("{}, and it breaks the mission off and returns ({})", when, set_so)
         case FailsafeAction.LAND:
@@ -341,9 +341,7 @@ def _link(autopilot: Autopilot, values: Mapping[str, float]) -> Iterator[Preflig
     options, bit = ("FS_OPTIONS", CONTINUE_MISSION) if is_ardupilot else ("COM_DLL_EXCEPT", EXCEPT_MISSION)
     action = LINK_ACTIONS[autopilot].get(int(number))
     if action is FailsafeAction.GO_ON or int(values.get(options, 0.0)) & bit:
-        yield PreflightCheck(
-            "link-loss", Verdict.OK, say("without the link it flies the mission on, and lands at home")
-        )
+        yield PreflightCheck("link-loss", Verdict.OK, say("continue mission, and land at home"))
     else:
         yield _stated("link-loss", action, say("{:g} s without the link", values.get(wait, 0.0)), f"{name} {number:g}")
 

@@ -364,7 +364,7 @@ def _sensors(state: VehicleState) -> Iterator[PreflightCheck]:
             "sensors", Verdict.OK, say("it can be armed, but has trouble with: ") + joined(", ", problems)
         )
     else:
-        yield PreflightCheck("sensors", Verdict.OK, say("the autopilot is content with all sensors"))
+        yield PreflightCheck("sensors", Verdict.OK, say("healthy"))
 
 
 def _wind(state: VehicleState, orders: SortieOrders) -> PreflightCheck:

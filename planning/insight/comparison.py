@@ -159,7 +159,7 @@ def _effort_rows(plans: Sequence[Plan]) -> Iterator[Row]:
     yield Row("sorties", "sorties", "", Better.LOWER, tuple(float(len(plan.sorties)) for plan in plans))
     yield Row("duration", say("time in the air"), "s", Better.LOWER, tuple(plan.duration_s for plan in plans))
     lengths = tuple(sum(sortie.length_m for sortie in plan.sorties) for plan in plans)
-    yield Row("length", say("way flown"), "m", Better.LOWER, lengths)
+    yield Row("length", say("distance"), "m", Better.LOWER, lengths)
     found = tuple(plan.history[-1].t_s if plan.history else None for plan in plans)
     yield Row("found-after", say("views found after"), "s", Better.LOWER, found)
 

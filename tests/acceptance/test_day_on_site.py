@@ -61,7 +61,7 @@ def test_from_a_real_building_to_a_report_of_the_flight(pilot, building):
 
 def _import_the_building(pilot, path):
     with clicked(choose(path), stay):
-        pilot.press("Import building model")
+        pilot.press("Building model ...")
     pilot.idle()
     pilot.see("import")
     pilot.press("Import")
@@ -135,7 +135,7 @@ def _pause_go_on_and_return(pilot):
     pilot.press("Resume")
     n_photos = page.n_photos()
     pilot.until(lambda: page.n_photos() > n_photos, "another photo is taken")
-    pilot.press("Return")
+    pilot.press("Return to home (RTH)")
     pilot.see("return")
     pilot.until_reads("Photos: {0} of {1} views; sections covered: {2} of {3} planned ({4:.1f} %)")
 

@@ -33,6 +33,7 @@ def test_from_the_photos_of_a_flight_to_a_report_of_the_panes(pilot, flight):
 
 
 def _find_the_panels(pilot, site, photos):
+    pilot.tab("Site")
     with clicked(choose(site)):
         pilot.press("Open a site file")
     pilot.idle()

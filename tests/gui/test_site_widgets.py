@@ -120,7 +120,7 @@ def test_tree_keeps_selection_and_folding_over_an_edit_and_delete_asks(applicati
     QTest.keyClick(tree, Qt.Key.Key_Delete)
     assert len(removed) == 1, "home cannot be removed"
     texts = [action.text() for action in tree.menu(Item(ItemKind.FACADE, "B")).actions()]
-    assert texts == ["Show it", "Rename", "Turn to the other side", "Remove"]
+    assert texts == ["Show it", "Rename", "Turn to the other side", "Delete"]
     assert [action.text() for action in tree.menu(Item(ItemKind.HOME)).actions()] == ["Show it"]
     tree.deleteLater()
 
@@ -242,4 +242,4 @@ def test_findings_name_their_place(application):
     assert chosen == [Item(ItemKind.HOME), Item(ItemKind.FACADE, "A/1")]
     assert item_of(replace(home, place="")) is None
     shown.set_findings(())
-    assert shown._title.text() == "Home, airspace and facades: nothing wrong found."
+    assert shown._title.text() == "All checks passed: home, airspace, facades."

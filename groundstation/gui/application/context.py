@@ -7,7 +7,7 @@ work that takes longer than a blink is given to `start`.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from PySide6.QtCore import QObject, Signal
@@ -27,6 +27,7 @@ from groundstation.services.jobs.runner import (
 )
 from groundstation.services.project.document import Document, Item, exists
 from groundstation.services.project.session import Session
+from groundstation.services.project.steps import Milestones, undone
 from groundstation.services.units import UnitSystem
 from planning.base.errors import GroundStationError, shortened
 from planning.base.findings import Severity
@@ -108,6 +109,8 @@ class ApplicationContext(QObject):
         Something was told; what was said about a topic holds no more.
     jobsChanged()
         A job was queued or ended.
+    milestonesChanged(Milestones)
+        Something was done, or an edit took it back.
     """
 
     documentChanged = Signal(object, object)  # noqa: N815  (Qt's own way of naming)
@@ -117,12 +120,14 @@ class ApplicationContext(QObject):
     messageShown = Signal(object)  # noqa: N815
     messageWithdrawn = Signal(str)  # noqa: N815
     jobsChanged = Signal()  # noqa: N815
+    milestonesChanged = Signal(object)  # noqa: N815
 
     def __init__(self, session: Session, runner: JobRunner, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self._session, self._runner = session, runner
         self._selection: Item | None = None
         self._units = UnitSystem.METRIC
+        self._milestones = undone(Milestones(), session.document, session.document)
         self._waiting: dict[int, _Waiting] = {}
         self._quiet: set[int] = set()
         self._busy: list[Callable[[], bool]] = []
@@ -155,6 +160,25 @@ class ApplicationContext(QObject):
         if units is not self._units:
             self._units = units
             self.unitsChanged.emit(units)
+
+    @property
+    def milestones(self) -> Milestones:
+        """What has happened on the way from a building to a model."""
+        return self._milestones
+
+    def note(self, **changes: object) -> None:
+        """Something happened on that way: fields of `Milestones` by name."""
+        self._set_milestones(replace(self._milestones, **changes))
+
+    def begin_anew(self) -> None:
+        """Another project is open: what happened before belongs to the one before."""
+        document = self.document
+        self._set_milestones(undone(Milestones(flight=self._milestones.flight), document, document))
+
+    def _set_milestones(self, milestones: Milestones) -> None:
+        if milestones != self._milestones:
+            self._milestones = milestones
+            self.milestonesChanged.emit(milestones)
 
     def change(self, label: str, document: Document) -> None:
         """Take over an edit as one step that can be undone; `label` says what the user did."""
@@ -238,6 +262,7 @@ class ApplicationContext(QObject):
     def _document_changed(self, before: Document, after: Document) -> None:
         if self._selection is not None and not exists(after, self._selection):
             self.select(None)
+        self._set_milestones(undone(self._milestones, before, after))
         self.documentChanged.emit(before, after)
 
     def _job_changed(self, event: JobStateChanged) -> None:

@@ -192,7 +192,7 @@ OPTION_FIELDS = {
     "--home": ("ImportForm", QT_TRANSLATE_NOOP("ImportForm", "Home, in the Site tab")),
     "--name": ("ImportForm", QT_TRANSLATE_NOOP("ImportForm", "Name of the site")),
     "--origin": ("ImportForm", QT_TRANSLATE_NOOP("ImportForm", "Zero point on earth")),
-    "--panel-grid": ("ImportForm", QT_TRANSLATE_NOOP("ImportForm", "Panel grid")),
+    "--panel-grid": ("ImportForm", QT_TRANSLATE_NOOP("ImportForm", "Facade grid")),
     "--rows": ("ImportForm", QT_TRANSLATE_NOOP("ImportForm", "Rows")),
     "--units": ("ImportForm", QT_TRANSLATE_NOOP("ImportForm", "Unit of lengths")),
     "--up": ("ImportForm", QT_TRANSLATE_NOOP("ImportForm", "Axis that points up")),

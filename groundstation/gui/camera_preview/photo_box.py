@@ -203,7 +203,7 @@ class LightBox(QWidget):
         self._when.setCalendarPopup(True)
         self._when.setAccessibleName(self.tr("Date and time"))
         self._when.setToolTip(self.tr("By this computer's clock and time zone"))
-        self._near = QCheckBox(self.tr("Made-up street"))
+        self._near = QCheckBox(self.tr("Simulated surroundings"))
         self._near.setToolTip(
             self.tr(
                 "Buildings opposite, trees, cars and people, drawn at random; without them the building stands alone"

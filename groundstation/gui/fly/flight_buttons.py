@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QAction, QColor, QIcon, QKeySequence, QMouseEvent, QPainter, QPainterPath, QPixmap
+from PySide6.QtCore import QEvent, QSize, Qt, Signal
+from PySide6.QtGui import QAction, QKeySequence, QMouseEvent
 from PySide6.QtWidgets import QGridLayout, QLabel, QPushButton, QSizePolicy, QVBoxLayout, QWidget
 
 from groundstation.gui.application.translate import shown_keys, translated
+from groundstation.gui.widgets.icons import ICON_PX, icon
 from groundstation.gui.widgets.tab_order import set_enabled
 from groundstation.gui.widgets.theme import colours
 from groundstation.services.fly.events import Request
@@ -152,11 +153,11 @@ class PreflightList(QWidget):
             "geofence": self.tr("Geofence on board"),
             "rally": self.tr("Rally points on board"),
             "parameters": self.tr("Parameters"),
-            "link-loss": self.tr("Link lost"),
+            "link-loss": self.tr("Signal lost"),
             "rc-loss": self.tr("Remote control lost"),
             "battery-low": self.tr("Battery low"),
             "position-loss": self.tr("Position lost"),
-            "return": self.tr("Return"),
+            "return": self.tr("Return to home (RTH)"),
             "fence-action": self.tr("At the geofence"),
             "fence-height": self.tr("Height limit"),
             "fence-radius": self.tr("Circle around home"),
@@ -185,7 +186,14 @@ class _Row:
 APART_PX = 16
 """Free space around Return and Land, in which a click that misses does nothing."""
 
-ICON_PX = 20
+ICONS = {
+    Request.UPLOAD: "upload",
+    Request.START: "take-off",
+    Request.PAUSE: "pause",
+    Request.RESUME: "resume",
+    Request.RETURN: "return",
+    Request.LAND: "land",
+}
 
 PLACES = {
     Request.UPLOAD: (0, 0, 1),
@@ -242,7 +250,7 @@ class FlightButtons(QWidget):
             (Request.START, self.tr("Start"), "Ctrl+Shift+Return", self.tr("Take off and fly the mission; asks first")),
             (Request.PAUSE, self.tr("Pause"), "Ctrl+Shift+Space", self.tr("Stop on the spot and hover")),
             (Request.RESUME, self.tr("Resume"), "Ctrl+Shift+G", self.tr("Go on with the mission")),
-            (Request.RETURN, self.tr("Return"), "Ctrl+Shift+Home", self.tr("Fly home and land there")),
+            (Request.RETURN, self.tr("Return to home (RTH)"), "Ctrl+Shift+Home", self.tr("Fly home and land there")),
             # Not End, the neighbour of Home: one is no slip of the other.
             (Request.LAND, self.tr("Land"), "Ctrl+Shift+L", self.tr("Land here and now")),
         )
@@ -290,10 +298,7 @@ class FlightButtons(QWidget):
         look, button = colours(), self._buttons[request]
         is_filled = request in (Request.RETURN, Request.LAND)
         on = look.base if is_filled else look.accent_text if button.property("primary") else look.text
-        icon = QIcon()
-        for mode, colour in ((QIcon.Mode.Normal, on), (QIcon.Mode.Disabled, look.muted)):
-            icon.addPixmap(_picture(request, colour, self.devicePixelRatioF()), mode)
-        button.setIcon(icon)
+        button.setIcon(icon(ICONS[request], on, ICON_PX))
 
 
 class _Button(QPushButton):
@@ -302,48 +307,3 @@ class _Button(QPushButton):
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:  # noqa: N802
         """The second press is no second order."""
         event.accept()
-
-
-def _picture(request: Request, colour: str, ratio: float) -> QPixmap:
-    """The sign of a request, drawn: no font has all of them."""
-    picture = QPixmap(round(ICON_PX * ratio), round(ICON_PX * ratio))
-    picture.setDevicePixelRatio(ratio)
-    picture.fill(Qt.GlobalColor.transparent)
-    painter = QPainter(picture)
-    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-    painter.scale(ICON_PX / 20.0, ICON_PX / 20.0)
-    painter.fillPath(_shape(request), QColor(colour))
-    painter.end()
-    return picture
-
-
-def _shape(request: Request) -> QPainterPath:
-    """In a square of 20 by 20."""
-    path = QPainterPath()
-    match request:
-        case Request.UPLOAD:
-            _polygon(path, (10, 2), (17, 9), (12, 9), (12, 15), (8, 15), (8, 9), (3, 9))
-            path.addRect(QRectF(3, 16.5, 14, 2))
-        case Request.START:
-            _polygon(path, (5, 3), (17, 10), (5, 17))
-        case Request.PAUSE:
-            path.addRect(QRectF(4, 3, 4, 14))
-            path.addRect(QRectF(12, 3, 4, 14))
-        case Request.RESUME:
-            path.addRect(QRectF(3, 3, 3, 14))
-            _polygon(path, (8, 3), (18, 10), (8, 17))
-        case Request.RETURN:
-            _polygon(path, (10, 1), (19, 10), (16, 10), (16, 18), (12, 18), (12, 12), (8, 12), (8, 18), (4, 18))
-            _polygon(path, (4, 18), (4, 10), (1, 10), (10, 1))
-        case _:
-            _polygon(path, (8, 1), (12, 1), (12, 8), (17, 8), (10, 15), (3, 8), (8, 8))
-            path.addRect(QRectF(2, 16.5, 16, 2.5))
-    path.setFillRule(Qt.FillRule.WindingFill)
-    return path
-
-
-def _polygon(path: QPainterPath, *corners: tuple[float, float]) -> None:
-    path.moveTo(QPointF(*corners[0]))
-    for corner in corners[1:]:
-        path.lineTo(QPointF(*corner))
-    path.closeSubpath()

@@ -45,13 +45,14 @@ from groundstation.services.fly.options import (
     read_choice,
     read_flight_settings,
 )
-from groundstation.services.fly.readouts import BEFORE_TAKE_OFF
+from groundstation.services.fly.readouts import BEFORE_TAKE_OFF, flight_state
 from groundstation.services.fly.signing import link_signer
 from groundstation.services.fly.sortie import LiveSortie, is_same_place, prepare_sortie
 from groundstation.services.jobs.runner import JobContext
 from groundstation.services.mission.readiness import TooLong, split_to_fit, too_long
 from groundstation.services.plan.top_up import flown_plan, resume_flight, top_up_flight
 from groundstation.services.project.document import Document, PlanEntry
+from groundstation.services.project.steps import FlightState
 from groundstation.services.settings import write_preferences
 from groundstation.services.site.edits import move_home
 from groundstation.vehicle.preflight import stands_enu_m
@@ -361,6 +362,8 @@ class FlyController(QObject):
         self.after, self.signing = AfterFlight(context, self), SigningController(context, self)
         self._published.connect(self._take)
         context.count_as_busy(lambda: self.is_in_flight)
+        self.stateChanged.connect(self._tell_state)
+        context.documentChanged.connect(lambda *_: self._tell_state())
 
     @classmethod
     def of(cls, context: ApplicationContext) -> FlyController:
@@ -395,6 +398,16 @@ class FlyController(QObject):
     def is_in_flight(self) -> bool:
         """Whether an aircraft is in the air, as far as is known."""
         return self._flight is not None and self._flight.is_in_flight
+
+    def _tell_state(self) -> None:
+        """Note where the flight of the plan that is shown stands."""
+        view = None if self.active is None else self.active.view
+        state = FlightState.APART
+        if self.is_preparing or (self.is_connected and view is None):
+            state = FlightState.BUSY
+        elif self.is_connected and view is not None and (self.is_for_shown_plan or view.state.is_armed):
+            state = flight_state(view)
+        self._context.note(flight=state)
 
     # Connecting
 
@@ -590,6 +603,7 @@ class FlyController(QObject):
                 Severity.ERROR if text.severity <= 3 else Severity.WARNING if text.severity == 4 else Severity.NOTE
             )
             self._note(severity, self.tr("autopilot: {0}").format(text.text))
+        self._tell_state()
         self.viewChanged.emit(view)
 
     def _take_link(self, active: ActiveFlight, event: LinkChanged) -> None:
@@ -617,6 +631,9 @@ class FlyController(QObject):
         if event.record is not None:
             case = active.sortie.case
             self.after.add(case.plan, case.site_model, event.record, active.battery)
+            flown = {record.sortie for record in self.after.flown(case.plan)}
+            if self.is_for_shown_plan and len(flown) >= len(case.plan.sorties):
+                self._context.note(is_flown=True)
         if event.error is not None:
             self._note(Severity.ERROR, self._words(str(event.error)))
             self._say(Severity.ERROR, str(event.error), "flight.ended")

@@ -35,6 +35,7 @@ from groundstation.services.fly.options import FlightSettings
 from groundstation.services.fly.sortie import is_same_place, take_off_of
 from groundstation.services.plan.places import item_of_place
 from groundstation.services.project.document import Document, Item, ItemKind
+from groundstation.services.project.steps import Act
 from groundstation.services.units import UnitSystem, minutes_text
 from groundstation.vehicle.preflight import PreflightCheck, Remedy
 from groundstation.vehicle.sortie.run_records import Phase
@@ -141,9 +142,9 @@ class LinkBand(QLabel):
         look = colours()
         self.setStyleSheet(f"background: {look.error}; color: {look.base};")
         if silent_s is None:
-            text = self.tr("LINK LOST. It is opened again; the aircraft goes on by itself.")
+            text = self.tr("SIGNAL LOST. The link is opened again; the aircraft continues by itself.")
         else:
-            text = self.tr("LINK LOST for {0:.0f} s. What is shown is old; the aircraft goes on by itself.").format(
+            text = self.tr("SIGNAL LOST for {0:.0f} s. What is shown is old; the aircraft continues by itself.").format(
                 silent_s
             )
         if self.text() != text:
@@ -321,6 +322,18 @@ class FlyPage(QObject):
     def actions(self) -> tuple[QAction, ...]:
         """For the tab's menu."""
         return tuple(self.buttons.flight_actions())
+
+    def take_step(self, act: Act) -> None:
+        """Connect, upload, or start, each as its own button does."""
+        match act:
+            case Act.CONNECT:
+                self._connect_vehicle()
+            case Act.UPLOAD:
+                self.buttons.button(Request.UPLOAD).click()
+            case Act.TAKE_OFF:
+                self.buttons.button(Request.START).click()
+            case _:
+                pass
 
     def n_photos(self) -> int:
         """Views of the sortie that have a photo."""

@@ -43,6 +43,7 @@ from groundstation.services.mission.readiness import (
 )
 from groundstation.services.plan.places import item_of_place
 from groundstation.services.project.document import Document, Item
+from groundstation.services.project.steps import Act
 from groundstation.services.units import UnitSystem
 from planning.base.findings import Finding, Severity
 
@@ -101,7 +102,7 @@ class FindingsView(QWidget):
         self._is_stale = False
         self._say_state("" if findings is not None else self.tr("Not checked yet."))
         self._list.set_findings(self._findings or ())
-        kept = self.tr("Nothing stands against the flight. The button with the tick lists the rules that are kept.")
+        kept = self.tr("All checks passed. The button with the tick lists them.")
         self._list.set_placeholder(kept if self._findings else "")
         self._show_counts()
 
@@ -295,6 +296,21 @@ class MissionPage(QObject):
         """For the tab's menu."""
         return self._actions
 
+    def take_step(self, act: Act) -> None:
+        """Check the plan, show what is wrong with it, or take a mission of another program over."""
+        match act:
+            case Act.CHECK:
+                self.controller.check()
+            case Act.SHOW_FINDING:
+                found = () if self._preflight is None else self._preflight.findings
+                wrong = next((one for one in found if one.severity is Severity.ERROR), None)
+                if wrong is not None:
+                    self._go_to(wrong.place)
+            case Act.IMPORT_MISSION:
+                self._choose_import()
+            case _:
+                pass
+
     # What the user does
 
     def export(self) -> ExportDialog | None:
@@ -356,6 +372,7 @@ class MissionPage(QObject):
 
     def _note_folder(self, paths: tuple[Path, ...]) -> None:
         self._folder = paths[0].parent
+        self._context.note(is_exported=True)
 
     # How it is put together
 
@@ -472,6 +489,7 @@ class MissionPage(QObject):
         if self._is_fresh():
             self.findings.set_findings(found.findings)
             self.lists.set_panels_covered(found.panels_covered)
+            self._context.note(n_errors=sum(one.severity is Severity.ERROR for one in found.findings))
         elif self._is_shown:
             self._check_soon.start()
         self._show_freshness()

@@ -90,6 +90,7 @@ class ModelController(QObject):
         self.colour_by = ""
         self.colouring: Colouring = NO_COLOURS
         self.is_reading = False
+        self.sceneChanged.connect(lambda: context.note(is_model_open=self.card is not None))
 
     @classmethod
     def of(cls, context: ApplicationContext) -> ModelController:

@@ -41,6 +41,7 @@ from groundstation.gui.widgets.scrolling import padded, split
 from groundstation.services.model.export import model_exporter, with_ending
 from groundstation.services.model.panel_colours import Colouring, Computed, LegendLine
 from groundstation.services.model.scene_card import PanelRow
+from groundstation.services.project.steps import Act
 from groundstation.services.reconstruct.folders import MODELS_FOLDER
 from groundstation.services.units import UnitSystem
 from planning.base.findings import Severity
@@ -268,6 +269,18 @@ class ModelPage(QObject):
     def actions(self) -> tuple[QAction, ...]:
         """There are none."""
         return ()
+
+    def take_step(self, act: Act) -> None:
+        """Open the model that was trained, or export the one that is open."""
+        match act:
+            case Act.OPEN_MODEL:
+                trained = self._context.milestones.model
+                if trained is not None:
+                    self.controller.open(trained)
+            case Act.EXPORT_MODEL:
+                self._export()
+            case _:
+                pass
 
     # How it is put together
 

@@ -326,7 +326,7 @@ class RecordSide(QWidget):
         self.tree, self.kinds = QTreeWidget(), QMenu(self)
         self._groups: dict[type[Any], QTreeWidgetItem] = {}
         self.add, self.change = QPushButton(self.tr("Add ...")), QPushButton(self.tr("Change ..."))
-        self.remove, self.undo = QPushButton(self.tr("Remove")), QPushButton(self.tr("Undo"))
+        self.remove, self.undo = QPushButton(self.tr("Delete")), QPushButton(self.tr("Undo"))
         self.report = QPushButton(self.tr("Report as PDF ..."))
         self._make()
         self.show_subject("panel", None, UnitSystem.METRIC)

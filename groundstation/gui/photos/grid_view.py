@@ -348,7 +348,7 @@ class ToolBox(QWidget):
             ),
             (Tool.ADD_COLUMN, self.tr("Add upright line"), self.tr("A press adds a vertical line of the grid")),
             (Tool.ADD_ROW, self.tr("Add level line"), self.tr("A press adds a horizontal line of the grid")),
-            (Tool.REMOVE_LINE, self.tr("Remove line"), self.tr("A press on a line removes it")),
+            (Tool.REMOVE_LINE, self.tr("Delete line"), self.tr("A press on a line deletes it")),
         )
         for tool, text, tip in texts:
             button = QPushButton(text)

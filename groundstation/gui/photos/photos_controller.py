@@ -90,6 +90,7 @@ class PhotosController(QObject):
         self._counted: _Basis = ((), None)
         self._counting: _Basis = ((), None)
         self._coverage: PhotoCoverage | None = None
+        self.photosChanged.connect(lambda: context.note(n_photos=len(self.cards)))
         context.documentChanged.connect(self._document_changed)
         context.jobsChanged.connect(self._jobs_changed)
 
@@ -205,6 +206,7 @@ class PhotosController(QObject):
                 self._context.say(found.severity, f"{found.place}: {self._context.localized(found.message)}")
             text = self.tr("The data set is written, photos: {0}. Train a model of it on the Reconstruct tab: {1}")
             self._context.say(Severity.OK, text.format(len(prepared.photos), folder))
+            self._context.note(data_set=folder)
 
         self._start(self.tr("Make the data set"), work, done)
 

@@ -50,6 +50,7 @@ from groundstation.services.photos.intake import card_of_place
 from groundstation.services.photos.poses import ChosenPoses, RefinedOutcome, RefineRequest, refined_poses
 from groundstation.services.photos.tradeoff import corner_sigma_m
 from groundstation.services.project.document import Document, Item, ItemKind
+from groundstation.services.project.steps import Act
 from groundstation.services.units import UnitSystem, length_unit, sampling_unit
 from planning.base.findings import Severity
 from reconstruction.panels.solving.record import Axis
@@ -148,12 +149,12 @@ class Corrections(QObject):
     def _remove_line(self, axis: Axis, index: int) -> None:
         place = self._pane.place()
         if place is not None:
-            self._controller.edit(self.tr("Remove line"), lambda draft: remove_line(draft, place, axis, index))
+            self._controller.edit(self.tr("Delete line"), lambda draft: remove_line(draft, place, axis, index))
 
     def _switch_panel(self, row: int, column: int, is_panel: bool) -> None:
         place = self._pane.place()
         if place is not None:
-            label = self.tr("Restore panel") if is_panel else self.tr("Remove panel")
+            label = self.tr("Restore panel") if is_panel else self.tr("Delete panel")
             self._controller.edit(label, lambda draft: set_panel(draft, place, row, column, is_panel=is_panel))
 
 
@@ -276,6 +277,24 @@ class PhotosPage(QObject):
         """There are none."""
         return ()
 
+    def take_step(self, act: Act) -> None:
+        """Make a site of photos, read them, find panels in them, or make a data set: each as its button does."""
+        match act:
+            case Act.FROM_PHOTOS:
+                self._make_coarse()
+            case Act.READ_PHOTOS:
+                folder = self.controller.usual_folder()
+                if folder is not None and any(folder.glob("*")):
+                    self._read()
+                else:
+                    self._choose_folder()
+            case Act.FIND_PANELS:
+                self.controller.find()
+            case Act.MAKE_DATA_SET:
+                self._make_data_set()
+            case _:
+                pass
+
     # How it is put together
 
     def _make_page(self) -> QWidget:
@@ -306,7 +325,7 @@ class PhotosPage(QObject):
 
     def _make_side(self) -> QWidget:
         side = QSplitter(Qt.Orientation.Vertical)
-        self.findings.set_placeholder(self.tr("What is wrong with photos stands here."))
+        self.findings.set_placeholder(self.tr("Photo issues are listed here."))
         below = QWidget()
         layout = QVBoxLayout(below)
         layout.setContentsMargins(0, 0, 0, 0)

@@ -33,7 +33,7 @@ from planning.site.records import SiteModel
 def method_name(method: str) -> str:
     """A method's name in the user's language; what is not known here stays."""
     names = {
-        "greedy": QCoreApplication.translate("MethodNames", "Greedy with proof"),
+        "greedy": QCoreApplication.translate("MethodNames", "Optimised (recommended)"),
         "pso": QCoreApplication.translate("MethodNames", "Particle swarm (paper)"),
         "noto": QCoreApplication.translate("MethodNames", "Nap-of-the-object grid"),
         "orbit": QCoreApplication.translate("MethodNames", "Orbits"),
@@ -182,7 +182,7 @@ class PlanController(QObject):
         locked = () if current is None else tuple(view for view in current.plan.viewpoints if view.locked)
         if locked and document.request.method not in KEEPING_METHODS:
             names = ", ".join(view.id for view in locked)
-            text = self.tr("Only “Greedy with proof” can keep viewpoints. Choose it, or release those kept: {0}")
+            text = self.tr("Only “Optimised (recommended)” can keep viewpoints. Choose it, or release those kept: {0}")
             self.refused.emit(text.format(names))
             return
         try:
@@ -202,6 +202,7 @@ class PlanController(QObject):
 
         job = self._context.start(self.tr("Plan"), work, done, lambda _error: self._planning_over())
         self._planning = job
+        self._context.note(is_planning=True)
         self.planningStarted.emit(job, request.time_budget_s)
 
     def stop_here(self) -> None:
@@ -234,7 +235,7 @@ class PlanController(QObject):
 
     def remove(self, plan_id: str) -> None:
         """Take a plan out of the project."""
-        self._context.change(self.tr("Remove plan"), self._context.document.without_plan(plan_id))
+        self._context.change(self.tr("Delete plan"), self._context.document.without_plan(plan_id))
 
     def open_plan(self, path: Path) -> None:
         """Bring a plan file into the project."""
@@ -361,6 +362,7 @@ class PlanController(QObject):
 
     def _planning_over(self) -> None:
         self._planning = None
+        self._context.note(is_planning=False)
         self.planningEnded.emit()
 
     def _document_changed(self, before: Document, after: Document) -> None:

@@ -73,7 +73,7 @@ class CompareWindow(QDialog):
         self._comparison: Comparison | None = None
         self._choices, self._scenes = (ChoiceBox(), ChoiceBox()), (SceneView(self), SceneView(self))
         self._paint = ChoiceBox()
-        self._paint.addItems([self.tr("coverage"), self.tr("difference in coverage"), self.tr("pixel size")])
+        self._paint.addItems([self.tr("coverage"), self.tr("difference in coverage"), self.tr("GSD")])
         self._words = QLabel()
         self._words.setWordWrap(True)
         self._table = QTableWidget()
@@ -192,7 +192,7 @@ class CompareWindow(QDialog):
             "views": self.tr("Views"),
             "sorties": self.tr("Sorties"),
             "duration": self.tr("Time in the air"),
-            "length": self.tr("Way flown"),
+            "length": self.tr("Distance"),
             "found-after": self.tr("Views found after"),
             "covered": self.tr("Sections covered"),
             "covered-share": self.tr("of all sections"),
@@ -285,7 +285,7 @@ class PlansList(QWidget):
         self._compare = QPushButton(self.tr("Compare"))
         self._compare.setToolTip(self.tr("Show the selected plans side by side (two or more)"))
         self._rename = QPushButton(self.tr("Rename ..."))
-        self._remove = QPushButton(self.tr("Remove"))
+        self._remove = QPushButton(self.tr("Delete"))
         self._open = QPushButton(self.tr("Open plan ..."))
         made = (self._use, self._compare, self._rename, self._remove, self._open)
         for number, button in enumerate(made):
@@ -576,7 +576,7 @@ class PlanLists(QTabWidget):
             Rule.FLOOR: self.tr("below the lowest flight allowed"),
             Rule.CEILING: self.tr("above the airspace"),
             Rule.SIDES: self.tr("beyond the sides of the airspace"),
-            Rule.RANGE: self.tr("too far away for the pixel size wanted"),
+            Rule.RANGE: self.tr("too far away for the GSD wanted"),
             Rule.DISTANCE: self.tr("too close to building or obstacle"),
             Rule.NO_FLY: self.tr("in a no-fly volume"),
             Rule.GROUND: self.tr("below the ground"),

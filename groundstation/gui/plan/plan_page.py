@@ -31,6 +31,7 @@ from groundstation.services.jobs.runner import Job, JobBounded, JobImproved
 from groundstation.services.mission.readiness import additional_findings
 from groundstation.services.plan.plan_cache import ActivePlan
 from groundstation.services.project.document import Document, Item, ItemKind
+from groundstation.services.project.steps import Act
 from groundstation.services.units import UnitSystem, distance_unit, length_unit, minutes_text, per_cent, sampling_unit
 from planning.base.effects import EffectSetting
 from planning.base.findings import Severity, is_flyable
@@ -75,7 +76,7 @@ class PaintBar(QWidget):
             (PanelPaint.FACADE, self.tr("facade")),
             (PanelPaint.SHARE, self.tr("coverage")),
             (PanelPaint.HEMISPHERES, self.tr("hemispheres")),
-            (PanelPaint.GSD, self.tr("pixel size")),
+            (PanelPaint.GSD, self.tr("GSD")),
         ):
             self._panels.addItem(text, paint)
         for route, text in ((RoutePaint.SORTIE, self.tr("sortie")), (RoutePaint.CLEARANCE, self.tr("clearance"))):
@@ -275,6 +276,16 @@ class PlanPage(QObject):
         """For the tab's menu."""
         return self._actions
 
+    def take_step(self, act: Act) -> None:
+        """Plan, or keep what is there."""
+        match act:
+            case Act.PLAN:
+                self._plan()
+            case Act.KEEP_PLAN:
+                self.controller.stop_here()
+            case _:
+                pass
+
     # What changes
 
     def _document_changed(self, _before: Document, after: Document) -> None:
@@ -351,7 +362,7 @@ class PlanPage(QObject):
                 per_cent(coverage.covered, coverage.reachable_upper_bound),
                 coverage.reachable_upper_bound,
             ),
-            self.tr("Time in the air {0}, way flown {1}").format(
+            self.tr("Time in the air {0}, distance {1}").format(
                 minutes_text(plan.duration_s),
                 distance_unit(units).text(sum(sortie.length_m for sortie in plan.sorties)),
             ),
@@ -365,7 +376,7 @@ class PlanPage(QObject):
             lines.append(self.tr("smallest clearance {0}").format(length_unit(units).text(min(gaps))))
         known = finest[finest == finest]
         if len(known):
-            lines.append(self.tr("pixels from {0}").format(sampling_unit(units).text(float(known.min()))))
+            lines.append(self.tr("GSD from {0}").format(sampling_unit(units).text(float(known.min()))))
         worth = plan.present_worth
         if worth is not None:
             lines.append(self.tr("Unseen views of its model: {0}").format(self._context.localized(worth.text)))

@@ -293,6 +293,8 @@ class ReconstructController(FolderController):
         self.errors: dict[str, float] = {}
         self.errors_of: Subject | None = None
         context.count_as_busy(lambda: self.is_busy)
+        self.stateChanged.connect(lambda: context.note(is_training=self.is_busy))
+        self.dataSetChanged.connect(self._tell_data_set)
 
     @classmethod
     def of(cls, context: ApplicationContext) -> ReconstructController:
@@ -442,9 +444,14 @@ class ReconstructController(FolderController):
         elif ended.outcome == "done" and was in BUSY:
             self._context.say(Severity.NOTE, self.tr("The model is written: {0}").format(self.out))
             self.watch_errors(TRAINING)
+            self._context.note(model=self.out)
         self.placeChanged.emit()
         self.stateChanged.emit()
         self.progressed.emit()
+
+    def _tell_data_set(self) -> None:
+        if self.card is not None:
+            self._context.note(data_set=self.card.folder)
 
     def _take_loss(self, lost: ProcessEnded) -> None:
         was, self.phase, self.is_paused = self.phase, Phase.IDLE, False

@@ -17,6 +17,7 @@ from groundstation.gui.reconstruct.view_pane import ViewPane
 from groundstation.gui.shared_view import SharedView
 from groundstation.gui.widgets.questions import Questions, agrees
 from groundstation.gui.widgets.scrolling import padded, scrolled, split
+from groundstation.services.project.steps import Act
 from groundstation.services.reconstruct.choices import TrainChoice, method_rows
 from groundstation.services.units import UnitSystem, minutes_text
 
@@ -62,6 +63,7 @@ class ReconstructPage(QObject):
         self.right: QWidget | None = None
         self.bottom: QWidget | None = None
         self._was_busy = False
+        self._offered: Path | None = None
         self._connect()
         self.side.form.setValue(self.controller.choice)
         self.light.setValue(self.controller.choice.light)
@@ -72,11 +74,14 @@ class ReconstructPage(QObject):
     # A tab
 
     def shown(self) -> None:
-        """Take the project's data set where none was chosen, and see what has changed on the disk."""
+        """Take the data set that was made last, else the project's, and see what has changed on the disk."""
         self.controller.warm_up()
-        folder = self.controller.usual_data_set()
-        if self.controller.card is None and folder is not None:
-            self.controller.read(folder)
+        controller, made = self.controller, self._context.milestones.data_set
+        if made is not None and made != self._offered and not controller.is_busy:
+            self._offered = made
+            controller.read(made)
+        elif controller.card is None and (folder := controller.usual_data_set()) is not None:
+            controller.read(folder)
         self.controller.check_folders()
 
     def hidden(self) -> None:
@@ -85,6 +90,16 @@ class ReconstructPage(QObject):
     def actions(self) -> tuple[QAction, ...]:
         """There are none."""
         return ()
+
+    def take_step(self, act: Act) -> None:
+        """Train, or stop and keep the model."""
+        match act:
+            case Act.TRAIN:
+                self.controller.train()
+            case Act.KEEP_MODEL:
+                self.controller.stop()
+            case _:
+                pass
 
     # How it is put together
 

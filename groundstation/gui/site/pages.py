@@ -84,7 +84,7 @@ class OriginBox(QWidget):
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addRow(self.tr("Latitude"), self._lat)
         layout.addRow(self.tr("Longitude"), self._lon)
-        layout.addRow(muted(self.tr("Height of the site's zero:")))
+        layout.addRow(muted(self.tr("Height of the site origin:")))
         layout.addRow(self.tr("Above ellipsoid"), self._ellipsoid)
         layout.addRow(self.tr("Above sea level"), self._sea)
         layout.addRow(self._error)
@@ -185,7 +185,7 @@ class SitePage(Page):
         self._summary.setWordWrap(True)
         self.add(self._name, title=self.tr("Name of the site"))
         self.add(self._summary)
-        self.add(self._origin, title=self.tr("Place of the site's zero"))
+        self.add(self._origin, title=self.tr("Site origin"))
         self.add(self._error)
         self._name.valueChanged.connect(self._rename)
         self._origin.valueChanged.connect(self._move)
@@ -238,7 +238,7 @@ class AirspacePage(Page):
         self.add(self._ground, title=self.tr("Ground"))
         self.add(
             self._error,
-            muted(self.tr("Heights are above the site's zero. Only the climb above home may be below the airspace.")),
+            muted(self.tr("Heights are above the site origin. Only the climb above home may be below the airspace.")),
         )
         self._extent.valueChanged.connect(self._set)
         self._ground.valueChanged.connect(self._set)
@@ -316,7 +316,7 @@ class ItemPage(Page):
 
     def add_end(self) -> None:
         """The line for errors, and the button that removes the thing."""
-        remove = QPushButton(self.tr("Remove"))
+        remove = QPushButton(self.tr("Delete"))
         remove.clicked.connect(self._remove)
         self.add(self._error, remove)
 
@@ -338,7 +338,7 @@ class ItemPage(Page):
     def _remove(self) -> None:
         if self._item is not None:
             item = self._item
-            self.edited.emit(self.tr("Remove {0}").format(item.id), lambda model: remove_item(model, item), None)
+            self.edited.emit(self.tr("Delete {0}").format(item.id), lambda model: remove_item(model, item), None)
 
 
 class FacadePage(ItemPage):

@@ -66,7 +66,7 @@ class SiteEditor(QObject):
 
     def remove(self, item: Item) -> None:
         """Remove a thing; tells where it cannot be."""
-        self._apply_or_say(self.tr("Remove {0}").format(item.id), lambda model: remove_item(model, item))
+        self._apply_or_say(self.tr("Delete {0}").format(item.id), lambda model: remove_item(model, item))
 
     def flip(self, item: Item) -> None:
         """Turn a facade to its other side."""

@@ -323,7 +323,7 @@ class ImportDialog(QDialog):
         left = QWidget()
         column = QVBoxLayout(left)
         column.addWidget(self.form)
-        heading = QLabel(self.tr("Panel grid"))
+        heading = QLabel(self.tr("Facade grid"))
         heading.setProperty("role", "heading")
         column.addWidget(heading)
         column.addWidget(self.grid)

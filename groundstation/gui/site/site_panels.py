@@ -28,12 +28,13 @@ from groundstation.gui.site.pages import (
 )
 from groundstation.gui.site.site_editor import SiteEditor
 from groundstation.gui.site.site_opener import SiteOpener
-from groundstation.gui.site.site_tools import SiteTools
+from groundstation.gui.site.site_tools import SiteTool, SiteTools
 from groundstation.gui.site.site_tree import SiteTree
 from groundstation.gui.widgets.scrolling import ButtonGrid, CurrentStack, scrolled
 from groundstation.gui.widgets.theme import colours
 from groundstation.gui.widgets.value_boxes import muted
 from groundstation.services.project.document import Document, Item, ItemKind
+from groundstation.services.project.steps import Act
 from groundstation.services.units import UnitSystem
 from planning.base.findings import Finding, Severity
 
@@ -88,7 +89,7 @@ class FindingsList(QWidget):
         if findings is None:
             self._title.setText(self.tr("The site is being checked ..."))
         elif not findings:
-            self._title.setText(self.tr("Home, airspace and facades: nothing wrong found."))
+            self._title.setText(self.tr("All checks passed: home, airspace, facades."))
         else:
             self._title.setText(self.tr("The site's check found: {0}").format(len(findings)))
         look = {Severity.ERROR: colours().error, Severity.WARNING: colours().warning}
@@ -265,6 +266,16 @@ class SiteTab:
         """Open and import."""
         return self.left.actions_of_tab
 
+    def take_step(self, act: Act) -> None:
+        """Import a building, or lay panels on its facade."""
+        match act:
+            case Act.IMPORT_BUILDING:
+                self.left.opener.choose_import()
+            case Act.DRAW_PANELS:
+                self.detail.tools.use(SiteTool.GRID)
+            case _:
+                pass
+
 
 class SiteSide(QWidget):
     """Where a site comes from, and the tree of what is on it."""
@@ -311,7 +322,7 @@ class SiteSide(QWidget):
         for text, shortcut, slot in (
             (self.tr("Open site..."), "Ctrl+Shift+O", self.opener.choose_site),
             (self.tr("Import building model..."), "Ctrl+I", self.opener.choose_import),
-            (self.tr("Remove what is selected"), "Del", self.tree.ask_remove),
+            (self.tr("Delete what is selected"), "Del", self.tree.ask_remove),
         ):
             action = QAction(text, self)
             action.setShortcut(shortcut)

@@ -85,7 +85,7 @@ class SiteTools(QWidget):
 
     def _texts(self) -> tuple[tuple[SiteTool, str, str], ...]:
         return (
-            (SiteTool.GRID, self.tr("Panel grid"), self.tr("Equal panels in a rectangle on a wall")),
+            (SiteTool.GRID, self.tr("Facade grid"), self.tr("Equal panels in a rectangle on a wall")),
             (SiteTool.HOME, self.tr("Home"), self.tr("Click where the aircraft takes off and lands")),
             (
                 SiteTool.RALLY,

@@ -234,7 +234,7 @@ class SiteTree(QTreeView):
             entries.append((self.tr("Rename"), self.renameRequested))
             if item.kind is ItemKind.FACADE:
                 entries.append((self.tr("Turn to the other side"), self.flipRequested))
-            entries.append((self.tr("Remove"), self.removeRequested))
+            entries.append((self.tr("Delete"), self.removeRequested))
         for text, signal in entries:
             action = QAction(text, menu)
             action.triggered.connect(lambda _checked=False, signal=signal: signal.emit(item))

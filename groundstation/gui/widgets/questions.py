@@ -120,7 +120,7 @@ class Questions(QObject):
         answer = _answer(
             QMessageBox.Icon.Question,
             parent,
-            self.tr("Unsaved work was kept"),
+            self.tr("Restore?"),
             text,
             _Button.Yes | _Button.Discard | _Button.Cancel,
             _Button.Yes,

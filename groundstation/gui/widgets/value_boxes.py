@@ -257,7 +257,7 @@ class PolygonBox(QWidget):
                 grid.addWidget(box, row + 1, column)
                 box.valueChanged.connect(self._edited)
             grid.addWidget(self._button("+", self.tr("Add a corner after this one"), self.add_corner, row), row + 1, 2)
-            remove = self._button("−", self.tr("Remove this corner"), self.remove_corner, row)
+            remove = self._button("−", self.tr("Delete this corner"), self.remove_corner, row)
             remove.setEnabled(n_corners > LEAST_CORNERS)
             grid.addWidget(remove, row + 1, 3)
         self._layout.replaceWidget(old, self._grid)

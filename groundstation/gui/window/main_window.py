@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from PySide6.QtCore import Qt, QTimer, Signal
+from PySide6.QtCore import QEvent, Qt, QTimer, Signal
 from PySide6.QtGui import QAction, QCloseEvent, QShowEvent
 from PySide6.QtWidgets import (
     QHBoxLayout,
@@ -24,15 +24,25 @@ from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.application.interpreter import BackgroundImport
 from groundstation.gui.shared_view import SharedView
 from groundstation.gui.tabs import TABS, Place, Tab, TabSpec
+from groundstation.gui.widgets.icons import NAME, icon
 from groundstation.gui.widgets.job_bar import JobBar
 from groundstation.gui.widgets.scrolling import CurrentStack, scrolled, split
 from groundstation.gui.widgets.tab_order import first_in, next_in_order
+from groundstation.gui.widgets.theme import colours
 from groundstation.gui.window.message_area import MessageArea
+from groundstation.gui.window.next_step import NextStepBar
+from groundstation.services.project.document import Document
+from groundstation.services.project.steps import Act, Step, guidance, is_done
 
 SIDE_WIDTH_PX, DETAIL_WIDTH_PX = 300, 330
 BOTTOM_HEIGHT_PX = 190
 """First sizes of what stands around the shared view, at 1280 x 720."""
 
+
+STEPS = frozenset(Step)
+
+TABS_OF_ACTS = {Act(f"to-{spec.name}"): spec.name for spec in TABS}
+"""Where each act leads that is nothing but a way to another tab."""
 
 SCENE_MODULE = "groundstation.gui.view3d.scene_view"
 
@@ -57,22 +67,26 @@ class MainWindow(QMainWindow):
         self._tabs: dict[str, Tab] = {}
         self._shown: TabSpec | None = None
         self._was_shown = False
-        self._quick_buttons: list[QWidget] = []
+        self._quick_buttons: list[QToolButton] = []
         self.shared_view = SharedView(context)
         self.shared_view.tabRequested.connect(self.show_tab)
         self.messages = MessageArea(context)
         self.job_bar = JobBar(context)
+        self.next_step = NextStepBar()
         self._make_layout()
         self._bar.currentChanged.connect(self._tab_chosen)
+        self.next_step.wanted.connect(self.take_step)
+        context.milestonesChanged.connect(self._show_steps)
+        context.documentChanged.connect(self._leave_start)
+        self._show_steps()
 
     def _make_layout(self) -> None:
         self._bar = QTabBar()
         self._bar.setExpanding(False)
         self._bar.setDrawBase(False)
         self._bar.setUsesScrollButtons(True)
-        for number, spec in enumerate(TABS):
+        for spec in TABS:
             self._bar.addTab(spec.shown_title())
-            self._bar.setTabToolTip(number, self.tr("{0} (Ctrl+{1})").format(spec.shown_tip(), number + 1))
         self._left, self._right, self._bottom = CurrentStack(), CurrentStack(), CurrentStack()
         # The left side is as high as the window: forms are long. The lists below need width more.
         beside = 1280 - SIDE_WIDTH_PX
@@ -92,6 +106,7 @@ class MainWindow(QMainWindow):
         self._top = QHBoxLayout()
         self._top.addWidget(self._bar, 1)
         layout.addLayout(self._top)
+        layout.addWidget(self.next_step)
         layout.addWidget(self._pages, 1)
         below = QHBoxLayout()
         below.addWidget(self.messages, 1)
@@ -100,12 +115,17 @@ class MainWindow(QMainWindow):
         self.setCentralWidget(page)
 
     def add_quick_actions(self, actions: Iterable[QAction]) -> None:
-        """Put large buttons for actions beside the tabs: what is needed everywhere must be hit by a finger."""
+        """Put large buttons for actions beside the tabs: what is needed everywhere must be hit by a finger.
+
+        Each action has the name of its icon as the property `groundstation.gui.widgets.icons.NAME`.
+        """
         for action in actions:
             button = QToolButton()
             button.setDefaultAction(action)
+            button.setAccessibleName(action.iconText())
             self._top.addWidget(button)
             self._quick_buttons.append(button)
+        self._show_steps()
 
     def tab_names(self) -> tuple[str, ...]:
         """Names of all tabs, in order."""
@@ -138,6 +158,42 @@ class MainWindow(QMainWindow):
         """Name of the tab at the front."""
         return "" if self._shown is None else self._shown.name
 
+    def take_step(self, act: Act) -> None:
+        """Lead on: to another tab, or by doing something in the one that is shown."""
+        if act in TABS_OF_ACTS:
+            self.show_tab(TABS_OF_ACTS[act])
+        elif self._shown is not None:
+            self._tabs[self._shown.name].take_step(act)
+
+    def _leave_start(self, before: Document, after: Document) -> None:
+        """Show a site that was opened from the start page."""
+        if after.site is not None and before.site is not after.site and self.shown_tab() in ("", "start"):
+            self.show_tab("site")
+
+    def _show_steps(self, *_changed: object) -> None:
+        """Tick the steps that are behind, and say what the one that is shown leads to."""
+        now, look = self._context.milestones, colours()
+        for number, spec in enumerate(TABS):
+            is_behind = spec.name in STEPS and is_done(Step(spec.name), now)
+            self._bar.setTabIcon(number, icon("done", look.ok) if is_behind else icon(spec.name, look.muted))
+            tip = self.tr("{0} (Ctrl+{1})").format(spec.shown_tip(), number)
+            self._bar.setTabToolTip(number, self.tr("Done. {0}").format(tip) if is_behind else tip)
+        for button in self._quick_buttons:
+            action = button.defaultAction()
+            action.setIcon(icon(str(action.property(NAME))))
+        shown = self._shown
+        self.next_step.setVisible(shown is not None and shown.name in STEPS)
+        if shown is not None and shown.name in STEPS:
+            found = guidance(Step(shown.name), now)
+            words = (self._context.localized(str(text)) for text in (found.done, found.next, found.label))
+            self.next_step.set_guidance(found, *words)
+
+    def changeEvent(self, event: QEvent) -> None:  # noqa: N802
+        """Draw the signs of the tabs in the colours of another theme."""
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "next_step"):
+            self._show_steps()
+
     def _tab_chosen(self, index: int) -> None:
         spec = TABS[index]
         if spec is self._shown:
@@ -161,6 +217,7 @@ class MainWindow(QMainWindow):
             for action in page.actions():
                 (self.addAction if name == spec.name else self.removeAction)(action)
         tab.shown()
+        self._show_steps()
         self.tabShown.emit(spec.name)
 
     def focusNextPrevChild(self, next: bool) -> bool:  # noqa: A002, N802
@@ -168,6 +225,7 @@ class MainWindow(QMainWindow):
         regions = (
             self._bar,
             *self._quick_buttons,
+            self.next_step,
             self._pages if self._pages.currentWidget() is not self._around else self._left,
             self.shared_view,
             self._right,

@@ -16,6 +16,7 @@ from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.application.translate import shown_keys
 from groundstation.gui.shared_view import SharedViewPage
 from groundstation.gui.tabs import TABS
+from groundstation.gui.widgets.icons import NAME
 from groundstation.gui.window.main_window import MainWindow
 from groundstation.services.plugins import plugin_rows
 from groundstation.services.settings import Language, Settings, Theme
@@ -108,7 +109,7 @@ def view_keys() -> list[tuple[str, list[Row]]]:
         ),
         (
             translate("Shortcuts", "Tree of the site"),
-            [(gone, translate("Shortcuts", "Remove what is selected"))],
+            [(gone, translate("Shortcuts", "Delete what is selected"))],
         ),
         (
             translate("Shortcuts", "Photo strip of a flight"),
@@ -125,7 +126,7 @@ def view_keys() -> list[tuple[str, list[Row]]]:
                 ("+ -", translate("Shortcuts", "Nearer, farther")),
                 ("0", translate("Shortcuts", "Show all of the photo")),
                 ("Tab", translate("Shortcuts", "Choose the next line")),
-                (gone, translate("Shortcuts", "Remove the line, or the panel")),
+                (gone, translate("Shortcuts", "Delete the line, or the panel")),
                 (ins, translate("Shortcuts", "Add a line beside it, or put the panel back")),
                 (bar, translate("Shortcuts", "The panel on or off")),
                 (enter, translate("Shortcuts", "Leave the line where it is")),
@@ -218,12 +219,13 @@ class Menus(QObject):
         self._go_menu(bar.addMenu(self.tr("&Go")))
         self._tab_menu = bar.addMenu("")
         self._help_menu(bar.addMenu(self.tr("&Help")))
-        for action, text in (
-            (self._undo, self.tr("Undo")),
-            (self._redo, self.tr("Redo")),
-            (self._save, self.tr("Save")),
+        for action, text, name in (
+            (self._undo, self.tr("Undo"), "undo"),
+            (self._redo, self.tr("Redo"), "redo"),
+            (self._save, self.tr("Save"), "save"),
         ):
             action.setIconText(text)
+            action.setProperty(NAME, name)
         window.add_quick_actions((self._undo, self._redo, self._save))
         window.tabShown.connect(self._fill_tab_menu)
         context.documentChanged.connect(self._update)
@@ -302,7 +304,7 @@ class Menus(QObject):
         self._add(menu, self.tr("&Full screen"), "F11", self._toggle_full_screen)
 
     def _go_menu(self, menu: QMenu) -> None:
-        for number, spec in enumerate(TABS, 1):
+        for number, spec in enumerate(TABS):
             name = spec.name
             self._add(menu, spec.shown_title(), f"Ctrl+{number}", partial(self._window.show_tab, name))
 

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import fields, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,8 @@ from PySide6.QtWidgets import QApplication
 from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.application.interpreter import GarbageCollector, leave_modules_alone
 from groundstation.gui.application.translate import Translations
+from groundstation.gui.start_page import StartPage
+from groundstation.gui.widgets.icons import tint_all
 from groundstation.gui.widgets.questions import Answer, Questions, file_name
 from groundstation.gui.widgets.theme import apply_theme
 from groundstation.gui.window.main_window import MainWindow
@@ -30,7 +33,9 @@ from groundstation.services.project.folder import create_project, save_project
 from groundstation.services.project.lock import ProjectLock
 from groundstation.services.project.project_file import is_project
 from groundstation.services.project.recovery import Recovery, discard_recovery, find_recovery, find_unsaved, recover
+from groundstation.services.project.sample import sample_folder, unpack_sample
 from groundstation.services.project.session import LockedProject, ProjectSession, Session
+from groundstation.services.project.steps import Act, FoundFiles, steps_in_folder
 from groundstation.services.settings import Settings, settings_at_start, settings_path, write_settings
 from planning.base.errors import GroundStationError, InputError
 from planning.base.findings import Severity
@@ -83,7 +88,51 @@ class ProjectController(QObject):
         window.shared_view.tilesChanged.connect(self._tiles_changed)
         window.shared_view.sceneReady.connect(lambda _scene: self._scene_is_ready())
         self._title_of(window)
+        self._serve(start_page_of(window))
         return window
+
+    def _serve(self, start: StartPage) -> None:
+        """Do what the start page offers."""
+        start.sampleRequested.connect(self.open_sample)
+        start.bundledRequested.connect(self._open_bundled)
+        start.projectRequested.connect(self.open_project)
+        start.recentRequested.connect(self.open_recent)
+        for signal, tab, act in (
+            (start.buildingRequested, "site", Act.IMPORT_BUILDING),
+            (start.photosRequested, "photos", Act.FROM_PHOTOS),
+            (start.missionRequested, "mission", Act.IMPORT_MISSION),
+        ):
+            signal.connect(partial(self._begin, tab, act))
+        start.set_recent(self._settings.recent_projects)
+
+    def _begin(self, tab: str, act: Act) -> None:
+        """Begin a project in the way that was chosen; what is open is left first."""
+
+        def go_on() -> None:
+            if self.context.document.site is not None:
+                self._put_on_controller(_first_document(self._settings), None)
+            self.window.show_tab(tab)
+            self.window.take_step(act)
+
+        self._leave(go_on)
+
+    def _open_bundled(self) -> None:
+        from groundstation.gui.site.site_opener import SiteOpener
+
+        def go_on() -> None:
+            self._put_on_controller(_first_document(self._settings), None)
+            SiteOpener(self.context, self.window).open_bundled("office")
+
+        self._leave(go_on)
+
+    def open_sample(self) -> None:
+        """Open the finished sample; a copy of it is made where there is none yet."""
+
+        def go_on() -> None:
+            job = self.tr("Sample project")
+            self.context.start(job, lambda context: unpack_sample(sample_folder(), context), self.open_folder)
+
+        self._leave(go_on)
 
     def show(self) -> None:
         """Show the window as it was left; then say what the settings file has wrong and look for unsaved work."""
@@ -171,6 +220,7 @@ class ProjectController(QObject):
     def _dress(self) -> None:
         self._translations.use(self._settings.language)
         apply_theme(self._application, self._settings.theme, self._settings.text_scale)
+        tint_all(self._application)
 
     def _keep_settings(self) -> None:
         try:
@@ -302,8 +352,20 @@ class ProjectController(QObject):
         for topic in ("project.", "plan.", "job."):
             self.context.withdraw(topic)
         self.context.session.open(document, folder)
+        self.context.begin_anew()
+        if folder is not None:
+            self._look_at_steps(folder)
         self._show_title()
         self.opened.emit()
+
+    def _look_at_steps(self, folder: Path) -> None:
+        """Tick what was done in a project on other days."""
+
+        def done(found: FoundFiles) -> None:
+            if self.context.session.folder == folder:
+                self.context.note(**{field.name: getattr(found, field.name) for field in fields(found)})
+
+        self.context.start(self.tr("Look at the project"), lambda _context: steps_in_folder(folder), done)
 
     def _or_warn(self, action: Callable[[], None]) -> bool:
         """Do something whose failure the user is told of; True where it was done."""
@@ -321,6 +383,7 @@ class ProjectController(QObject):
     def _remember(self, folder: Path) -> None:
         self._settings = self._settings.with_recent(folder)
         self._keep_settings()
+        start_page_of(self.window).set_recent(self._settings.recent_projects)
 
     # Unsaved work
 
@@ -410,6 +473,13 @@ class ProjectController(QObject):
             self._worker.close()
         self._runner.shutdown()
         self._garbage.close()
+
+
+def start_page_of(window: MainWindow) -> StartPage:
+    """The start page of a window."""
+    page = window.tab("start")
+    assert isinstance(page, StartPage)
+    return page
 
 
 def _first_document(settings: Settings) -> Document:

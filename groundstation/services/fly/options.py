@@ -31,6 +31,10 @@ USUAL_ADDRESS = {
 """Where ground stations listen, where simulators serve, and where a telemetry radio usually is."""
 
 
+REHEARSAL_SPEED_UP = 10.0
+"""Of the first simulated flight: a battery's flight takes minutes, and its readouts can still be followed."""
+
+
 @dataclass(frozen=True, slots=True)
 class ConnectionChoice:
     """What was chosen.
@@ -48,7 +52,7 @@ class ConnectionChoice:
     kind: LinkKind = LinkKind.SIMULATION
     address: str = ""
     autopilot: Autopilot = Autopilot.ARDUPILOT
-    speed_up: float = 1.0
+    speed_up: float = REHEARSAL_SPEED_UP
     signed: tuple[str, ...] = ()
 
     @property

@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 
-from groundstation.services.fly.events import LinkState, Readouts, Request
+from groundstation.services.fly.events import LinkState, LiveView, Readouts, Request
+from groundstation.services.project.steps import FlightState
 from groundstation.vehicle.commands import MISSION_MODE
 from groundstation.vehicle.sortie.run_records import Phase
 from groundstation.vehicle.state import VehicleState
@@ -42,6 +43,19 @@ def allowed_requests(
     if state.is_armed and phase is not Phase.STARTING:
         allowed.add(Request.PAUSE if flies_mission(state) else Request.RESUME)
     return frozenset(allowed)
+
+
+def flight_state(view: LiveView) -> FlightState:
+    """Which step of a flight comes next; APART once it has landed."""
+    if view.state.is_armed:
+        return FlightState.IN_AIR
+    if view.phase is Phase.ENDED:
+        return FlightState.APART
+    if Request.START in view.may:
+        return FlightState.READY
+    if view.phase in (Phase.CHECKING, Phase.READY):
+        return FlightState.ON_BOARD
+    return FlightState.CONNECTED if Request.UPLOAD in view.may else FlightState.BUSY
 
 
 def flies_mission(state: VehicleState) -> bool:

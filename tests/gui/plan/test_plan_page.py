@@ -187,7 +187,7 @@ def test_a_method_that_keeps_no_viewpoints_is_refused_where_some_are_kept(applic
     page.controller.plan()
     assert not page.controller.is_planning
     text = controller.window.messages.texts().splitlines()[-1]
-    assert "Greedy with proof" in text
+    assert "Optimised (recommended)" in text
     assert viewpoint.id in text
 
 

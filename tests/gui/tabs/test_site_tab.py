@@ -100,7 +100,7 @@ def test_without_a_site_the_tab_says_what_to_do_and_a_bundled_site_fills_it(open
     assert hands.site.name == "roof"
     assert hands.context.session.undo_label == "Open roof"
     assert not side.start.isVisible()
-    assert hands.tab.detail.findings._title.text() == "Home, airspace and facades: nothing wrong found."
+    assert hands.tab.detail.findings._title.text() == "All checks passed: home, airspace, facades."
     hands.undo()
     assert side.start.isVisible()
 
@@ -319,7 +319,7 @@ def test_delete_removes_what_was_picked_in_the_view(opened):
     assert hands.site.obstacles == ()
     assert hands.context.selection is None
     remove.trigger()
-    assert hands.context.session.undo_label == "Remove opposite"
+    assert hands.context.session.undo_label == "Delete opposite"
     hands.window.show_tab("plan")
     assert remove not in hands.window.actions(), "other tabs have their own Delete"
 

@@ -84,7 +84,7 @@ def test_every_tab_can_be_shown_and_fits_a_small_screen(application, controller)
         size = controller.window.minimumSizeHint()
         assert size.width() <= 1280, name
         assert size.height() <= 720, name
-    assert controller.window.tab_names() == ("site", "plan", "mission", "fly", "photos", "reconstruct", "model")
+    assert controller.window.tab_names() == ("start", "site", "plan", "mission", "fly", "photos", "reconstruct", "model")
 
 
 @pytest.mark.slow

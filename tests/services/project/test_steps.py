@@ -1,0 +1,142 @@
+"""What comes next: from every state there is a way on, to the end, and edits take back what they spoil."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from groundstation.services.project.document import Document, PlanEntry
+from groundstation.services.project.steps import (
+    Act,
+    FlightState,
+    Milestones,
+    Step,
+    guidance,
+    is_done,
+    steps_in_folder,
+    undone,
+)
+from tests.services.project_cases import document
+
+FOLDER = Path("folder")
+
+states = st.builds(
+    Milestones,
+    n_panels=st.sampled_from([None, 0, 280]),
+    n_viewpoints=st.sampled_from([None, 60]),
+    is_planning=st.booleans(),
+    n_errors=st.sampled_from([None, 0, 2]),
+    is_exported=st.booleans(),
+    flight=st.sampled_from(FlightState),
+    is_flown=st.booleans(),
+    n_photos=st.sampled_from([0, 24]),
+    data_set=st.sampled_from([None, FOLDER]),
+    is_training=st.booleans(),
+    model=st.sampled_from([None, FOLDER]),
+    is_model_open=st.booleans(),
+)
+
+BROUGHT = {
+    Act.DRAW_PANELS: {"n_panels": 40},
+    Act.PLAN: {"is_planning": True},
+    Act.KEEP_PLAN: {"is_planning": False, "n_viewpoints": 60},
+    Act.CHECK: {"n_errors": 0},
+    Act.SHOW_FINDING: {"n_errors": 0},
+    Act.CONNECT: {"flight": FlightState.CONNECTED},
+    Act.UPLOAD: {"flight": FlightState.ON_BOARD},
+    Act.TAKE_OFF: {"flight": FlightState.IN_AIR},
+    Act.FROM_PHOTOS: {"n_panels": 0, "n_photos": 24},
+    Act.READ_PHOTOS: {"n_photos": 24},
+    Act.FIND_PANELS: {"n_panels": 40},
+    Act.MAKE_DATA_SET: {"data_set": FOLDER},
+    Act.TRAIN: {"is_training": True},
+    Act.KEEP_MODEL: {"is_training": False, "model": FOLDER},
+    Act.OPEN_MODEL: {"is_model_open": True},
+}
+"""What each act brings about when it succeeds."""
+
+WAITED = {
+    FlightState.BUSY: {"flight": FlightState.CONNECTED},
+    FlightState.ON_BOARD: {"flight": FlightState.READY},
+    FlightState.IN_AIR: {"flight": FlightState.APART, "is_flown": True},
+}
+
+
+@given(states, st.sampled_from(Step))
+def test_from_every_state_and_tab_the_buttons_lead_to_an_open_model(now, step):
+    seen = []
+    for _ in range(40):
+        found = guidance(step, now)
+        assert found.next, "it is always said what comes next"
+        assert bool(found.label) == (found.act is not None)
+        seen.append((step, found.act))
+        if found.act is Act.EXPORT_MODEL:
+            assert is_done(Step.MODEL, now)
+            return
+        if found.act is None:
+            now = replace(now, **WAITED[now.flight])
+        elif found.act is Act.TO_START:
+            # A new project begins with a building.
+            step, now = Step.SITE, Milestones(n_panels=0)
+        elif found.act in BROUGHT:
+            now = replace(now, **BROUGHT[found.act])
+        else:
+            step = Step(found.act.value.removeprefix("to-"))
+    pytest.fail(f"it goes around in circles: {seen[-8:]}")
+
+
+def test_a_step_is_behind_once_what_it_is_for_is_there():
+    now = Milestones()
+    for step, brought in (
+        (Step.SITE, {"n_panels": 280}),
+        (Step.PLAN, {"n_viewpoints": 60}),
+        (Step.MISSION, {"n_errors": 0}),
+        (Step.FLY, {"is_flown": True}),
+        (Step.PHOTOS, {"data_set": FOLDER}),
+        (Step.RECONSTRUCT, {"model": FOLDER}),
+        (Step.MODEL, {"is_model_open": True}),
+    ):
+        assert not is_done(step, now)
+        now = replace(now, **brought)
+        assert is_done(step, now)
+    assert all(is_done(step, now) for step in Step)
+
+
+def test_a_plan_with_errors_is_not_done_and_its_first_error_is_shown():
+    now = Milestones(n_panels=280, n_viewpoints=60, n_errors=2)
+    found = guidance(Step.MISSION, now)
+    assert not found.is_done
+    assert found.act is Act.SHOW_FINDING
+    assert "2" in found.done
+
+
+def test_edits_take_back_what_they_spoil_and_nothing_else():
+    before = document("canyon")
+    model, entry = before.site, before.current
+    plan = entry.plan
+    now = replace(undone(Milestones(), Document(), before), n_errors=0, is_flown=True, n_photos=9, data_set=FOLDER)
+    assert (now.n_panels, now.n_viewpoints) == (model.site.n_panels, len(plan.viewpoints))
+
+    titled = replace(before, plans=(replace(entry, title="Other"),))
+    assert undone(now, before, titled) == now, "a title changes nothing"
+    other = before.with_plan(PlanEntry("plan-2", "Second", replace(plan, seed=plan.seed + 1)))
+    assert undone(now, before, other) == replace(now, n_errors=None, is_flown=False)
+    moved = replace(before, site=replace(model, site=replace(model.site, home_enu_m=(1.0, 2.0, 0.0))))
+    assert undone(now, before, moved) == replace(now, n_errors=None)
+    elsewhere = replace(model, site=replace(model.site, name="elsewhere"), building=replace(model.building))
+    assert undone(now, before, replace(before, site=elsewhere)).data_set is None
+
+
+def test_what_a_project_has_on_the_disk_is_found(tmp_path):
+    assert steps_in_folder(tmp_path / "nowhere").data_set is None
+    for name in ("missions/a.kmz", "flights/a.json", "dataset/dataset.json", "models/a/model.json"):
+        assert not all(getattr(steps_in_folder(tmp_path), part) for part in ("is_exported", "is_flown", "model"))
+        path = tmp_path / name
+        path.parent.mkdir(parents=True)
+        path.write_text("{}")
+    found = steps_in_folder(tmp_path)
+    assert found.is_exported
+    assert found.is_flown
+    assert (found.data_set, found.model) == (tmp_path / "dataset", tmp_path / "models" / "a")
