@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -192,7 +193,7 @@ class StartPage(QObject):
         self.tourRequested.emit(is_wanted)
 
 
-def _call(slot: partial[None], _checked: bool = False) -> None:
+def _call(slot: Callable[[], object], _checked: bool = False) -> None:
     """Leave out what buttons tell of themselves."""
     slot()
 

@@ -166,7 +166,7 @@ class ApplicationContext(QObject):
         """What has happened on the way from a building to a model."""
         return self._milestones
 
-    def note(self, **changes: object) -> None:
+    def note(self, **changes: Any) -> None:
         """Something happened on that way: fields of `Milestones` by name."""
         self._set_milestones(replace(self._milestones, **changes))
 

@@ -14,6 +14,7 @@ from groundstation.gui.shared_view import SharedViewPage
 from groundstation.gui.tabs import TABS
 from groundstation.gui.window import menus
 from groundstation.services.project.document import Item, ItemKind
+from groundstation.services.project.steps import Step
 from groundstation.services.settings import Language, Theme
 from groundstation.services.units import UnitSystem
 from planning.parameters import GreedyParameters
@@ -84,7 +85,7 @@ def test_every_tab_can_be_shown_and_fits_a_small_screen(application, controller)
         size = controller.window.minimumSizeHint()
         assert size.width() <= 1280, name
         assert size.height() <= 720, name
-    assert controller.window.tab_names() == ("start", "site", "plan", "mission", "fly", "photos", "reconstruct", "model")
+    assert controller.window.tab_names() == ("start", *Step)
 
 
 @pytest.mark.slow
