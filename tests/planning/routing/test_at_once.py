@@ -35,6 +35,7 @@ from planning.routing.at_once import (
 from planning.site.bundled import SCENES
 from planning.site.records import SiteModel
 from planning.viewpoints.prepare import prepare
+from tests.planning.revision.cases import QUICK
 
 RULES = FlightRules(at_once=2, apart_m=12.0)
 
@@ -43,7 +44,9 @@ RULES = FlightRules(at_once=2, apart_m=12.0)
 def flown() -> tuple[SiteModel, Plan]:
     """Two aircraft before two facades."""
     site_model = SCENES["court"]()
-    return site_model, plan_flight(site_model, PlanRequest(n_views=60, rules=RULES, time_budget_s=10.0)).plan
+    return site_model, plan_flight(
+        site_model, PlanRequest(n_views=60, rules=RULES, greedy=QUICK, time_budget_s=10.0)
+    ).plan
 
 
 def test_aircraft_keep_apart_whoever_is_early_or_late():
@@ -142,6 +145,7 @@ def test_a_sortie_whose_path_is_none_is_an_error_of_its_own():
     assert not is_flyable(found)
 
 
+@pytest.mark.slow
 def test_an_edited_plan_has_starts_again():
     site_model, plan = flown()
     prepared = prepare(site_model, plan.camera, plan.constraints)

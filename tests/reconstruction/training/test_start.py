@@ -119,6 +119,7 @@ def test_light_apart_is_on_where_mirror_images_agree_and_off_where_they_do_not(t
     assert "splats alone" in decision.reason
 
 
+@pytest.mark.slow
 def test_of_several_lights_the_one_that_tells_most_together_with_splats_is_kept_with_what_these_learned(
     tmp_path, monkeypatch
 ):
