@@ -13,6 +13,7 @@ from planning.aircraft.catalogue import profile
 from planning.checks import check_plan
 from planning.coverage.model import CoverageModel
 from planning.coverage.sections import PanelFrames, SectionGrid, panel_frames
+from planning.geo.height_field import HeightField
 from planning.geo.sun import sun_track
 from planning.insight.clearance import route_clearance
 from planning.insight.obstructions import first_obstructions_hit, obstructions_of
@@ -72,6 +73,10 @@ def compile_kernels() -> None:
         check_plan(plan_flight(model, request).plan, model)
     _analyse()
     _count_coverage(panel_frames(panel_corners(model.site)))
+    field = HeightField(0.0, 0.0, 1.0, np.zeros((2, 2)))
+    field.leg_heights_m(np.ones((1, 3)), np.ones((1, 3)))
+    field.heights_m(np.ones((1, 3)))
+    field.spread_departures(np.ones((1, 3)), np.zeros((2, 2)), np.zeros((2, 2)), np.zeros((1, 1)))
     for module in (at_once, lower_bound, orienteering, sorties, speed_profile, tour):
         module.compile_kernels()
 

@@ -25,7 +25,7 @@ def python(code):
 @pytest.mark.parametrize(
     ("package", "forbidden"),
     [
-        ("planning", ["torch", "PySide6", "pyvista", "pymavlink", "matplotlib"]),
+        ("planning", ["torch", "PySide6", "pyvista", "pymavlink", "matplotlib", "rasterio"]),
         ("missions", ["torch", "PySide6", "pyvista", "open3d"]),
         ("groundstation.services", ["torch", "PySide6", "pyvista"]),
         ("groundstation.cli", ["torch", "PySide6", "pyvista"]),
@@ -71,8 +71,8 @@ def test_top_level_holds_the_agreed_folders_and_nothing_else_of_ours():
 
 
 @pytest.mark.lint
-def test_only_one_module_each_imports_nlopt_casadi_and_pyvrp():
-    for library in ("nlopt", "casadi", "pyvrp"):
+def test_only_one_module_each_imports_nlopt_casadi_pyvrp_and_rasterio():
+    for library in ("nlopt", "casadi", "pyvrp", "rasterio"):
         users = [
             path.relative_to(ROOT).as_posix()
             for folder in ("planning", "missions", "groundstation")

@@ -24,6 +24,7 @@ from planning.insight.flight_profile import LowFlight, low_flight
 from planning.plan import Plan
 from planning.routing.rally import return_height
 from planning.site.free_space import TAKEOFF_CLIMB_M, unchecked_space
+from planning.site.ground import ground_of
 from planning.site.records import Site, SiteModel
 
 
@@ -146,7 +147,7 @@ def sortie_orders(plan: Plan, site_model: SiteModel, mission: Mission, raised_m:
         rally=rally_points(site),
         return_height_m=return_height(space).above_home_m + raised_m,
         raised_m=raised_m,
-        low=low_flight(plan, plan.sorties[mission.number - 1], site.home_enu_m, site.airspace.ground_z_m),
+        low=low_flight(plan, plan.sorties[mission.number - 1], site.home_enu_m, ground_of(site)),
     )
     autopilot_s = {}
     for autopilot in Autopilot:

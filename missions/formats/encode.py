@@ -6,6 +6,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from missions.formats.options import EncodedFiles, ExportOptions
 from missions.mavlink.autopilots import Autopilot
 from missions.mission.export_choices import HIGHEST_RETURN_M, LOWEST_RETURN_M, FileFormat, HeightReference
@@ -16,6 +18,7 @@ from planning.base.messages import glue, say
 from planning.plan import Plan
 from planning.routing.rally import CLEARANCE_M, clear_height_z_m, return_height
 from planning.site.free_space import unchecked_space
+from planning.site.ground import ground_of
 from planning.site.records import MIN_HEIGHT_ABOVE_GROUND_M, Site
 
 
@@ -135,13 +138,19 @@ def takeoff_check(plan: Plan, site: Site, number: int) -> TakeoffCheck | None:
 def _security_height_m(plan: Plan, options: ExportOptions) -> float:
     """Height above take-off below which DJI aircraft must not fly sideways: the lowest flight, where that is higher.
 
+    The ground that counts is the highest between home and the first waypoints.
+
     Without the site, home counts as standing on the ground.
     """
     lowest_m = plan.constraints.min_height_above_ground_m
     if options.site is None:
         return MIN_HEIGHT_ABOVE_GROUND_M if lowest_m is None else lowest_m
     site = options.site.site
-    return site.airspace.lowest_height_m(lowest_m) + site.airspace.ground_z_m - site.home_enu_m[2]
+    first = np.array(
+        [site.home_enu_m, *(sortie.path_enu_m[1] for sortie in plan.sorties if len(sortie.path_enu_m) > 1)]
+    )
+    _, ground_z_m = ground_of(site).range_m(first.min(axis=0), first.max(axis=0))
+    return site.airspace.lowest_height_m(lowest_m) + ground_z_m - site.home_enu_m[2]
 
 
 def dji_return_height(plan: Plan, missions: Sequence[Mission], options: ExportOptions) -> tuple[float, list[Finding]]:

@@ -22,6 +22,7 @@ from planning.plan import Sortie, Viewpoint, viewpoint_arrays
 from planning.routing.at_once import nearest_at_once_m, sortie_leg_times
 from planning.routing.rally import RETURN_TOLERANCE_M, rally_findings, return_height
 from planning.site.file import is_planned_on
+from planning.site.ground import decide_terrain
 from planning.site.records import MIN_HEIGHT_ABOVE_GROUND_M
 
 # Rules about where the aircraft is: airspace, distances, no-fly volumes, altitude, leg lengths.
@@ -66,21 +67,62 @@ def lowest_heights(case: Case) -> Iterator[Finding]:
     limit = airspace.lowest_height_m(case.plan.constraints.min_height_above_ground_m)
     advice = say("plan it again, or allow lower flights")
     subject = say("lowest height above the ground beside the take-off column")
+    ground = case.space.ground
     for place, _, path in case.sorties():
-        heights = np.minimum(path[:-1, 2], path[1:, 2]) - airspace.ground_z_m
+        heights = ground.least_m(path[:-1], path[1:])
         heights = np.where(beside_column(path, home), heights, np.inf)
         leg = int(np.argmin(heights))
-        value = float(heights[leg])
+        value, where = float(heights[leg]), say("{}, leg {}", place, leg + 1)
+        if math.isinf(value) and value < 0.0:
+            yield ground_unknown(int(np.isneginf(heights).sum()), where)
+            heights = np.where(np.isneginf(heights), np.inf, heights)
+            leg = int(np.argmin(heights))
+            value, where = float(heights[leg]), say("{}, leg {}", place, leg + 1)
         if math.isfinite(value):
-            where, kept = say("{}, leg {}", place, leg + 1), value >= limit - ROUNDING_M
+            kept = value >= limit - ROUNDING_M
             yield judge(kept, "low-flight", subject, value, limit, "m", where, advice, least=True)
     flown = {viewpoint_id for _, sortie, _ in case.sorties() for viewpoint_id in sortie.viewpoint_ids}
     for viewpoint in case.plan.viewpoints:
-        value = viewpoint.position_enu_m[2] - airspace.ground_z_m
-        if viewpoint.id not in flown and value < limit - ROUNDING_M:
+        if viewpoint.id in flown:
+            continue
+        position = np.array([viewpoint.position_enu_m])
+        value = float(ground.least_m(position, position)[0])
+        if math.isinf(value):
+            yield ground_unknown(1, viewpoint.id)
+        elif value < limit - ROUNDING_M:
             yield judge(False, "low-flight", subject, value, limit, "m", viewpoint.id, advice, least=True)
     if limit < MIN_HEIGHT_ABOVE_GROUND_M:
         yield low_flight_allowed(limit)
+
+
+def ground_unknown(n_legs: int, place: str) -> Finding:
+    """That a path leads over ground of which nothing is known."""
+    text = say(
+        "the terrain has no heights below the path (legs concerned: {}): what is not known is not clear; attach "
+        "terrain that covers it, or plan it again",
+        n_legs,
+    )
+    return Finding(Severity.ERROR, "terrain-unknown", text, place, float(n_legs), 0.0, "legs")
+
+
+def terrain_in_use(case: Case) -> Iterator[Finding]:
+    """Whether heights count from terrain, and why; nothing to say where a site has none."""
+    terrain = case.site_model.site.terrain
+    if terrain is None:
+        return
+    decision = decide_terrain(case.site_model.site)
+    if decision.on:
+        text = say("heights above the ground count from the terrain: {}", decision.reason)
+        yield Finding(Severity.OK, "terrain", text, "", decision.size, decision.tolerance, "m")
+    elif decision.decided_by == "scene":
+        text = say("heights above the ground count from level ground: {}", decision.reason)
+        yield Finding(Severity.OK, "terrain", text, "", decision.size, decision.tolerance, "m")
+    elif decision.size > decision.tolerance:
+        text = say(
+            "the terrain of the site is not used, as you asked, though {}; heights count from level ground",
+            decision.reason,
+        )
+        yield Finding(Severity.WARNING, "terrain", text, "", decision.size, decision.tolerance, "m")
 
 
 def low_flight_allowed(limit_m: float) -> Finding:
@@ -152,9 +194,10 @@ def rally_points(case: Case) -> Iterator[Finding]:
 
 def altitude(case: Case) -> Iterator[Finding]:
     """Height above ground stays below what needs a permit."""
-    ground = case.site_model.site.airspace.ground_z_m
-    heights = [(float(path[:, 2].max()) - ground, place) for place, _, path in case.sorties()]
-    if heights:
+    # Over ground that is not known there is no greatest height either; `lowest_heights` says so.
+    of_legs = [(case.space.ground.greatest_m(path[:-1], path[1:]), place) for place, _, path in case.sorties()]
+    heights = [(float(each[np.isfinite(each)].max(initial=-math.inf)), place) for each, place in of_legs]
+    if heights and math.isfinite(max(heights)[0]):
         value, place = max(heights)
         advice = say("most rules ask for a permit above it")
         subject, kept = say("greatest height above ground"), value <= MAX_ALTITUDE_M
@@ -181,6 +224,7 @@ def leg_lengths(case: Case) -> Iterator[Finding]:
 GEOMETRY_RULES: tuple[Rule, ...] = (
     viewpoints_in_airspace,
     paths_in_airspace,
+    terrain_in_use,
     lowest_heights,
     distances_at_viewpoints,
     distances_along_paths,
@@ -542,6 +586,9 @@ def return_home(case: Case) -> Iterator[Finding]:
         return
     found, gap_m = return_height(case.space), min(way.gap_m for way in ways)
     limit_m = min(case.space.min_distance_m, *gaps.solid_gaps.legs_m.values())
+    above_ground_m = min(way.above_ground_m for way in ways)
+    airspace = case.site_model.site.airspace
+    lowest_m = airspace.lowest_height_m(case.plan.constraints.min_height_above_ground_m)
     path_crosses = min(gaps.no_fly_gaps.legs_m.values(), default=math.inf) <= 0.0
     crosses_by_itself = not path_crosses and any(way.crosses_no_fly for way in ways)
     is_capped = found.above_home_m < found.wanted_above_home_m
@@ -567,6 +614,14 @@ def return_home(case: Case) -> Iterator[Finding]:
     elif gap_m < limit_m - RETURN_TOLERANCE_M:
         text = say("an aircraft that returns by itself climbs within {:.1f} m of the building or an obstacle", gap_m)
         yield Finding(Severity.WARNING, "return-height", text, "", gap_m, limit_m, "m")
+    elif above_ground_m < lowest_m - ROUNDING_M and case.space.ground.terrain is not None:
+        text = (
+            say("{:.1f} m above the terrain", above_ground_m)
+            if math.isfinite(above_ground_m)
+            else say("over terrain of which no heights are known")
+        )
+        text = say("an aircraft that returns by itself would fly {}; raise the ceiling of the airspace", text)
+        yield Finding(Severity.ERROR, "return-height", text, "", above_ground_m, lowest_m, "m")
     elif crosses_by_itself:
         text = say(
             "an aircraft that returns by itself, {:g} m above take-off, crosses a no-fly zone; fly it back by hand",

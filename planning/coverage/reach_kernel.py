@@ -5,6 +5,7 @@ covers the section:
 
 - it lies wholly outside the section's cone, behind the panel, beyond the largest distance, or at elevations at which
   the gimbal cannot bring the centroid into the picture (all bounded by the cell's circumscribed sphere);
+- it lies wholly too low above the terrain, where there is one: below its lowest node by more than what is kept;
 - it lies wholly too close to something: distances change by at most one metre per metre, so distance(centre) + radius
   below the minimum distance is a proof; likewise inside a solid or a no-fly volume;
 - with occlusion: its eight corners lie in the shadow of one convex group (`planning.coverage.reachability`).
@@ -22,6 +23,7 @@ from numpy.typing import NDArray
 
 from planning.base.jit import inline, kernel
 from planning.geo.bvh import Bvh, nearest_d2, segment_hits, segment_is_free
+from planning.geo.height_field import heights_below
 from planning.geo.solids import _is_inside
 
 Array = NDArray[np.float64]
@@ -38,8 +40,16 @@ MAX_STACK = 4096
 """Cells waiting; halving 4 096 m down to 1 cm on three axes keeps fewer than 60."""
 
 
+MAX_NODES = 1024
+"""Nodes of the terrain looked at below a cell; wider ones are divided first."""
+
+
 class Limits(NamedTuple):
-    """What viewpoints must keep. Distances `need_*` hold for witnesses, `proof_*` for proofs (never larger)."""
+    """What viewpoints must keep. Distances `need_*` hold for witnesses, `proof_*` for proofs (never larger).
+
+    `terrain` holds heights as those of a `HeightField` with its west, south and step in `grid`; without nodes, the
+    ground is level and below `low`.
+    """
 
     low: Array
     high: Array
@@ -51,6 +61,9 @@ class Limits(NamedTuple):
     max_distance: float
     occlusion: bool
     margin: float
+    terrain: Array
+    grid: tuple[float, float, float]
+    min_height: float
 
 
 class Bodies(NamedTuple):
@@ -151,6 +164,34 @@ def _is_witness(p: Array, panel: Array, bounds: Array, limits: Limits) -> bool:
 
 
 @kernel
+def _is_too_low(centre: Array, half: Array, limits: Limits) -> bool:
+    """Whether the whole cell lies too low above the terrain, or where nothing is known of it."""
+    n_rows, n_columns = limits.terrain.shape
+    west, south, step = limits.grid
+    first_column = int(max(np.floor((centre[0] - half[0] - west) / step), 0.0))
+    last_column = int(min(np.ceil((centre[0] + half[0] - west) / step), n_columns - 1.0))
+    first_row = int(max(np.floor((centre[1] - half[1] - south) / step), 0.0))
+    last_row = int(min(np.ceil((centre[1] + half[1] - south) / step), n_rows - 1.0))
+    if (last_column - first_column + 1) * (last_row - first_row + 1) > MAX_NODES:
+        return False
+    lowest = np.inf
+    for row in range(first_row, last_row + 1):
+        for column in range(first_column, last_column + 1):
+            if limits.terrain[row, column] < lowest:
+                lowest = limits.terrain[row, column]
+    return bool(centre[2] + half[2] < lowest + limits.min_height - PROOF_SLACK_M)
+
+
+@kernel
+def terrain_below(p: Array, limits: Limits) -> float:
+    """Upper bound of the terrain below a point; infinite where nothing is known."""
+    ground = np.empty(1)
+    west, south, step = limits.grid
+    heights_below(limits.terrain, west, south, step, p.reshape(1, 3), ground)
+    return ground[0] if ground[0] == ground[0] else np.inf
+
+
+@kernel
 def decide_section(
     panel: Array,
     target: Array,
@@ -194,6 +235,8 @@ def decide_section(
         radius = np.sqrt(half[0] ** 2 + half[1] ** 2 + half[2] ** 2)
         if _misses_section(offset, half, radius, panel, bounds, limits):
             continue
+        if limits.terrain.size > 0 and _is_too_low(centre, half, limits):
+            continue
         reach = limits.need_distance + radius
         clearance = np.sqrt(nearest_d2(solids.bvh, centre, reach * reach))
         if clearance + radius < limits.proof_distance - PROOF_SLACK_M:
@@ -216,6 +259,10 @@ def decide_section(
             clearance >= limits.need_distance
             and forbidden >= limits.need_no_fly
             and _is_witness(centre, panel, bounds, limits)
+            and (
+                limits.terrain.size == 0
+                or centre[2] - terrain_below(centre, limits) >= limits.min_height + limits.margin
+            )
             and (not limits.occlusion or segment_is_free(solids.bvh, target, centre))
         ):
             witness[:] = centre

@@ -329,6 +329,7 @@ def _branch_and_bound(
 def reach_limits(model: CoverageModel, space: FreeSpace) -> Limits:
     """What the compiled search must know of camera, airspace and distances."""
     lowest, highest = elevation_range_rad(model.camera)
+    terrain = None if space.ground.terrain is None or space.min_height_m is None else space.ground.terrain.upper
     return Limits(
         low=space.low_enu_m,
         high=space.high_enu_m,
@@ -340,6 +341,9 @@ def reach_limits(model: CoverageModel, space: FreeSpace) -> Limits:
         max_distance=np.inf if model.max_distance_m is None else model.max_distance_m,
         occlusion=model.sight is not None,
         margin=SAFETY_MARGIN_M,
+        terrain=np.zeros((0, 0)) if terrain is None else terrain.z_m,
+        grid=(0.0, 0.0, 1.0) if terrain is None else (terrain.west_m, terrain.south_m, terrain.step_m),
+        min_height=0.0 if space.min_height_m is None else space.min_height_m,
     )
 
 

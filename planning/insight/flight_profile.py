@@ -20,6 +20,7 @@ from planning.motion.timing import (
     stopping_times_s,
 )
 from planning.plan import Plan, Sortie
+from planning.site.ground import Ground
 
 Array = NDArray[np.float64]
 
@@ -179,6 +180,8 @@ LOW_M = 10.0
 class LowFlight:
     """How low a sortie flies beside the vertical column above home, above the ground that the site knows.
 
+    Over terrain that has no heights it counts as flying on the ground: the check of a plan says so.
+
     Parameters
     ----------
     lowest_m
@@ -194,13 +197,13 @@ class LowFlight:
     duration_s: float | None
 
 
-def low_flight(plan: Plan, sortie: Sortie, home_enu_m: Vec3, ground_z_m: float) -> LowFlight | None:
+def low_flight(plan: Plan, sortie: Sortie, home_enu_m: Vec3, ground: Ground) -> LowFlight | None:
     """How low one of a plan's sorties flies; None where its path never leaves the column above home."""
     path, home = np.array(sortie.path_enu_m, np.float64).reshape(-1, 3), np.array(home_enu_m)
     beside = beside_column(path, home)
     if not beside.any():
         return None
-    lowest_m = float(np.minimum(path[:-1, 2], path[1:, 2])[beside].min()) - ground_z_m
+    lowest_m = float(_known(ground.least_m(path[:-1][beside], path[1:][beside])).min())
     try:
         profile = sortie_profile(plan, sortie)
     except InfeasibleError:  # no flying in this wind
@@ -208,7 +211,7 @@ def low_flight(plan: Plan, sortie: Sortie, home_enu_m: Vec3, ground_z_m: float) 
     if profile is None:
         return LowFlight(lowest_m, None, None)
     samples = profile.samples()
-    heights = samples.heights_m(ground_z_m)
+    heights = _known(ground.least_m(samples.positions_enu_m, samples.positions_enu_m))
     # A sample stands for the way to the next one; along it the height is taken as linear.
     away_m = np.linalg.norm(samples.positions_enu_m[:, :2] - home[:2], axis=1)
     counts = np.maximum(away_m[:-1], away_m[1:]) > SAME_PLACE_M
@@ -218,9 +221,21 @@ def low_flight(plan: Plan, sortie: Sortie, home_enu_m: Vec3, ground_z_m: float) 
     return LowFlight(lowest_m, below_s, profile.duration_s)
 
 
-def lowest_flight(plan: Plan, home_enu_m: Vec3, ground_z_m: float) -> LowFlight | None:
+def _known(heights_m: Array) -> Array:
+    return np.where(np.isfinite(heights_m), heights_m, 0.0)
+
+
+def highest_above_ground_m(plan: Plan, ground: Ground) -> float:
+    """Greatest height above the ground of a plan's paths, as far as it is known; 0 where none is."""
+    paths = [np.array(sortie.path_enu_m, np.float64).reshape(-1, 3) for sortie in plan.sorties]
+    heights = [ground.greatest_m(path[:-1], path[1:]) for path in paths if len(path) > 1]
+    known = np.concatenate([each[np.isfinite(each)] for each in heights]) if heights else np.zeros(0)
+    return float(known.max(initial=0.0))
+
+
+def lowest_flight(plan: Plan, home_enu_m: Vec3, ground: Ground) -> LowFlight | None:
     """Of all sorties together: the lowest point, and the times' sums; None where none leaves the column above home."""
-    found = [low_flight(plan, sortie, home_enu_m, ground_z_m) for sortie in plan.sorties]
+    found = [low_flight(plan, sortie, home_enu_m, ground) for sortie in plan.sorties]
     flown = [each for each in found if each is not None]
     if not flown:
         return None

@@ -21,7 +21,15 @@ from planning.base.messages import joined, say
 from planning.base.progress import QUIET, Monitor
 from planning.coverage.model import CoverageModel, exact_sections
 from planning.coverage.positions import aimed_views, hemisphere_direction, sobol
-from planning.coverage.reach_kernel import ANGLE_MARGIN, REACHABLE, UNDECIDED, UNREACHABLE, Bodies, Limits
+from planning.coverage.reach_kernel import (
+    ANGLE_MARGIN,
+    REACHABLE,
+    UNDECIDED,
+    UNREACHABLE,
+    Bodies,
+    Limits,
+    terrain_below,
+)
 from planning.coverage.reachability import reach_bodies, reach_limits
 from planning.geo.bvh import nearest_d2, segment_is_free
 from planning.geo.frames import Vec3
@@ -107,7 +115,10 @@ def _broken_rules(
     amounts[:] = 0.0
     amounts[GIMBAL_UP] = np.degrees(elevation - (np.arcsin(limits.highest_sine) - ANGLE_MARGIN))
     amounts[GIMBAL_DOWN] = np.degrees(np.arcsin(limits.lowest_sine) + ANGLE_MARGIN - elevation)
-    amounts[FLOOR] = limits.low[2] + limits.margin - p[2]
+    amounts[FLOOR], ground = limits.low[2] + limits.margin - p[2], world.ground
+    if limits.terrain.size > 0:
+        ground = terrain_below(p, limits)
+        amounts[FLOOR] = max(amounts[FLOOR], ground + limits.min_height + limits.margin - p[2])
     amounts[CEILING] = p[2] - limits.high[2] + limits.margin
     for axis in range(2):
         outside = max(limits.low[axis] - p[axis], p[axis] - limits.high[axis]) + limits.margin
@@ -117,7 +128,7 @@ def _broken_rules(
     for rule in range(RANGE + 1):
         if amounts[rule] > 0.0:
             broken = rule
-            if rule == FLOOR and p[2] < world.ground:
+            if rule == FLOOR and p[2] < ground:
                 broken = GROUND
                 amounts[FLOOR] = 0.0
             mask, n = mask | (1 << broken), n + 1
@@ -386,7 +397,7 @@ class BrokenRule:
             Rule.CEILING: say("{} m above the ceiling of the airspace", amount),
             Rule.SIDES: say("{} m beyond the sides of the airspace", amount),
             Rule.RANGE: say("{} m too far away for the largest distance or pixel size allowed", amount),
-            Rule.GROUND: say("below the ground"),
+            Rule.GROUND: say("below the ground, or where it is not known"),
             Rule.HIDDEN: say("hidden by {}", obstruction),
             Rule.UNFLYABLE: say("no way to it was found from home"),
         }[self.rule]

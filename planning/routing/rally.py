@@ -15,6 +15,7 @@ from planning.base.messages import say
 from planning.geo.frames import Vec3
 from planning.geo.solids import Solids
 from planning.site.free_space import SAFETY_MARGIN_M, FreeSpace
+from planning.site.ground import height_at
 from planning.site.records import RallyPoint, SiteModel
 
 Array = NDArray[np.float64]
@@ -83,7 +84,7 @@ def _findings(point: RallyPoint, model: SiteModel, space: FreeSpace) -> Iterator
             limit_m,
         )
         yield error(text, gap_m, limit_m)
-    ground_m = model.site.airspace.ground_z_m
+    ground_m = height_at(model.site, float(foot[0]), float(foot[1]))
     if foot[2] < ground_m - BELOW_GROUND_M:
         yield Finding(
             Severity.WARNING,
@@ -115,12 +116,15 @@ class ReturnRoute:
         Of the places looked at, those from which the aircraft returns to another destination than the first.
     n_places
         Places looked at.
+    above_ground_m
+        Least height above the ground on the level parts of the ways; minus infinity where the ground is not known.
     """
 
     gap_m: float
     crosses_no_fly: bool
     n_elsewhere: int
     n_places: int
+    above_ground_m: float
 
 
 def return_route(
@@ -195,8 +199,16 @@ def _return_ways(
     crosses = np.zeros(len(places), np.bool_)
     if len(space.no_fly.part):
         crosses = nearest_m(space.no_fly, 1.0) <= 0.0
+    above_ground_m = np.minimum.reduceat(space.ground.least_m(above, over), firsts)
     n_elsewhere = np.add.reduceat(nearest > 0, firsts, dtype=np.int64)
-    found = zip(gaps_m.tolist(), crosses.tolist(), n_elsewhere.tolist(), n_places.tolist(), strict=True)
+    found = zip(
+        gaps_m.tolist(),
+        crosses.tolist(),
+        n_elsewhere.tolist(),
+        n_places.tolist(),
+        above_ground_m.tolist(),
+        strict=True,
+    )
     return [ReturnRoute(*each) for each in found]
 
 
@@ -210,8 +222,10 @@ def _places(path_enu_m: Array) -> Array:
 
 
 def clear_height_z_m(space: FreeSpace, distance_m: float) -> float:
-    """Height at which level flight keeps a distance from everything on a site and from home, whatever is there."""
-    return float(space.solids.bvh.corners[:, :, 2].max(initial=space.home_enu_m[2])) + distance_m
+    """Height at which level flight keeps a distance from everything on a site, its ground and home, whatever it is."""
+    _, ground_z_m = space.ground.range_m(space.low_enu_m, space.high_enu_m)
+    highest_z_m = max(float(space.home_enu_m[2]), ground_z_m)
+    return float(space.solids.bvh.corners[:, :, 2].max(initial=highest_z_m)) + distance_m
 
 
 @dataclass(frozen=True, slots=True)

@@ -70,7 +70,7 @@ def site_to_json(site: Site) -> dict[str, Any]:
     content = {"format": content.pop("format"), **content}
     if content["building_mesh"] is None:
         del content["building_mesh"]
-    for name in ("rally_points", "place_from", "is_bare"):
+    for name in ("rally_points", "place_from", "is_bare", "terrain"):
         if not content[name]:
             del content[name]
     if content["airspace"]["min_height_above_ground_m"] is None:

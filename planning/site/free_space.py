@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from planning.base.errors import InfeasibleError
 from planning.geo.mesh import join
 from planning.geo.solids import Solids
+from planning.site.ground import Ground, ground_of
 from planning.site.records import Airspace, SiteModel, panel_corners, panel_triangles
 
 Array = NDArray[np.float64]
@@ -43,6 +44,10 @@ class FreeSpace:
         To be kept from `no_fly`: the minimum distance, or less where home itself stands closer.
     home_enu_m
         Take-off and landing, shape (3,).
+    ground
+        What lies below.
+    min_height_m
+        To be kept above the terrain, where there is one; above level ground `low_enu_m` keeps it.
     """
 
     low_enu_m: Array
@@ -52,6 +57,8 @@ class FreeSpace:
     min_distance_m: float
     no_fly_distance_m: float
     home_enu_m: Array
+    ground: Ground
+    min_height_m: float | None = None
 
     @property
     def column_top_enu_m(self) -> Array:
@@ -61,6 +68,9 @@ class FreeSpace:
     def column_top_above(self, foot_enu_m: Array) -> Array:
         """Where sideways flight may begin above a place to take off from or land at, both shape (3,)."""
         lowest = max(foot_enu_m[2] + TAKEOFF_CLIMB_M, self.low_enu_m[2] + SAFETY_MARGIN_M)
+        if self._keeps_terrain:
+            above = self.ground.upper_m(np.asarray(foot_enu_m)[None])[0] + self.min_height_m + SAFETY_MARGIN_M
+            lowest = max(lowest, above) if np.isfinite(above) else np.inf  # where nothing is known, nothing is clear
         return np.array([*foot_enu_m[:2], lowest])
 
     def has_airspace_above(self, foot_enu_m: Array) -> bool:
@@ -79,19 +89,30 @@ class FreeSpace:
 
     def keeps_distances(self, points_enu_m: Array, margin_m: float = SAFETY_MARGIN_M) -> NDArray[np.bool_]:
         """Whether points, shape (n, 3), keep every distance, wherever the airspace ends."""
-        kept = np.ones(len(points_enu_m), np.bool_)
+        points = np.asarray(points_enu_m, np.float64)
+        kept = self._keeps_height(points, points, margin_m)
         for solids, distance in self._kept_distances(margin_m):
             to_check = np.flatnonzero(kept)
-            kept[to_check] = solids.clearance_m(points_enu_m[to_check], 2.0 * distance) >= distance
+            kept[to_check] = solids.clearance_m(points[to_check], 2.0 * distance) >= distance
         return kept
 
     def legs_clear(self, a_enu_m: Array, b_enu_m: Array) -> NDArray[np.bool_]:
         """Whether straight legs between allowed points, shape (n, 3), keep every distance on their whole length."""
-        clear = np.ones(len(a_enu_m), np.bool_)
+        clear = self._keeps_height(a_enu_m, b_enu_m, LEG_MARGIN_M)
         for solids, distance in self._kept_distances(LEG_MARGIN_M):
             to_check = np.flatnonzero(clear)
             clear[to_check] = solids.segments_clear(a_enu_m[to_check], b_enu_m[to_check], distance)
         return clear
+
+    @property
+    def _keeps_terrain(self) -> bool:
+        return self.min_height_m is not None and self.ground.terrain is not None
+
+    def _keeps_height(self, a_enu_m: Array, b_enu_m: Array, margin_m: float) -> NDArray[np.bool_]:
+        """Whether straight legs, ends of shape (n, 3), keep the least height above terrain; True above level ground."""
+        if self.min_height_m is None or self.ground.terrain is None:
+            return np.ones(len(a_enu_m), np.bool_)
+        return self.ground.least_m(a_enu_m, b_enu_m) >= self.min_height_m + margin_m
 
     def _kept_distances(self, margin_m: float) -> tuple[tuple[Solids, float], ...]:
         kept: tuple[tuple[Solids, float], ...] = ((self.solids, self.min_distance_m + margin_m),)
@@ -108,7 +129,7 @@ def unchecked_space(model: SiteModel, min_distance_m: float) -> FreeSpace:
     )
     no_fly = Solids.of(join([zone.prism() for zone in site.airspace.no_fly]).corners_enu_m)
     low, high, home = (np.array(p) for p in (site.airspace.min_enu_m, site.airspace.max_enu_m, site.home_enu_m))
-    return FreeSpace(low, high, solids, no_fly, min_distance_m, min_distance_m, home)
+    return FreeSpace(low, high, solids, no_fly, min_distance_m, min_distance_m, home, ground_of(site))
 
 
 def free_space(model: SiteModel, min_distance_m: float, min_height_m: float | None = None) -> FreeSpace:
@@ -142,19 +163,27 @@ def above_lowest_height(space: FreeSpace, airspace: Airspace, min_height_m: floa
         The airspace ends below it.
     """
     height_m = airspace.lowest_height_m(min_height_m)
-    lowest_z_m = airspace.ground_z_m + height_m
+    ground_z_m, _ = space.ground.range_m(space.low_enu_m, space.high_enu_m)
+    lowest_z_m = ground_z_m + height_m
     if lowest_z_m >= space.high_enu_m[2]:
         raise InfeasibleError.say(
             "airspace: its ceiling lies {:g} m above the ground, and flights keep {:g} m from it; raise the "
             "ceiling, or allow lower flights",
-            space.high_enu_m[2] - airspace.ground_z_m,
+            space.high_enu_m[2] - ground_z_m,
             height_m,
         )
-    return replace(space, low_enu_m=np.maximum(space.low_enu_m, [-np.inf, -np.inf, lowest_z_m]))
+    low = np.maximum(space.low_enu_m, [-np.inf, -np.inf, lowest_z_m])
+    return replace(space, low_enu_m=low, min_height_m=height_m)
 
 
 def _check_home(space: FreeSpace) -> None:
     home, top = space.home_enu_m, space.column_top_enu_m
+    if np.isinf(top[2]):
+        raise InfeasibleError.say(
+            "home {:m} stands where the terrain has no heights; move home, or attach terrain that covers it",
+            _text(home),
+            place="home_enu_m",
+        )
     if not space.has_airspace_above(home):
         raise InfeasibleError.say(
             "home {:m} is not below or inside the airspace box {:m} to {:m}; move home or widen the airspace",

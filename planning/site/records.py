@@ -17,6 +17,7 @@ from planning.base.errors import InputError
 from planning.base.messages import say
 from planning.geo.frames import Origin, Vec3
 from planning.geo.mesh import MAX_COORDINATE_M, TriangleMesh, box_mesh, extrude
+from planning.site.terrain import Terrain
 
 # Whether photos, logs and missions belong to a site: limits that all of them share.
 
@@ -291,6 +292,7 @@ class Site:
     bare: a place alone, to look at missions that were imported.
     `place_from` is `ifc-site` where the origin is what a BIM file says of its place, and nobody has said it since, and
     `unknown` where photos say no place, or no size.
+    `terrain` is the ground where it is known; without it, the ground is level.
     """
 
     name: str
@@ -304,6 +306,7 @@ class Site:
     place_from: str = ""
     format: str = SITE_FORMAT
     is_bare: bool = False
+    terrain: Terrain | None = None
 
     def __post_init__(self) -> None:
         if self.format != SITE_FORMAT:

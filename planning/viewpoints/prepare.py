@@ -24,6 +24,7 @@ from planning.parameters import Constraints, Precision
 from planning.plan import Camera, sharp_distance_m, usual_gsd_m
 from planning.routing.roadmap import build_roadmap
 from planning.site.free_space import FreeSpace, free_space
+from planning.site.ground import decide_terrain
 from planning.site.records import SiteModel, panel_corners, require_panels
 from planning.viewpoints.problem import ViewProblem, nothing_to_see
 
@@ -141,7 +142,7 @@ class Prepared:
 
         The site's checksum does not matter: it changes when the site is saved.
         """
-        is_by_user = any(effect.decided_by == "user" for effect in self.effects)
+        is_by_user = any(effect.effect == Occlusion.name and effect.decided_by == "user" for effect in self.effects)
         requested = replace(self.constraints, occlusion=self.constraints.occlusion if is_by_user else "auto")
         constraints = with_site_limits(constraints, site_model, camera)
         return (
@@ -250,7 +251,8 @@ def prepare(
         raise nothing_to_see()
     monitor.report(say("finding ways around"), 0, 1)
     problem = ViewProblem(model, space, reachability, build_roadmap(space, seed))
-    return Prepared(site_model, problem, decided, (decision,), _findings(site_model, problem), seed, is_cut_short)
+    decisions = (decision,) if site_model.site.terrain is None else (decision, decide_terrain(site_model.site))
+    return Prepared(site_model, problem, decided, decisions, _findings(site_model, problem), seed, is_cut_short)
 
 
 def _findings(site_model: SiteModel, problem: ViewProblem) -> tuple[Finding, ...]:

@@ -144,6 +144,12 @@ def _why_not(space: FreeSpace, position_enu_m: NDArray[np.float64]) -> str:
         if outside_m == float(space.low_enu_m[2] - position_enu_m[2]):
             return say("it lies {:.3f} m below the lowest flight allowed or on its border", max(outside_m, 0.0))
         return say("it lies {:.3f} m outside the airspace or on its border", max(outside_m, 0.0))
+    if space.ground.terrain is not None and space.min_height_m is not None:
+        height_m = float(space.ground.least_m(position_enu_m[None], position_enu_m[None])[0])
+        if not np.isfinite(height_m):
+            return say("the terrain has no heights below it")
+        if height_m < space.min_height_m + LEG_MARGIN_M:
+            return say("it is {:.3f} m above the terrain, and {:.3f} m are required", height_m, space.min_height_m)
     distance_m = float(space.solids.clearance_m(position_enu_m[None])[0])
     if distance_m < space.min_distance_m + LEG_MARGIN_M:
         where = say("inside a solid") if distance_m < 0.0 else say("from the building or an obstacle")

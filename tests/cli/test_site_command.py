@@ -1,4 +1,4 @@
-"""`site import`: building models become sites with a note for each decision, or are refused with what to add."""
+"""`site import` and `site terrain`: models and heights become sites, or are refused with what to add."""
 
 import pytest
 
@@ -118,3 +118,83 @@ def test_the_mesh_of_a_site_beside_its_source_gets_another_name(reflight, tmp_pa
     assert reflight("site", "import", tmp_path / "office.ply", "-o", out, *PLACE, *GRID).status == 0
     assert (tmp_path / "office.ply").read_bytes() == before
     assert read_site(out).site.building_mesh != "office.ply"
+
+
+# Terrain.
+
+
+@pytest.fixture(scope="module")
+def heights(tmp_path_factory):
+    """The bundled office, and a slope around it as GeoTIFF with a tree on it."""
+    from planning.site.bundled import ORIGIN
+    from tests.planning.site.importing.height_files import transform_at, write_heights
+
+    folder = tmp_path_factory.mktemp("terrain")
+    write_scene("office", folder)
+    place = {
+        "origin": ORIGIN,
+        "crs": "EPSG:32650",
+        "transform": transform_at(ORIGIN, "EPSG:32650", 2.0),
+        "size": (200, 200),
+    }
+    write_heights(folder / "dtm.tif", lambda x, y: 0.1 * (y + 45.0), **place)
+    write_heights(
+        folder / "dsm.tif", lambda x, y: 0.1 * (y + 45.0) + 9.0 * ((x - 40.0) ** 2 + (y + 30.0) ** 2 < 30.0), **place
+    )
+    return folder
+
+
+def test_terrain_is_attached_and_told_and_taken_off_again(reflight, heights, tmp_path):
+    site, out = heights / "office.site.json", tmp_path / "hill.site.json"
+    asked = reflight("site", "terrain", site, heights / "dtm.tif", "-o", out)
+    assert "does not say what its heights are above" in asked.error
+    assert "--vertical" in asked.error
+    assert list(tmp_path.iterdir()) == []
+    told = ["--vertical", "ellipsoid", "--surface", heights / "dsm.tif", "--resolution", 2]
+    done = reflight("site", "terrain", site, heights / "dtm.tif", *told, "-o", out)
+    assert done.status == 0
+    assert (
+        f"{out}: site 'office' with terrain from -5.5 m to 12.5 m in its own frame, known on 100.0 % of the" in done.out
+    )
+    assert "terrain: on - the terrain below the airspace departs from its level ground by up to 9.5" in done.out
+    assert "obstacles from the surface: " in done.out
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["hill.site.json", "hill.surface.ply", "office.ply"]
+    model = read_site(out)
+    assert [obstacle.id for obstacle in model.site.obstacles] == ["surface"]
+    bare = reflight("site", "terrain", out, "--remove", "-o", tmp_path / "bare.site.json")
+    assert bare.status == 0
+    assert read_site(tmp_path / "bare.site.json").site == read_site(site).site
+
+
+def test_terrain_in_json_tells_its_grid_sources_and_effect(reflight, heights, tmp_path):
+    out = tmp_path / "a.json"
+    told = ["--vertical", "ellipsoid", "--accuracy", 1.5, "--use", "off", "--json"]
+    done = reflight("site", "terrain", heights / "office.site.json", heights / "dtm.tif", *told, "-o", out)
+    assert (done.status, done.err) == (0, "")
+    assert done.json["accuracy_m"] == 1.5
+    assert done.json["unknown_share"] == 0.0
+    assert done.json["error_m"] < 0.01
+    assert done.json["step_m"] == pytest.approx(1.0, abs=0.01)
+    assert done.json["sources"][0]["file"] == "dtm.tif"
+    assert done.json["effect"]["on"] is False
+    assert done.json["effect"]["decided_by"] == "user"
+    assert done.json["sha256"] == read_site(out).sha256
+
+
+@pytest.mark.parametrize(
+    ("arguments", "expected"),
+    [
+        ([], "expected files of heights, or --remove, and not both"),
+        (["dtm.tif", "--remove"], "expected files of heights, or --remove, and not both"),
+        (["dtm.tif", "--vertical", "ellipsoid", "--resolution", "0"], "step_m: expected more than 0 m, got 0"),
+        (["dtm.tif", "--vertical", "tide"], "'tide' is nothing that heights are above"),
+        (["nothing.tif"], "no such file"),
+        (["office.ply"], "is no GeoTIFF"),
+        (["."], "does not say what its heights are above"),
+    ],
+)
+def test_terrain_that_cannot_be_attached_is_refused_in_one_line(reflight, heights, tmp_path, arguments, expected):
+    named = [heights / each if each[0] != "-" and "." in each else each for each in arguments]
+    done = reflight("site", "terrain", heights / "office.site.json", *named, "-o", tmp_path / "a.json")
+    assert expected in done.error
+    assert list(tmp_path.iterdir()) == []

@@ -177,6 +177,7 @@ def print_summary(planned: Planned, out: Path, seconds: float) -> None:
     from groundstation.services.units import minutes_text, per_cent
     from planning.coverage.sections import SectionGrid
     from planning.insight.flight_profile import LOW_M, lowest_flight
+    from planning.site.ground import ground_of
 
     plan, coverage = planned.plan, planned.plan.coverage
     n_directions = SectionGrid(plan.constraints.section_step_deg).n_sections
@@ -239,7 +240,7 @@ def print_summary(planned: Planned, out: Path, seconds: float) -> None:
         starts = sortie.aircraft, minutes_text(sortie.start_s)
         tell("  sortie {}: {}, {:.0f} m, {:.1f} min, aircraft {} starts at {}", position, *what, *starts)
     site = planned.prepared.site_model.site
-    low = lowest_flight(plan, site.home_enu_m, site.airspace.ground_z_m)
+    low = lowest_flight(plan, site.home_enu_m, ground_of(site))
     if low is not None:
         below = "" if low.below_s is None else say(", {:.1f} min below {:g} m", low.below_s / 60, LOW_M)
         tell("lowest flight {:.1f} m above the ground{} (take-off and landing apart)", low.lowest_m, below)

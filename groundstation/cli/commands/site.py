@@ -1,4 +1,4 @@
-"""`site import`: a building model or mesh to a site file."""
+"""`site import`: a building model or mesh to a site file; `site terrain`: the ground of a site from height files."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from groundstation.cli.console import counted, named_like, print_json, print_next, run_job, tell, worded
+from groundstation.cli.console import counted, named_like, print_json, print_next, run_job, show, tell, worded
 from groundstation.cli.options import json_file, number
 from planning.base.errors import InputError
 from planning.base.messages import about, say
@@ -30,6 +30,12 @@ EPILOG = """examples:
   site import tower.obj -o tower.site.json --origin 22.3372,114.2636,62 \\
       --panel-grid '-18,0,0 18,0,0 -18,0,42' --rows 14 --columns 20 --gap 0.1
   site import coarse.obj -o tower.site.json --origin 22.3372,114.2636,62 --without-panels
+"""
+
+TERRAIN_EPILOG = """examples:
+  site terrain office.site.json dtm.tif --vertical egm96 -o hill.site.json
+  site terrain office.site.json dtm.tif --surface dsm.tif --vertical EPSG:7837 -o hill.site.json
+  site terrain office.site.json copernicus/ -o hill.site.json
 """
 
 
@@ -56,6 +62,44 @@ def add_parser(subparsers: Any) -> None:
     add_place_and_content(command)
     _add_panels(command)
     add_flight(command)
+    _add_terrain(actions)
+
+
+def _add_terrain(actions: Any) -> None:
+    command = actions.add_parser(
+        "terrain",
+        help="attach the ground from GeoTIFF, or from tiles of Copernicus DEM or SRTM",
+        description="Attach terrain to a site. Heights above the ground then count from it, home is put on it, and\n"
+        "where it has no heights nothing is planned. With a surface model, trees and neighbours become obstacles.",
+        epilog=TERRAIN_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    command.set_defaults(run=run_terrain)
+    command._negative_number_matcher = re.compile(r"-[\d.]")
+    add = command.add_argument
+    add("site", type=Path, metavar="SITE", help="site file")
+    add("files", type=Path, nargs="*", metavar="FILE", help="heights of the ground: .tif, .hgt, or folders of them")
+    add("-o", "--out", type=json_file, required=True, metavar="SITE", help="site file to write; obstacles go beside it")
+    add("--surface", type=Path, nargs="+", default=[], metavar="FILE", help="the same with roofs and trees in it")
+    add("--vertical", metavar="SYSTEM", help="heights are above: ellipsoid, egm96, egm2008, or a code as EPSG:7837")
+    add("--height-unit", choices=("auto", "m", "ft", "us-ft"), default="auto", help="of the heights (default auto)")
+    add("--crs", help="coordinate reference system of the files, where they name none or a wrong one")
+    add("--resolution", type=number, metavar="M", help="step of the grid (default: half that of the files)")
+    add("--accuracy", type=number, metavar="M", help="kept on top: how far the ground may lie off the files' heights")
+    add("--shift", type=_shift, default=0.0, metavar="M|home", help="added to all heights; home: to reach home")
+    add("--taller-than", type=number, default=2.0, metavar="M", help="of what is an obstacle (default 2 m)")
+    add(
+        "--use",
+        choices=("auto", "on", "off"),
+        default="auto",
+        help="hold flights to the terrain: where it departs from level ground (auto), always, or never",
+    )
+    add("--remove", action="store_true", help="take the terrain, and the obstacles that came with it, off the site")
+    add("--json", action="store_true", help="print one JSON object instead of text")
+
+
+def _shift(text: str) -> float | str:
+    return text if text == "home" else number(text)
 
 
 def add_place_and_content(command: argparse.ArgumentParser) -> None:
@@ -250,3 +294,76 @@ def _grids(options: argparse.Namespace) -> tuple[PanelGrid, ...]:
             raise InputError(say("{} goes with --panel-grid, which is missing", name))
         counts.append(values * len(corners) if len(values) == 1 else values)
     return tuple(PanelGrid(c, rows, columns, options.gap) for c, rows, columns in zip(corners, *counts, strict=True))
+
+
+def run_terrain(options: argparse.Namespace) -> int:
+    """Attach terrain to a site; returns the exit status."""
+    from groundstation.services.project.input_files import read_input_site
+    from groundstation.services.project.project_file import check_not_index
+    from groundstation.services.site.terrain import terrain_attached, terrain_removed, terrain_summary
+    from planning.base.json_file import check_output
+    from planning.site.importing.attach_terrain import TerrainRequest
+    from planning.site.importing.elevation import HeightOptions
+
+    check_not_index(options.out)
+    check_output(options.out, [options.site, *options.files, *options.surface])
+    if options.remove == bool(options.files):
+        raise InputError.say("expected files of heights, or --remove, and not both")
+    model = read_input_site(options.site)
+    if options.remove:
+        terrain_removed(model, options.site, options.out)
+        tell("site '{}' without terrain", model.site.name, place=options.out)
+        return 0
+    try:
+        request = TerrainRequest(
+            ground=tuple(options.files),
+            surface=tuple(options.surface),
+            options=HeightOptions(options.crs, options.vertical, options.height_unit),
+            step_m=options.resolution,
+            accuracy_m=options.accuracy,
+            shift_m=options.shift,
+            taller_than_m=options.taller_than,
+            use=options.use,
+        )
+    except ValueError as error:
+        raise InputError(str(error)) from error
+    started = time.perf_counter()
+    attached = run_job(
+        "site terrain", lambda context: terrain_attached(model, options.site, request, options.out, context)
+    )
+    found = terrain_summary(attached, time.perf_counter() - started)
+    if options.json:
+        print_json({"site": str(options.out), **found})
+        return 0
+    _print_terrain(attached.model.site, found, options.out)
+    for note in attached.notes:
+        tell("note: {}", note, file=sys.stderr)
+    _print_next_step(attached.model.site, options.out)
+    return 0
+
+
+def _print_terrain(site: Site, found: dict[str, Any], out: Path) -> None:
+    from planning.site.ground import decide_terrain
+
+    tell(
+        "site '{}' with terrain from {:.1f} m to {:.1f} m in its own frame, known on {:.1f} % of the area",
+        site.name,
+        found["lowest_m"],
+        found["highest_m"],
+        100.0 * (1.0 - found["unknown_share"]),
+        place=out,
+    )
+    tell(
+        "steps of {:.3g} m from heights {:.3g} m apart: bounds at most {:.2f} m off, and {:g} m for the accuracy",
+        found["step_m"],
+        found["post_spacing_m"],
+        found["error_m"],
+        found["accuracy_m"],
+    )
+    if found["obstacle_boxes"] or found["unknown_boxes"]:
+        tell(
+            "obstacles from the surface: {} boxes, and {} where it has no heights",
+            found["obstacle_boxes"],
+            found["unknown_boxes"],
+        )
+    show(str(decide_terrain(site)))

@@ -30,6 +30,22 @@ def QT_TRANSLATE_NOOP(context: str, text: str) -> str:  # noqa: N802
 # values that are no messages themselves, such as names of things, and what the system and libraries say.
 
 IN_WINDOW = {
+    (
+        "the terrain of the site was made for the place where it is, and would lie wrong elsewhere; take it off first "
+        "('site terrain --remove'), and attach it again after the move"
+    ): QT_TRANSLATE_NOOP(
+        "Sentences",
+        "the terrain of the site was made for the place where it is, and would lie wrong elsewhere; take it off first "
+        "(Site > Terrain), and attach it again after the move",
+    ),
+    (
+        "terrain and site differ by {0} m at home: where the ground is level there, one of them is wrong; '--shift home' "
+        "brings the terrain to the site"
+    ): QT_TRANSLATE_NOOP(
+        "Sentences",
+        "terrain and site differ by {0} m at home: where the ground is level there, one of them is wrong; the terrain "
+        "can be brought to home",
+    ),
     "the picture is distorted, and splats are rendered without distortion; make it straight with `prepare`": (
         QT_TRANSLATE_NOOP(
             "Sentences",
@@ -196,6 +212,11 @@ OPTION_FIELDS = {
     "--rows": ("ImportForm", QT_TRANSLATE_NOOP("ImportForm", "Rows")),
     "--units": ("ImportForm", QT_TRANSLATE_NOOP("ImportForm", "Unit of lengths")),
     "--up": ("ImportForm", QT_TRANSLATE_NOOP("ImportForm", "Axis that points up")),
+    "--accuracy": ("TerrainForm", QT_TRANSLATE_NOOP("TerrainForm", "Accuracy")),
+    "--height-unit": ("TerrainForm", QT_TRANSLATE_NOOP("TerrainForm", "Unit of heights")),
+    "--resolution": ("TerrainForm", QT_TRANSLATE_NOOP("TerrainForm", "Step of the grid")),
+    "--taller-than": ("TerrainForm", QT_TRANSLATE_NOOP("TerrainForm", "Obstacles taller than")),
+    "--vertical": ("TerrainForm", QT_TRANSLATE_NOOP("TerrainForm", "Heights are above")),
     "--at": ("DayBox", QT_TRANSLATE_NOOP("DayBox", "Planned for")),
     "--temperature": ("DayBox", QT_TRANSLATE_NOOP("DayBox", "Temperature")),
 }

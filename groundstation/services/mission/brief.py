@@ -15,8 +15,9 @@ from missions.mission.export_choices import LinkLoss
 from planning.base.errors import GroundStationError
 from planning.base.findings import Finding, Severity
 from planning.base.messages import say
-from planning.insight.flight_profile import LowFlight, low_flight, lowest_flight
+from planning.insight.flight_profile import LowFlight, highest_above_ground_m, low_flight, lowest_flight
 from planning.plan import FlightWorth, Plan
+from planning.site.ground import ground_of, height_at
 from planning.site.records import Site, SiteModel
 
 
@@ -160,8 +161,6 @@ def flight_brief(
     rows = waypoint_rows(plan, site.origin)
     clearances = {found.place: found.value for found in findings if found.code == "leg-distance"}
     height_m, objections = _return_height(plan, site_model, options)
-    home_z = site.home_enu_m[2]
-    highest_z = max((point[2] for sortie in plan.sorties for point in sortie.path_enu_m), default=home_z)
     stated, bound = plan.coverage, plan.coverage.reachable_upper_bound
     return FlightBrief(
         site=site.name,
@@ -173,8 +172,8 @@ def flight_brief(
         takeoff=_takeoff(site_model),
         sorties=tuple(_sortie(number, plan, site, rows, clearances) for number in range(1, len(plan.sorties) + 1)),
         n_photos=len(plan.viewpoints),
-        max_above_ground_m=highest_z - site.airspace.ground_z_m,
-        low=lowest_flight(plan, site.home_enu_m, site.airspace.ground_z_m),
+        max_above_ground_m=highest_above_ground_m(plan, ground_of(site)),
+        low=lowest_flight(plan, site.home_enu_m, ground_of(site)),
         min_height_m=site.airspace.lowest_height_m(plan.constraints.min_height_above_ground_m),
         min_distance_m=plan.constraints.min_distance_m,
         covered_share=stated.covered / bound if bound else 0.0,
@@ -202,7 +201,7 @@ def _takeoff(site_model: SiteModel) -> TakeoffPlace:
     site = site_model.site
     lat, lon, height = (float(values[0]) for values in geodetic_from_enu(site.origin, [site.home_enu_m]))
     amsl_m = float(amsl_from_ellipsoid_m(lat, lon, height))
-    return TakeoffPlace(lat, lon, height, amsl_m, site.home_enu_m[2] - site.airspace.ground_z_m)
+    return TakeoffPlace(lat, lon, height, amsl_m, site.home_enu_m[2] - height_at(site, *site.home_enu_m[:2]))
 
 
 def _sortie(
@@ -223,7 +222,7 @@ def _sortie(
         battery_share=sortie.duration_s / plan.aircraft.endurance_s,
         max_above_takeoff_m=max((row.height_above_takeoff_m or 0.0 for row in own), default=0.0),
         max_altitude_amsl_m=max((row.altitude_amsl_m or -math.inf for row in own), default=-math.inf),
-        low=low_flight(plan, sortie, site.home_enu_m, site.airspace.ground_z_m),
+        low=low_flight(plan, sortie, site.home_enu_m, ground_of(site)),
         smallest_clearance_m=min(near, default=None),
         takeoff_check=takeoff_check(plan, site, number),
         start_s=sortie.start_s,

@@ -23,6 +23,7 @@ from planning.plan import Plan, Viewpoint, write_plan
 from planning.planner import OpenReason, Planned, plan_flight
 from planning.request import PlanRequest
 from planning.routing.tour import kick
+from planning.site.ground import ground_of
 from planning.site.records import MIN_HEIGHT_ABOVE_GROUND_M, SiteModel
 from planning.viewpoints.prepare import Prepared
 
@@ -226,7 +227,7 @@ def check_files(
 def planned_summary(planned: Planned, seconds: float) -> dict[str, Any]:
     """What `plan --json` prints."""
     plan, site = planned.plan, planned.prepared.site_model.site
-    panels, low = site.panels, lowest_flight(plan, site.home_enu_m, site.airspace.ground_z_m)
+    panels, low = site.panels, lowest_flight(plan, site.home_enu_m, ground_of(site))
     return {
         "views": len(plan.viewpoints),
         "covered": plan.coverage.covered,

@@ -22,6 +22,7 @@ from planning.geo.geoid import amsl_from_ellipsoid_m, ellipsoid_from_amsl_m
 from planning.geo.mesh import TriangleMesh
 from planning.site.bundled import Rectangle
 from planning.site.file import site_sha256
+from planning.site.ground import height_at
 from planning.site.importing.facades import facade_name
 from planning.site.importing.options import ImportOptions
 from planning.site.importing.panel_grid import panels_on_building
@@ -201,9 +202,8 @@ def move_home(model: SiteModel, home_enu_m: Vec3, *, on_ground: bool = False) ->
     """
     east, north, up = home_enu_m
     with input_checked():
-        site = replace(
-            model.site, home_enu_m=_rounded((east, north, model.site.airspace.ground_z_m if on_ground else up))
-        )
+        height_m = height_at(model.site, east, north) if on_ground else up
+        site = replace(model.site, home_enu_m=_rounded((east, north, height_m)))
     return with_site(model, site)
 
 
@@ -243,7 +243,7 @@ def move_rally_point(model: SiteModel, point_id: str, position_enu_m: Vec3, *, o
     index = index_of(rally_ids(model), point_id, say("rally point"))
     east, north, up = position_enu_m
     with input_checked():
-        place = _rounded((east, north, model.site.airspace.ground_z_m if on_ground else up))
+        place = _rounded((east, north, height_at(model.site, east, north) if on_ground else up))
         points[index] = RallyPoint(point_id, place)
     return with_rally_points(model, points)
 
@@ -270,9 +270,14 @@ def set_origin(
     Raises
     ------
     InputError
-        There is no such place.
+        There is no such place, or the site has terrain, which would not move along.
     """
     origin = origin_at(lat_deg, lon_deg, height_m, reference)
+    if model.site.terrain is not None and origin != model.site.origin:
+        raise InputError.say(
+            "the terrain of the site was made for the place where it is, and would lie wrong elsewhere; take it off "
+            "first ('site terrain --remove'), and attach it again after the move"
+        )
     return with_site(model, replace(model.site, origin=origin, place_from=""))
 
 

@@ -16,6 +16,7 @@ from planning.geo.bvh import OCCLUSION_OFFSET_M
 from planning.parameters import Constraints
 from planning.routing.rally import rally_findings
 from planning.site.free_space import FreeSpace, free_space, unchecked_space
+from planning.site.ground import height_at
 from planning.site.records import NoFlyZone, SiteModel, panel_corners
 
 AWAY_M = (0.01, 0.5, 2.0, 5.0)
@@ -25,6 +26,9 @@ ASIDE_DEG = (0.0, 30.0, 60.0)
 """From straight ahead: windows near the ground are seen from above, for the airspace begins over it."""
 
 N_AROUND = 8
+
+ON_TERRAIN_M = 0.01
+"""Home is put on terrain to a millimetre, and terrain is stored to one."""
 
 MAX_LOOKED_AT = 64
 """Panels of one facade that are looked at, spread evenly."""
@@ -71,14 +75,15 @@ def _heights(model: SiteModel) -> Iterator[Finding]:
             airspace.ground_z_m,
             "m",
         )
-    if home_z < airspace.ground_z_m:
+    ground_z_m = height_at(model.site, *model.site.home_enu_m[:2])
+    if home_z < ground_z_m - (ON_TERRAIN_M if model.site.terrain is not None else 0.0):
         yield Finding(
             Severity.WARNING,
             "home-below-ground",
-            say("home lies at {:g} m, below the ground at {:g} m; put it on the ground", home_z, airspace.ground_z_m),
+            say("home lies at {:g} m, below the ground at {:g} m; put it on the ground", home_z, ground_z_m),
             "home",
             home_z,
-            airspace.ground_z_m,
+            ground_z_m,
             "m",
         )
 

@@ -9,6 +9,7 @@ from planning.base.errors import InfeasibleError
 from planning.insight.flight_profile import LOW_M, low_flight, lowest_flight, sortie_profile
 from planning.parameters import FlightRules
 from planning.plan import Sortie
+from planning.site.ground import Ground
 from tests.planning.insight.cases import plan
 
 
@@ -67,7 +68,7 @@ def test_samples_rise_in_time_and_hold_the_top_speed_of_every_leg():
 def test_how_low_a_sortie_flies_is_what_a_fine_sampling_of_it_finds():
     found, sortie, ground_m = profile_of(), planned().sorties[0], -1.5
     home = sortie.path_enu_m[0]
-    low = low_flight(planned(), sortie, home, ground_m)
+    low = low_flight(planned(), sortie, home, Ground(ground_m))
     t_s = np.linspace(0.0, found.duration_s, 400_001)
     at = found.at(t_s)
     beside = np.linalg.norm(at.positions_enu_m[:, :2] - home[:2], axis=1) > 1e-3
@@ -75,8 +76,8 @@ def test_how_low_a_sortie_flies_is_what_a_fine_sampling_of_it_finds():
     assert low.lowest_m == pytest.approx(heights[beside].min(), abs=1e-3)
     assert low.below_s == pytest.approx((beside & (heights < LOW_M)).mean() * found.duration_s, rel=0.01, abs=0.1)
     assert 0.0 < low.below_s < low.duration_s == pytest.approx(found.duration_s)
-    together = lowest_flight(planned(), home, ground_m)
-    each = [low_flight(planned(), other, home, ground_m) for other in planned().sorties]
+    together = lowest_flight(planned(), home, Ground(ground_m))
+    each = [low_flight(planned(), other, home, Ground(ground_m)) for other in planned().sorties]
     assert together.below_s == pytest.approx(sum(other.below_s for other in each))
     assert together.lowest_m == min(other.lowest_m for other in each)
 
@@ -84,12 +85,12 @@ def test_how_low_a_sortie_flies_is_what_a_fine_sampling_of_it_finds():
 def test_a_sortie_that_only_goes_up_and_down_does_not_fly_low_and_an_untimed_one_says_how_low():
     home = planned().home_enu_m
     up = Sortie((), (home, (home[0], home[1], 30.0), home), 60.0, 60.0)
-    assert low_flight(planned(), up, home, 0.0) is None
-    assert lowest_flight(replace(planned(), sorties=(up,), viewpoints=()), home, 0.0) is None
+    assert low_flight(planned(), up, home, Ground(0.0)) is None
+    assert lowest_flight(replace(planned(), sorties=(up,), viewpoints=()), home, Ground(0.0)) is None
     aside = Sortie((), (home, (home[0] + 5.0, home[1], 30.0), home), 60.0, 60.0)
-    assert low_flight(planned(), aside, home, -2.0).lowest_m == home[2] + 2.0
+    assert low_flight(planned(), aside, home, Ground(-2.0)).lowest_m == home[2] + 2.0
     still = replace(planned(), rules=FlightRules(wind_m_s=50.0))
-    low = low_flight(still, still.sorties[0], home, 0.0)
+    low = low_flight(still, still.sorties[0], home, Ground(0.0))
     assert low.lowest_m >= 5.0
     assert low.below_s is low.duration_s is None
 

@@ -29,6 +29,7 @@ from planning.geo.frames import Origin
 from planning.insight.flight_profile import low_flight
 from planning.routing.rally import CLEARANCE_M, clear_height_z_m
 from planning.site.free_space import unchecked_space
+from planning.site.ground import Ground
 from tests.missions.plans import HONG_KONG, example_plan
 from tests.planning.plan_cases import kiosk
 
@@ -90,7 +91,7 @@ def test_sorties_are_those_of_the_plan(brief, plan):
 def test_how_low_each_sortie_flies_and_how_long_below_ten_metres_is_told(brief, plan):
     ground_m, home = MODEL.site.airspace.ground_z_m, MODEL.site.home_enu_m
     for told, sortie in zip(brief.sorties, plan.sorties, strict=True):
-        assert told.low == low_flight(plan, sortie, home, ground_m)
+        assert told.low == low_flight(plan, sortie, home, Ground(ground_m))
     assert brief.low.lowest_m == min(told.low.lowest_m for told in brief.sorties)
     assert brief.min_height_m == 5.0
     above = page_text(brief_html(brief, METRIC, {}))

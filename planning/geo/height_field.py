@@ -1,0 +1,217 @@
+"""Height fields: a surface over a regular grid, bilinear in each cell, and what flights over it keep above it.
+
+Between its four nodes a cell is z = z00 + a u + b v + k u v, with u and v from 0 to 1 across it. A straight leg crosses
+cell after cell; in each, its height above the surface is a polynomial of second degree in the way flown, so its least
+and greatest values are known in closed form, at an end of the stretch or at the vertex of the parabola. The result is
+that of the whole leg, not of samples. It costs as much as there are cells below the leg.
+
+A cell with a node that is not known is not known, nor is anything beyond the grid. Nothing can be kept above what is
+not known: the least height there is minus infinity, the greatest plus infinity.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.base.jit import chunks, kernel, run_chunks
+
+Array = NDArray[np.float64]
+
+LEGS_PER_CHUNK = 2048
+
+
+@kernel
+def heights_below(z: Array, x0: float, y0: float, step: float, xy: Array, result: Array) -> None:
+    """Fill `result`, shape (n,), with heights at points, shape (n, 2 or more), as `HeightField.heights_m`."""
+    n_rows, n_columns = z.shape
+    for i in range(len(xy)):
+        u, v = (xy[i, 0] - x0) / step, (xy[i, 1] - y0) / step
+        result[i] = np.nan
+        if not (0.0 <= u <= n_columns - 1.0 and 0.0 <= v <= n_rows - 1.0):
+            continue
+        column, row = min(int(u), n_columns - 2), min(int(v), n_rows - 2)
+        u, v = u - column, v - row
+        south = (1.0 - u) * z[row, column] + u * z[row, column + 1]
+        north = (1.0 - u) * z[row + 1, column] + u * z[row + 1, column + 1]
+        result[i] = (1.0 - v) * south + v * north
+
+
+@kernel
+def _leg_extremes(z: Array, x0: float, y0: float, step: float, a: Array, b: Array, least: Array, most: Array) -> None:
+    """Least and greatest height of legs from a to b, shape (n, 3), above the surface."""
+    n_rows, n_columns = z.shape
+    for i in range(len(a)):
+        least[i], most[i] = -np.inf, np.inf
+        # In units of cells; a leg with both ends over the grid lies over it.
+        u0, v0 = (a[i, 0] - x0) / step, (a[i, 1] - y0) / step
+        du, dv, dz = (b[i, 0] - x0) / step - u0, (b[i, 1] - y0) / step - v0, b[i, 2] - a[i, 2]
+        if not (
+            0.0 <= u0 <= n_columns - 1.0
+            and 0.0 <= v0 <= n_rows - 1.0
+            and 0.0 <= u0 + du <= n_columns - 1.0
+            and 0.0 <= v0 + dv <= n_rows - 1.0
+        ):
+            continue
+        lowest, highest, known = np.inf, -np.inf, True
+        t = 0.0
+        # Next grid lines ahead, counted in whole numbers, so that no error adds up.
+        line_u = np.floor(u0) + 1.0 if du > 0.0 else np.ceil(u0) - 1.0
+        line_v = np.floor(v0) + 1.0 if dv > 0.0 else np.ceil(v0) - 1.0
+        while True:
+            t_u = (line_u - u0) / du if du != 0.0 else np.inf
+            t_v = (line_v - v0) / dv if dv != 0.0 else np.inf
+            until = min(t_u, t_v, 1.0)
+            middle = 0.5 * (t + until)
+            column = min(max(int(np.floor(u0 + middle * du)), 0), n_columns - 2)
+            row = min(max(int(np.floor(v0 + middle * dv)), 0), n_rows - 2)
+            z00, z10 = z[row, column], z[row, column + 1]
+            z01, z11 = z[row + 1, column], z[row + 1, column + 1]
+            east, north, twist = z10 - z00, z01 - z00, z11 - z10 - z01 + z00
+            u, v = u0 + t * du - column, v0 + t * dv - row
+            # Height above the surface at the way t + s, s from 0: first + slope s + bend s^2.
+            first = a[i, 2] + t * dz - (z00 + east * u + north * v + twist * u * v)
+            slope = dz - (east * du + north * dv + twist * (u * dv + v * du))
+            bend = -twist * du * dv
+            way = until - t
+            last = first + way * (slope + bend * way)
+            if not first - last <= np.inf:  # a node is not known
+                known = False
+                break
+            lowest, highest = min(lowest, first, last), max(highest, first, last)
+            if bend != 0.0:
+                vertex = -0.5 * slope / bend
+                if 0.0 < vertex < way:
+                    between = first + 0.5 * vertex * slope
+                    lowest, highest = min(lowest, between), max(highest, between)
+            if until >= 1.0:
+                break
+            if t_u <= until:
+                line_u += 1.0 if du > 0.0 else -1.0
+            if t_v <= until:
+                line_v += 1.0 if dv > 0.0 else -1.0
+            t = until
+        if known:
+            least[i], most[i] = lowest, highest
+
+
+@kernel
+def _spread_departures(
+    z: Array, x0: float, y0: float, step: float, points: Array, above: Array, below: Array, highest: Array
+) -> None:
+    """Raise `above` and lower `below` at the four nodes around each point by how far it lies off the surface.
+
+    `highest` of its cell is raised to the point itself.
+    """
+    n_rows, n_columns = z.shape
+    height = np.empty(1)
+    for i in range(len(points)):
+        heights_below(z, x0, y0, step, points[i : i + 1], height)
+        off = points[i, 2] - height[0]
+        if not abs(off) < np.inf:
+            continue
+        column = min(int((points[i, 0] - x0) / step), n_columns - 2)
+        row = min(int((points[i, 1] - y0) / step), n_rows - 2)
+        highest[row, column] = max(highest[row, column], points[i, 2])
+        for j in range(row, row + 2):
+            for k in range(column, column + 2):
+                above[j, k] = max(above[j, k], off)
+                below[j, k] = min(below[j, k], off)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class HeightField:
+    """A surface over a grid of square cells in the local frame.
+
+    Parameters
+    ----------
+    west_m, south_m
+        Where node (0, 0) lies, ENU x and y.
+    step_m
+        Between neighbouring nodes.
+    z_m
+        Heights of the nodes, ENU z, shape (rows, columns), rows from south to north, columns from west to east; at
+        least two of each. NaN where the height is not known.
+    """
+
+    west_m: float
+    south_m: float
+    step_m: float
+    z_m: Array
+
+    def __post_init__(self) -> None:
+        if self.z_m.ndim != 2 or min(self.z_m.shape) < 2:
+            raise ValueError(f"expected heights of shape (2 or more, 2 or more), got {self.z_m.shape}")
+        if not (math.isfinite(self.step_m) and self.step_m > 0.0):
+            raise ValueError(f"step_m: expected more than 0, got {self.step_m}")
+
+    @property
+    def east_m(self) -> float:
+        """Where the last column lies."""
+        return float(self.west_m + self.step_m * (self.z_m.shape[1] - 1))
+
+    @property
+    def north_m(self) -> float:
+        """Where the last row lies."""
+        return float(self.south_m + self.step_m * (self.z_m.shape[0] - 1))
+
+    def nodes_xy_m(self) -> Array:
+        """Where the nodes lie, shape (rows, columns, 2)."""
+        rows, columns = self.z_m.shape
+        x, y = self.west_m + self.step_m * np.arange(columns), self.south_m + self.step_m * np.arange(rows)
+        return np.stack(np.meshgrid(x, y), axis=-1)
+
+    def heights_m(self, points_xy_m: Array) -> Array:
+        """Height of the surface, ENU z, at points of shape (n, 2) or (n, 3); NaN where it is not known."""
+        points = np.ascontiguousarray(points_xy_m, np.float64)
+        result = np.empty(len(points))
+        heights_below(self.z_m, self.west_m, self.south_m, self.step_m, points, result)
+        return result
+
+    def leg_heights_m(self, a_enu_m: Array, b_enu_m: Array) -> tuple[Array, Array]:
+        """Least and greatest height above the surface along whole legs, ends of shape (n, 3), which may coincide.
+
+        Minus and plus infinity where a leg passes over what is not known. Exact but for rounding, some 1e-12 of the
+        heights.
+        """
+        a, b = (np.ascontiguousarray(ends, np.float64) for ends in (a_enu_m, b_enu_m))
+        least, most = np.empty(len(a)), np.empty(len(a))
+        grid = self.z_m, self.west_m, self.south_m, self.step_m
+
+        def work(start: int, stop: int) -> None:
+            _leg_extremes(*grid, a[start:stop], b[start:stop], least[start:stop], most[start:stop])
+
+        run_chunks(work, chunks(len(a), LEGS_PER_CHUNK))
+        return least, most
+
+    def spread_departures(self, points_enu_m: Array, above_m: Array, below_m: Array, highest_m: Array) -> None:
+        """Widen bounds so that the surfaces `z_m + above_m` and `z_m + below_m` enclose points of shape (n, 3).
+
+        Points over what is not known change nothing.
+
+        Parameters
+        ----------
+        above_m, below_m
+            Of the shape of `z_m`, changed in place.
+        highest_m
+            Of the cells, shape (rows - 1, columns - 1), changed in place: the highest point over each.
+        """
+        points = np.ascontiguousarray(points_enu_m, np.float64)
+        grid = self.z_m, self.west_m, self.south_m, self.step_m
+        _spread_departures(*grid, points, above_m, below_m, highest_m)
+
+    def cells_m(self, combine: np.ufunc) -> Array:
+        """A value of each cell from its four nodes, shape (rows - 1, columns - 1)."""
+        z = self.z_m
+        return np.asarray(combine(combine(z[:-1, :-1], z[:-1, 1:]), combine(z[1:, :-1], z[1:, 1:])))
+
+    def part_m(self, low_xy_m: Array, high_xy_m: Array) -> Array:
+        """Heights of the nodes of all cells that a box touches, one value NaN where it reaches beyond the grid."""
+        shape = np.array(self.z_m.shape[::-1])
+        first = np.floor((np.asarray(low_xy_m[:2]) - [self.west_m, self.south_m]) / self.step_m).astype(np.int64)
+        last = np.ceil((np.asarray(high_xy_m[:2]) - [self.west_m, self.south_m]) / self.step_m).astype(np.int64)
+        inside = self.z_m[max(first[1], 0) : last[1] + 1, max(first[0], 0) : last[0] + 1].ravel()
+        return np.append(inside, np.nan) if (first < 0).any() or (last >= shape).any() else inside
