@@ -39,8 +39,8 @@ IN_WINDOW = {
         "(Site > Terrain), and attach it again after the move",
     ),
     (
-        "terrain and site differ by {0} m at home: where the ground is level there, one of them is wrong; '--shift home' "
-        "brings the terrain to the site"
+        "terrain and site differ by {0} m at home: where the ground is level there, one of them is wrong; "
+        "'--shift home' brings the terrain to the site"
     ): QT_TRANSLATE_NOOP(
         "Sentences",
         "terrain and site differ by {0} m at home: where the ground is level there, one of them is wrong; the terrain "
