@@ -19,6 +19,8 @@ from planning.base.plugins import Plugin, PluginGroup, installed_plugins
 from planning.parameters import DEFAULT_PROFILE, PlanParameters
 
 if TYPE_CHECKING:
+    from datetime import datetime
+
     from groundstation.services.mission.readiness import FlightDay
     from groundstation.services.photos.poses import RefinedOutcome, RefineRequest
     from planning.base.effects import EffectSetting
@@ -318,11 +320,42 @@ def checked_seed(seed: int) -> int:
     return seed
 
 
+def add_time(parser: argparse.ArgumentParser) -> None:
+    """The option that says when the flight is."""
+    parser.add_argument(
+        "--at",
+        metavar="TIME",
+        help="take-off of the first sortie, such as 2026-06-21T10:30 or 2026-06-21T10:30+02:00",
+    )
+
+
 def add_day(parser: argparse.ArgumentParser) -> None:
     """Options that say what is known of the day of the flight."""
+    add_time(parser)
     add = parser.add_argument
-    add("--at", metavar="TIME", help="take-off of the first sortie, such as 2026-06-21T10:30 or 2026-06-21T10:30+02:00")
     add("--temperature", type=number, metavar="C", help="of air and batteries, degrees Celsius")
+
+
+def planned_time(options: argparse.Namespace) -> datetime | None:
+    """The time of the flight as the options say it, None where they do not; local without a time zone.
+
+    Raises
+    ------
+    InputError
+        It is no time.
+    """
+    from datetime import datetime
+
+    if options.at is None:
+        return None
+    try:
+        moment = datetime.fromisoformat(options.at) if "T" in options.at else None
+        at = moment.astimezone() if moment is not None and moment.tzinfo is None else moment
+    except (ValueError, OverflowError, OSError):
+        at = None
+    if at is None:
+        raise InputError(say("expected a time such as 2026-06-21T10:30, got '{}'", options.at, place="--at"))
+    return at
 
 
 def flight_day(options: argparse.Namespace) -> FlightDay:
@@ -333,19 +366,9 @@ def flight_day(options: argparse.Namespace) -> FlightDay:
     InputError
         They are no time, or no temperature.
     """
-    from datetime import datetime
-
     from groundstation.services.mission.readiness import FlightDay
 
-    at = None
-    if options.at is not None:
-        try:
-            moment = datetime.fromisoformat(options.at) if "T" in options.at else None
-            at = moment.astimezone() if moment is not None and moment.tzinfo is None else moment
-        except (ValueError, OverflowError, OSError):
-            at = None
-        if at is None:
-            raise InputError(say("expected a time such as 2026-06-21T10:30, got '{}'", options.at, place="--at"))
+    at = planned_time(options)
     try:
         return FlightDay(at, options.temperature)
     except ValueError as error:

@@ -11,10 +11,11 @@ from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.checks.case import Case
 from planning.checks.rules import FLIGHT_RULES, GEOMETRY_RULES
+from planning.checks.zones import geo_zones
 from planning.plan import Plan
 from planning.site.records import SiteModel
 
-RULES = (*GEOMETRY_RULES, *FLIGHT_RULES)
+RULES = (*GEOMETRY_RULES, geo_zones, *FLIGHT_RULES)
 
 
 def check_plan(plan: Plan, site_model: SiteModel, monitor: Monitor = QUIET) -> tuple[Finding, ...]:

@@ -23,6 +23,7 @@ from planning.geo.bvh import (
 from planning.geo.solids import MAX_HITS, Solids
 from planning.site.free_space import FreeSpace
 from planning.site.records import SiteModel
+from planning.site.zones.keep_out import no_fly_volumes
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -83,7 +84,7 @@ def obstructions_of(site_model: SiteModel, space: FreeSpace) -> Obstructions:
         The space is not of this site.
     """
     site = site_model.site
-    m, zones = site.n_panels, site.airspace.no_fly
+    m, zones = site.n_panels, no_fly_volumes(site_model)
     named = (
         *(Obstruction("panel", panel.id) for panel in site.panels),
         Obstruction("building"),

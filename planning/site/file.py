@@ -22,10 +22,11 @@ from planning.base.json_file import (
 )
 from planning.geo.mesh import TriangleMesh, empty_mesh, read_mesh
 from planning.site.records import SITE_FORMAT, Obstacle, Site, SiteModel, box_geometry
+from planning.site.zones.keep_out import read_site_zones
 
 
 def read_site(path: Path) -> SiteModel:
-    """Read a site and the meshes it names.
+    """Read a site, the meshes it names and its files of geo-zones, of which one that cannot be read is no error.
 
     Raises
     ------
@@ -47,7 +48,8 @@ def site_of(written: bytes, path: Path) -> SiteModel:
         _obstacle_geometry(folder, obstacle, f"{path}: obstacles[{i}].mesh")
         for i, obstacle in enumerate(site.obstacles)
     )
-    return SiteModel(site, building, obstacles, hashlib.sha256(written).hexdigest())
+    zones = tuple(read_site_zones(folder, source) for source in site.zones)
+    return SiteModel(site, building, obstacles, hashlib.sha256(written).hexdigest(), zones)
 
 
 def _read_named_mesh(folder: Path, name: str, place: str) -> TriangleMesh:
@@ -70,11 +72,14 @@ def site_to_json(site: Site) -> dict[str, Any]:
     content = {"format": content.pop("format"), **content}
     if content["building_mesh"] is None:
         del content["building_mesh"]
-    for name in ("rally_points", "place_from", "is_bare", "terrain"):
+    for name in ("rally_points", "place_from", "is_bare", "terrain", "zones"):
         if not content[name]:
             del content[name]
     if content["airspace"]["min_height_above_ground_m"] is None:
         del content["airspace"]["min_height_above_ground_m"]
+    for source in content.get("zones", ()):
+        if not source["permitted"]:
+            del source["permitted"]
     content["obstacles"] = [_without_none(obstacle) for obstacle in content["obstacles"]]
     for facade in content["facades"]:
         facade["panels"] = [_without_none(panel) for panel in facade["panels"]]
@@ -98,11 +103,13 @@ def site_sha256(site: Site) -> str:
 def is_planned_on(planned_sha256: str, model: SiteModel) -> bool:
     """Whether a plan was made for a site, by the checksum that the plan states; True where one of them states none.
 
-    Rally points that were marked since change no plan.
+    Rally points that were marked since change no plan, nor do geo-zones that were added: checks measure them anew.
     """
     if not (planned_sha256 and model.sha256) or planned_sha256 == model.sha256:
         return True
-    return bool(model.site.rally_points) and planned_sha256 == site_sha256(replace(model.site, rally_points=()))
+    site = model.site
+    without = [replace(site, rally_points=()), replace(site, zones=()), replace(site, rally_points=(), zones=())]
+    return any(each != site and planned_sha256 == site_sha256(each) for each in without)
 
 
 def write_site(path: Path, site: Site) -> str:

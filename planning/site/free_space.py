@@ -12,6 +12,9 @@ from planning.geo.mesh import join
 from planning.geo.solids import Solids
 from planning.site.ground import Ground, ground_of
 from planning.site.records import Airspace, SiteModel, panel_corners, panel_triangles
+from planning.site.zones.keep_out import near_zones, no_fly_volumes
+from planning.site.zones.local import prisms
+from planning.site.zones.records import RESTRICTIONS
 
 Array = NDArray[np.float64]
 
@@ -37,7 +40,7 @@ class FreeSpace:
     solids
         Panels, building and obstacles.
     no_fly
-        No-fly volumes.
+        No-fly volumes, those of geo-zones that count included.
     min_distance_m
         To be kept from `solids` everywhere.
     no_fly_distance_m
@@ -127,7 +130,7 @@ def unchecked_space(model: SiteModel, min_distance_m: float) -> FreeSpace:
     solids = Solids.of(
         np.concatenate([panel_triangles(panel_corners(site)), join([model.building, *model.obstacles]).corners_enu_m])
     )
-    no_fly = Solids.of(join([zone.prism() for zone in site.airspace.no_fly]).corners_enu_m)
+    no_fly = Solids.of(join([zone.prism() for zone in no_fly_volumes(model)]).corners_enu_m)
     low, high, home = (np.array(p) for p in (site.airspace.min_enu_m, site.airspace.max_enu_m, site.home_enu_m))
     return FreeSpace(low, high, solids, no_fly, min_distance_m, min_distance_m, home, ground_of(site))
 
@@ -144,8 +147,9 @@ def free_space(model: SiteModel, min_distance_m: float, min_height_m: float | No
     ------
     InfeasibleError
         Home, or the column above it, is outside the airspace, too close to something, inside a solid or in a no-fly
-        volume; the message gives the measured distance.
+        volume; the message gives the measured distance, or names the geo-zone.
     """
+    _check_zones(model)
     space = above_lowest_height(unchecked_space(model, min_distance_m), model.site.airspace, min_height_m)
     _check_home(space)
     home, top = space.home_enu_m[None], space.column_top_enu_m[None]
@@ -174,6 +178,30 @@ def above_lowest_height(space: FreeSpace, airspace: Airspace, min_height_m: floa
         )
     low = np.maximum(space.low_enu_m, [-np.inf, -np.inf, lowest_z_m])
     return replace(space, low_enu_m=low, min_height_m=height_m)
+
+
+def _check_zones(model: SiteModel) -> None:
+    """Refuse a home in a geo-zone by its name, since the pilot may have what it asks for."""
+    if not model.site.zones:
+        return
+    import shapely
+
+    x, y, z = model.site.home_enu_m
+    for near in near_zones(model):
+        if near.is_kept and any(
+            prism.floor_m <= z + TAKEOFF_CLIMB_M
+            and z <= prism.ceiling_m
+            and shapely.Polygon(prism.polygon_enu_m).covers(shapely.Point(x, y))
+            for prism in prisms(near.local, model.site.airspace)
+        ):
+            zone = near.local.zone
+            raise InfeasibleError.say(
+                "home {:m} lies inside the geo-zone '{}' ({}); move it outside, or state your authorisation (--permit)",
+                _text(np.array([x, y, z])),
+                zone.name,
+                RESTRICTIONS[zone.restriction],
+                place="home_enu_m",
+            )
 
 
 def _check_home(space: FreeSpace) -> None:

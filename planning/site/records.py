@@ -18,6 +18,7 @@ from planning.base.messages import say
 from planning.geo.frames import Origin, Vec3
 from planning.geo.mesh import MAX_COORDINATE_M, TriangleMesh, box_mesh, extrude
 from planning.site.terrain import Terrain
+from planning.site.zones.records import SiteZones, TimeWindow, ZoneFile
 
 # Whether photos, logs and missions belong to a site: limits that all of them share.
 
@@ -293,6 +294,7 @@ class Site:
     `place_from` is `ifc-site` where the origin is what a BIM file says of its place, and nobody has said it since, and
     `unknown` where photos say no place, or no size.
     `terrain` is the ground where it is known; without it, the ground is level.
+    `zones` names files of geo-zones.
     """
 
     name: str
@@ -307,6 +309,7 @@ class Site:
     format: str = SITE_FORMAT
     is_bare: bool = False
     terrain: Terrain | None = None
+    zones: tuple[ZoneFile, ...] = ()
 
     def __post_init__(self) -> None:
         if self.format != SITE_FORMAT:
@@ -326,6 +329,10 @@ class Site:
                 if panel.id in seen:
                     raise ValueError(say("expected unique panel ids, '{}' occurs twice", panel.id, place="facades"))
                 seen.add(panel.id)
+        files = [source.file for source in self.zones]
+        for file in files:
+            if files.count(file) > 1:
+                raise ValueError(say("expected each file once, '{}' occurs twice", file, place="zones"))
 
     @property
     def panels(self) -> tuple[Panel, ...]:
@@ -350,12 +357,18 @@ class SiteModel:
         One mesh per `site.obstacles`, in that order; boxes are closed meshes here.
     sha256
         Of the site file as it was read or written, hexadecimal; empty while the site was never in a file.
+    zones
+        The files of geo-zones that `site.zones` names, as they were found; one that is not here has not been read.
+    zones_at
+        The time for which zones are looked at; None where none is planned: all count then that apply at some time.
     """
 
     site: Site
     building: TriangleMesh
     obstacles: tuple[TriangleMesh, ...] = ()
     sha256: str = ""
+    zones: tuple[SiteZones, ...] = ()
+    zones_at: TimeWindow | None = None
 
     def __post_init__(self) -> None:
         if len(self.obstacles) != len(self.site.obstacles):

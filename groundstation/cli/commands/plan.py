@@ -14,9 +14,11 @@ from groundstation.cli.console import counted, print_findings, print_json, print
 from groundstation.cli.options import (
     add_parameter,
     add_profile_argument,
+    add_time,
     in_words_of_options,
     json_file,
     number,
+    planned_time,
     typed_values,
 )
 from planning.base.errors import InputError
@@ -68,6 +70,7 @@ def add_parser(subparsers: Any) -> None:
     add("-o", "--out", type=json_file, required=True, metavar="PLAN", help="plan file to write")
     add("--json", action="store_true", help="print one JSON object instead of text")
     add("--keep", type=Path, metavar="PLAN", help="keep the locked viewpoints of this plan (method greedy only)")
+    add_time(parser)
     add_request_arguments(parser)
 
 
@@ -146,7 +149,7 @@ def run(options: argparse.Namespace) -> int:
     started = time.perf_counter()  # Loading what planning needs is part of the time budget.
     from groundstation.services.plan.planning import locked_viewpoints, plan_site, planned_summary
 
-    request = request_of(options)
+    request, at = request_of(options), planned_time(options)
     if options.keep is not None:
         with in_words_of_options():
             request = replace(request, locked=locked_viewpoints(options.keep))
@@ -156,6 +159,7 @@ def run(options: argparse.Namespace) -> int:
             options.site,
             request,
             options.out,
+            at=at,
             started_s=started,
             stop=context.stop,
             trace=context.trace,

@@ -1,4 +1,4 @@
-"""`site import`: a building model or mesh to a site file; `site terrain`: the ground of a site from height files."""
+"""`site import`: a building model to a site file; `site terrain`: its ground; `site zones`: geo-zones about it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from groundstation.cli.console import counted, named_like, print_json, print_next, run_job, show, tell, worded
-from groundstation.cli.options import json_file, number
+from groundstation.cli.options import add_time, json_file, number, planned_time
 from planning.base.errors import InputError
 from planning.base.messages import about, say
 
@@ -36,6 +36,12 @@ TERRAIN_EPILOG = """examples:
   site terrain office.site.json dtm.tif --vertical egm96 -o hill.site.json
   site terrain office.site.json dtm.tif --surface dsm.tif --vertical EPSG:7837 -o hill.site.json
   site terrain office.site.json copernicus/ -o hill.site.json
+"""
+
+ZONES_EPILOG = """examples:
+  site zones office.site.json uas-zones.json
+  site zones office.site.json --at 2026-12-01T10:00+01:00
+  site zones office.site.json --permit "CTR7=authorisation 4711 of 2026-11-30"
 """
 
 
@@ -63,6 +69,7 @@ def add_parser(subparsers: Any) -> None:
     _add_panels(command)
     add_flight(command)
     _add_terrain(actions)
+    _add_zones(actions)
 
 
 def _add_terrain(actions: Any) -> None:
@@ -100,6 +107,79 @@ def _add_terrain(actions: Any) -> None:
 
 def _shift(text: str) -> float | str:
     return text if text == "home" else number(text)
+
+
+def _add_zones(actions: Any) -> None:
+    command = actions.add_parser(
+        "zones",
+        help="add files of geo-zones to a site, and list those near it",
+        description="Files of authorities (ED-269, ED-318, GeoJSON, KML, OpenAir) are put beside the site file. Plans\n"
+        "keep out of zones that prohibit or restrict flights, unless you state what permits them.",
+        epilog=ZONES_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    command.set_defaults(run=run_zones)
+    add = command.add_argument
+    add("site", type=Path, metavar="SITE", help="site file; it is changed where anything is added or stated")
+    add("files", type=Path, nargs="*", metavar="FILE", help="files of geo-zones; one of the same name is replaced")
+    add("-o", "--out", type=json_file, metavar="SITE", help="write another site file beside it instead")
+    add(
+        "--permit",
+        action="append",
+        default=[],
+        metavar="ZONE=REFERENCE",
+        help="your authorisation for a zone, or the answer to its question; empty takes it back",
+    )
+    add("--remove", action="append", default=[], metavar="FILE", help="take a file of zones from the site")
+    add_time(command)
+    add("--json", action="store_true", help="print one JSON object instead of text")
+
+
+def run_zones(options: argparse.Namespace) -> int:
+    """Add, state and list geo-zones; returns the exit status."""
+    from datetime import date
+
+    from groundstation.services.site.zones import file_lines, zone_rows, zones_of_site, zones_summary
+
+    permissions: dict[str, str] = {}
+    for text in options.permit:
+        zone_id, equals, reference = text.partition("=")
+        if not equals or not zone_id:
+            raise InputError(say("expected ZONE=REFERENCE, got '{}'", text, place="--permit"))
+        permissions[zone_id] = reference
+    at = planned_time(options)
+    done = run_job(
+        "site zones",
+        lambda context: zones_of_site(
+            options.site,
+            options.files,
+            out=options.out,
+            permissions=permissions,
+            removed=options.remove,
+            today=date.today(),
+            monitor=context,
+        ),
+    )
+    if options.json:
+        print_json({**zones_summary(done.model, at), "notes": done.notes})
+        return 0
+    for line in file_lines(done.model):
+        show(line)
+    rows = zone_rows(done.model, at)
+    for row in rows:
+        kept = say("kept out of") if row.is_kept else say("not kept out of")
+        if row.permitted:
+            kept = say("permitted by '{}'", row.permitted)
+        tell("  {} [{}]: {}; {:.0f} m from the airspace; {}", row.id, row.file, row.what, row.distance_m, kept)
+        for question in row.questions:
+            tell("    question: {}", question)
+    if not done.model.site.zones:
+        tell("no geo-zones are known here; add files of your authority: 'site zones SITE FILE'")
+    elif not rows:
+        tell("no zone of these files is near the site")
+    for note in done.notes:
+        tell("note: {}", note, file=sys.stderr)
+    return 0
 
 
 def add_place_and_content(command: argparse.ArgumentParser) -> None:

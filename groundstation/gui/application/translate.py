@@ -219,6 +219,7 @@ OPTION_FIELDS = {
     "--vertical": ("TerrainForm", QT_TRANSLATE_NOOP("TerrainForm", "Heights are above")),
     "--at": ("DayBox", QT_TRANSLATE_NOOP("DayBox", "Planned for")),
     "--temperature": ("DayBox", QT_TRANSLATE_NOOP("DayBox", "Temperature")),
+    "--permit": ("ZonesForm", QT_TRANSLATE_NOOP("ZonesForm", "Authorisation")),
 }
 """Fields by the option that says the same, but for declared parameters: context and text of their label."""
 

@@ -11,7 +11,7 @@ import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from datetime import datetime, timedelta
+from datetime import UTC, datetime, timedelta
 from enum import StrEnum
 
 import numpy as np
@@ -25,6 +25,7 @@ from planning.base.messages import Message, glue, say
 from planning.base.progress import QUIET, Monitor
 from planning.checks import check_case
 from planning.checks.case import Case, pose_of
+from planning.checks.zones import source_ages
 from planning.geo.sun import is_within, sun_place_deg, sun_track
 from planning.insight.sun_times import PAUSE_S, SortieSun, flight_times, flown_from, sorties_in_sun
 from planning.insight.sunlight import BLINDING_RAD, SunDay, SunSite, sun_day
@@ -32,6 +33,7 @@ from planning.plan import Plan
 from planning.planner import resplit_sorties
 from planning.revision.top_up import METHOD as TOP_UP
 from planning.site.records import SiteModel
+from planning.site.zones.keep_out import at_time
 
 # Sorties with more photos than an autopilot keeps items for: found before a link is opened, and shared out anew.
 
@@ -179,6 +181,7 @@ def readiness_findings(case: Case, day: FlightDay = UNKNOWN_DAY, monitor: Monito
         *additional_findings(case),
         *_sun(case, day.at),
         *_cold(case, day.temperature_c),
+        *source_ages(case.site_model, day.at or datetime.now(UTC)),
     )
 
 
@@ -405,7 +408,7 @@ class Preflight:
 def preflight(plan: Plan, site_model: SiteModel, day: FlightDay = UNKNOWN_DAY, monitor: Monitor = QUIET) -> Preflight:
     """Check a plan on its site, for a day of which something is known or not."""
     monitor.report(say("measuring"), 0, 1)
-    case = Case.of(plan, site_model)
+    case = Case.of(plan, at_time(site_model, day.at, plan.duration_s + PAUSE_S * len(plan.sorties)))
     seen = case.measures.seen
     # A view sees a panel in one section only: as many elements, as many panels.
     covered = {view.id: len(seen[pose_of(view)].elements) for view in plan.viewpoints}

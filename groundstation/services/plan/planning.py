@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from dataclasses import replace
+from datetime import datetime
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,7 @@ from planning.base.json_file import check_output, plain_values
 from planning.base.messages import glue, say
 from planning.base.progress import QUIET, Monitor, Stop, Trace, never
 from planning.checks.rules import low_flight_allowed, sharpness
+from planning.checks.zones import source_text
 from planning.insight.flight_profile import lowest_flight
 from planning.plan import Plan, Viewpoint, write_plan
 from planning.planner import OpenReason, Planned, plan_flight
@@ -25,7 +27,12 @@ from planning.request import PlanRequest
 from planning.routing.tour import kick
 from planning.site.ground import ground_of
 from planning.site.records import MIN_HEIGHT_ABOVE_GROUND_M, SiteModel
+from planning.site.zones.keep_out import at_time, known_files, near_zones
+from planning.site.zones.times import State
 from planning.viewpoints.prepare import Prepared
+
+PLANNED_WITHIN_S = 7200.0
+"""Time after take-off that a flight may take: how long it will take is not known before it is planned."""
 
 
 def plan_site(
@@ -33,6 +40,7 @@ def plan_site(
     request: PlanRequest,
     out: Path | None,
     *,
+    at: datetime | None = None,
     started_s: float | None = None,
     stop: Stop = never,
     trace: Trace | None = None,
@@ -42,6 +50,11 @@ def plan_site(
 
     A finding says so where the plan has less than was asked for. `started_s` is as in `planning.planner.plan_flight`.
 
+    Parameters
+    ----------
+    at
+        Take-off: geo-zones that do not apply in the two hours after it do not count. None: all count.
+
     Raises
     ------
     InputError, InfeasibleError
@@ -50,9 +63,8 @@ def plan_site(
     if out is not None:
         check_not_index(out)
         check_output(out, [site_path])
-    planned = plan_document_site(
-        read_input_site(site_path), request, started_s=started_s, stop=stop, trace=trace, monitor=monitor
-    )
+    site_model = at_time(read_input_site(site_path), at, PLANNED_WITHIN_S)
+    planned = plan_document_site(site_model, request, started_s=started_s, stop=stop, trace=trace, monitor=monitor)
     if out is not None:
         write_plan(out, planned.plan)
     return planned
@@ -88,7 +100,7 @@ def plan_document_site(
     planned = plan_flight(
         site_model, request, prepared=prepared, started_s=started_s, stop=stop, trace=trace, monitor=monitor
     )
-    findings = [*planned.findings, *_shortfalls(request, planned)]
+    findings = [*planned.findings, *_shortfalls(request, planned), *_zones(site_model)]
     if compiled_s > 0.0:
         text = say("compiled for this computer in {:.0f} s, once; the time budget began behind it", compiled_s)
         findings.append(Finding(Severity.NOTE, "compiled", text, "", compiled_s, None, "s"))
@@ -179,6 +191,25 @@ def _shortfalls(request: PlanRequest, planned: Planned) -> Iterator[Finding]:
         yield Finding(Severity.WARNING, "less-coverage", text, "", share, request.share)
         if request.method == "greedy":
             yield from why_open(planned)
+
+
+def _zones(site_model: SiteModel) -> Iterator[Finding]:
+    """What planning does not know about geo-zones."""
+    for known in known_files(site_model):
+        if known.content is None:
+            text = say("no zone of {} was kept out of: {}", source_text(known), known.problem)
+            yield Finding(Severity.WARNING, "zones-file", text, known.source.file)
+    scheduled = [
+        near.local.zone.id for near in near_zones(site_model) if near.state is State.UNDECIDED and near.is_kept
+    ]
+    if scheduled and site_model.zones_at is None:
+        text = say(
+            "{} geo-zones that apply at some times only count as if they always did (the first is '{}'): no time "
+            "is planned (--at)",
+            len(scheduled),
+            scheduled[0],
+        )
+        yield Finding(Severity.NOTE, "zones-time", text, scheduled[0])
 
 
 def _too_coarse(plan: Plan) -> Iterator[Finding]:

@@ -25,7 +25,7 @@ from groundstation.services.project.project_file import (
     project_folder,
     read_index,
 )
-from groundstation.services.project.site import file_stem, is_plain, mesh_names, site_files, spare_meshes
+from groundstation.services.project.site import file_stem, is_plain, named_files, site_files, spare_meshes
 from groundstation.services.project.store import (
     PROJECT_FILE,
     current_content,
@@ -271,7 +271,7 @@ def site_to_write(folder: Path, site: SiteModel, before: ProjectRecord, sources:
         file=file,
         sha256=digest(stored.content),
         model=stored.model,
-        meshes=mesh_names(stored.content),
+        meshes=named_files(stored.content),
         files={} if holds(folder / file, stored.content) else {file: stored.content},
         created={f"{SITE_FOLDER}/{name}": content for name, content in stored.meshes.items()},
     )
@@ -349,7 +349,7 @@ def _unused(folder: Path, present: ProjectIndex, record: ProjectRecord, meshes: 
     unused = [path for file, path in own.items() if file not in kept]
     old_site = own.get(present.record.site)
     if old_site is not None:
-        old_meshes = mesh_names(read_input_file(old_site, JSON_FILE)) - meshes
+        old_meshes = named_files(read_input_file(old_site, JSON_FILE)) - meshes
         unused += [old_site.with_name(name) for name in sorted(old_meshes) if is_plain(name)]
     return unused
 

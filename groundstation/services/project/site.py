@@ -1,4 +1,4 @@
-"""The site of a project as files: site.json and its meshes, left as they are where they hold the site already.
+"""The site of a project as files: site.json, meshes and geo-zones, left as they are where they hold the site already.
 
 Plans name the site they were made for by the checksum of its file, so a site that has not changed keeps its file byte
 for byte, whoever wrote it. A mesh that has changed gets a new name: site.json names its meshes, and so the old site
@@ -24,6 +24,7 @@ from planning.base.messages import say
 from planning.geo.mesh import MESH_FILE, TriangleMesh, empty_mesh, ply_bytes, read_mesh
 from planning.site.file import site_bytes
 from planning.site.records import Obstacle, Site, SiteModel
+from planning.site.zones.records import SiteZones
 
 SITE_NAME = "site.json"
 
@@ -42,7 +43,7 @@ class SiteFiles:
     content
         Of site.json.
     meshes
-        Content by name of the mesh files that are not there yet.
+        Content by name of the files of meshes and geo-zones that are not there yet.
     """
 
     model: SiteModel
@@ -71,7 +72,7 @@ def site_files(model: SiteModel, folder: Path, sources: Sequence[Path]) -> SiteF
         raise ValueError("expected obstacles with triangles, got an empty mesh")
     for source in sources:
         content = _unchanged(source, model)
-        meshes = None if content is None else _copies(source.parent, content, folder)
+        meshes = None if content is None else _copies(source.parent, content, folder, model)
         if content is not None and meshes is not None:
             return SiteFiles(model, content, meshes)
     stored, new_meshes = _stored(model, folder)
@@ -104,16 +105,30 @@ class _ObstacleMesh:
 
 
 @dataclass(frozen=True, slots=True)
+class _NamedZones:
+    file: str
+
+
+@dataclass(frozen=True, slots=True)
 class _NamedMeshes:
-    """The part of site.json that names meshes; the panels of a tower alone take tenths of a second to read."""
+    """The part of site.json that names files; the panels of a tower alone take tenths of a second to read."""
 
     building_mesh: str | None = None
     obstacles: tuple[_ObstacleMesh, ...] = ()
+    zones: tuple[_NamedZones, ...] = ()
 
 
-def mesh_names(content: bytes) -> set[str]:
-    """Paths of all meshes that the content of a site.json names."""
-    site = msgspec.convert(parse_json(content, Path(SITE_NAME)), _NamedMeshes)
+def named_files(content: bytes) -> set[str]:
+    """Paths of all meshes and files of geo-zones that the content of a site.json names."""
+    site = _named(content)
+    return _mesh_names(site) | {source.file for source in site.zones}
+
+
+def _named(content: bytes) -> _NamedMeshes:
+    return msgspec.convert(parse_json(content, Path(SITE_NAME)), _NamedMeshes)
+
+
+def _mesh_names(site: _NamedMeshes) -> set[str]:
     return {name for name in (site.building_mesh, *(obstacle.mesh for obstacle in site.obstacles)) if name is not None}
 
 
@@ -132,7 +147,8 @@ def _begins(path: Path, start: str) -> bool:
 
 def _nameless(site: Site) -> Site:
     obstacles = tuple(replace(o, mesh=None if o.mesh is None else "mesh") for o in site.obstacles)
-    return replace(site, building_mesh=None, obstacles=obstacles)
+    zones = tuple(replace(source, file=f"{number}") for number, source in enumerate(site.zones))
+    return replace(site, building_mesh=None, obstacles=obstacles, zones=zones)
 
 
 def _with_meshes(model: SiteModel) -> Iterator[tuple[Obstacle, TriangleMesh]]:
@@ -164,24 +180,45 @@ def _unchanged(source: Path, model: SiteModel) -> bytes | None:
     return content if same else None
 
 
-def _copies(source: Path, content: bytes, folder: Path) -> dict[str, bytes] | None:
-    """Meshes to copy beside a site file that is taken over as it is; None where their names do not allow it."""
+def _copies(source: Path, content: bytes, folder: Path, model: SiteModel) -> dict[str, bytes] | None:
+    """Files to copy beside a site file that is taken over as it is; None where their names do not allow it."""
     if real_path(source) == real_path(folder):
         return {}
+    files = {name: read_input_file(source / name, MESH_FILE) for name in sorted(_mesh_names(_named(content)))}
+    files |= {each.source.file: each.content for each in model.zones if each.content}
     copies = {}
-    for name in sorted(mesh_names(content)):
+    for name, written in files.items():
         target = folder / name
-        mesh = read_input_file(source / name, MESH_FILE)
-        if not is_plain(name) or (target.exists() and not holds(target, mesh)):
+        if not is_plain(name) or (target.exists() and not holds(target, written)):
             return None
         if not target.exists():
-            copies[name] = mesh
+            copies[name] = written
     return copies
+
+
+def _stored_zones(model: SiteModel, folder: Path) -> tuple[tuple[SiteZones, ...], dict[str, bytes]]:
+    """Files of geo-zones under the names that they have in a folder, and those to write; lost ones stay named."""
+    new: dict[str, bytes] = {}
+    stored = []
+    for each in model.zones:
+        name = each.source.file
+        if each.content:
+            path = PurePath(name.replace(chr(92), "/"))
+            name = name if is_plain(name) else f"{file_stem(path.stem) or 'zones'}{path.suffix}"
+            if new.get(name, each.content) != each.content or (
+                (folder / name).exists() and not holds(folder / name, each.content)
+            ):
+                name = f"{file_stem(path.stem) or 'zones'}-{digest(each.content)[:12]}{path.suffix}"
+            if not holds(folder / name, each.content):
+                new[name] = each.content
+        stored.append(replace(each, source=replace(each.source, file=name)))
+    return tuple(stored), new
 
 
 def _stored(model: SiteModel, folder: Path) -> tuple[SiteModel, dict[str, bytes]]:
     """The model with the names and coordinates of its meshes as files, and the files to write."""
     names = _MeshNames(folder)
+    zones, new_zones = _stored_zones(model, folder)
     site, building = model.site, model.building
     building_mesh = None
     if len(building.triangles):
@@ -197,8 +234,15 @@ def _stored(model: SiteModel, folder: Path) -> tuple[SiteModel, dict[str, bytes]
             obstacles.append(replace(obstacle, mesh=names.take(obstacle.mesh, meshes[-1])))
     if building_mesh is None:
         building = empty_mesh()
-    named = replace(site, building_mesh=building_mesh, obstacles=tuple(obstacles))
-    return SiteModel(named, building, tuple(meshes)), names.new
+    sources = {each.source: new.source for each, new in zip(model.zones, zones, strict=True)}
+    named = replace(
+        site,
+        building_mesh=building_mesh,
+        obstacles=tuple(obstacles),
+        zones=tuple(sources.get(source, source) for source in site.zones),
+    )
+    stored = SiteModel(named, building, tuple(meshes), zones=zones, zones_at=model.zones_at)
+    return stored, {**names.new, **new_zones}
 
 
 def _with_checksum(model: SiteModel, stored: SiteModel, sha256: str) -> SiteModel:

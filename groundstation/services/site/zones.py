@@ -1,0 +1,269 @@
+"""Use cases around the geo-zones of a site: add files, take them away, state permissions, list what applies.
+
+A file is taken over as it is, beside the site file, under its SHA-256. Permissions belong to one state of a file: a new
+state of it begins without any.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from datetime import date, datetime
+from pathlib import Path, PurePath
+from typing import Any
+
+from groundstation.services.project.input_files import read_input_site
+from groundstation.services.project.site import file_stem, is_plain
+from groundstation.services.site.edits import input_checked, with_site
+from planning.base.errors import InputError
+from planning.base.files import read_input_file, real_path
+from planning.base.json_file import check_output, write_together
+from planning.base.messages import say
+from planning.base.progress import QUIET, Monitor
+from planning.checks.zones import source_text, zone_text
+from planning.site.file import site_bytes
+from planning.site.records import SiteModel
+from planning.site.zones.keep_out import NearZone, at_time, known_files, near_zones, site_zones
+from planning.site.zones.reading import ZONES_FILE, known_zones
+from planning.site.zones.records import SiteZones, ZoneFile, ZoneSet
+
+LISTED_WINDOW_S = 3600.0
+"""Time after take-off in which listed zones are looked at: nothing is known of the flight yet."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class AddedZones:
+    """A site with more files of zones.
+
+    Parameters
+    ----------
+    notes
+        What is worth knowing: permissions that ended with the state of a file that they belonged to.
+    """
+
+    model: SiteModel
+    notes: tuple[str, ...]
+
+
+def add_zones(model: SiteModel, paths: Sequence[Path], today: date, monitor: Monitor = QUIET) -> AddedZones:
+    """The site with files of zones, each under its own name; one of the same name is replaced.
+
+    Raises
+    ------
+    InputError
+        A file cannot be read whole, is of no known format, or holds no zone; nothing is added then.
+    """
+    notes: list[str] = []
+    for number, path in enumerate(paths):
+        monitor.report(say("reading geo-zones"), number, len(paths))
+        content = read_input_file(path, ZONES_FILE)
+        read = known_zones(content, path)
+        if isinstance(read, InputError):
+            raise read
+        name = path.name if is_plain(path.name) else f"{file_stem(path.stem) or 'zones'}{path.suffix}"
+        model = _with_file(model, name, content, today, notes)
+    return AddedZones(model, tuple(notes))
+
+
+def _with_file(model: SiteModel, name: str, content: bytes, today: date, notes: list[str]) -> SiteModel:
+    sha256 = hashlib.sha256(content).hexdigest()
+    before = next((source for source in model.site.zones if PurePath(source.file).name == name), None)
+    permitted: Mapping[str, str] = {}
+    if before is not None and before.permitted:
+        if before.sha256 == sha256:
+            permitted = before.permitted
+        else:
+            stated = ", ".join(f"'{zone_id}'" for zone_id in before.permitted)
+            notes.append(say("permissions of the old state of '{}' have ended, state them again: {}", name, stated))
+    source = ZoneFile(name if before is None else before.file, sha256, today.isoformat(), permitted)
+    return _with_sources(model, source, before, site_zones(source, content))
+
+
+def _with_sources(model: SiteModel, source: ZoneFile, before: ZoneFile | None, found: SiteZones) -> SiteModel:
+    if before is None:
+        sources = (*model.site.zones, source)
+    else:
+        sources = tuple(source if each == before else each for each in model.site.zones)
+    zones = (*(each for each in model.zones if each.source != before), found)
+    with input_checked():
+        site = replace(model.site, zones=sources)
+    return replace(with_site(model, site), zones=zones)
+
+
+def remove_zones(model: SiteModel, name: str) -> SiteModel:
+    """The site without one of its files of zones.
+
+    Raises
+    ------
+    InputError
+        It has none of that name.
+    """
+    kept = tuple(source for source in model.site.zones if name not in (source.file, PurePath(source.file).name))
+    if len(kept) == len(model.site.zones):
+        known = ", ".join(source.file for source in model.site.zones) or say("none")
+        raise InputError.say("the site has no file of geo-zones '{}'; it has: {}", name, known)
+    zones = tuple(each for each in model.zones if each.source in kept)
+    return replace(with_site(model, replace(model.site, zones=kept)), zones=zones)
+
+
+def permit(model: SiteModel, zone_id: str, reference: str) -> SiteModel:
+    """The site with the pilot's authorisation for a zone; an empty reference takes it back.
+
+    Raises
+    ------
+    InputError
+        No file of the site has such a zone, or several have.
+    """
+    of_zone = [
+        known.source
+        for known in known_files(model)
+        if known.content is not None and any(zone.id == zone_id for zone in known.content.zones)
+    ]
+    if len(of_zone) != 1:
+        near = ", ".join(f"'{each.local.zone.id}'" for each in near_zones(model)) or say("none")
+        if of_zone:
+            raise InputError.say("zone '{}' is in several files: {}", zone_id, ", ".join(s.file for s in of_zone))
+        raise InputError.say("there is no zone '{}' in the site's files; those near it are: {}", zone_id, near)
+    before = of_zone[0]
+    permitted = {key: value for key, value in before.permitted.items() if key != zone_id}
+    if reference.strip():
+        permitted[zone_id] = reference.strip()
+    source = replace(before, permitted=permitted)
+    found = next(each for each in model.zones if each.source == before)
+    return _with_sources(model, source, before, replace(found, source=source))
+
+
+def write_zones(path: Path, model: SiteModel) -> SiteModel:
+    """Write a site file and its files of zones beside it, all or none; returns the site as it is in the files.
+
+    Raises
+    ------
+    InputError
+        A name is taken by another file, or something cannot be written.
+    """
+    folder = path.parent
+    new: dict[Path, bytes] = {}
+    for each in model.zones:
+        target = folder / each.source.file
+        if not each.content or each.problem:
+            continue
+        if target.exists() and read_input_file(target, ZONES_FILE) != each.content:
+            old = {source.file for source in read_input_site(path).site.zones} if path.exists() else set()
+            if each.source.file not in old:
+                raise InputError.say("there is another file of that name beside the site; rename one", place=target)
+        if not target.exists() or read_input_file(target, ZONES_FILE) != each.content:
+            new[target] = each.content
+    content = site_bytes(model.site)
+    write_together({path: content, **new})
+    return replace(model, sha256=hashlib.sha256(content).hexdigest())
+
+
+def zones_of_site(
+    site_path: Path,
+    paths: Sequence[Path] = (),
+    *,
+    out: Path | None = None,
+    permissions: Mapping[str, str] | None = None,
+    removed: Iterable[str] = (),
+    today: date,
+    monitor: Monitor = QUIET,
+) -> AddedZones:
+    """A site file with its zones, changed and written where anything of it changes.
+
+    Raises
+    ------
+    InputError
+        As the edits, or `out` lies in another folder than the site, whose meshes it names.
+    """
+    target = site_path if out is None else out
+    if real_path(target.parent) != real_path(site_path.parent):
+        raise InputError.say("expected a file in the folder of the site, since it names meshes there", place=target)
+    before = read_input_site(site_path)
+    added = add_zones(before, paths, today, monitor)
+    model = added.model
+    for name in removed:
+        model = remove_zones(model, name)
+    for zone_id, reference in (permissions or {}).items():
+        model = permit(model, zone_id, reference)
+    if model is not before or out is not None:
+        check_output(target)
+        model = write_zones(target, model)
+    return AddedZones(model, added.notes)
+
+
+@dataclass(frozen=True, slots=True)
+class ZoneRow:
+    """A zone near a site, for a list.
+
+    Parameters
+    ----------
+    what
+        Name, restriction, reasons and heights, in words.
+    distance_m
+        Horizontally from the airspace box.
+    """
+
+    id: str
+    file: str
+    what: str
+    distance_m: float
+    is_kept: bool
+    state: str
+    permitted: str
+    questions: tuple[str, ...]
+
+
+def zone_rows(model: SiteModel, at: datetime | None = None) -> tuple[ZoneRow, ...]:
+    """Zones near a site, the nearest first; `at` is a take-off."""
+    rows = [_row(near) for near in near_zones(at_time(model, at, LISTED_WINDOW_S))]
+    return tuple(sorted(rows, key=lambda row: row.distance_m))
+
+
+def _row(near: NearZone) -> ZoneRow:
+    zone, local = near.local.zone, near.local
+    return ZoneRow(
+        zone.id,
+        near.source.file,
+        zone_text(near),
+        local.distance_m,
+        near.is_kept,
+        near.state.value,
+        near.permitted,
+        (*zone.questions, *zone.place_questions, *local.questions),
+    )
+
+
+def zones_summary(model: SiteModel, at: datetime | None = None) -> dict[str, Any]:
+    """Files and near zones of a site as JSON."""
+    files = [
+        {
+            "file": known.source.file,
+            "sha256": known.source.sha256,
+            "imported": known.source.imported,
+            "problem": known.problem,
+            **({} if known.content is None else _content_summary(known.content)),
+        }
+        for known in known_files(model)
+    ]
+    rows = [{field: getattr(row, field) for field in ZoneRow.__slots__} for row in zone_rows(model, at)]
+    return {"files": files, "zones": rows}
+
+
+def _content_summary(content: ZoneSet) -> dict[str, Any]:
+    issued = content.issued
+    return {
+        "format": content.format,
+        "publisher": content.publisher,
+        "issued": None if issued is None else issued.isoformat(),
+        "zones": len(content.zones),
+    }
+
+
+def file_lines(model: SiteModel) -> tuple[str, ...]:
+    """A line for each file of zones of a site."""
+    lines = []
+    for known in known_files(model):
+        n = 0 if known.content is None else len(known.content.zones)
+        lines.append(say("{}: {}", source_text(known), known.problem or say("{} zones", n)))
+    return tuple(lines)

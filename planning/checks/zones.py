@@ -1,0 +1,207 @@
+"""The pre-flight rule about geo-zones: what applies near the flight, from which source, and how near the path comes.
+
+What is not known is a finding of its own. A zone counts as clear only where its conservative volume is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from datetime import UTC, datetime, timedelta
+
+import numpy as np
+
+from planning.base.findings import Finding, Severity
+from planning.base.messages import glue, joined, say
+from planning.checks.case import ROUNDING_M, Case
+from planning.geo.mesh import join
+from planning.geo.solids import Solids
+from planning.site.records import SiteModel
+from planning.site.zones.keep_out import KnownFile, NearZone, known_files, near_zones
+from planning.site.zones.local import COUNTRY_M, REACH_M, LocalZone, prisms
+from planning.site.zones.records import RESTRICTIONS, HeightAbove, Restriction
+from planning.site.zones.times import State
+
+NEAR_MISS_M = 30.0
+"""Paths that pass a zone nearer are spoken of: GNSS, wind and a zone's own drawing are off by some metres each."""
+
+OLD = timedelta(days=30)
+"""Sources older than this are spoken of: aeronautical information changes every 28 days (AIRAC)."""
+
+
+def geo_zones(case: Case) -> Iterator[Finding]:
+    """The flight stays out of the geo-zones that apply, but for those that the pilot may enter."""
+    model = case.site_model
+    for known in known_files(model):
+        yield from _source(known)
+    for near in near_zones(model):
+        yield from _zone(near, case)
+
+
+def source_text(known: KnownFile) -> str:
+    """Name, format, publisher and date of a file, for the pilot."""
+    if known.content is None:
+        return say("'{}', added on {}", known.source.file, known.source.imported)
+    parts = [known.content.format, *([known.content.publisher] if known.content.publisher else [])]
+    if known.content.issued is not None:
+        parts.append(say("issued {}", f"{known.content.issued:%Y-%m-%d}"))
+    parts.append(say("added on {}", known.source.imported))
+    return glue(f"'{known.source.file}' (", joined(", ", parts), ")")
+
+
+def _source(known: KnownFile) -> Iterator[Finding]:
+    code, place = "zones-file", known.source.file
+    if known.content is None or known.local is None:
+        text = say("no zone of {} counts as clear: {}", source_text(known), known.problem)
+        yield Finding(Severity.ERROR, code, text, place)
+        return
+    text = say(
+        "{} zones in {}, {} of them within {:.0f} m of the airspace; SHA-256 {}",
+        len(known.content.zones),
+        source_text(known),
+        len(known.local.near),
+        REACH_M,
+        known.source.sha256[:12],
+    )
+    yield Finding(Severity.OK, code, text, place)
+    for question in known.content.questions:
+        yield Finding(Severity.WARNING, "zones-question", question, place)
+    if known.local.nearest_m > COUNTRY_M:
+        away_km = known.local.nearest_m / 1000.0
+        text = (
+            say("its zones lie here only if latitude and longitude are exchanged; ask its publisher which is which")
+            if known.local.is_swapped
+            else say("its nearest zone is {:.0f} km away; is this the file for this place?", away_km)
+        )
+        yield Finding(Severity.WARNING, "zones-far", text, place, known.local.nearest_m, COUNTRY_M, "m")
+
+
+def source_ages(model: SiteModel, now: datetime) -> Iterator[Finding]:
+    """Whether there are files of zones of a site, and they hold and are not too old at a time, which has its zone."""
+    if not model.site.zones:
+        text = say("the site has no geo-zones, so which apply here is not looked at")
+        yield Finding(Severity.NOTE, "zones", text)
+    for known in known_files(model):
+        if known.content is None:
+            continue
+        place, content = known.source.file, known.content
+        since = content.issued or known.source.imported_at
+        age = now.astimezone(UTC) - since
+        if age > OLD:
+            text = say(
+                "this source is {} days old, and zones change every month: take its present state, and add it again",
+                age.days,
+            )
+            yield Finding(Severity.WARNING, "zones-old", text, place)
+        if content.valid_to is not None and now > content.valid_to:
+            text = say("this source ended on {}: take its present state", f"{content.valid_to:%Y-%m-%d %H:%M} UTC")
+            yield Finding(Severity.WARNING, "zones-old", text, place)
+        if content.valid_from is not None and now < content.valid_from:
+            text = say("this source begins on {} only", f"{content.valid_from:%Y-%m-%d %H:%M} UTC")
+            yield Finding(Severity.WARNING, "zones-old", text, place)
+
+
+def zone_text(near: NearZone) -> str:
+    """What a zone is: name, restriction, reasons and heights."""
+    zone = near.local.zone
+    reasons = f" ({', '.join(zone.reasons)})" if zone.reasons else ""
+    heights = dict.fromkeys(f"{volume.lower.written} - {volume.upper.written}" for volume in zone.volumes)
+    return glue(f"{zone.name}: ", RESTRICTIONS[zone.restriction], reasons, f", {', '.join(heights)}" if heights else "")
+
+
+def _zone(near: NearZone, case: Case) -> Iterator[Finding]:
+    zone, local = near.local.zone, near.local
+    what = zone_text(near)
+    place_questions = (*zone.place_questions, *(local.questions if not zone.volumes else ()))
+    if place_questions and not near.permitted:
+        text = say(
+            "{}: where it lies is not sure, so it is not clear: {}; ask, and state the answer (--permit)",
+            what,
+            joined("; ", place_questions),
+        )
+        yield Finding(Severity.WARNING, "zone-question", text, zone.id)
+    if not local.volumes:
+        return
+    if zone.restriction is Restriction.NONE:
+        yield Finding(Severity.NOTE, "zone", say("{}: it restricts nothing", what), zone.id)
+    elif near.state is State.NOT_THEN:
+        yield Finding(Severity.NOTE, "zone", say("{}: it does not apply at the planned time", what), zone.id)
+    else:
+        yield _distance(near, case, what)
+
+
+def _distance(near: NearZone, case: Case, what: str) -> Finding:
+    """How far the path stays away from a zone that applies, or may."""
+    zone, local = near.local.zone, near.local
+    away_m, place = path_distance_m(local, case)
+    where = glue(zone.id, ", ", place) if place and away_m <= 0.0 else zone.id
+    questions = [*zone.questions, *local.questions]
+    if near.state is State.UNDECIDED:
+        questions.append(
+            say("when it applies cannot be read")
+            if zone.periods is None or case.site_model.zones_at is not None
+            else say("it applies at some times only, and no time is planned (--at)")
+        )
+    if away_m > ROUNDING_M:
+        severity = Severity.NOTE if away_m < NEAR_MISS_M else Severity.OK
+        text = say("{}: the path stays out of it, {:.1f} m away", what, away_m)
+        if counted := _counted_from(local, case):
+            text = glue(text, "; ", counted)
+        return Finding(severity, "zone", text, where, away_m, 0.0, "m")
+    if near.permitted:
+        text = say("{}: the path runs inside, by the authorisation '{}'", what, near.permitted)
+        return Finding(Severity.NOTE, "zone", text, where, away_m, 0.0, "m")
+    advice = say(
+        "plan again, or ask {} and state the authorisation (--permit)",
+        next((authority.name for authority in zone.authorities if authority.name), say("its authority")),
+    )
+    text = say("{}: the path enters it", what)
+    for question in questions:
+        text = glue(text, "; ", question)
+    return Finding(Severity.ERROR, "zone", glue(text, "; ", advice), where, away_m, 0.0, "m")
+
+
+def path_distance_m(local: LocalZone, case: Case) -> tuple[float, str]:
+    """Least distance between a flight's paths and a zone, 0 inside or where they meet; and where that is.
+
+    Without a path the viewpoints count.
+    """
+    volumes = prisms(local, case.site_model.site.airspace)
+    best_m, where = np.inf, ""
+    if not volumes:
+        return best_m, where
+    solids = Solids.of(join([volume.prism() for volume in volumes]).corners_enu_m)
+    for place, _, path in case.sorties():
+        legs_m = solids.segment_distances_m(path[:-1], path[1:])
+        legs_m = np.where((solids.clearance_m(path) < 0.0)[:-1], 0.0, legs_m)
+        nearest = int(np.argmin(legs_m))
+        if legs_m[nearest] < best_m:
+            best_m, where = float(legs_m[nearest]), say("{}, leg {}", place, nearest + 1)
+    if not case.plan.sorties:
+        for viewpoint in case.plan.viewpoints:
+            clearance_m = max(0.0, float(solids.clearance_m(np.array([viewpoint.position_enu_m]))[0]))
+            if clearance_m < best_m:
+                best_m, where = clearance_m, viewpoint.id
+    return best_m, where
+
+
+def _counted_from(local: LocalZone, case: Case) -> str:
+    """What the heights are counted from, where the path is clear of a zone by its height alone; else empty."""
+    import shapely
+
+    tracks = [shapely.LineString(path[:, :2]) for _, _, path in case.sorties()]
+    above: set[HeightAbove] = set()
+    for each in local.volumes:
+        if any(each.area.intersects(track) for track in tracks):
+            limits = (each.volume.lower, each.volume.upper)
+            above |= {limit.above for limit in limits if limit.value_m}
+    words = []
+    if HeightAbove.GROUND in above:
+        words.append(
+            say(
+                "heights above ground count from the site's ground: are {:g} m its height all around?",
+                case.site_model.site.airspace.ground_z_m,
+            )
+        )
+    if HeightAbove.FLIGHT_LEVEL in above:
+        words.append(say("flight levels count as low as 930 hPa and -50 degrees bring them"))
+    return joined("; ", words) if words else ""

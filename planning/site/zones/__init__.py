@@ -1,0 +1,1 @@
+"""Geo-zones: where flights are prohibited, restricted or tied to conditions, as their publishers say it."""

@@ -1,0 +1,121 @@
+"""ED-269: JSON of UAS geographical zones (EUROCAE, 2020), as national publishers write it.
+
+Positions are longitude first, circles in metres, heights in `uomDimensions`. Limits that are left out are the ground
+and the sky.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from planning.base.messages import say
+from planning.site.zones.ed318 import authorities, period_of, restriction_of
+from planning.site.zones.fields import Fields
+from planning.site.zones.geojson import circle, outlines
+from planning.site.zones.heights import EVERYWHERE_BELOW, limit
+from planning.site.zones.records import ALWAYS, UNLIMITED, Circle, Limit, Outline, Period, Volume, Zone, ZoneSet
+
+_VOLUME_FIELDS = (
+    "uomDimensions",
+    "lowerLimit",
+    "lowerVerticalReference",
+    "upperLimit",
+    "upperVerticalReference",
+    "horizontalProjection",
+)
+_PROJECTION_FIELDS = ("type", "coordinates", "center", "radius")
+
+
+def recognises(content: Any) -> bool:
+    """Whether parsed JSON is ED-269: features whose geometry is a list of volumes, or that say a restriction."""
+    features = content.get("features") if isinstance(content, dict) else None
+    if not isinstance(features, list) or content.get("type") == "FeatureCollection":
+        return False
+    return any(
+        isinstance(each, dict) and ("restriction" in each or isinstance(each.get("geometry"), list))
+        for each in features
+    )
+
+
+def read(content: Any, path: Path) -> ZoneSet:
+    """Zones of an ED-269 file, parsed."""
+    zones = (_zone(feature, f"{path.stem} {number}") for number, feature in enumerate(content["features"], 1))
+    return ZoneSet("ED-269", tuple(zones), publisher=Fields(content, "file", []).text("title"))
+
+
+def _zone(feature: Any, unnamed: str) -> Zone:
+    questions: list[str] = []
+    fields = Fields(feature, "feature", questions)
+    identifier, name = fields.text("identifier"), " ".join(fields.texts("name"))
+    u_space = fields.text("uSpaceClass")
+    conditions = [*fields.texts("restrictionConditions"), *([f"U-space {u_space}"] if u_space else [])]
+    places: list[str] = []
+    volumes = [volume for each in fields.items("geometry") for volume in _volumes(each, places)]
+    return Zone(
+        id=identifier or name or unnamed,
+        name=name or identifier or unnamed,
+        restriction=restriction_of(fields, "restriction"),
+        written_type=fields.text("restriction"),
+        country=fields.text("country"),
+        reasons=(*fields.texts("reason"), *fields.texts("otherReasonInfo")),
+        conditions="; ".join(conditions),
+        message=" ".join(fields.texts("message")),
+        authorities=authorities(fields),
+        volumes=tuple(volumes),
+        periods=_periods(fields),
+        questions=tuple(questions),
+        place_questions=tuple(places),
+    )
+
+
+def _volumes(content: Any, questions: list[str]) -> list[Volume]:
+    fields = Fields(content, "geometry", questions)
+    lower, upper = _limits(fields, questions)
+    projection = Fields(fields.values.get("horizontalProjection"), "horizontalProjection", questions)
+    projection.ask_about_others(_PROJECTION_FIELDS)
+    kind, areas = projection.text("type"), list[Outline | Circle]()
+    if kind == "Circle":
+        found = circle(projection.values.get("center"), projection.number("radius"), questions)
+        areas += [] if found is None else [found]
+    elif kind in ("Polygon", "MultiPolygon"):
+        areas += outlines(kind, projection.values.get("coordinates"), questions)
+    elif projection.values:
+        projection.ask("type", kind)
+    return [Volume(area, lower, upper) for area in areas]
+
+
+def _limits(fields: Fields, questions: list[str]) -> tuple[Limit, Limit]:
+    if fields.ask_about_others(_VOLUME_FIELDS):
+        return EVERYWHERE_BELOW, UNLIMITED
+    unit = fields.text("uomDimensions")
+    lower, upper = (
+        limit(
+            fields.number(f"{which}Limit"),
+            unit,
+            fields.text(f"{which}VerticalReference"),
+            questions,
+            is_lower=which == "lower",
+            is_stated=fields.values.get(f"{which}Limit") is not None,
+        )
+        for which in ("lower", "upper")
+    )
+    return lower, upper
+
+
+def _periods(fields: Fields) -> tuple[Period, ...] | None:
+    """When a zone applies; ED-269 has to say so, so a zone that does not is asked about, and counts."""
+    found: list[Period | None] = []
+    for each in fields.items("applicability"):
+        one = Fields(each, "applicability", fields.questions)
+        permanent = one.text("permanent").upper()
+        if permanent == "YES":
+            return ALWAYS
+        period = period_of(one, ("permanent",))
+        if permanent != "NO" or period == Period():
+            one.ask("permanent", permanent)
+            period = None
+        found.append(period)
+    if not found:
+        fields.questions.append(say("the file does not say when this applies"))
+    return None if not found or None in found else tuple(each for each in found if each is not None)

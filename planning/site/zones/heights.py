@@ -1,0 +1,55 @@
+"""Heights of zones as files write them: numbers, units, what they are counted from."""
+
+from __future__ import annotations
+
+import math
+
+from planning.base.messages import say
+from planning.site.zones.records import FROM_GROUND, HeightAbove, Limit
+
+FOOT_M, NAUTICAL_MILE_M = 0.3048, 1852.0
+
+UNITS_M = {"M": 1.0, "FT": FOOT_M}
+
+REFERENCES = {
+    "AGL": HeightAbove.GROUND,
+    "SFC": HeightAbove.GROUND,
+    "GND": HeightAbove.GROUND,
+    "AMSL": HeightAbove.SEA_LEVEL,
+    "MSL": HeightAbove.SEA_LEVEL,
+    "WGS84": HeightAbove.ELLIPSOID,
+    "W84": HeightAbove.ELLIPSOID,
+    "STD": HeightAbove.FLIGHT_LEVEL,
+}
+
+EVERYWHERE_BELOW = Limit(None, HeightAbove.UNKNOWN, "?")
+"""In the place of a limit that cannot be read: as low or as high as there is."""
+
+
+def limit(
+    value: float | None, unit: str, reference: str, questions: list[str], *, is_lower: bool, is_stated: bool = True
+) -> Limit:
+    """A limit from its number, unit and reference as spelled.
+
+    What cannot be read is asked, and reaches as far as there is.
+
+    Parameters
+    ----------
+    value
+        None where the file has none, or one that is no number.
+    is_stated
+        Whether the file says anything about it; a limit it does not speak of is the ground or endless.
+    """
+    word = reference.strip().upper()
+    above, unit_m = REFERENCES.get(word), UNITS_M.get(unit.strip().upper())
+    if value is None or not math.isfinite(value):
+        if not is_stated:
+            return FROM_GROUND if is_lower else Limit(None, HeightAbove.SEA_LEVEL, "UNL")
+        return EVERYWHERE_BELOW
+    if unit_m is None:
+        questions.append(say("a height is in '{}'; expected metres or feet", unit))
+    if above is None:
+        questions.append(say("a height is counted from '{}'; expected AGL, AMSL or WGS84", reference))
+    if above is None or unit_m is None:
+        return Limit(None, HeightAbove.UNKNOWN, f"{value:g} {unit} {reference}".strip())
+    return Limit(value * unit_m, above, f"{value:g} {unit.strip().lower()} {word}")

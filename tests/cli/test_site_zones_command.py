@@ -1,0 +1,67 @@
+"""`site zones`: files of geo-zones beside a site, what applies near it, and what plans and checks make of it."""
+
+import json
+import shutil
+
+import pytest
+
+from planning.site.bundled import ORIGIN
+from tests.planning.site.zones.zone_files import ed269, ed269_feature, ed269_volume, polygon, square
+
+
+@pytest.fixture
+def place(pane, tmp_path):
+    """The pane's site and plan, and a zone over all of it in the evenings."""
+    folder = tmp_path / "pane"
+    shutil.copytree(pane, folder)
+    night = [{"permanent": "NO", "schedule": [{"day": ["ANY"], "startTime": "12:00Z", "endTime": "20:00Z"}]}]
+    volume = ed269_volume(polygon(square(0.0, 0.0, 200.0, ORIGIN)))
+    (folder / "zones.json").write_bytes(ed269(ed269_feature(volume, applicability=night)))
+    return folder
+
+
+DAY, EVENING = "2026-11-28T03:00+00:00", "2026-11-28T13:00+00:00"
+
+
+def codes(done):
+    return {finding["code"]: finding["severity"] for finding in done.json["findings"]}
+
+
+def test_zones_are_added_listed_checked_and_permitted(reflight, place):
+    site, plan = place / "site.json", place / "plan.json"
+    done = reflight("site", "zones", site, place / "zones.json")
+    assert done.status == 0
+    assert "School: flights prohibited (SENSITIVE), 0 m AGL - 120 m AGL" in done.out
+    assert "kept out of" in done.out
+    found = reflight("site", "zones", site, "--at", DAY, "--json").json
+    assert [zone["is_kept"] for zone in found["zones"]] == [False]
+    assert found["files"][0]["zones"] == 1
+    checked = {at: reflight("check", plan, site, "--at", at, "--json") for at in (DAY, EVENING)}
+    assert codes(checked[DAY])["zone"] == "note"
+    assert (codes(checked[EVENING])["zone"], checked[EVENING].status) == ("error", 1)
+    assert codes(checked[DAY])["site"] == "ok"
+    refused = reflight("plan", site, "-o", place / "b.plan.json", "--views", 2, "--at", EVENING)
+    assert refused.status == 1
+    assert "geo-zone 'School' (flights prohibited)" in refused.err
+    assert reflight("site", "zones", site, "--permit", "Z1=4711").status == 0
+    assert codes(reflight("check", plan, site, "--at", EVENING, "--json"))["zone"] == "note"
+    assert json.loads(site.read_text())["zones"][0]["permitted"] == {"Z1": "4711"}
+    assert reflight("site", "zones", site, "--remove", "zones.json").out.startswith("no geo-zones are known here")
+    assert "zones" not in json.loads(site.read_text())
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("missing.json",), "no such file"),
+        (("site.json",), "expected a file of geo-zones"),
+        (("--permit", "Z1"), "expected ZONE=REFERENCE, got 'Z1'"),
+        (("--permit", "Z1=x"), "no zone 'Z1'"),
+        (("--at", "noon"), "expected a time such as"),
+    ],
+)
+def test_what_cannot_be_done_is_said_in_one_line(reflight, place, arguments, words):
+    done = reflight("site", "zones", place / "site.json", *(place / a if a.endswith(".json") else a for a in arguments))
+    assert done.status == 1
+    assert words in done.err
+    assert done.err.count("\n") == 1

@@ -1,0 +1,191 @@
+"""Geo-zones of a site: plans keep out of them, and checks say of each what it is and how near the path comes."""
+
+import functools
+from dataclasses import replace
+from datetime import UTC, datetime, timedelta
+
+import numpy as np
+import pytest
+import shapely
+
+from planning.base.errors import InfeasibleError
+from planning.base.findings import Severity
+from planning.checks import check_plan
+from planning.checks.zones import source_ages
+from planning.insight.obstructions import obstructions_of
+from planning.parameters import Constraints, GreedyParameters
+from planning.planner import plan_flight
+from planning.request import PlanRequest
+from planning.site.file import is_planned_on, read_site, site_sha256, write_site
+from planning.site.free_space import free_space, unchecked_space
+from planning.site.zones.keep_out import at_time, no_fly_volumes
+from tests.planning.site.zones.zone_files import (
+    ed269,
+    ed269_feature,
+    ed269_volume,
+    ed318,
+    geojson,
+    kml,
+    openair,
+    openair_ring,
+    polygon,
+    site,
+    square,
+    with_zones,
+)
+
+REQUEST = PlanRequest(n_views=6, constraints=Constraints(min_distance_m=5.0), greedy=GreedyParameters(400, False))
+
+WAY = square(0.0, -25.0, 3.0)
+"""In front of the south side, on the way of every flight from home that looks at it."""
+
+ASIDE = square(30.0, -60.0, 10.0)
+
+NIGHT = [{"permanent": "NO", "schedule": [{"day": ["ANY"], "startTime": "20:00Z", "endTime": "04:00Z"}]}]
+
+NOON = datetime(2026, 11, 28, 12, tzinfo=UTC)
+
+
+@functools.cache
+def flight():
+    """A plan of a site without zones."""
+    return plan_flight(site(), REQUEST).plan
+
+
+def zone_findings(content, plan=None, at=None, **permitted):
+    """Findings about zones alone."""
+    model = at_time(with_zones(content, **permitted), at, 600.0)
+    findings = check_plan(flight() if plan is None else plan, model)
+    return [finding for finding in findings if finding.code.startswith("zone")]
+
+
+def one(findings, code="zone"):
+    (found,) = (finding for finding in findings if finding.code == code)
+    return found
+
+
+def around(x0, y0, x1, y1, lower=0, upper=500):
+    ring = square(0.5 * (x0 + x1), 0.5 * (y0 + y1), 0.5 * (x1 - x0))
+    return ed269(ed269_feature(ed269_volume(polygon(ring), lower, upper)))
+
+
+def test_a_site_without_zones_says_that_nobody_looked():
+    (note,) = source_ages(site(), NOON)
+    assert note.severity is Severity.NOTE
+    assert not [finding for finding in check_plan(flight(), site()) if finding.code.startswith("zone")]
+
+
+FORMATS = {
+    "ed269": lambda ring: ed269(ed269_feature(ed269_volume(polygon(ring)))),
+    "ed318": lambda ring: ed318(polygon(ring)),
+    "geojson": lambda ring: geojson(polygon(ring)),
+    "kml": kml,
+    "openair": lambda ring: openair(*openair_ring(ring)),
+}
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_each_format_says_what_the_path_enters_and_how_far_it_stays_away(name):
+    low = min(point[1] for point in flight().sorties[0].path_enu_m)
+    inside = one(zone_findings(FORMATS[name](square(0.0, 0.0, 90.0))))
+    assert inside.severity is Severity.ERROR
+    assert "School" in inside.message
+    assert "sortie 1, leg 1" in inside.place
+    aside = one(zone_findings(FORMATS[name](square(0.0, low - 40.0, 10.0))))
+    assert aside.severity is Severity.NOTE
+    assert aside.value == pytest.approx(30.0, abs=0.3)
+    assert one(zone_findings(FORMATS[name](square(0.0, -400.0, 10.0)))).severity is Severity.OK
+    assert not [f for f in zone_findings(FORMATS[name](square(0.0, -4000.0, 10.0))) if f.code == "zone"]
+
+
+def test_zones_above_and_below_the_path_are_clear_by_their_heights():
+    top = max(point[2] for point in flight().sorties[0].path_enu_m)
+    above = one(zone_findings(around(-90, -90, 90, 90, lower=top + 12.0)))
+    assert above.severity is Severity.NOTE
+    assert above.value == pytest.approx(12.0, abs=1e-3)
+    assert "site's ground" in above.message
+    assert one(zone_findings(around(-90, -90, 90, 90, lower=top - 0.5))).severity is Severity.ERROR
+
+
+def test_a_zone_counts_in_its_time_and_always_where_no_time_is_planned():
+    content = ed269(ed269_feature(ed269_volume(polygon(square(0.0, 0.0, 90.0))), applicability=NIGHT))
+    unplanned = one(zone_findings(content))
+    assert unplanned.severity is Severity.ERROR
+    assert "--at" in unplanned.message
+    assert one(zone_findings(content, at=NOON)).severity is Severity.NOTE
+    assert one(zone_findings(content, at=NOON + timedelta(hours=12))).severity is Severity.ERROR
+    assert one(zone_findings(content, at=NOON + timedelta(hours=7, minutes=40))).severity is Severity.ERROR
+
+
+def test_a_permission_opens_its_own_zone_and_names_its_reference():
+    feature = ed269_feature(ed269_volume(polygon(square(0.0, 0.0, 90.0))))
+    content = ed269(feature, {**feature, "identifier": "Z2"})
+    found = {finding.place.partition(",")[0]: finding for finding in zone_findings(content, Z1="No. 4711")}
+    assert found["Z1"].severity is Severity.NOTE
+    assert "No. 4711" in found["Z1"].message
+    assert found["Z2"].severity is Severity.ERROR
+
+
+def test_a_zone_of_which_the_place_is_open_is_never_clear_unless_the_pilot_has_the_answer():
+    lost = ed269(ed269_feature(ed269_volume({"type": "Ellipse"})))
+    assert one(zone_findings(lost), "zone-question").severity is Severity.WARNING
+    assert not [f for f in zone_findings(lost, Z1="asked by phone") if f.code == "zone-question"]
+
+
+def test_files_that_changed_or_are_missing_ground_the_flight(tmp_path):
+    content = FORMATS["ed269"](ASIDE)
+    model = with_zones(content)
+    write_site(tmp_path / "site.json", replace(model.site, building_mesh=None))
+    for written, word in ((None, "no such file"), (content + b" ", "has changed")):
+        if written is not None:
+            (tmp_path / "zones.json").write_bytes(written)
+        finding = one(check_plan(flight(), read_site(tmp_path / "site.json")), "zones-file")
+        assert finding.severity is Severity.ERROR
+        assert word in finding.message
+    (tmp_path / "zones.json").write_bytes(content)
+    again = read_site(tmp_path / "site.json")
+    assert again.site.zones == model.site.zones
+    assert one(check_plan(flight(), again), "zones-file").severity is Severity.OK
+    assert one(check_plan(flight(), replace(again, zones=())), "zones-file").severity is Severity.ERROR
+
+
+def test_a_file_of_another_place_asks_whether_it_is_the_right_one():
+    assert one(zone_findings(around(200_000, 0, 200_100, 100)), "zones-far").severity is Severity.WARNING
+    swapped = [[lat, lon] for lon, lat in square(0.0, 0.0, 90.0)]
+    assert "exchanged" in one(zone_findings(FORMATS["ed269"](swapped)), "zones-far").message
+
+
+def test_old_sources_and_those_that_ended_are_warnings():
+    model = with_zones(FORMATS["ed318"](ASIDE))
+    assert not list(source_ages(model, NOON))
+    assert [f.severity for f in source_ages(model, NOON + timedelta(days=31))] == [Severity.WARNING]
+
+
+def test_plans_keep_out_of_zones_and_those_of_another_time_do_not_count():
+    content = ed269(
+        ed269_feature(ed269_volume(polygon(square(-20.0, 10.0, 12.0)))),
+        ed269_feature(ed269_volume(polygon(square(0.0, 0.0, 95.0))), identifier="Z2", applicability=NIGHT),
+    )
+    model = at_time(with_zones(content), NOON, 600.0)
+    plan = plan_flight(model, REQUEST).plan
+    zone = shapely.box(-32.0, -2.0, -8.0, 22.0)
+    for sortie in plan.sorties:
+        assert shapely.LineString(np.array(sortie.path_enu_m)[:, :2]).distance(zone) >= 4.99
+    assert {f.severity for f in check_plan(plan, model) if f.code == "zone"} <= {Severity.NOTE, Severity.OK}
+    with pytest.raises(InfeasibleError, match=r"geo-zone 'School'.*--permit"):
+        free_space(with_zones(content), 5.0)
+    assert free_space(with_zones(content, Z2="4711"), 5.0).no_fly_distance_m == 5.0
+
+
+def test_what_stands_in_the_way_is_named_zone_by_zone():
+    model = with_zones(ed269(ed269_feature(ed269_volume(polygon(square(0, 50, 40), square(0, 50, 20))))))
+    named = obstructions_of(model, unchecked_space(model, 5.0))
+    assert {each.id for each in named.all if each.kind == "no-fly"} == {"Z1"}
+    assert len(no_fly_volumes(model)) > 1
+
+
+def test_zones_that_were_added_since_leave_a_plan_the_site_s_own():
+    model = with_zones(FORMATS["ed269"](ASIDE))
+    changed = replace(model, sha256=site_sha256(model.site))
+    assert is_planned_on(site_sha256(site().site), changed)
+    assert not is_planned_on("1" * 64, changed)
