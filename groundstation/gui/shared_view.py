@@ -11,7 +11,7 @@ from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import Signal
+from PySide6.QtCore import QEvent, QMargins, QObject, QRect, Signal
 from PySide6.QtWidgets import QButtonGroup, QLabel, QPushButton, QStackedWidget, QVBoxLayout, QWidget
 
 from groundstation.gui.application.context import ApplicationContext
@@ -49,16 +49,24 @@ class SharedView(QWidget):
         Another tab should come to the front.
     closing(QCloseEvent)
         The window is about to close; who ignores the event keeps it open.
+    pageShown(SharedViewPage)
+    aloneRequested(bool)
+        The view wants the room of the lists beside and below it, or gives it back.
+    resized()
     """
 
     sceneReady = Signal(object)  # noqa: N815  (Qt's own way of naming)
     tilesChanged = Signal(str)  # noqa: N815
     tabRequested = Signal(str)  # noqa: N815
     closing = Signal(object)
+    pageShown = Signal(object)  # noqa: N815
+    aloneRequested = Signal(bool)  # noqa: N815
+    resized = Signal()
 
     def __init__(self, context: ApplicationContext, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._context = context
+        self._insets = QMargins()
         self._scene: SceneView | None = None
         self._map: MapView | None = None
         self._tiles: Path | None = None
@@ -80,6 +88,7 @@ class SharedView(QWidget):
         layout.setSpacing(2)
         layout.addLayout(self._bar)
         layout.addWidget(self._pages, 1)
+        self._pages.installEventFilter(self)
         context.documentChanged.connect(self._document_changed)
         context.selectionChanged.connect(self._show_selection)
         context.lookAtRequested.connect(self._look_at)
@@ -118,6 +127,24 @@ class SharedView(QWidget):
             case SharedViewPage.CAMERA:
                 self._pages.setCurrentWidget(self.camera_page())
         self._update_pages()
+        self.pageShown.emit(page)
+
+    def room(self) -> QRect:
+        """Where the pages are, for what a tab lays over them."""
+        return self._pages.geometry()
+
+    def set_insets(self, insets: QMargins) -> None:
+        """Keep marks and buttons of the 3-D view and the map free of what lies over their edges."""
+        self._insets = insets
+        for view in (self._scene, self._map):
+            if view is not None:
+                view.set_insets(insets)
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
+        """Tell of another size of the pages."""
+        if watched is self._pages and event.type() in (QEvent.Type.Resize, QEvent.Type.Move):
+            self.resized.emit()
+        return super().eventFilter(watched, event)
 
     def scene(self) -> SceneView | None:
         """The 3-D view; None before it is ready."""
@@ -141,6 +168,7 @@ class SharedView(QWidget):
 
             self._map = MapView(self)
             self._map.set_units(self._context.units)
+            self._map.set_insets(self._insets)
             self._map.picked.connect(self._context.select)
             self._map.refused.connect(lambda text: self._context.say(Severity.ERROR, text))
             if self._tiles is not None:
@@ -180,6 +208,7 @@ class SharedView(QWidget):
         scene = self._scene = SceneView(self)
         self._pages.addWidget(scene)
         scene.set_units(self._context.units)
+        scene.set_insets(self._insets)
         scene.picked.connect(lambda item, _modifiers: self._context.select(item))
         document = self._context.document
         scene.set_site(document.site)

@@ -31,6 +31,8 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from groundstation.gui.widgets.hold_button import HoldButton
+
 SETTLE_S, CALM_S = 0.35, 0.05
 """Time without a job after which none follows: where a timer still runs (effects are looked at 0.3 s after the last
 change), and where none does."""
@@ -101,6 +103,11 @@ def scroll_to(widget: QWidget) -> None:
 
 def click_on(window: QWidget, widget: QWidget, at: QPoint | None = None) -> None:
     """Click a widget where a user can, scrolling to it: it is enabled, on the screen, and nothing lies over it."""
+    QTest.mouseClick(widget, Qt.MouseButton.LeftButton, pos=_place_on_top(window, widget, at))
+
+
+def _place_on_top(window: QWidget, widget: QWidget, at: QPoint | None = None) -> QPoint:
+    """Where to press a widget, which is brought into view: it is enabled, on the screen, and nothing lies over it."""
     above = widget.parentWidget()
     while above is not None:
         if isinstance(above, QScrollArea):
@@ -114,7 +121,26 @@ def click_on(window: QWidget, widget: QWidget, at: QPoint | None = None) -> None
     assert on_top is widget or widget.isAncestorOf(on_top), f"“{_name(on_top)}” lies over “{_name(widget)}”"
     screen = widget.screen().availableGeometry()
     assert screen.contains(widget.mapToGlobal(place)), f"“{_name(widget)}” is off the screen"
-    QTest.mouseClick(widget, Qt.MouseButton.LeftButton, pos=place)
+    return place
+
+
+def hold_on(window: QWidget, button: HoldButton) -> None:
+    """Hold a button where a user can, until it acts; a dialog that this brings up comes while it is held."""
+    place = _place_on_top(window, button)
+    acted: list[bool] = []
+
+    def note() -> None:
+        acted.append(True)
+
+    button.clicked.connect(note)
+    QTest.mousePress(button, Qt.MouseButton.LeftButton, pos=place)
+    end = time.perf_counter() + PATIENCE_S
+    while not acted and time.perf_counter() < end:
+        QApplication.processEvents()
+        time.sleep(TURN_S)
+    button.clicked.disconnect(note)
+    QTest.mouseRelease(button, Qt.MouseButton.LeftButton, pos=place)
+    assert acted, f"“{_name(button)}” did not act"
 
 
 def press_in(window: QWidget, text: str) -> None:

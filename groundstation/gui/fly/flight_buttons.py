@@ -7,6 +7,7 @@ from PySide6.QtGui import QAction, QKeySequence, QMouseEvent
 from PySide6.QtWidgets import QGridLayout, QLabel, QPushButton, QSizePolicy, QVBoxLayout, QWidget
 
 from groundstation.gui.application.translate import shown_keys, translated
+from groundstation.gui.widgets.hold_button import HoldButton
 from groundstation.gui.widgets.icons import ICON_PX, icon
 from groundstation.gui.widgets.tab_order import set_enabled
 from groundstation.gui.widgets.theme import colours
@@ -206,6 +207,10 @@ PLACES = {
 """Row, column and width in columns; the rows between are empty."""
 
 
+HELD = (Request.START, Request.RETURN, Request.LAND)
+"""What the aircraft cannot be kept from any more once it is ordered. The shortcuts, three keys at once, act at once."""
+
+
 class FlightButtons(QWidget):
     """One button for each request; which can be asked for is told to it.
 
@@ -230,10 +235,11 @@ class FlightButtons(QWidget):
             action.setShortcut(QKeySequence(key))
             action.setAutoRepeat(False)
             action.triggered.connect(lambda _checked=False, request=request: self._order(request))
-            button = _Button(text)
+            button = HoldButton(text) if request in HELD else _Button(text)
             button.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
             button.setIconSize(QSize(ICON_PX, ICON_PX))
             button.setProperty("flight", request.name.lower())
+            tip = self.tr("Hold: {0}").format(tip) if request in HELD else tip
             button.setToolTip(self.tr("{0} ({1})").format(tip, shown_keys(action.shortcut())))
             button.clicked.connect(action.trigger)
             self._actions[request], self._buttons[request] = action, button

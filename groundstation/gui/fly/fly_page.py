@@ -10,6 +10,7 @@ from PySide6.QtWidgets import (
     QListWidget,
     QListWidgetItem,
     QMainWindow,
+    QPushButton,
     QTabWidget,
     QVBoxLayout,
     QWidget,
@@ -19,6 +20,7 @@ from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.application.translate import translated
 from groundstation.gui.fly.connection_box import ConnectionBox
 from groundstation.gui.fly.flight_buttons import APART_PX, FlightButtons, PreflightList
+from groundstation.gui.fly.flight_overlay import FlightOverlay
 from groundstation.gui.fly.fly_controller import BEFORE_FLIGHT, ActiveFlight, FlyController
 from groundstation.gui.fly.live_pictures import LivePictures, PhotoStrip, ScrolledStrip
 from groundstation.gui.fly.questions import FlightQuestions
@@ -292,7 +294,13 @@ class FlyPage(QObject):
         self.simulation, self.settings, self.strip = SimulationPage(), SettingsPage(), PhotoStrip()
         self.findings = FindingsList()
         self.notes, self.report, self.band = FlightNotes(), ReportView(), LinkBand()
-        self.pictures = LivePictures(shared_view, self)
+        self.pictures, self.overlay = LivePictures(shared_view, self), FlightOverlay(shared_view, self)
+        self.lists = QPushButton(self.tr("Lists"))
+        self.lists.setCheckable(True)
+        self.lists.setToolTip(self.tr("Show what stands beside and below the view, which has their room in flight"))
+        self.lists.hide()
+        shared_view.add_overlay_bar(self.lists)
+        self._is_shown = False
         self._phase = QLabel()
         self._phase.setWordWrap(True)
         self._phase.setProperty("role", "heading")
@@ -311,13 +319,17 @@ class FlyPage(QObject):
 
     def shown(self) -> None:
         """Draw the flight into the shared view."""
+        self._is_shown = True
         self.pictures.show(self._pictured())
+        self._make_room()
         self.controller.simulation.look(self.controller.plan, self.controller.number)
         self.controller.signing.look(self.controller.choice)
 
     def hidden(self) -> None:
         """Give the shared view back; the flight goes on."""
+        self._is_shown = False
         self.pictures.hide()
+        self._make_room()
 
     def actions(self) -> tuple[QAction, ...]:
         """For the tab's menu."""
@@ -415,6 +427,15 @@ class FlyPage(QObject):
         context.unitsChanged.connect(self._show_units)
         context.jobsChanged.connect(self._show_state)
         self._shared_view.closing.connect(self._window_closing)
+        self.pictures.drawn.connect(self.overlay.draw)
+        self.lists.toggled.connect(lambda _is_on: self._make_room())
+
+    def _make_room(self) -> None:
+        """While connected the view has the room of the lists, unless these are wanted; what matters lies over it."""
+        is_connected = self._is_shown and self.controller.is_connected
+        self.lists.setVisible(is_connected)
+        self._shared_view.aloneRequested.emit(is_connected and not self.lists.isChecked())
+        self.overlay.show(is_shown=is_connected, has_sides=not self.lists.isChecked())
 
     # What the user does
 
@@ -474,6 +495,7 @@ class FlyPage(QObject):
             event.ignore()
             return
         self.controller.close()
+        self.overlay.close_view()
 
     def _go_to(self, view_id: str) -> None:
         self._context.jump_to(Item(ItemKind.VIEWPOINT, view_id))
@@ -487,7 +509,9 @@ class FlyPage(QObject):
 
     def _document_changed(self, _before: Document, _after: Document) -> None:
         self._show_document()
-        self.pictures.set_flight(self._pictured())
+        pictured = self._pictured()
+        self.pictures.set_flight(pictured)
+        self.overlay.set_sortie(None if pictured is None else pictured.sortie)
 
     def _pictured(self) -> ActiveFlight | None:
         """The flight, where it is over the site that is shown."""
@@ -527,6 +551,9 @@ class FlyPage(QObject):
         """Show the active flight from its beginning: a new one, or this page is new."""
         active = self.controller.active
         self.notes.clear()
+        self.lists.setChecked(False)
+        pictured = self._pictured()
+        self.overlay.set_sortie(None if pictured is None else pictured.sortie)
         for note in () if active is None else active.notes:
             self.notes.add(*note)
         self.strip.set_photos({} if active is None else active.photos)
@@ -541,6 +568,7 @@ class FlyPage(QObject):
 
     def _clear_view(self) -> None:
         self.readouts.set_view(None)
+        self.overlay.set_view(None)
         self.warnings.set_warnings(())
         self.strip.set_states(())
         self.checks.set_checks(())
@@ -551,6 +579,7 @@ class FlyPage(QObject):
         """What can be done, and where things stand, in words."""
         controller = self.controller
         self.readouts.set_live(is_live=controller.is_connected)
+        self._make_room()
         self.connection.set_connected(is_connected=controller.is_connected, says=self._words.connected_to())
         is_busy = controller.is_preparing or controller.signing.is_busy
         can_connect = controller.plan is not None and bool(controller.plan.sorties) and not is_busy
@@ -567,6 +596,7 @@ class FlyPage(QObject):
 
     def _show_view(self, view: LiveView) -> None:
         self.readouts.set_view(view)
+        self.overlay.set_view(view)
         self.warnings.set_warnings(view.warnings)
         self.strip.set_states(view.view_states)
         note = self.tr("In flight; the list comes back after the landing.") if view.state.is_armed else ""
@@ -605,6 +635,7 @@ class FlyPage(QObject):
         self._show_report(ended)
         if ended.report is not None:
             self._lists.setCurrentWidget(self.report)
+            self.lists.setChecked(True)
 
     def _show_report(self, ended: FlightEnded | None) -> None:
         self.report.set_ended(ended)
@@ -618,3 +649,4 @@ class FlyPage(QObject):
         shown = self.readouts, self.warnings, self.checks, self.strip, self.report, self.findings, self.simulation
         for widget in shown:
             widget.set_units(units)
+        self.overlay.set_units(units)

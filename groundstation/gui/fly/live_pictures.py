@@ -10,6 +10,7 @@ from PySide6.QtCore import QEvent, QObject, QPointF, QRectF, QSize, Qt, QTimer, 
 from PySide6.QtGui import QColor, QHelpEvent, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QPen, QPolygonF
 from PySide6.QtWidgets import QFrame, QScrollArea, QSizePolicy, QToolTip, QWidget
 
+from groundstation.gui.fly.aircraft_shape import aircraft_drawables, paint_aircraft
 from groundstation.gui.fly.fly_controller import ActiveFlight
 from groundstation.gui.map.map_view import MapView
 from groundstation.gui.shared_view import SharedView, SharedViewPage
@@ -18,9 +19,10 @@ from groundstation.gui.view3d.paint import ColourScale, flat
 from groundstation.gui.view3d.scene_view import SceneView
 from groundstation.gui.widgets.theme import Colours, colours
 from groundstation.services.fly.events import LiveView, PhotoCounted, ViewState
+from groundstation.services.fly.readouts import flies_mission
 from groundstation.services.map.web_mercator import world_from_geodetic
 from groundstation.services.units import UnitSystem, length_unit
-from groundstation.vehicle.state import VehicleState
+from groundstation.vehicle.state import Angles, VehicleState
 from planning.geo.enu import geodetic_from_enu
 from planning.geo.frames import Origin
 from planning.plan import Camera, Viewpoint, ViewpointArrays
@@ -248,7 +250,7 @@ def state_colour(state: ViewState, look: Colours) -> QColor:
 
 Array = NDArray[np.float64]
 
-AIRCRAFT_PX, MAP_DOT_PX = 16.0, 5.0
+AIRCRAFT_PX, MAP_DOT_PX = 17.0, 5.0
 
 
 class LiveMap(QWidget):
@@ -259,16 +261,29 @@ class LiveMap(QWidget):
         self._map = map_view
         self._track = np.zeros((0, 2))
         self._views: tuple[tuple[Array, ViewState], ...] = ()
+        self._next: NDArray[np.float64] = np.zeros((0, 2))
         self._heading_rad = 0.0
+        self._camera_rad: float | None = None
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
         self.setGeometry(map_view.rect())
         map_view.installEventFilter(self)
         self.lower()
         self.show()
 
-    def set_aircraft(self, origin: Origin, track_enu_m: Array, heading_rad: float) -> None:
-        """Show a track, shape (n, 3), whose last point is where the aircraft is."""
-        self._track, self._heading_rad = _world(origin, track_enu_m), heading_rad
+    def set_aircraft(
+        self,
+        origin: Origin,
+        track_enu_m: Array,
+        heading_rad: float,
+        camera_rad: float | None = None,
+        next_enu_m: Array | None = None,
+    ) -> None:
+        """Show a track, shape (n, 3), whose last point is where the aircraft is, and where it flies next, shape (3,).
+
+        `camera_rad` is the heading of its camera, None where nobody tells.
+        """
+        self._track, self._heading_rad, self._camera_rad = _world(origin, track_enu_m), heading_rad, camera_rad
+        self._next = _world(origin, np.zeros((0, 3)) if next_enu_m is None else next_enu_m[None])
         self.update()
 
     def set_views(self, origin: Origin, views: tuple[tuple[tuple[float, float, float], ViewState], ...]) -> None:
@@ -297,9 +312,11 @@ class LiveMap(QWidget):
             points = [QPointF(x, y) for x, y in viewport.screen(self._track).tolist()]
             painter.setPen(QPen(QColor(look.accent), 3))
             painter.drawPolyline(QPolygonF(points))
-            painter.setPen(QPen(QColor(look.text), 2))
-            painter.setBrush(QColor(look.error))
-            painter.drawPolygon(_arrow(points[-1], self._heading_rad))
+            for x, y in viewport.screen(self._next).tolist():
+                for colour, width in ((look.base, 6), (look.text, 3)):
+                    painter.setPen(QPen(QColor(colour), width, Qt.PenStyle.DashLine))
+                    painter.drawLine(points[-1], QPointF(x, y))
+            paint_aircraft(painter, points[-1], self._heading_rad, self._camera_rad, AIRCRAFT_PX, look)
         painter.end()
 
 
@@ -311,28 +328,14 @@ def _world(origin: Origin, points_enu_m: Array) -> Array:
     return np.asarray(world_from_geodetic(lat_deg, lon_deg))
 
 
-def _arrow(at: QPointF, heading_rad: float) -> QPolygonF:
-    """An arrowhead whose tip points along the heading; north is up."""
-    ahead = (math.sin(heading_rad), -math.cos(heading_rad))
-    right = (-ahead[1], ahead[0])
-    corners = ((1.0, 0.0), (-0.8, 0.7), (-0.4, 0.0), (-0.8, -0.7))
-    return QPolygonF(
-        [
-            QPointF(
-                at.x() + AIRCRAFT_PX * (a * ahead[0] + r * right[0]),
-                at.y() + AIRCRAFT_PX * (a * ahead[1] + r * right[1]),
-            )
-            for a, r in corners
-        ]
-    )
-
-
 # The aircraft, its track, its picture and the state of each view, drawn into the shared 3-D view.
 
-AIRCRAFT_M = 6.0
-"""Length of the aircraft as it is drawn: larger than it is, so that it is found in a view of the whole site."""
+LEVEL = Angles(0.0, 0.0, 0.0)
 
-TRACK_PX, OUTLINE_PX, PICTURE_PX, FOOTPRINT_PX = 4.0, 5.0, 1.0, 3.0
+LEAST_AIRCRAFT_M, AIRCRAFT_ON_SCREEN_PX = 1.0, 46.0
+"""Span of the aircraft as it is drawn: larger than it is, so that it is found in a view of the whole site."""
+
+TRACK_PX, NEXT_PX, PICTURE_PX, FOOTPRINT_PX = 4.0, 3.0, 1.0, 3.0
 DOT_PX = {
     ViewState.TO_COME: 5.0,
     ViewState.NEXT: 16.0,
@@ -340,7 +343,7 @@ DOT_PX = {
     ViewState.OFF: 12.0,
     ViewState.MISSING: 14.0,
 }
-NAMES = ("live-track", "live-aircraft", "live-picture", "live-footprint", "live-views")
+NAMES = ("live-track", "live-next", "live-aircraft", "live-picture", "live-footprint", "live-views")
 
 
 class LiveScene:
@@ -370,17 +373,25 @@ class LiveScene:
         self._scene.canvas().draw("live-views", parts)
 
     def draw_aircraft(
-        self, state: VehicleState, track_enu_m: NDArray[np.float64], camera: Camera, facade_m: float | None
+        self,
+        state: VehicleState,
+        track_enu_m: NDArray[np.float64],
+        camera: Camera,
+        facade_m: float | None,
+        next_enu_m: NDArray[np.float64] | None = None,
     ) -> None:
-        """Where it is, where it was, and what its camera sees: a pyramid, and the border of its picture on the site."""
+        """Where it is, was and flies next, and what its camera sees: a pyramid, and its border on the site."""
         canvas, look = self._scene.canvas(), colours()
         canvas.draw("live-track", _track(track_enu_m, look))
         if state.motion is None:
             return
         place = np.array(state.motion.value.position_enu_m)
-        heading = 0.0 if state.attitude is None else state.attitude.value.heading_rad
-        canvas.draw("live-aircraft", _aircraft(place, heading, look))
+        attitude = LEVEL if state.attitude is None else state.attitude.value
         pointing = state.camera
+        span_m = max(LEAST_AIRCRAFT_M, AIRCRAFT_ON_SCREEN_PX * self._scene.metres_per_px(place))
+        towards = None if pointing is None else pointing.value
+        canvas.draw("live-aircraft", aircraft_drawables(place, attitude, towards, span_m, look))
+        canvas.draw("live-next", () if next_enu_m is None else _leg(place, next_enu_m, look))
         if pointing is None or facade_m is None:
             canvas.draw("live-picture", ())
             canvas.draw("live-footprint", ())
@@ -414,17 +425,10 @@ def _lines(pieces: list[NDArray[np.float64]], look: Colours) -> list[Drawable]:
     return [Drawable(points, cells, flat(look.accent, len(cells)), width_px=FOOTPRINT_PX)]
 
 
-def _aircraft(place: NDArray[np.float64], heading_rad: float, look: Colours) -> list[Drawable]:
-    """An arrowhead that points where the nose does, level, over everything, with an outline that any ground shows."""
-    ahead = np.array([math.sin(heading_rad), math.cos(heading_rad), 0.0])
-    right = np.array([ahead[1], -ahead[0], 0.0])
-    size = 0.5 * AIRCRAFT_M
-    points = place + size * np.array([1.2 * ahead, -ahead + 0.8 * right, -0.5 * ahead, -ahead - 0.8 * right])
-    body = np.array([[0, 1, 2], [0, 2, 3]])
-    ring = np.array([[0, 1], [1, 2], [2, 3], [3, 0]])
-    centre = Drawable(place[None], np.array([[0]]), flat(look.error, 1), width_px=12.0, depth_shift=ON_TOP)
-    edges = Drawable(points, ring, flat(look.text, 4), width_px=OUTLINE_PX, depth_shift=ON_TOP)
-    return [Drawable(points, body, flat(look.error, 2)), edges, centre]
+def _leg(start_enu_m: Array, end_enu_m: Array, look: Colours) -> list[Drawable]:
+    """The way to the next photo, seen through walls."""
+    points, cells = polyline(np.stack([start_enu_m, end_enu_m]))
+    return [Drawable(points, cells, flat(look.text, 1), width_px=NEXT_PX, depth_shift=ON_TOP)]
 
 
 DRAW_EVERY_MS = 250
@@ -435,7 +439,15 @@ MAX_TRACK_POINTS = 4000
 
 
 class LivePictures(QObject):
-    """Draws the active flight while it is shown."""
+    """Draws the active flight while it is shown.
+
+    Signals
+    -------
+    drawn()
+        It was time to draw: what lies over the view is painted in the same turn, for the window is put together once.
+    """
+
+    drawn = Signal()
 
     def __init__(self, shared_view: SharedView, parent: QObject) -> None:
         super().__init__(parent)
@@ -447,6 +459,7 @@ class LivePictures(QObject):
         self._is_stale = self._has_photo = False
         self._timer = QTimer(self, interval=DRAW_EVERY_MS)
         self._timer.timeout.connect(self.draw)
+        self._timer.timeout.connect(self.drawn)
 
     def set_flight(self, flight: ActiveFlight | None) -> None:
         """Show another flight, or none."""
@@ -495,7 +508,8 @@ class LivePictures(QObject):
     def _draw_scene(self, scene: LiveScene, flight: ActiveFlight, view: LiveView) -> None:
         plan = flight.sortie.case.plan
         scene.draw_views(view.view_states, {viewpoint.id: viewpoint for viewpoint in plan.viewpoints})
-        scene.draw_aircraft(view.state, _thinned(flight), plan.camera, view.readouts.facade_m)
+        following = _next_place(flight, view)
+        scene.draw_aircraft(view.state, _thinned(flight), plan.camera, view.readouts.facade_m, following)
         if self._has_photo and flight.counted is not None:
             self._has_photo = False
             self._paint_coverage(flight, flight.counted)
@@ -521,7 +535,8 @@ class LivePictures(QObject):
         by_id = {viewpoint.id: viewpoint.position_enu_m for viewpoint in flight.sortie.case.plan.viewpoints}
         self._map.set_views(origin, tuple((by_id[view_id], state) for view_id, state in view.view_states))
         heading = 0.0 if view.state.attitude is None else view.state.attitude.value.heading_rad
-        self._map.set_aircraft(origin, _thinned(flight), heading)
+        camera = None if view.state.camera is None else view.state.camera.value.heading_rad
+        self._map.set_aircraft(origin, _thinned(flight), heading, camera, _next_place(flight, view))
         self._map.show()
 
     def _clear(self) -> None:
@@ -532,6 +547,15 @@ class LivePictures(QObject):
             scene.set_panel_values(None)
         if self._map is not None:
             self._map.hide()
+
+
+def _next_place(flight: ActiveFlight, view: LiveView) -> NDArray[np.float64] | None:
+    """Where the next photo is taken, shape (3,), while the aircraft flies its mission; None else."""
+    following = next((view_id for view_id, state in view.view_states if state is ViewState.NEXT), None)
+    if following is None or not view.state.is_armed or not flies_mission(view.state):
+        return None
+    found = next((each for each in flight.sortie.case.plan.viewpoints if each.id == following), None)
+    return None if found is None else np.array(found.position_enu_m)
 
 
 def _thinned(flight: ActiveFlight) -> NDArray[np.float64]:

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt, QTimer, Signal
+from PySide6.QtCore import QEvent, QMargins, QPointF, QRectF, QSize, Qt, QTimer, Signal
 from PySide6.QtGui import QColor, QFont, QImage, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QHBoxLayout, QToolButton, QVBoxLayout, QWidget
 
@@ -238,6 +238,7 @@ class MapView(MapCanvas):
         self._pointer: QPointF | None = None
         self._units = UnitSystem.METRIC
         self._refusal = ""
+        self._insets = QMargins()
         self._was_fitted = False
         self._layer = MapLayer()
         self._sharpen_soon = QTimer(self, interval=REST_MS, singleShot=True)
@@ -287,6 +288,12 @@ class MapView(MapCanvas):
     def set_units(self, units: UnitSystem) -> None:
         """Show lengths in other units."""
         self._units = units
+        self.update()
+
+    def set_insets(self, insets: QMargins) -> None:
+        """Keep buttons and marks away from the edges, where something else lies over them."""
+        self._insets = insets
+        self._row.setContentsMargins(8, 8 + insets.top(), 8 + insets.right(), 8 + insets.bottom())
         self.update()
 
     def open_map(self, path: Path) -> bool:
@@ -407,7 +414,7 @@ class MapView(MapCanvas):
             button.clicked.connect(lambda _checked=False, slot=slot: slot())
             column.addWidget(button, 0, Qt.AlignmentFlag.AlignRight)
         column.addStretch(1)
-        row = QHBoxLayout(self)
+        row = self._row = QHBoxLayout(self)
         row.setContentsMargins(8, 8, 8, 8)
         row.addStretch(1)
         row.addLayout(column)
@@ -494,7 +501,11 @@ class MapView(MapCanvas):
             place = place_of(self._selection, self._site, self._plan_shapes)
             if place is not None:
                 paint_ring(painter, viewport.screen(place.mean(axis=0)[None])[0], self._selection.id, found)
-        source = self._tiles.source()
+        source, insets = self._tiles.source(), self._insets
+        # Marks stand at the edges of what nothing lies over.
+        painter.translate(insets.left(), insets.top())
+        wide, high = insets.left() + insets.right(), insets.top() + insets.bottom()
+        viewport = viewport.resized(viewport.width_px - wide, viewport.height_px - high)
         if self._model is not None or source is not None:
             paint_scale_bar(painter, viewport, self._units, found)
             paint_north(painter, QPointF(28, 28), found)

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from PySide6.QtCore import QObject, QPointF, QRectF, Qt
+from PySide6.QtCore import QMargins, QObject, QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFontMetricsF, QLinearGradient, QPainter, QPaintEvent, QPen, QPolygonF
 from PySide6.QtWidgets import QWidget
 
@@ -92,6 +92,9 @@ NORTH_PX = 26.0
 BAR_WIDTH_PX = 160.0
 """Longest that the scale becomes, and length of the colour bar."""
 
+WIDEST_PART = 0.4
+"""Of what is free between things that lie over the view: a wider colour bar would hide what it explains."""
+
 MAX_LABELS = 60
 """More are unreadable anyway."""
 
@@ -129,6 +132,7 @@ class Overlay(QWidget):
         self._hint = ""
         self._tip: Tip | None = None
         self._has_frame = False
+        self._insets = QMargins()
         self._units = UnitSystem.METRIC
 
     def set_view(self, view: Pinhole, focus_depth_m: float) -> None:
@@ -168,6 +172,11 @@ class Overlay(QWidget):
         self._has_frame = is_shown
         self.update()
 
+    def set_insets(self, insets: QMargins) -> None:
+        """Leave so much free at the edges."""
+        self._insets = insets
+        self.update()
+
     def set_units(self, units: UnitSystem) -> None:
         """Units of the scale."""
         self._units = units
@@ -182,7 +191,7 @@ class Overlay(QWidget):
         self._paint_labels(painter, self._view)
         self._paint_north(painter, self._view)
         self._paint_length(painter, self._view)
-        bottom_px = self.height() - MARGIN_PX
+        bottom_px = self.height() - self._insets.bottom() - MARGIN_PX
         for scale in self._scales:
             bottom_px = self._paint_scale(painter, scale, bottom_px) - GAP_PX
         if self._legend:
@@ -197,6 +206,10 @@ class Overlay(QWidget):
             painter.setBrush(Qt.BrushStyle.NoBrush)
             painter.drawRect(QRectF(self.rect()).adjusted(1.0, 1.0, -1.0, -1.0))
         painter.end()
+
+    def _right_px(self) -> float:
+        """Where marks at the right end."""
+        return self.width() - self._insets.right() - MARGIN_PX
 
     def _paint_labels(self, painter: QPainter, view: Pinhole) -> None:
         if not self._labels:
@@ -231,7 +244,7 @@ class Overlay(QWidget):
 
     def _paint_north(self, painter: QPainter, view: Pinhole) -> None:
         """Needle to the north as the view lies; it shortens as the view comes level with the horizon."""
-        centre = QPointF(self.width() - MARGIN_PX - NORTH_PX, MARGIN_PX + NORTH_PX)
+        centre = QPointF(self._right_px() - NORTH_PX, self._insets.top() + MARGIN_PX + NORTH_PX)
         north = QPointF(view.right[1], -view.up[1] if abs(view.forward[2]) > 0.05 else -view.forward[1] * 0.3)
         east = QPointF(view.right[0], -view.up[0] if abs(view.forward[2]) > 0.05 else -view.forward[0] * 0.3)
         painter.setPen(QPen(QColor(colours().line), 1.0))
@@ -256,7 +269,7 @@ class Overlay(QWidget):
         metres_per_px = view.metres_per_px(self._focus_depth_m)
         shown = round_length(unit.shown(metres_per_px * BAR_WIDTH_PX))
         length_px = unit.metric(shown) / metres_per_px
-        left, y = MARGIN_PX + 6.0, self.height() - MARGIN_PX - 8.0
+        left, y = self._insets.left() + MARGIN_PX + 6.0, self.height() - self._insets.bottom() - MARGIN_PX - 8.0
         text = self.tr("{0:g} {1} in the middle").format(shown, unit.symbol)
         metrics = QFontMetricsF(self.font())
         width = max(length_px, metrics.horizontalAdvance(text))
@@ -277,7 +290,9 @@ class Overlay(QWidget):
         low, high = f"{scale.low:.4g}", f"{scale.high:.4g}"
         width = max(BAR_WIDTH_PX, metrics.horizontalAdvance(title))
         box = QRectF(0.0, 0.0, width + 16.0, 3.0 * row + 34.0)
-        box.moveBottomRight(QPointF(self.width() - MARGIN_PX, bottom_px))
+        if not self._insets.isNull() and box.width() > WIDEST_PART * (self._right_px() - self._insets.left()):
+            return bottom_px
+        box.moveBottomRight(QPointF(self._right_px(), bottom_px))
         self._paint_plate(painter, box)
         inner = box.adjusted(8.0, 4.0, -8.0, -4.0)
         painter.setPen(QColor(colours().text))
@@ -300,7 +315,7 @@ class Overlay(QWidget):
         row = metrics.height() + 3.0
         width = max(metrics.horizontalAdvance(text) for _, text in self._legend) + 34.0
         box = QRectF(0.0, 0.0, width, row * len(self._legend) + 10.0)
-        box.moveBottomRight(QPointF(self.width() - MARGIN_PX, bottom_px))
+        box.moveBottomRight(QPointF(self._right_px(), bottom_px))
         self._paint_plate(painter, box)
         for i, (colour, text) in enumerate(self._legend):
             top = box.top() + 5.0 + i * row

@@ -13,7 +13,7 @@ from enum import Enum, auto
 
 import numpy as np
 from numpy.typing import NDArray
-from PySide6.QtCore import QEvent, Signal
+from PySide6.QtCore import QEvent, QMargins, Signal
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
@@ -340,11 +340,21 @@ class ScenePicture(QWidget):
         self._units = units
         self._overlay.set_units(units)
 
+    def set_insets(self, insets: QMargins) -> None:
+        """Keep north, scale and legends away from the edges, where something else lies over them."""
+        self._overlay.set_insets(insets)
+
     # Where it is looked at from
 
     def orbit(self) -> Orbit:
         """Where the view is looked at from."""
         return self._navigator.orbit
+
+    def metres_per_px(self, point_enu_m: Array) -> float:
+        """How large a pixel is at a point, shape (3,); behind the eye, as at the focus."""
+        view = self._navigator.pinhole()
+        depth_m = float((point_enu_m - view.eye_enu_m) @ view.forward)
+        return view.metres_per_px(depth_m if depth_m > 0.0 else self._navigator.orbit.distance_m)
 
     def set_orbit(self, orbit: Orbit) -> None:
         """Look from elsewhere, without a signal: for views that follow one another."""

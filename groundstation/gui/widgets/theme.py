@@ -21,6 +21,9 @@ TOUCH_PX = 38
 FLIGHT_PX = 48
 """Height of the buttons of a flight, which are hit in a hurry."""
 
+GLOVE_PX = 60
+"""Of Return and Land, which are hit in a hurry with gloves."""
+
 SORTIES = ("#d55e00", "#0072b2", "#009e73", "#cc79a7", "#b58900", "#56b4e9")
 FACADES = ("#3f8fd0", "#4aa880", "#8f6fc8", "#c86f9a", "#c8a23f", "#5fa8b8")
 
@@ -173,6 +176,7 @@ def _style_sheet(found: Colours) -> str:
     QPushButton[primary="true"]:disabled
         {{ background: {found.window}; color: {found.muted}; border-color: {found.handle}; }}
     QPushButton[flight] {{ min-height: {FLIGHT_PX - 8}px; }}
+    QPushButton[flight="return"], QPushButton[flight="land"] {{ min-height: {GLOVE_PX - 8}px; }}
     QPushButton[flight="return"]:enabled
         {{ background: {found.warning}; color: {found.base}; border-color: {found.warning}; font-weight: bold; }}
     QPushButton[flight="land"]:enabled

@@ -70,6 +70,7 @@ class MainWindow(QMainWindow):
         self._quick_buttons: list[QToolButton] = []
         self.shared_view = SharedView(context)
         self.shared_view.tabRequested.connect(self.show_tab)
+        self.shared_view.aloneRequested.connect(self._set_view_alone)
         self.messages = MessageArea(context)
         self.job_bar = JobBar(context)
         self.next_step = NextStepBar()
@@ -219,6 +220,13 @@ class MainWindow(QMainWindow):
         tab.shown()
         self._show_steps()
         self.tabShown.emit(spec.name)
+
+    def _set_view_alone(self, is_alone: bool) -> None:
+        """Give the shared view the room of the lists, or take it back; another tab takes it back, too."""
+        if self._shown is not None and self._shown.place is not Place.WHOLE_PAGE:
+            tab = self._tabs[self._shown.name]
+            self._right.setVisible(tab.right is not None and not is_alone)
+            self._bottom.setVisible(tab.bottom is not None and not is_alone)
 
     def focusNextPrevChild(self, next: bool) -> bool:  # noqa: A002, N802
         """Take Tab through the window as it is read: tabs, form, view, details, lists, messages, jobs."""

@@ -60,6 +60,8 @@ class Readouts:
 
     Parameters
     ----------
+    height_m, above_ground_m
+        Above the place of take-off, and above the ground that the site knows.
     facade_m
         Distance to the nearest panel, mesh or obstacle; negative inside one.
     least_facade_m
@@ -68,9 +70,12 @@ class Readouts:
         Time until the battery is at the reserve, at the aircraft's endurance.
     wind_from_deg
         Where the wind comes from, clockwise from north.
+    to_go_s, next_photo_s
+        Until the landing, and until the next photo; before take-off, the whole flight.
     """
 
     height_m: float | None = None
+    above_ground_m: float | None = None
     speed_m_s: float | None = None
     facade_m: float | None = None
     least_facade_m: float = 0.0
@@ -80,6 +85,8 @@ class Readouts:
     wind_from_deg: float | None = None
     fix_type: int | None = None
     n_satellites: int | None = None
+    to_go_s: float | None = None
+    next_photo_s: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -43,6 +43,7 @@ from groundstation.services.fly.options import USUAL, FlightSettings
 from groundstation.services.fly.readouts import BEFORE_TAKE_OFF, allowed_requests, link_state, readouts
 from groundstation.services.fly.signing import signing_problem
 from groundstation.services.fly.sortie import LiveSortie
+from groundstation.services.fly.to_go import SortieTimes, to_go
 from groundstation.vehicle.commands import CommandCall, CommandOutcome, set_mode_command
 from groundstation.vehicle.onboard_logs import NewestLog
 from groundstation.vehicle.preflight import OnBoard, is_ready, preflight_checks
@@ -680,6 +681,7 @@ class LiveFlight:
         orders = sortie.orders
         frame = LocalFrame.of_home(orders.site.origin, orders.home_enu_m)
         self._sortie, self._listener = sortie, Listener(frame, replace(state, photos=()))
+        self._times = SortieTimes.of(sortie)
         self._run = self._awaited = None
         self._ordered.clear()
         self._events.begin()
@@ -698,6 +700,10 @@ class LiveFlight:
         phase, watch = (None, Watch()) if run is None else (run.phase, run.watch)
         link = link_state(state, now_s, is_open=self._wire.opened is not None)
         missing = [view_id for view_id, since_s in watch.passed_s if now_s - since_s > PHOTO_LATE_S]
+        view_states = self._coverage.states(self._sortie.viewpoint_ids, missing)
+        around = orders.surroundings[state.autopilot or Autopilot.ARDUPILOT]
+        is_done = [seen not in (ViewState.TO_COME, ViewState.NEXT) for _, seen in view_states]
+        left = to_go(self._times, self._sortie, state, around, is_done)
         return LiveView(
             link=link,
             silent_s=None if state.heartbeat is None else state.heartbeat.age_s(now_s),
@@ -708,8 +714,8 @@ class LiveFlight:
             on_board=on_board,
             doing=("", 0.0, 0.0) if run is None else run.view().doing,
             may=allowed_requests(link, phase, state, is_ready=is_ready(checks)),
-            readouts=readouts(state, orders.surroundings[state.autopilot or Autopilot.ARDUPILOT]),
-            view_states=self._coverage.states(self._sortie.viewpoint_ids, missing),
+            readouts=readouts(state, around, orders.site.airspace.ground_z_m, left),
+            view_states=view_states,
             speed_up=self._connection.speed_up,
             fetching=None if self._log is None else self._log.progress,
         )

@@ -7,11 +7,14 @@ import math
 import numpy as np
 
 from groundstation.services.fly.events import LinkState, LiveView, Readouts, Request
+from groundstation.services.fly.to_go import ToGo
 from groundstation.services.project.steps import FlightState
 from groundstation.vehicle.commands import MISSION_MODE
 from groundstation.vehicle.sortie.run_records import Phase
 from groundstation.vehicle.state import VehicleState
 from groundstation.vehicle.surroundings import Surroundings
+
+NOT_KNOWN = ToGo()
 
 BEFORE_TAKE_OFF = (None, Phase.CHECKING, Phase.READY, Phase.ENDED)
 """Phases in which a mission may be uploaded, again or for the first time."""
@@ -68,11 +71,14 @@ def battery_left_s(remaining: float, reserve: float, endurance_s: float) -> floa
     return max(0.0, remaining - reserve) * endurance_s
 
 
-def readouts(state: VehicleState, around: Surroundings) -> Readouts:
-    """What the pilot reads at a glance."""
-    height = speed = facade = battery = left_s = wind = wind_from = None
+def readouts(
+    state: VehicleState, around: Surroundings, ground_z_m: float | None = None, left: ToGo = NOT_KNOWN
+) -> Readouts:
+    """What the pilot reads at a glance; `ground_z_m` is the site's ground, None where nobody knows it."""
+    height = above_ground = speed = facade = battery = left_s = wind = wind_from = None
     if state.motion is not None:
         motion = state.motion.value
+        above_ground = None if ground_z_m is None else motion.position_enu_m[2] - ground_z_m
         height, speed = motion.height_above_home_m, math.hypot(*motion.velocity_enu_m_s)
         facade = float(around.space.solids.clearance_m(np.array([motion.position_enu_m]))[0])
     if state.battery is not None and state.battery.value.remaining is not None:
@@ -84,6 +90,7 @@ def readouts(state: VehicleState, around: Surroundings) -> Readouts:
     fix = None if state.fix is None else state.fix.value
     return Readouts(
         height_m=height,
+        above_ground_m=above_ground,
         speed_m_s=speed,
         facade_m=facade,
         least_facade_m=around.space.min_distance_m,
@@ -93,4 +100,6 @@ def readouts(state: VehicleState, around: Surroundings) -> Readouts:
         wind_from_deg=wind_from,
         fix_type=None if fix is None else fix.fix_type,
         n_satellites=None if fix is None else fix.n_satellites,
+        to_go_s=left.landed_s,
+        next_photo_s=left.photo_s,
     )

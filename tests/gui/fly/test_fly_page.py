@@ -11,7 +11,7 @@ from PySide6.QtCore import QMargins, QPoint, Qt, QTimer
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QLabel, QLineEdit, QMessageBox
 
-from groundstation.gui.fly.flight_buttons import APART_PX, ICON_PX, PLACES
+from groundstation.gui.fly.flight_buttons import APART_PX, HELD, ICON_PX, PLACES
 from groundstation.services.fly.events import LinkState, Request, ViewState
 from groundstation.services.fly.options import ConnectionChoice, LinkKind, choice_path, read_choice
 from groundstation.services.project.document import Document, ItemKind, PlanEntry
@@ -28,6 +28,7 @@ from tests.gui.driving import (
     clicked,
     close_controller,
     escape,
+    hold_on,
     press,
     scroll_to,
     shut,
@@ -76,7 +77,7 @@ def page(controller):
 
 def ask_for(page, request):
     button = page.buttons.button(request)
-    click_on(button.window(), button)
+    (hold_on if request in HELD else click_on)(button.window(), button)
 
 
 def connect(application, page, speed_up=20.0, autopilot=Autopilot.ARDUPILOT):
@@ -483,8 +484,12 @@ def test_a_double_click_on_start_asks_once_and_orders_nothing_else(application, 
     heard = []
     page.buttons.requested.connect(heard.append)
     start = page.buttons.button(Request.START)
+    for _ in range(3):
+        QTest.mouseDClick(start, Qt.MouseButton.LeftButton)
+        application.processEvents()
+    assert heard == [], "it is held, not clicked"
     with clicked("Yes"):
-        QTest.mouseClick(start, Qt.MouseButton.LeftButton)
+        hold_on(start.window(), start)
     for _ in range(3):
         QTest.mouseDClick(start, Qt.MouseButton.LeftButton)
         application.processEvents()

@@ -1,0 +1,210 @@
+"""What lies over the view while a vehicle is connected: figures, attitude, warnings and the camera's picture."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QMargins, QObject, QRect, QSize, Qt, Signal
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QPushButton, QSizePolicy, QVBoxLayout, QWidget
+
+from groundstation.gui.application.translate import translated
+from groundstation.gui.fly.instruments import AttitudeView, FlightFigures
+from groundstation.gui.fly.live_camera import LiveCamera
+from groundstation.gui.shared_view import SharedView, SharedViewPage
+from groundstation.gui.widgets.theme import colours
+from groundstation.services.fly.events import LinkState, LiveView
+from groundstation.services.fly.sortie import LiveSortie
+from groundstation.services.units import UnitSystem, minutes_text
+from groundstation.vehicle.watch import FlightWarning
+from planning.base.findings import Severity
+
+EDGE_PX = 6
+SIDE_PX = 210
+"""Width of attitude and camera picture."""
+
+ATTITUDE_PX = 180
+MAX_SHOWN = 3
+"""Warnings; the rest are counted."""
+
+
+def ordered_warnings(warnings: tuple[FlightWarning, ...]) -> tuple[FlightWarning, ...]:
+    """The worst first, the newest of these first."""
+    return tuple(sorted(warnings, key=lambda each: (each.severity is not Severity.ERROR, -each.since_s)))
+
+
+class WarningBanner(QFrame):
+    """The warnings that hold, in their colour, with how long they have; gone when they are over.
+
+    Signals
+    -------
+    muteToggled(bool)
+        Whether they are not spoken.
+    """
+
+    muteToggled = Signal(bool)  # noqa: N815  (Qt's own way of naming)
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setAccessibleName(self.tr("Warnings"))
+        self._units = UnitSystem.METRIC
+        self._labels = [QLabel() for _ in range(MAX_SHOWN)]
+        self._more = QLabel()
+        self.mute = QPushButton(self.tr("Mute"))
+        self.mute.setCheckable(True)
+        self.mute.setToolTip(self.tr("Warnings are shown, and not spoken"))
+        self.mute.toggled.connect(self.muteToggled)
+        self.mute.hide()
+        texts = QVBoxLayout()
+        texts.setSpacing(2)
+        for label in (*self._labels, self._more):
+            label.setWordWrap(True)
+            label.setMargin(5)
+            label.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
+            texts.addWidget(label)
+        row = QHBoxLayout(self)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.setSpacing(4)
+        row.addLayout(texts, 1)
+        row.addWidget(self.mute, 0, Qt.AlignmentFlag.AlignTop)
+        self.set_view(None)
+
+    def set_units(self, units: UnitSystem) -> None:
+        """Show lengths in other units."""
+        self._units = units
+
+    def set_view(self, view: LiveView | None) -> bool:
+        """Show the warnings of a flight as it stands; returns whether another size is needed."""
+        warnings = () if view is None else ordered_warnings(view.warnings)
+        before = [(label.isHidden(), label.text()) for label in (*self._labels, self._more)]
+        for number, label in enumerate(self._labels):
+            label.setVisible(number < len(warnings))
+            if number < len(warnings) and view is not None:
+                self._fill(label, warnings[number], _age_s(warnings[number], view))
+            else:
+                label.setText("")
+        n_more = len(warnings) - MAX_SHOWN
+        self._more.setVisible(n_more > 0)
+        self._more.setText(self.tr("{0} more in the list").format(n_more) if n_more > 0 else "")
+        return before != [(label.isHidden(), label.text()) for label in (*self._labels, self._more)]
+
+    def is_empty(self) -> bool:
+        """Whether nothing is wrong."""
+        return self._labels[0].isHidden()
+
+    def text(self) -> str:
+        """All that is shown, a line each."""
+        return "\n".join(label.text() for label in (*self._labels, self._more) if not label.isHidden())
+
+    def _fill(self, label: QLabel, warning: FlightWarning, age_s: float) -> None:
+        look, words = colours(), translated(warning.text, self._units)
+        is_error = warning.severity is Severity.ERROR
+        title = self.tr("DANGER") if is_error else self.tr("Warning")
+        text = self.tr("{0} ({1}): {2}").format(title, minutes_text(age_s), words)
+        if label.text() != text:
+            label.setText(text)
+        style = f"background: {look.error if is_error else look.warning}; color: {look.base}; font-weight: bold;"
+        if label.styleSheet() != style:
+            label.setStyleSheet(style)
+
+
+def _age_s(warning: FlightWarning, view: LiveView) -> float:
+    """How long a warning has been shown, by the clock of the link."""
+    heartbeat = view.state.heartbeat
+    if heartbeat is None or view.silent_s is None:
+        return 0.0
+    return max(0.0, heartbeat.time_s + view.silent_s - warning.since_s)
+
+
+class FlightOverlay(QObject):
+    """Lays it over a shared view, and keeps the view's own marks free of it."""
+
+    def __init__(self, shared_view: SharedView, parent: QObject) -> None:
+        super().__init__(parent)
+        self._shared_view = shared_view
+        self.figures, self.attitude = FlightFigures(shared_view), AttitudeView(shared_view)
+        self.banner, self.camera = WarningBanner(shared_view), LiveCamera(shared_view)
+        self._view: LiveView | None = None
+        self._is_shown = self._has_sides = self._is_stale = False
+        self._n_drawn = 0
+        for widget in self._parts():
+            widget.hide()
+        shared_view.resized.connect(self._place)
+        shared_view.pageShown.connect(lambda _page: self._place())
+
+    def set_units(self, units: UnitSystem) -> None:
+        """Show lengths in other units."""
+        self.figures.set_units(units)
+        self.banner.set_units(units)
+
+    def set_sortie(self, sortie: LiveSortie | None) -> None:
+        """The sortie whose site the camera sees."""
+        self.camera.set_sortie(sortie)
+
+    def set_view(self, view: LiveView | None) -> None:
+        """The flight as it stands; drawn with the next `draw`."""
+        self._view, self._is_stale = view, True
+
+    def show(self, *, is_shown: bool, has_sides: bool = True) -> None:
+        """Appear or go; without its sides there are warnings alone, for the lists have the figures, too."""
+        if (is_shown, has_sides) != (self._is_shown, self._has_sides):
+            self._is_shown, self._has_sides, self._is_stale = is_shown, has_sides, True
+            self._place()
+            self.draw()
+
+    def draw(self) -> None:
+        """Bring everything up to date; the camera's picture every second time, for it costs as much as the rest."""
+        if not self._is_shown:
+            return
+        self._n_drawn += 1
+        if self._is_stale:
+            self._is_stale = False
+            view = self._view
+            self.figures.set_view(view)
+            state = None if view is None else view.state
+            attitude = None if state is None or state.attitude is None else state.attitude.value
+            pointing = None if state is None or state.camera is None else state.camera.value
+            self.attitude.set_angles(attitude, pointing, is_old=view is not None and view.link is LinkState.LOST)
+            if self.banner.set_view(view):
+                self._place()
+        if self._n_drawn % 2 == 0 and self._view is not None and self.camera.isVisible():
+            self.camera.look(self._view.state)
+
+    def close_view(self) -> None:
+        """Free what the camera's picture holds."""
+        self.camera.close_view()
+
+    def _parts(self) -> tuple[QWidget, ...]:
+        return self.figures, self.attitude, self.banner, self.camera
+
+    def _place(self) -> None:
+        """Put everything where it goes: figures at the left, attitude and camera at the right, warnings between."""
+        room, is_over = self._shared_view.room(), self._is_shown
+        # The camera preview has controls of its own at its edges.
+        has_sides = is_over and self._has_sides and self._shared_view.page() is not SharedViewPage.CAMERA
+        left = min(self.figures.sizeHint().width(), room.width() // 3)
+        side = min(SIDE_PX, room.width() // 3)
+        high = min(self.figures.sizeHint().height(), room.height() - 2 * EDGE_PX)
+        self._put(self.figures, QRect(room.left() + EDGE_PX, room.top() + EDGE_PX, left, high), has_sides)
+        x = room.right() - EDGE_PX - side
+        upper = min(ATTITUDE_PX, room.height() // 2)
+        self._put(self.attitude, QRect(x, room.top() + EDGE_PX, side, upper), has_sides)
+        lower = self.camera.height_for(side)
+        free = room.height() - upper - lower - 3 * EDGE_PX
+        y = room.bottom() - EDGE_PX - lower
+        self._put(self.camera, QRect(x, y, side, lower), has_sides and free >= 0 and self.camera.has_site())
+        taken_left = left + EDGE_PX if has_sides else 0
+        taken_right = side + EDGE_PX if has_sides else 0
+        width = room.width() - taken_left - taken_right - 2 * EDGE_PX
+        hint = QSize(width, max(1, self.banner.heightForWidth(width)))
+        at = QRect(room.left() + taken_left + EDGE_PX, room.top() + EDGE_PX, hint.width(), hint.height())
+        self._put(self.banner, at, is_over and not self.banner.is_empty())
+        top = 0 if not has_sides or self.banner.isHidden() else at.height() + EDGE_PX
+        self._shared_view.set_insets(QMargins(taken_left, top, taken_right, 0))
+
+    def _put(self, widget: QWidget, at: QRect, is_shown: bool) -> None:
+        if is_shown and at.width() > 0 and at.height() > 0:
+            if widget.geometry() != at:
+                widget.setGeometry(at)
+            if widget.isHidden():
+                widget.show()
+                widget.raise_()
+        elif not widget.isHidden():
+            widget.hide()
