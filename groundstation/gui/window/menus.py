@@ -112,6 +112,10 @@ def view_keys() -> list[tuple[str, list[Row]]]:
             [(gone, translate("Shortcuts", "Delete what is selected"))],
         ),
         (
+            translate("Shortcuts", "Start, Return and Land"),
+            [(f"{bar}, {enter}", translate("Shortcuts", "Hold for 0.7 s; the key of the Fly tab acts at once"))],
+        ),
+        (
             translate("Shortcuts", "Photo strip of a flight"),
             [
                 (arrows, translate("Shortcuts", "To the view before, to the next")),

@@ -231,6 +231,7 @@ SECTIONS = {
     "camera_preview/photo_box.py": ("Camera preview",),
     "site/site_tree.py": ("Tree of the site",),
     "fly/live_pictures.py": ("Photo strip of a flight",),
+    "widgets/hold_button.py": ("Start, Return and Land",),
     "photos/grid_picture.py": ("Photos",),
     "photos/grid_view.py": ("Photos",),
     "reconstruct/model_view.py": ("Models",),
