@@ -78,8 +78,8 @@
         <translation>Boden</translation>
     </message>
     <message>
-        <source>Heights are above the site&apos;s zero. Only the climb above home may be below the airspace.</source>
-        <translation>Höhen über dem Nullpunkt des Standorts. Nur der Steigflug über dem Startplatz darf unter dem Luftraum liegen.</translation>
+        <source>Heights are above the site origin. Only the climb above home may be below the airspace.</source>
+        <translation>Höhen zählen ab dem Nullpunkt des Standorts. Nur der Aufstieg über dem Startplatz darf unter dem Luftraum liegen.</translation>
     </message>
     <message>
         <source>Change airspace</source>
@@ -99,6 +99,21 @@
     <message>
         <source>{0}: Reflight failed where it should not ({1}: {2}); please report it</source>
         <translation>{0}: Reflight versagte, wo es nicht darf ({1}: {2}); bitte melden</translation>
+    </message>
+</context>
+<context>
+    <name>AttitudeView</name>
+    <message>
+        <source>Attitude and heading</source>
+        <translation>Lage und Kurs</translation>
+    </message>
+    <message>
+        <source>heading {0:03.0f}°, pitch {1:+.0f}°, roll {2:+.0f}°</source>
+        <translation>Kurs {0:03.0f}°, Nicken {1:+.0f}°, Rollen {2:+.0f}°</translation>
+    </message>
+    <message>
+        <source>cam {0:+.0f}°</source>
+        <translation>Kam. {0:+.0f}°</translation>
     </message>
 </context>
 <context>
@@ -685,10 +700,6 @@ Bild in dieser Entfernung: {4} x {5}</translation>
         <translation>Unterschied der Abdeckung</translation>
     </message>
     <message>
-        <source>pixel size</source>
-        <translation>Pixelgröße</translation>
-    </message>
-    <message>
         <source>Panels by</source>
         <translation>Scheiben nach</translation>
     </message>
@@ -729,8 +740,12 @@ Bild in dieser Entfernung: {4} x {5}</translation>
         <translation>Zeit in der Luft</translation>
     </message>
     <message>
-        <source>Way flown</source>
-        <translation>Flugweg</translation>
+        <source>GSD</source>
+        <translation>GSD</translation>
+    </message>
+    <message>
+        <source>Distance</source>
+        <translation>Strecke</translation>
     </message>
     <message>
         <source>Views found after</source>
@@ -938,16 +953,16 @@ Bild in dieser Entfernung: {4} x {5}</translation>
         <translation>Linie hinzufügen</translation>
     </message>
     <message>
-        <source>Remove line</source>
-        <translation>Linie entfernen</translation>
+        <source>Delete line</source>
+        <translation>Linie löschen</translation>
+    </message>
+    <message>
+        <source>Delete panel</source>
+        <translation>Scheibe löschen</translation>
     </message>
     <message>
         <source>Restore panel</source>
         <translation>Scheibe wiederherstellen</translation>
-    </message>
-    <message>
-        <source>Remove panel</source>
-        <translation>Scheibe entfernen</translation>
     </message>
 </context>
 <context>
@@ -1279,6 +1294,10 @@ Blickrichtung: {2}</translation>
         <translation>Befunde</translation>
     </message>
     <message>
+        <source>All checks passed: home, airspace, facades.</source>
+        <translation>Alle Prüfungen bestanden: Startplatz, Luftraum, Fassaden.</translation>
+    </message>
+    <message>
         <source>Error</source>
         <translation>Fehler</translation>
     </message>
@@ -1319,10 +1338,6 @@ Blickrichtung: {2}</translation>
         <translation>Der Standort wird geprüft ...</translation>
     </message>
     <message>
-        <source>Home, airspace and facades: nothing wrong found.</source>
-        <translation>Startplatz, Luftraum und Fassaden: nichts zu beanstanden.</translation>
-    </message>
-    <message>
         <source>The site&apos;s check found: {0}</source>
         <translation>Befunde der Standortprüfung: {0}</translation>
     </message>
@@ -1342,8 +1357,8 @@ Blickrichtung: {2}</translation>
         <translation>Noch nicht geprüft.</translation>
     </message>
     <message>
-        <source>Nothing stands against the flight. The button with the tick lists the rules that are kept.</source>
-        <translation>Nichts spricht gegen den Flug. Die Taste mit dem Haken zeigt die eingehaltenen Regeln.</translation>
+        <source>All checks passed. The button with the tick lists them.</source>
+        <translation>Alle Prüfungen bestanden. Der Knopf mit dem Haken zeigt sie.</translation>
     </message>
     <message>
         <source>Older than the plan: it was changed after this check.</source>
@@ -1372,6 +1387,10 @@ Blickrichtung: {2}</translation>
 </context>
 <context>
     <name>FlightButtons</name>
+    <message>
+        <source>Hold: {0}</source>
+        <translation>Halten: {0}</translation>
+    </message>
     <message>
         <source>{0} ({1})</source>
         <translation>{0} ({1})</translation>
@@ -1409,12 +1428,12 @@ Blickrichtung: {2}</translation>
         <translation>Mit der Mission weitermachen</translation>
     </message>
     <message>
-        <source>Return</source>
-        <translation>Heimkehr</translation>
-    </message>
-    <message>
         <source>Fly home and land there</source>
         <translation>Zum Startplatz fliegen und dort landen</translation>
+    </message>
+    <message>
+        <source>Return to home (RTH)</source>
+        <translation>Rückkehr zum Start (RTH)</translation>
     </message>
     <message>
         <source>Land</source>
@@ -1423,6 +1442,61 @@ Blickrichtung: {2}</translation>
     <message>
         <source>Land here and now</source>
         <translation>Hier und jetzt landen</translation>
+    </message>
+</context>
+<context>
+    <name>FlightFigures</name>
+    <message>
+        <source>Flight figures</source>
+        <translation>Flugwerte</translation>
+    </message>
+    <message>
+        <source>min {0}</source>
+        <translation>min. {0}</translation>
+    </message>
+    <message>
+        <source>reserve in {0}</source>
+        <translation>Reserve in {0}</translation>
+    </message>
+    <message>
+        <source>above ground</source>
+        <translation>über Grund</translation>
+    </message>
+    <message>
+        <source>to the facade</source>
+        <translation>zur Fassade</translation>
+    </message>
+    <message>
+        <source>speed</source>
+        <translation>Tempo</translation>
+    </message>
+    <message>
+        <source>battery</source>
+        <translation>Akku</translation>
+    </message>
+    <message>
+        <source>to go</source>
+        <translation>noch</translation>
+    </message>
+    <message>
+        <source>wind</source>
+        <translation>Wind</translation>
+    </message>
+    <message>
+        <source>in {0}</source>
+        <translation>in {0}</translation>
+    </message>
+    <message>
+        <source>{0} missing</source>
+        <translation>{0} fehlen</translation>
+    </message>
+    <message>
+        <source>next photo</source>
+        <translation>nächstes Foto</translation>
+    </message>
+    <message>
+        <source>all photos</source>
+        <translation>alle Fotos</translation>
     </message>
 </context>
 <context>
@@ -1630,6 +1704,10 @@ Um trotzdem zu fliegen, {1} eintippen:</translation>
         <translation>Diese Verbindung ist für einen anderen Plan. Trennen und für den gezeigten Plan verbinden.</translation>
     </message>
     <message>
+        <source>{0} ({1:.1f} of {2:.1f} MB)</source>
+        <translation>{0} ({1:.1f} von {2:.1f} MB)</translation>
+    </message>
+    <message>
         <source>{0} {1} ({2:.0f} of {3:.0f})</source>
         <translation>{0} {1} ({2:.0f} von {3:.0f})</translation>
     </message>
@@ -1688,9 +1766,37 @@ Um trotzdem zu fliegen, {1} eintippen:</translation>
         <source>landed</source>
         <translation>gelandet</translation>
     </message>
+    <message>
+        <source>proved by its checksum</source>
+        <translation>durch seine Prüfsumme bewiesen</translation>
+    </message>
+    <message>
+        <source>not proved: it knows no checksums</source>
+        <translation>nicht bewiesen: es kennt keine Prüfsummen</translation>
+    </message>
+    <message>
+        <source>vehicle&apos;s log: {0}, {1}</source>
+        <translation>Log des Fahrzeugs: {0}, {1}</translation>
+    </message>
+    <message>
+        <source>The report is made from the vehicle&apos;s own log.</source>
+        <translation>Der Bericht ist aus dem eigenen Log des Fahrzeugs.</translation>
+    </message>
+    <message>
+        <source>Report</source>
+        <translation type="unfinished">Bericht</translation>
+    </message>
 </context>
 <context>
     <name>FlyPage</name>
+    <message>
+        <source>Lists</source>
+        <translation>Listen</translation>
+    </message>
+    <message>
+        <source>Show what stands beside and below the view, which has their room in flight</source>
+        <translation>Zeigt, was neben und unter der Ansicht steht; im Flug hat sie diesen Platz</translation>
+    </message>
     <message>
         <source>Sortie to be flown</source>
         <translation>Zu fliegender Einsatz</translation>
@@ -1942,8 +2048,8 @@ Scheiben: {2}, je {3} × {4}</translation>
         <translation>Abbrechen</translation>
     </message>
     <message>
-        <source>Panel grid</source>
-        <translation>Scheibenraster</translation>
+        <source>Facade grid</source>
+        <translation>Fassadenraster</translation>
     </message>
     <message>
         <source>Reading {0} ...</source>
@@ -2037,6 +2143,10 @@ Scheiben: {2}, je {3} × {4}</translation>
         <translation>Gebäude</translation>
     </message>
     <message>
+        <source>Facade grid</source>
+        <translation>Fassadenraster</translation>
+    </message>
+    <message>
         <source>Unit of lengths</source>
         <translation>Längeneinheit</translation>
     </message>
@@ -2101,10 +2211,6 @@ Scheiben: {2}, je {3} × {4}</translation>
         <translation>Zeilen</translation>
     </message>
     <message>
-        <source>Panel grid</source>
-        <translation>Scheibenraster</translation>
-    </message>
-    <message>
         <source>{0}: windows {1}, {2}</source>
         <translation>{0}: Fenster {1}, {2}</translation>
     </message>
@@ -2150,16 +2256,16 @@ Scheiben: {2}, je {3} × {4}</translation>
 <context>
     <name>ItemPage</name>
     <message>
-        <source>Remove</source>
-        <translation>Entfernen</translation>
+        <source>Delete</source>
+        <translation>Löschen</translation>
     </message>
     <message>
         <source>Rename {0}</source>
         <translation>{0} umbenennen</translation>
     </message>
     <message>
-        <source>Remove {0}</source>
-        <translation>{0} entfernen</translation>
+        <source>Delete {0}</source>
+        <translation>{0} löschen</translation>
     </message>
 </context>
 <context>
@@ -2275,8 +2381,8 @@ Scheiben: {2}, je {3} × {4}</translation>
         <translation>Nach Uhr und Zeitzone dieses Rechners</translation>
     </message>
     <message>
-        <source>Made-up street</source>
-        <translation>Erdachte Straße</translation>
+        <source>Simulated surroundings</source>
+        <translation>Simulierte Umgebung</translation>
     </message>
     <message>
         <source>Buildings opposite, trees, cars and people, drawn at random; without them the building stands alone</source>
@@ -2325,12 +2431,27 @@ Scheiben: {2}, je {3} × {4}</translation>
 <context>
     <name>LinkBand</name>
     <message>
-        <source>LINK LOST. It is opened again; the aircraft goes on by itself.</source>
-        <translation>VERBINDUNG VERLOREN. Sie wird wieder geöffnet; das Fluggerät macht selbst weiter.</translation>
+        <source>SIGNAL LOST. The link is opened again; the aircraft continues by itself.</source>
+        <translation>SIGNAL VERLOREN. Die Verbindung wird neu geöffnet; das Fluggerät fliegt selbständig weiter.</translation>
     </message>
     <message>
-        <source>LINK LOST for {0:.0f} s. What is shown is old; the aircraft goes on by itself.</source>
-        <translation>VERBINDUNG VERLOREN seit {0:.0f} s. Die Anzeige ist veraltet; das Fluggerät macht selbst weiter.</translation>
+        <source>SIGNAL LOST for {0:.0f} s. What is shown is old; the aircraft continues by itself.</source>
+        <translation>SIGNAL VERLOREN seit {0:.0f} s. Die Anzeige ist alt; das Fluggerät fliegt selbständig weiter.</translation>
+    </message>
+</context>
+<context>
+    <name>LiveCamera</name>
+    <message>
+        <source>What the camera sees</source>
+        <translation>Was die Kamera sieht</translation>
+    </message>
+    <message>
+        <source>Camera, drawn</source>
+        <translation>Kamera, gezeichnet</translation>
+    </message>
+    <message>
+        <source>The site as the camera should see it, from the pose that the vehicle reports</source>
+        <translation type="unfinished"></translation>
     </message>
 </context>
 <context>
@@ -2428,6 +2549,10 @@ Scheiben: {2}, je {3} × {4}</translation>
         <source>{0} (Ctrl+{1})</source>
         <translation>{0} (Strg+{1})</translation>
     </message>
+    <message>
+        <source>Done. {0}</source>
+        <translation>Erledigt. {0}</translation>
+    </message>
 </context>
 <context>
     <name>MapView</name>
@@ -2444,8 +2569,8 @@ Scheiben: {2}, je {3} × {4}</translation>
         <translation>Im Reiter Standort einen Standort öffnen oder importieren, oder mit „Kartendatei“ eine Karte; ein Netz wird nicht benutzt.</translation>
     </message>
     <message>
-        <source>No map is loaded. &quot;Map file&quot; opens one (MBTiles); no network is used.</source>
-        <translation>Keine Karte geladen. „Kartendatei“ öffnet eine (MBTiles); ohne Netzzugriff.</translation>
+        <source>No map is loaded. &quot;Map file&quot; opens one (MBTiles, PMTiles); no network is used.</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <source>The map &quot;{0}&quot; does not cover this place.</source>
@@ -2472,16 +2597,16 @@ Scheiben: {2}, je {3} × {4}</translation>
         <translation>Kartendatei</translation>
     </message>
     <message>
-        <source>Open an MBTiles file to put under the site</source>
-        <translation>MBTiles-Datei öffnen und unter den Standort legen</translation>
+        <source>Open a map file (MBTiles or PMTiles) to put under the site</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Offline maps (*.mbtiles *.pmtiles);;All files (*)</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <source>Open map</source>
         <translation>Karte öffnen</translation>
-    </message>
-    <message>
-        <source>Offline maps (*.mbtiles);;All files (*)</source>
-        <translation>Offline-Karten (*.mbtiles);;Alle Dateien (*)</translation>
     </message>
 </context>
 <context>
@@ -2732,8 +2857,8 @@ Scheiben: {2}, je {3} × {4}</translation>
 <context>
     <name>MethodNames</name>
     <message>
-        <source>Greedy with proof</source>
-        <translation>Greedy mit Beweis</translation>
+        <source>Optimised (recommended)</source>
+        <translation>Optimiert (empfohlen)</translation>
     </message>
     <message>
         <source>Particle swarm (paper)</source>
@@ -2979,6 +3104,25 @@ Scheiben: {2}, je {3} × {4}</translation>
     </message>
 </context>
 <context>
+    <name>NextStepBar</name>
+    <message>
+        <source>What is done, and what comes next</source>
+        <translation>Was erledigt ist und was als Nächstes kommt</translation>
+    </message>
+    <message>
+        <source>Done</source>
+        <translation>Fertig</translation>
+    </message>
+    <message>
+        <source>Done: {0}.</source>
+        <translation>Erledigt: {0}.</translation>
+    </message>
+    <message>
+        <source>Next: {0}.</source>
+        <translation>Als Nächstes: {0}.</translation>
+    </message>
+</context>
+<context>
     <name>NoFlyPage</name>
     <message>
         <source>No-fly zone</source>
@@ -3041,7 +3185,7 @@ Größe: {1}; Dreiecke: {2}</translation>
         <translation>Längengrad</translation>
     </message>
     <message>
-        <source>Height of the site&apos;s zero:</source>
+        <source>Height of the site origin:</source>
         <translation>Höhe des Nullpunkts:</translation>
     </message>
     <message>
@@ -3083,8 +3227,8 @@ Größe: {1}; Dreiecke: {2}</translation>
         <translation>Hemisphären</translation>
     </message>
     <message>
-        <source>pixel size</source>
-        <translation>Pixelgröße</translation>
+        <source>GSD</source>
+        <translation>GSD</translation>
     </message>
     <message>
         <source>sortie</source>
@@ -3990,10 +4134,6 @@ Blickrichtung: {3}</translation>
         <translation>Aus den Fotos eines ersten Flugs ein Grobmodell und einen Standort machen: Posen, Wände, Dächer und Boden</translation>
     </message>
     <message>
-        <source>What is wrong with photos stands here.</source>
-        <translation>Was an Fotos nicht stimmt, steht hier.</translation>
-    </message>
-    <message>
         <source>Find the grid of every facade in the photos and put it into 3-D</source>
         <translation>Das Raster jeder Fassade in den Fotos suchen und in 3D bringen</translation>
     </message>
@@ -4050,6 +4190,10 @@ Blickrichtung: {3}</translation>
         <translation>Ordner mit Fotos</translation>
     </message>
     <message>
+        <source>Photo issues are listed here.</source>
+        <translation>Hier stehen Mängel an Fotos.</translation>
+    </message>
+    <message>
         <source>Folder: {0}</source>
         <translation>Ordner: {0}</translation>
     </message>
@@ -4088,10 +4232,6 @@ Blickrichtung: {3}</translation>
 <context>
     <name>PlanController</name>
     <message>
-        <source>Only “Greedy with proof” can keep viewpoints. Choose it, or release those kept: {0}</source>
-        <translation>Nur „Greedy mit Beweis“ kann Aufnahmepunkte fixieren. Diese Methode wählen oder die fixierten freigeben: {0}</translation>
-    </message>
-    <message>
         <source>{0}; release some, or ask for more views</source>
         <translation>{0}; einige freigeben oder mehr Aufnahmen verlangen</translation>
     </message>
@@ -4108,8 +4248,12 @@ Blickrichtung: {3}</translation>
         <translation>Plan umbenennen</translation>
     </message>
     <message>
-        <source>Remove plan</source>
-        <translation>Plan entfernen</translation>
+        <source>Only “Optimised (recommended)” can keep viewpoints. Choose it, or release those kept: {0}</source>
+        <translation>Nur „Optimiert (empfohlen)“ kann Aufnahmepunkte behalten. Wählen Sie es, oder geben Sie die fixierten frei: {0}</translation>
+    </message>
+    <message>
+        <source>Delete plan</source>
+        <translation>Plan löschen</translation>
     </message>
     <message>
         <source>Open plan</source>
@@ -4183,10 +4327,6 @@ Blickrichtung: {3}</translation>
         <translation>Mehr Einstellungen</translation>
     </message>
     <message>
-        <source>coverage wanted</source>
-        <translation>Abdeckung</translation>
-    </message>
-    <message>
         <source>number of views</source>
         <translation>Zahl der Aufnahmen</translation>
     </message>
@@ -4195,12 +4335,16 @@ Blickrichtung: {3}</translation>
         <translation>Akkus</translation>
     </message>
     <message>
+        <source>target coverage</source>
+        <translation>Zielabdeckung</translation>
+    </message>
+    <message>
         <source>a model that is good enough</source>
         <translation>ein Modell, das gut genug ist</translation>
     </message>
     <message>
-        <source>Limit the pixel size</source>
-        <translation>Pixelgröße begrenzen</translation>
+        <source>Limit the GSD</source>
+        <translation>GSD begrenzen</translation>
     </message>
     <message>
         <source>any</source>
@@ -4282,8 +4426,8 @@ Blickrichtung: {3}</translation>
         <translation>seitlich außerhalb des Luftraums</translation>
     </message>
     <message>
-        <source>too far away for the pixel size wanted</source>
-        <translation>zu weit weg für die gewünschte Pixelgröße</translation>
+        <source>too far away for the GSD wanted</source>
+        <translation>zu weit weg für die gewünschte GSD</translation>
     </message>
     <message>
         <source>too close to building or obstacle</source>
@@ -4413,8 +4557,12 @@ Blickrichtung: {3}</translation>
         <translation>{0} von {1} Sektoren abgedeckt ({2:.1f} % der {3} überhaupt erreichbaren)</translation>
     </message>
     <message>
-        <source>Time in the air {0}, way flown {1}</source>
-        <translation>Flugzeit {0}, Flugweg {1}</translation>
+        <source>Time in the air {0}, distance {1}</source>
+        <translation>Flugzeit {0}, Strecke {1}</translation>
+    </message>
+    <message>
+        <source>GSD from {0}</source>
+        <translation>GSD ab {0}</translation>
     </message>
     <message>
         <source>Aircraft at once: {0}, all landed after {1}</source>
@@ -4423,10 +4571,6 @@ Blickrichtung: {3}</translation>
     <message>
         <source>smallest clearance {0}</source>
         <translation>kleinster Abstand {0}</translation>
-    </message>
-    <message>
-        <source>pixels from {0}</source>
-        <translation>Pixel ab {0}</translation>
     </message>
     <message>
         <source>Unseen views of its model: {0}</source>
@@ -4491,8 +4635,8 @@ Blickrichtung: {3}</translation>
         <translation>Umbenennen ...</translation>
     </message>
     <message>
-        <source>Remove</source>
-        <translation>Entfernen</translation>
+        <source>Delete</source>
+        <translation>Löschen</translation>
     </message>
     <message>
         <source>Open plan ...</source>
@@ -4546,8 +4690,8 @@ Blickrichtung: {3}</translation>
         <translation>Ecke nach dieser hinzufügen</translation>
     </message>
     <message>
-        <source>Remove this corner</source>
-        <translation>Diese Ecke entfernen</translation>
+        <source>Delete this corner</source>
+        <translation>Diese Ecke löschen</translation>
     </message>
 </context>
 <context>
@@ -4660,8 +4804,12 @@ Blickrichtung: {3}</translation>
         <translation>Parameter</translation>
     </message>
     <message>
-        <source>Link lost</source>
-        <translation>Verbindung verloren</translation>
+        <source>Signal lost</source>
+        <translation>Signal verloren</translation>
+    </message>
+    <message>
+        <source>Return to home (RTH)</source>
+        <translation>Rückkehr zum Start (RTH)</translation>
     </message>
     <message>
         <source>Remote control lost</source>
@@ -4674,10 +4822,6 @@ Blickrichtung: {3}</translation>
     <message>
         <source>Position lost</source>
         <translation>Position verloren</translation>
-    </message>
-    <message>
-        <source>Return</source>
-        <translation>Heimkehr</translation>
     </message>
     <message>
         <source>At the geofence</source>
@@ -4813,8 +4957,12 @@ Blickrichtung: {3}</translation>
         <translation>Kartenkacheln</translation>
     </message>
     <message>
-        <source>Map tiles (*.mbtiles)</source>
-        <translation>Kartenkacheln (*.mbtiles)</translation>
+        <source>Sample project</source>
+        <translation>Beispielprojekt</translation>
+    </message>
+    <message>
+        <source>Map tiles (*.mbtiles *.pmtiles)</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <source>The settings could not be kept: {0}</source>
@@ -4843,6 +4991,10 @@ Blickrichtung: {3}</translation>
     <message>
         <source>{0}: {1} panels, {2} plans</source>
         <translation>{0}: Scheiben {1}, Pläne {2}</translation>
+    </message>
+    <message>
+        <source>Look at the project</source>
+        <translation>Projekt ansehen</translation>
     </message>
     <message>
         <source>Your work is back. It is not saved yet: Project &gt; Save keeps it.</source>
@@ -4936,8 +5088,8 @@ Damit weiterarbeiten?</translation>
         <translation>Das Projekt wurde seitdem von anderen gespeichert: was sie geändert haben, ist nicht in der Kopie.</translation>
     </message>
     <message>
-        <source>Unsaved work was kept</source>
-        <translation>Nicht gespeicherte Arbeit ist noch da</translation>
+        <source>Restore?</source>
+        <translation>Wiederherstellen?</translation>
     </message>
     <message>
         <source>Restore</source>
@@ -5252,8 +5404,8 @@ Damit weiterarbeiten?</translation>
         <translation>Rückgängig</translation>
     </message>
     <message>
-        <source>Remove</source>
-        <translation>Entfernen</translation>
+        <source>Delete</source>
+        <translation>Löschen</translation>
     </message>
     <message>
         <source>Report as PDF ...</source>
@@ -5551,6 +5703,18 @@ Damit weiterarbeiten?</translation>
     <message>
         <source>Plan the rest of the sortie that was interrupted, for a full battery</source>
         <translation>Den Rest des unterbrochenen Einsatzes für einen vollen Akku planen</translation>
+    </message>
+    <message>
+        <source>Fetch the autopilot&apos;s own log from its card, and report from it: it knows what the link lost</source>
+        <translation>Das eigene Log des Autopiloten von seiner Karte holen und daraus berichten: es weiß, was die Verbindung verlor</translation>
+    </message>
+    <message>
+        <source>Stop fetching</source>
+        <translation>Holen abbrechen</translation>
+    </message>
+    <message>
+        <source>Vehicle&apos;s log</source>
+        <translation>Log des Fahrzeugs</translation>
     </message>
     <message>
         <source>After the landing, the flight report stands here.</source>
@@ -6203,8 +6367,16 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>--effects, --wind und --speedup sind für --link sim; das Fluggerät an einem Link hat eigene</translation>
     </message>
     <message>
+        <source>    question: {0}</source>
+        <translation>    Frage: {0}</translation>
+    </message>
+    <message>
         <source>  sortie {0}: {1}, {2} m, {3} min, aircraft {4} starts at {5}</source>
         <translation>  Einsatz {0}: {1}, {2} m, {3} min, Fluggerät {4} startet bei {5}</translation>
+    </message>
+    <message>
+        <source>  the vehicle knows no checksums: this log is not proved</source>
+        <translation>  das Fahrzeug kennt keine Prüfsummen: dieses Log ist nicht bewiesen</translation>
     </message>
     <message>
         <source>  what it replaced is kept: {0}</source>
@@ -6215,8 +6387,24 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>  {0}  {1}  {2}</translation>
     </message>
     <message>
+        <source>  {0} [{1}]: {2}; {3} m from the airspace; {4}</source>
+        <translation>  {0} [{1}]: {2}; {3} m vom Luftraum; {4}</translation>
+    </message>
+    <message>
         <source>% of the walls</source>
         <translation>% der Wände</translation>
+    </message>
+    <message>
+        <source>&apos;{0}&apos; cannot be read, it is &apos;{1}&apos;</source>
+        <translation>'{0}' ist nicht lesbar, dort steht '{1}'</translation>
+    </message>
+    <message>
+        <source>&apos;{0}&apos; is nothing that heights are above; expected ellipsoid, egm96, egm2008 or the code of a height system such as EPSG:7837</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>&apos;{0}&apos;, added on {1}</source>
+        <translation>'{0}', hinzugefügt am {1}</translation>
     </message>
     <message>
         <source>--into and --site are for IFC; expected a name ending in .ifc</source>
@@ -6263,6 +6451,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>1 Akku</translation>
     </message>
     <message>
+        <source>; with take-off at {0} it would be {1}</source>
+        <translation>; mit Start um {0} wären es {1}</translation>
+    </message>
+    <message>
         <source>; {0} panels lost</source>
         <translation>; {0} Scheiben verloren</translation>
     </message>
@@ -6275,12 +6467,24 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Ein Ordner mit Splats und Scheiben in Kacheln, auf der Erde verortet, wie CesiumJS sie zeigt.</translation>
     </message>
     <message>
+        <source>AIXM is not read here; expected {0}, which publishers offer beside it</source>
+        <translation>AIXM wird hier nicht gelesen; erwartet wird {0}, was Herausgeber daneben anbieten</translation>
+    </message>
+    <message>
         <source>ArduPilot, dataflash log</source>
         <translation>ArduPilot, Dataflash-Log</translation>
     </message>
     <message>
         <source>COLMAP model: the rational distortion of camera {0} is {1} px from the nearest polynomial; expected at most {2} px; undistort the images in COLMAP (image_undistorter)</source>
         <translation>COLMAP-Modell: die rationale Verzeichnung der Kamera {0} ist {1} px vom nächsten Polynom entfernt; erwartet werden höchstens {2} px; die Bilder in COLMAP entzerren (image_undistorter)</translation>
+    </message>
+    <message>
+        <source>Check</source>
+        <translation>Prüfen</translation>
+    </message>
+    <message>
+        <source>Connect</source>
+        <translation>Verbinden</translation>
     </message>
     <message>
         <source>DJI (.kmz)</source>
@@ -6295,12 +6499,40 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>DJI Fly wurde mit dieser Route nicht erprobt: Sie ist für {0} geschrieben, das DJI Pilot 2 fliegt; sehen Sie vor dem Start jeden Wegpunkt in DJI Fly an</translation>
     </message>
     <message>
+        <source>EGM96 stands in for &apos;{0}&apos;, which may be off by 1 m, in mountains by 2 m; home stands on the same terrain, so heights above take-off do not change</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>EGM96 stands in for EGM2008: both differ by less than 1 m at most places, in mountains by more; home stands on the same terrain, so heights above take-off do not change</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Export</source>
+        <translation>Exportieren</translation>
+    </message>
+    <message>
+        <source>Facade grid</source>
+        <translation>Fassadenraster</translation>
+    </message>
+    <message>
+        <source>Find panels</source>
+        <translation>Scheiben suchen</translation>
+    </message>
+    <message>
+        <source>From photos alone</source>
+        <translation>Aus Fotos allein</translation>
+    </message>
+    <message>
         <source>Google Earth (.kml), to look at</source>
         <translation>Google Earth (.kml), zum Ansehen</translation>
     </message>
     <message>
         <source>Ipopt found no speed profile: {0}</source>
         <translation>Ipopt fand kein Geschwindigkeitsprofil: {0}</translation>
+    </message>
+    <message>
+        <source>Make data set</source>
+        <translation>Datensatz erstellen</translation>
     </message>
     <message>
         <source>Mesh (glTF)</source>
@@ -6323,8 +6555,16 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Mitsuba, {0} Strahlen</translation>
     </message>
     <message>
+        <source>Open the model</source>
+        <translation>Modell öffnen</translation>
+    </message>
+    <message>
         <source>Panels with pictures of their fronts, for programs that know no splats.</source>
         <translation>Scheiben mit Bildern ihrer Vorderseite, für Programme ohne Splats.</translation>
+    </message>
+    <message>
+        <source>Plan the flight</source>
+        <translation>Den Flug planen</translation>
     </message>
     <message>
         <source>PyVRP found no tour of all {0} points by existing legs; more time may help</source>
@@ -6335,8 +6575,16 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>QGroundControl (.plan)</translation>
     </message>
     <message>
+        <source>Read photos</source>
+        <translation>Fotos lesen</translation>
+    </message>
+    <message>
         <source>Reflight failed where it should not ({0}: {1}); please report it with {2}</source>
         <translation>Reflight versagte, wo es nicht sollte ({0}: {1}); bitte mit {2} melden</translation>
+    </message>
+    <message>
+        <source>Show the first</source>
+        <translation>Den ersten zeigen</translation>
     </message>
     <message>
         <source>Splats and panels for film and simulation programs.</source>
@@ -6363,6 +6611,18 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Splats, komprimiert: die meisten Betrachter von Splats öffnen es.</translation>
     </message>
     <message>
+        <source>Start</source>
+        <translation>Start</translation>
+    </message>
+    <message>
+        <source>Start page</source>
+        <translation>Startseite</translation>
+    </message>
+    <message>
+        <source>Stop and keep</source>
+        <translation>Stopp, behalten</translation>
+    </message>
+    <message>
         <source>Table of photos (.csv)</source>
         <translation>Tabelle der Fotos (.csv)</translation>
     </message>
@@ -6377,6 +6637,46 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>The panels alone, as windows of the building, with their attributes.</source>
         <translation>Nur die Scheiben, als Fenster des Gebäudes, mit ihren Merkmalen.</translation>
+    </message>
+    <message>
+        <source>To Fly</source>
+        <translation>Zum Flug</translation>
+    </message>
+    <message>
+        <source>To Mission</source>
+        <translation>Zur Mission</translation>
+    </message>
+    <message>
+        <source>To Model</source>
+        <translation>Zum Modell</translation>
+    </message>
+    <message>
+        <source>To Photos</source>
+        <translation>Zu den Fotos</translation>
+    </message>
+    <message>
+        <source>To Plan</source>
+        <translation>Zum Plan</translation>
+    </message>
+    <message>
+        <source>To Reconstruct</source>
+        <translation>Zur Rekonstruktion</translation>
+    </message>
+    <message>
+        <source>To Site</source>
+        <translation>Zum Standort</translation>
+    </message>
+    <message>
+        <source>Train</source>
+        <translation>Trainieren</translation>
+    </message>
+    <message>
+        <source>U-space: flights with an authorisation of its service only</source>
+        <translation>U-space: Flüge nur mit Genehmigung seines Dienstes</translation>
+    </message>
+    <message>
+        <source>Upload</source>
+        <translation>Hochladen</translation>
     </message>
     <message>
         <source>WORLD_SIZE is &apos;{0}&apos;, but RANK is no number; start the processes with torchrun</source>
@@ -6397,6 +6697,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>a bare site around them, without building and panels</source>
         <translation>ein leerer Standort darum herum, ohne Gebäude und Scheiben</translation>
+    </message>
+    <message>
+        <source>a circle has no centre or no radius that can be used</source>
+        <translation>ein Kreis hat keinen brauchbaren Mittelpunkt oder Radius</translation>
     </message>
     <message>
         <source>a cluster ({0}) needs Dask: pip install &apos;reflight-groundstation[cluster]&apos;</source>
@@ -6423,12 +6727,44 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>eine Datei mit Passpunkten oder einer Kamera</translation>
     </message>
     <message>
+        <source>a file of geo-zones</source>
+        <translation>eine Datei mit Geozonen</translation>
+    </message>
+    <message>
+        <source>a file of geo-zones: ED-269 or ED-318 JSON, GeoJSON, KML or OpenAir</source>
+        <translation>eine Datei mit Geozonen: ED-269 oder ED-318 JSON, GeoJSON, KML oder OpenAir</translation>
+    </message>
+    <message>
         <source>a full battery</source>
         <translation>einem vollen Akku</translation>
     </message>
     <message>
+        <source>a grid in steps of {0} m has more than {1} nodes below this airspace; allow a longer step</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>a height is counted from &apos;{0}&apos;; expected AGL, AMSL or WGS84</source>
+        <translation>eine Höhe zählt ab '{0}'; erwartet wird AGL, AMSL oder WGS84</translation>
+    </message>
+    <message>
+        <source>a height is in &apos;{0}&apos;; expected metres or feet</source>
+        <translation>eine Höhe steht in '{0}'; erwartet werden Meter oder Fuß</translation>
+    </message>
+    <message>
+        <source>a map in PMTiles format</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>a mesh does not tell windows from walls; state where the panels are, for example --panel-grid &apos;0,0,0 36,0,0 0,0,42&apos; --rows 14 --columns 20 (lower left, lower right and upper left corner of a facade, seen from outside), or import the building alone with --without-panels and find them in photos with &apos;panels&apos;</source>
         <translation>ein Netz unterscheidet Fenster nicht von Wänden; angeben, wo die Scheiben sind, zum Beispiel --panel-grid &apos;0,0,0 36,0,0 0,0,42&apos; --rows 14 --columns 20 (Ecken einer Fassade unten links, unten rechts und oben links, von außen gesehen), oder das Gebäude allein mit --without-panels importieren und sie mit &apos;panels&apos; in Fotos finden</translation>
+    </message>
+    <message>
+        <source>a model is being trained</source>
+        <translation>ein Modell wird trainiert</translation>
+    </message>
+    <message>
+        <source>a model is trained</source>
+        <translation>ein Modell ist trainiert</translation>
     </message>
     <message>
         <source>a number of views is for scenes without a plan or flight; leave it out, or them</source>
@@ -6437,6 +6773,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>a path needs two views or more to go through; leave --frames out</source>
         <translation>ein Weg braucht zwei oder mehr Ansichten; --frames weglassen</translation>
+    </message>
+    <message>
+        <source>a plan is being made</source>
+        <translation>ein Plan entsteht</translation>
     </message>
     <message>
         <source>a polynomial of degree {0} needs at least {1} points, found {2}</source>
@@ -6449,6 +6789,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>a radius of {0} m bends lines of the grid by up to {1} px</source>
         <translation>ein Radius von {0} m biegt Linien des Rasters um bis zu {1} px</translation>
+    </message>
+    <message>
+        <source>a restriction that the file does not name</source>
+        <translation>eine Beschränkung, die die Datei nicht nennt</translation>
     </message>
     <message>
         <source>a site alone has no viewpoints to fly to; name a plan as well</source>
@@ -6467,8 +6811,20 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>{0} hat kein Feld &apos;{1}&apos;; bekannt sind {2}</translation>
     </message>
     <message>
+        <source>a {0} has no width; it counts with {1} m to each side</source>
+        <translation>ein {0} hat keine Breite; es zählt mit {1} m zu jeder Seite</translation>
+    </message>
+    <message>
+        <source>about {0} million heights lie below the airspace, expected at most {1} million; give a coarser file</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>above {0} and below {1}</source>
         <translation>über {0} und unter {1}</translation>
+    </message>
+    <message>
+        <source>added on {0}</source>
+        <translation>hinzugefügt am {0}</translation>
     </message>
     <message>
         <source>added or changed: {0}</source>
@@ -6477,6 +6833,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>after {0} with &apos;{1}&apos;</source>
         <translation>nach {0} mit &apos;{1}&apos;</translation>
+    </message>
+    <message>
+        <source>all checks passed</source>
+        <translation>alle Prüfungen bestanden</translation>
+    </message>
+    <message>
+        <source>all checks passed; mission files are written</source>
+        <translation>alle Prüfungen bestanden; Missionsdateien sind geschrieben</translation>
     </message>
     <message>
         <source>ambiguous option: %(option)s could match %(matches)s</source>
@@ -6489,6 +6853,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>an aircraft that leaves its mission returns {0} m above take-off, where {1} m would do: DJI&apos;s remote controllers take no less</source>
         <translation>ein Fluggerät, das seine Mission verlässt, kehrt {0} m über dem Startplatz zurück, wo {1} m genügen würden: weniger nehmen DJIs Fernsteuerungen nicht an</translation>
+    </message>
+    <message>
+        <source>an aircraft that returns by itself would fly {0}; raise the ceiling of the airspace</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>an area has no outline</source>
+        <translation>eine Fläche hat keinen Umriss</translation>
     </message>
     <message>
         <source>an unknown camera</source>
@@ -6515,12 +6887,24 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>beim Auslösen (Median / schlechteste): {0}</translation>
     </message>
     <message>
+        <source>begin with a building model, photos of a first flight, or a mission of another program</source>
+        <translation>mit einem Gebäudemodell, Fotos eines ersten Flugs oder der Mission eines anderen Programms beginnen</translation>
+    </message>
+    <message>
         <source>belongs to --photos</source>
         <translation>gehört zu --photos</translation>
     </message>
     <message>
         <source>belongs to --refine, which was not given</source>
         <translation>gehört zu --refine, das nicht angegeben wurde</translation>
+    </message>
+    <message>
+        <source>below the building the files have no heights; those beside it were taken</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>below the ground, or where it is not known</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <source>best</source>
@@ -6531,12 +6915,20 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Unschärfe</translation>
     </message>
     <message>
+        <source>bodies of the site take so much sun from a pane on this day</source>
+        <translation>so viel Sonne nehmen Körper des Standorts einer Scheibe an diesem Tag</translation>
+    </message>
+    <message>
         <source>bundled scenes have a look of their own; name a site file to give one, or leave it out</source>
         <translation>mitgelieferte Szenen haben ein eigenes Aussehen; dafür eine Standortdatei nennen oder es weglassen</translation>
     </message>
     <message>
         <source>byte {0} says that {1} entries follow, but the {2} bytes left hold at most {3}; the file is damaged or cut off: write it again</source>
         <translation>Byte {0} sagt, dass {1} Einträge folgen, aber die restlichen {2} Bytes fassen höchstens {3}; die Datei ist beschädigt oder abgeschnitten: neu schreiben</translation>
+    </message>
+    <message>
+        <source>cannot be read as a GeoTIFF ({0}); copy it again</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <source>cannot be read as weights (safetensors, or tensors that torch.save wrote); get the file again</source>
@@ -6563,12 +6955,28 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>kann es nicht ausführen ({0})</translation>
     </message>
     <message>
+        <source>cast shadows</source>
+        <translation>Schlagschatten</translation>
+    </message>
+    <message>
         <source>certificate</source>
         <translation>Nachweis</translation>
     </message>
     <message>
+        <source>check the mission</source>
+        <translation>die Mission prüfen</translation>
+    </message>
+    <message>
         <source>check:    {0} of {1} rules kept, {2}</source>
         <translation>Prüfung:  {0} von {1} Regeln eingehalten, {2}</translation>
+    </message>
+    <message>
+        <source>checked; errors: {0}</source>
+        <translation>geprüft; Fehler: {0}</translation>
+    </message>
+    <message>
+        <source>choose viewpoints and a route</source>
+        <translation>Aufnahmepunkte und Flugweg wählen</translation>
     </message>
     <message>
         <source>clearing</source>
@@ -6577,6 +6985,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>coarsest pixel</source>
         <translation>gröbstes Pixel</translation>
+    </message>
+    <message>
+        <source>collections of areas are nested too deeply</source>
+        <translation>Sammlungen von Flächen sind zu tief verschachtelt</translation>
     </message>
     <message>
         <source>colouring points</source>
@@ -6597,6 +7009,18 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>comparing settings</source>
         <translation>Einstellungen werden verglichen</translation>
+    </message>
+    <message>
+        <source>connect; a simulation needs no aircraft</source>
+        <translation>verbinden; eine Simulation braucht kein Fluggerät</translation>
+    </message>
+    <message>
+        <source>connected</source>
+        <translation>verbunden</translation>
+    </message>
+    <message>
+        <source>continue mission, and land at home</source>
+        <translation>Mission fortsetzen, und am Startplatz landen</translation>
     </message>
     <message>
         <source>control point &apos;{0}&apos; is elsewhere in {1} than other photos show it; it is not used there</source>
@@ -6647,6 +7071,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>vorher abgedeckt {0}, zusammen {1} Sektoren</translation>
     </message>
     <message>
+        <source>cut out the part around the site, or take the file of one country</source>
+        <translation>den Teil um den Standort ausschneiden oder die Datei eines einzelnen Landes nehmen</translation>
+    </message>
+    <message>
         <source>deciding on effects</source>
         <translation>über Effekte wird entschieden</translation>
     </message>
@@ -6655,12 +7083,24 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>dichte Tiefen</translation>
     </message>
     <message>
+        <source>distance</source>
+        <translation>Strecke</translation>
+    </message>
+    <message>
         <source>distance of aircraft in the air at the same time</source>
         <translation>Abstand von Fluggeräten, die zugleich in der Luft sind</translation>
     </message>
     <message>
         <source>distortion: {0} folds the picture or bends it too far: a place in it belongs to no one direction; expected a lens that can be undistorted up to its corners (k1, k2, p1, p2, k3 for lengths in units of the focal length)</source>
         <translation>distortion: {0} faltet das Bild oder biegt es zu weit: eine Stelle darin gehört zu keiner eindeutigen Richtung; erwartet wird ein Objektiv, das bis in die Ecken zu entzerren ist (k1, k2, p1, p2, k3 für Längen in Einheiten der Brennweite)</translation>
+    </message>
+    <message>
+        <source>does not say what its heights are above ({0} has no heights); say it with --vertical: ellipsoid, egm96, egm2008, or a height system such as EPSG:7837</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>does not say where it lies; give a GeoTIFF with its georeference</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <source>effect</source>
@@ -6693,8 +7133,24 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>endet bei Byte {0} mitten in einem Eintrag; die Datei neu schreiben</translation>
     </message>
     <message>
+        <source>error {0}</source>
+        <translation>Fehler {0}</translation>
+    </message>
+    <message>
+        <source>even light {0}; in the sun {1}; in part {2}</source>
+        <translation>gleichmäßiges Licht {0}; in der Sonne {1}; zum Teil {2}</translation>
+    </message>
+    <message>
         <source>expected &apos;KEYWORD : value&apos; or a section, found &apos;{0}&apos;</source>
         <translation>erwartet: &apos;KEYWORD : Wert&apos; oder ein Abschnitt, gefunden: &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>expected -12 to 14 hours, got {0}</source>
+        <translation>erwartet wurden -12 bis 14 Stunden, gefunden {0}</translation>
+    </message>
+    <message>
+        <source>expected -{0} to {1} degrees, got {2}</source>
+        <translation>erwartet wurden -{0} bis {1} Grad, gefunden {2}</translation>
     </message>
     <message>
         <source>expected 0, 9, 24 or 45 columns f_rest_0 and so on, found {0}</source>
@@ -6705,6 +7161,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>erwartet wird 1 oder mehr, angegeben {0}</translation>
     </message>
     <message>
+        <source>expected 1 to 600 seconds, got {0}</source>
+        <translation>erwartet wurden 1 bis 600 Sekunden, gefunden {0}</translation>
+    </message>
+    <message>
         <source>expected 2 or more, got 1</source>
         <translation>erwartet wird 2 oder mehr, angegeben 1</translation>
     </message>
@@ -6713,12 +7173,20 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>erwartet wird 2 bis {0}, angegeben {1}</translation>
     </message>
     <message>
+        <source>expected PMTiles of version 3, found version {0}; convert the map with the program pmtiles</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>expected TSP, ATSP or CVRP, found &apos;{0}&apos;</source>
         <translation>erwartet: TSP, ATSP oder CVRP, gefunden: &apos;{0}&apos;</translation>
     </message>
     <message>
         <source>expected UTF-8, found other bytes; save it as CSV UTF-8</source>
         <translation>erwartet wird UTF-8, gefunden wurden andere Bytes; als CSV UTF-8 speichern</translation>
+    </message>
+    <message>
+        <source>expected ZONE=REFERENCE, got &apos;{0}&apos;</source>
+        <translation>erwartet wird ZONE=AKTENZEICHEN, angegeben ist '{0}'</translation>
     </message>
     <message>
         <source>expected a COLMAP model (cameras and images as .bin or .txt), found {0}; models are often in sparse/0</source>
@@ -6735,6 +7203,22 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>expected a charge from 0 to 1, got {0}</source>
         <translation>erwartet wird eine Ladung von 0 bis 1, angegeben {0}</translation>
+    </message>
+    <message>
+        <source>expected a day before the year 9999, got {0}</source>
+        <translation>erwartet wurde ein Tag vor dem Jahr 9999, gefunden {0}</translation>
+    </message>
+    <message>
+        <source>expected a day such as 2026-06-21, got &apos;{0}&apos;</source>
+        <translation>erwartet wurde ein Tag wie 2026-06-21, gefunden '{0}'</translation>
+    </message>
+    <message>
+        <source>expected a day such as 2026-11-28, got &apos;{0}&apos;</source>
+        <translation>erwartet wird ein Tag wie 2026-11-28, angegeben ist '{0}'</translation>
+    </message>
+    <message>
+        <source>expected a file in the folder of the site, since it names meshes there</source>
+        <translation>erwartet wird eine Datei im Ordner des Standorts, weil er dort Netze nennt</translation>
     </message>
     <message>
         <source>expected a finite time and position</source>
@@ -6797,6 +7281,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>erwartet wird eine Zahl{0}, gefunden &apos;{1}&apos;</translation>
     </message>
     <message>
+        <source>expected a path relative to the site file, got an empty text</source>
+        <translation>erwartet wird ein Pfad relativ zur Standortdatei, angegeben ist ein leerer Text</translation>
+    </message>
+    <message>
         <source>expected a picture and a focal length above 0, got {0} x {1} and {2}</source>
         <translation>erwartet werden ein Bild und eine Brennweite über 0, gefunden {0} x {1} und {2}</translation>
     </message>
@@ -6817,12 +7305,24 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>erwartet wird eine Einstellung mit ihren Werten, etwa n_splats=4000,8000</translation>
     </message>
     <message>
+        <source>expected a site file, or a plan file and its site file, got {0} files</source>
+        <translation>erwartet wurde eine Standortdatei, oder eine Plandatei und ihre Standortdatei, gefunden {0} Dateien</translation>
+    </message>
+    <message>
         <source>expected a start with its aircraft, or neither</source>
         <translation>ein Start mit seinem Fluggerät wird erwartet, oder keins von beiden</translation>
     </message>
     <message>
+        <source>expected a time of day such as 08:30, got &apos;{0}&apos;</source>
+        <translation>erwartet wurde eine Uhrzeit wie 08:30, gefunden '{0}'</translation>
+    </message>
+    <message>
         <source>expected a time such as 2026-06-21T10:30, got &apos;{0}&apos;</source>
         <translation>erwartet wird eine Zeit wie 2026-06-21T10:30, angegeben &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>expected a time zone such as Europe/Berlin, got &apos;{0}&apos;</source>
+        <translation>erwartet wurde eine Zeitzone wie Europe/Berlin, gefunden '{0}'</translation>
     </message>
     <message>
         <source>expected a value, found none</source>
@@ -6845,6 +7345,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>erwartet wird eine ganze Zahl, gefunden &apos;{0}&apos;</translation>
     </message>
     <message>
+        <source>expected an earlier time than --until {0}, got {1}</source>
+        <translation>erwartet wurde eine Zeit vor --until {0}, gefunden {1}</translation>
+    </message>
+    <message>
         <source>expected an index image for each photo; &apos;{0}&apos; has none</source>
         <translation>erwartet wird ein Indexbild für jedes Foto; &apos;{0}&apos; hat keines</translation>
     </message>
@@ -6863,6 +7367,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>expected annotations in COCO&apos;s form, found {0}</source>
         <translation>erwartet werden Annotationen in der Form von COCO, gefunden {0}</translation>
+    </message>
+    <message>
+        <source>expected at least 2 x 2 and at most {0} nodes, got {1} x {2}</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <source>expected at least one argument</source>
@@ -6893,6 +7401,18 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>erwartet: lauter verschiedene Punktnummern, {0} kommt zweimal vor</translation>
     </message>
     <message>
+        <source>expected each file once, &apos;{0}&apos; occurs twice</source>
+        <translation>erwartet wird jede Datei einmal, '{0}' kommt zweimal vor</translation>
+    </message>
+    <message>
+        <source>expected files of heights, or --remove, and not both</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>expected finite local metres, got {0}</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>expected finite numbers, at most {0}</source>
         <translation>erwartet: endliche Zahlen, höchstens {0}</translation>
     </message>
@@ -6913,6 +7433,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>erwartet werden Spaltenköpfe wie &apos;maker&apos; oder &apos;thickness [mm] (number)&apos;, gefunden &apos;{0}&apos;; Typen sind {1}</translation>
     </message>
     <message>
+        <source>expected heights for the same nodes in all three grids</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>expected it once, or once for each of {0} --panel-grid, got {1}</source>
         <translation>erwartet wird es einmal, oder einmal für jedes von {0} --panel-grid, angegeben {1}</translation>
     </message>
@@ -6923,6 +7447,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>expected less than max_alpha, {0}, got {1}</source>
         <translation>erwartet: weniger als max_alpha, {0}, gefunden: {1}</translation>
+    </message>
+    <message>
+        <source>expected local heights within {0} m</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>expected more than 0 m, got {0}</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <source>expected more than 0, got {0}</source>
@@ -6997,8 +7529,16 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>erwartet wird der Ordner eines Modells; &apos;records FOLDER make --objects SITE&apos; legt einen für Einträge allein an</translation>
     </message>
     <message>
+        <source>expected the ground between its bounds</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>expected the numbers of one camera, found {0}</source>
         <translation>erwartet: die Zahlen einer Kamera, gefunden: {0}</translation>
+    </message>
+    <message>
+        <source>expected the sample project or nothing there, found something else</source>
+        <translation>erwartet wurde dort das Beispielprojekt oder nichts, gefunden etwas anderes</translation>
     </message>
     <message>
         <source>expected the weights of AlexNet or VGG16 as torchvision names them; {0}</source>
@@ -7015,6 +7555,18 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>expected three points with blanks between them, got &apos;{0}&apos;</source>
         <translation>erwartet werden drei Punkte mit Leerzeichen dazwischen, angegeben &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>expected tiles in PNG, JPEG, WebP or PBF, found something else (the file says {0}); export the map again</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>expected tiles in PNG, JPEG, WebP or PBF, found something else; export the map again</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>expected tiles in PNG, JPEG, WebP or as vectors (MVT), found type {0}; export the map again</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <source>expected two photos and metres such as A.JPG,B.JPG,12.5, got &apos;{0}&apos;</source>
@@ -7077,6 +7629,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>erwartet: {0} x {1} Zahlen ({2}), gefunden: {3}</translation>
     </message>
     <message>
+        <source>expected {0}, found an archive; unpack it first</source>
+        <translation>erwartet wird {0}, gefunden wurde ein Archiv; zuerst entpacken</translation>
+    </message>
+    <message>
+        <source>expected {0}, found something else</source>
+        <translation>erwartet wird {0}, gefunden wurde etwas anderes</translation>
+    </message>
+    <message>
         <source>expected {0}, got &apos;{1}&apos;</source>
         <translation>erwartet wird {0}, gefunden &apos;{1}&apos;</translation>
     </message>
@@ -7089,8 +7649,32 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Belichtung jedes Fotos</translation>
     </message>
     <message>
+        <source>facade &apos;{0}&apos;</source>
+        <translation>Fassade '{0}'</translation>
+    </message>
+    <message>
+        <source>facade &apos;{0}&apos; (heading {1})</source>
+        <translation>Fassade '{0}' (Richtung {1})</translation>
+    </message>
+    <message>
+        <source>facade &apos;{0}&apos; (looks down)</source>
+        <translation>Fassade '{0}' (blickt nach unten)</translation>
+    </message>
+    <message>
+        <source>facade &apos;{0}&apos; (looks up)</source>
+        <translation>Fassade '{0}' (blickt nach oben)</translation>
+    </message>
+    <message>
         <source>facade {0}, of what can be covered</source>
         <translation>Fassade {0}, vom Erreichbaren</translation>
+    </message>
+    <message>
+        <source>fetching the log</source>
+        <translation>Log holen</translation>
+    </message>
+    <message>
+        <source>find the panels in them</source>
+        <translation>die Scheiben darin suchen</translation>
     </message>
     <message>
         <source>finding the ground</source>
@@ -7099,6 +7683,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>finding walls</source>
         <translation>Wände werden gesucht</translation>
+    </message>
+    <message>
+        <source>finding what stands on the ground</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <source>findings: {0}</source>
@@ -7117,6 +7705,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>erste</translation>
     </message>
     <message>
+        <source>flight levels count as low as 930 hPa and -50 degrees bring them</source>
+        <translation>Flugflächen zählen so tief, wie 930 hPa und -50 Grad sie bringen</translation>
+    </message>
+    <message>
         <source>flight:   {0} ({1}, {2} s)</source>
         <translation>Flug:     {0} ({1}, {2} s)</translation>
     </message>
@@ -7125,8 +7717,24 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Flug:     {0} ({1}, {2})</translation>
     </message>
     <message>
+        <source>flights prohibited</source>
+        <translation>Flüge verboten</translation>
+    </message>
+    <message>
+        <source>flights under conditions</source>
+        <translation>Flüge unter Bedingungen</translation>
+    </message>
+    <message>
+        <source>flights with an authorisation only</source>
+        <translation>Flüge nur mit Genehmigung</translation>
+    </message>
+    <message>
         <source>flown</source>
         <translation>geflogen</translation>
+    </message>
+    <message>
+        <source>fly it, first in simulation; or export it for your aircraft</source>
+        <translation>fliegen, zuerst simuliert; oder für Ihr Fluggerät exportieren</translation>
     </message>
     <message>
         <source>fusing views: expected at least one rectified view, found none</source>
@@ -7145,8 +7753,24 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>die Szene geht an den Cluster</translation>
     </message>
     <message>
+        <source>glass mirrors the sun into {0} of {1} photos with take-off at {2}</source>
+        <translation>mit Start um {2} spiegelt Glas die Sonne in {0} von {1} Fotos</translation>
+    </message>
+    <message>
+        <source>has changed since it was added on {0}; look at it, and add it again</source>
+        <translation>hat sich geändert, seit sie am {0} hinzugefügt wurde; ansehen und erneut hinzufügen</translation>
+    </message>
+    <message>
+        <source>has changed while it was read</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>has no &apos;{0}&apos;, so these are points and not splats</source>
         <translation>hat kein &apos;{0}&apos;, das sind also Punkte und keine Splats</translation>
+    </message>
+    <message>
+        <source>has no heights below the airspace of the site, which lies at {0}, {1} (tile {2}); give files that cover it</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <source>has no panels, and {0} learns what panels mirror; train plain splats instead, or find its panels first</source>
@@ -7173,6 +7797,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>hat keine der Ansichten, aus denen das Modell nicht lernte; --held-out weglassen</translation>
     </message>
     <message>
+        <source>has not been read</source>
+        <translation>wurde nicht gelesen</translation>
+    </message>
+    <message>
         <source>has only views that are held out for scoring; name photos with more views</source>
         <translation>hat nur Ansichten, die zum Bewerten zurückgehalten sind; Fotos mit mehr Ansichten nennen</translation>
     </message>
@@ -7185,12 +7813,40 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>hat {0} MB frei, die Dateien brauchen {1} MB; löschen Sie dort etwas</translation>
     </message>
     <message>
+        <source>has {0} bands, as pictures have; expected one band of heights</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>has {0} bytes; a tile of SRTM has {1} or {2}; copy it again</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>heading</source>
         <translation>Richtung</translation>
     </message>
     <message>
+        <source>healthy</source>
+        <translation>in Ordnung</translation>
+    </message>
+    <message>
+        <source>heights above ground count from the site&apos;s ground: are {0} m its height all around?</source>
+        <translation>Höhen über Grund zählen ab dem Boden des Standorts: ist er ringsum {0} m hoch?</translation>
+    </message>
+    <message>
+        <source>heights above the ground count from level ground: {0}</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>heights above the ground count from the terrain: {0}</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>heights are counted from {0}; counted from {1} they would be {2} m</source>
         <translation>Höhen zählen ab {0}; ab {1} gezählt wären sie {2} m</translation>
+    </message>
+    <message>
+        <source>highest at {0} with {1} degrees</source>
+        <translation>am höchsten um {0} mit {1} Grad</translation>
     </message>
     <message>
         <source>holds a COLMAP model already ({0}); name an empty folder</source>
@@ -7225,8 +7881,28 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>enthält Größen oder Scheiben, die nicht sein können; die Datei ist beschädigt</translation>
     </message>
     <message>
+        <source>holds values of the type {0}, as shaded pictures do; expected heights as 16 or 32 bit</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>holds {0} {1} twice, by id or by name</source>
         <translation>enthält {0} {1} zweimal, nach Nummer oder Name</translation>
+    </message>
+    <message>
+        <source>home lies {0} m above the terrain; move it where that is not meant</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>home was put on the terrain, {0} m from where it was</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>home {0:m} lies inside the geo-zone &apos;{1}&apos; ({2}); move it outside, or state your authorisation (--permit)</source>
+        <translation>der Startplatz {0} liegt in der Geozone '{1}' ({2}); nach außen verlegen oder die Genehmigung angeben (--permit)</translation>
+    </message>
+    <message>
+        <source>home {0:m} stands where the terrain has no heights; move home, or attach terrain that covers it</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <source>how far {0} photos disagree on their lines{1}</source>
@@ -7289,6 +7965,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>ungültige Wahl: %(value)r (möglich sind %(choices)s)</translation>
     </message>
     <message>
+        <source>is cut off; copy it again</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>is for --link URL; the simulation in this program has no link to listen to</source>
         <translation>ist für --link URL; die Simulation in diesem Programm hat keinen Link zum Abhören</translation>
     </message>
@@ -7307,6 +7987,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>is no CSV ({0})</source>
         <translation>ist kein CSV ({0})</translation>
+    </message>
+    <message>
+        <source>is no GeoTIFF; expected heights as .tif or .hgt</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <source>is no PLY file (it does not start with &apos;ply&apos;)</source>
@@ -7333,8 +8017,56 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>ist nicht für --resume, das in einen Akku passt</translation>
     </message>
     <message>
+        <source>issued {0}</source>
+        <translation>herausgegeben {0}</translation>
+    </message>
+    <message>
+        <source>it applies at some times only, and no time is planned (--at)</source>
+        <translation>sie gilt nur zu manchen Zeiten, und es ist keine Zeit geplant (--at)</translation>
+    </message>
+    <message>
+        <source>it cannot</source>
+        <translation>es kann nicht</translation>
+    </message>
+    <message>
+        <source>it does not begin as one</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>it does not rise</source>
+        <translation>sie geht nicht auf</translation>
+    </message>
+    <message>
+        <source>it does not set, {0}</source>
+        <translation>sie geht nicht unter, {0}</translation>
+    </message>
+    <message>
+        <source>it is cut off</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>it is larger than any log that can be read; take the card out</source>
+        <translation>es ist größer als jedes lesbare Log; nehmen Sie die Karte heraus</translation>
+    </message>
+    <message>
+        <source>it is {0} m above the terrain, and {1} m are required</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>it knows no file transfer</source>
+        <translation>es kennt keine Dateiübertragung</translation>
+    </message>
+    <message>
         <source>it was not looked for</source>
         <translation>nicht untersucht</translation>
+    </message>
+    <message>
+        <source>its authority</source>
+        <translation>ihre Behörde</translation>
+    </message>
+    <message>
+        <source>its checksum is never the vehicle&apos;s: the link damages it, or it is still being written</source>
+        <translation>seine Prüfsumme ist nie die des Fahrzeugs: die Verbindung beschädigt es, oder es wird noch geschrieben</translation>
     </message>
     <message>
         <source>its content is no flight log; expected telemetry (.tlog), ArduPilot (.BIN, .log) or PX4 (.ulg)</source>
@@ -7349,12 +8081,40 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>seine Beschreibung ist nicht, wie sie geschrieben wurde ({0})</translation>
     </message>
     <message>
+        <source>its file system cannot</source>
+        <translation>sein Dateisystem kann nicht</translation>
+    </message>
+    <message>
         <source>its first element is &apos;{0}&apos;, not &apos;vertex&apos;</source>
         <translation>sein erstes Element ist &apos;{0}&apos;, nicht &apos;vertex&apos;</translation>
     </message>
     <message>
         <source>its header does not end within {0} bytes; the file is damaged</source>
         <translation>sein Kopf endet nicht innerhalb von {0} Bytes; die Datei ist beschädigt</translation>
+    </message>
+    <message>
+        <source>its heights are in the unit &apos;{0}&apos;, which is not known here; say it with --height-unit</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>its lower limit &apos;{0}&apos; lies above the upper one &apos;{1}&apos;</source>
+        <translation>ihre Untergrenze '{0}' liegt über der Obergrenze '{1}'</translation>
+    </message>
+    <message>
+        <source>its nearest zone is {0} km away; is this the file for this place?</source>
+        <translation>ihre nächste Zone ist {0} km entfernt; ist das die Datei für diesen Ort?</translation>
+    </message>
+    <message>
+        <source>its outline crosses itself, so all that it goes around counts</source>
+        <translation>ihr Umriss kreuzt sich selbst, darum zählt alles, was er umläuft</translation>
+    </message>
+    <message>
+        <source>its outline encloses nothing, so {0} m to each side of it count</source>
+        <translation>ihr Umriss umschließt nichts, darum zählen {0} m zu jeder Seite</translation>
+    </message>
+    <message>
+        <source>its outline reaches around the earth, so it counts as lying here</source>
+        <translation>ihr Umriss reicht um die Erde, darum zählt sie als hier gelegen</translation>
     </message>
     <message>
         <source>its points have the property &apos;{0}&apos; twice</source>
@@ -7365,8 +8125,28 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>seine Punkte haben {0} Eigenschaften; erwartet werden 1 bis {1}</translation>
     </message>
     <message>
+        <source>its values are depths ({0}); expected heights</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>its zones lie here only if latitude and longitude are exchanged; ask its publisher which is which</source>
+        <translation>ihre Zonen liegen nur hier, wenn Breite und Länge vertauscht werden; beim Herausgeber fragen, was was ist</translation>
+    </message>
+    <message>
+        <source>keep records of its panes, and export it for other programs</source>
+        <translation>Einträge zu seinen Scheiben führen, und es für andere Programme exportieren</translation>
+    </message>
+    <message>
+        <source>kept out of</source>
+        <translation>wird gemieden</translation>
+    </message>
+    <message>
         <source>key kept; give it to a vehicle with &apos;signing give URL&apos;, over a cable</source>
         <translation>Schlüssel gespeichert; einem Fluggerät mit &apos;signing give URL&apos; geben, über ein Kabel</translation>
+    </message>
+    <message>
+        <source>lay a grid of panels on a facade, or find panels in photos</source>
+        <translation>ein Raster von Scheiben auf eine Fassade legen, oder Scheiben in Fotos suchen</translation>
     </message>
     <message>
         <source>light</source>
@@ -7375,6 +8155,18 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>light apart from the splats</source>
         <translation>Licht getrennt von den Splats</translation>
+    </message>
+    <message>
+        <source>light on facades</source>
+        <translation>Licht auf Fassaden</translation>
+    </message>
+    <message>
+        <source>line &apos;{0}&apos; belongs to no airspace</source>
+        <translation>Zeile '{0}' gehört zu keinem Luftraum</translation>
+    </message>
+    <message>
+        <source>line &apos;{0}&apos; cannot be read</source>
+        <translation>Zeile '{0}' ist nicht lesbar</translation>
     </message>
     <message>
         <source>line 1: expected a column &apos;global_id&apos; or &apos;name&apos;, found {0}</source>
@@ -7405,6 +8197,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Zeile {0}: erwartet &apos;X Y Z column row photo name&apos;, gefunden &apos;{1}&apos;</translation>
     </message>
     <message>
+        <source>listing logs</source>
+        <translation>Logs auflisten</translation>
+    </message>
+    <message>
         <source>loading kernels</source>
         <translation>Rechenkerne werden geladen</translation>
     </message>
@@ -7421,6 +8217,18 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Log:      {0}</translation>
     </message>
     <message>
+        <source>logs are fetched on the ground only, from a vehicle that is heard and disarmed</source>
+        <translation>Logs werden nur am Boden geholt, von einem Fahrzeug, das zu hören und nicht scharf ist</translation>
+    </message>
+    <message>
+        <source>look at it, pane by pane</source>
+        <translation>es ansehen, Scheibe für Scheibe</translation>
+    </message>
+    <message>
+        <source>look at what is wrong, and change the plan</source>
+        <translation>die Fehler ansehen und den Plan ändern</translation>
+    </message>
+    <message>
         <source>look for panes</source>
         <translation>Scheiben suchen</translation>
     </message>
@@ -7433,6 +8241,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>die Szene wird angesehen</translation>
     </message>
     <message>
+        <source>looking for heights</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>looking for walls</source>
         <translation>Wände werden gesucht</translation>
     </message>
@@ -7443,6 +8255,18 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>lowest flight {0} m above the ground{1} (take-off and landing apart)</source>
         <translation>niedrigster Flug {0} m über dem Boden{1} (ohne Start und Landung)</translation>
+    </message>
+    <message>
+        <source>make a data set of photos first</source>
+        <translation>zuerst aus Fotos einen Datensatz erstellen</translation>
+    </message>
+    <message>
+        <source>make a site of photos alone, or open one</source>
+        <translation>einen Standort aus Fotos allein erstellen, oder einen öffnen</translation>
+    </message>
+    <message>
+        <source>make the data set that a model learns from</source>
+        <translation>den Datensatz erstellen, von dem ein Modell lernt</translation>
     </message>
     <message>
         <source>matching photos needs pycolmap, which is not installed; install it with: pip install &apos;reflight-groundstation[colmap]&apos;</source>
@@ -7461,12 +8285,24 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Mittel</translation>
     </message>
     <message>
+        <source>measure every pre-flight rule</source>
+        <translation>jede Regel vor dem Flug messen</translation>
+    </message>
+    <message>
+        <source>measured tilts of panes</source>
+        <translation>gemessene Neigungen von Scheiben</translation>
+    </message>
+    <message>
         <source>metering</source>
         <translation>Belichtung wird gemessen</translation>
     </message>
     <message>
         <source>method: expected {0}, got &apos;{1}&apos;</source>
         <translation>Methode: erwartet {0}, gefunden &apos;{1}&apos;</translation>
+    </message>
+    <message>
+        <source>min</source>
+        <translation>min</translation>
     </message>
     <message>
         <source>missed</source>
@@ -7509,6 +8345,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>name: mehrere Objekte haben den Namen &apos;{0}&apos;; die GlobalId nennen</translation>
     </message>
     <message>
+        <source>names no coordinate reference system; name it with --crs</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>needs the folder of its annotated photos; name it with --data</source>
         <translation>braucht den Ordner seiner annotierten Fotos; mit --data nennen</translation>
     </message>
@@ -7523,6 +8363,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>next: {0} {1}</source>
         <translation>weiter: {0} {1}</translation>
+    </message>
+    <message>
+        <source>no ArduPilot or PX4 is heard within {0} s; is it switched on?</source>
+        <translation>innerhalb von {0} s ist kein ArduPilot oder PX4 zu hören; ist es eingeschaltet?</translation>
     </message>
     <message>
         <source>no Dask scheduler answers at {0} ({1})</source>
@@ -7553,12 +8397,20 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>kein Flug kann mehr als {0} abdecken, das sind also {1} % des Möglichen</translation>
     </message>
     <message>
+        <source>no geo-zones are known here; add files of your authority: &apos;site zones SITE FILE&apos;</source>
+        <translation>hier sind keine Geozonen bekannt; Dateien der Behörde hinzufügen: 'site zones SITE FILE'</translation>
+    </message>
+    <message>
         <source>no ground was seen: it is taken to be where the lowest points are</source>
         <translation>es war kein Boden zu sehen: er wird dort angenommen, wo die tiefsten Punkte sind</translation>
     </message>
     <message>
         <source>no method found a tour</source>
         <translation>kein Verfahren fand eine Rundtour</translation>
+    </message>
+    <message>
+        <source>no other times of this day spoil fewer photos</source>
+        <translation>keine anderen Zeiten dieses Tages verderben weniger Fotos</translation>
     </message>
     <message>
         <source>no panels found: is the facade seen from its front, and are its frames visible?</source>
@@ -7577,8 +8429,20 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>keine Plug-ins sind installiert (Entry Points von {0})</translation>
     </message>
     <message>
+        <source>no restriction</source>
+        <translation>keine Beschränkung</translation>
+    </message>
+    <message>
+        <source>no room for it in the light of this day: fly it on another</source>
+        <translation>bei Licht ist an diesem Tag kein Platz für ihn: an einem anderen fliegen</translation>
+    </message>
+    <message>
         <source>no single flight over the views that were compared takes less than {0} min</source>
         <translation>kein einzelner Flug über die verglichenen Aufnahmen dauert weniger als {0} min</translation>
+    </message>
+    <message>
+        <source>no sun falls on panes</source>
+        <translation>keine Sonne fällt auf Scheiben</translation>
     </message>
     <message>
         <source>no top-up was written; --all writes it all the same</source>
@@ -7601,8 +8465,24 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>es wurde keine Wand gefunden: die Punkte sagen zu wenig; gehen Sie näher heran, und machen Sie Fotos, die sich mehr überlappen</translation>
     </message>
     <message>
+        <source>no zone of these files is near the site</source>
+        <translation>keine Zone dieser Dateien liegt nahe am Standort</translation>
+    </message>
+    <message>
+        <source>no zone of {0} counts as clear: {1}</source>
+        <translation>keine Zone von {0} gilt als frei: {1}</translation>
+    </message>
+    <message>
+        <source>no zone of {0} was kept out of: {1}</source>
+        <translation>keine Zone von {0} wurde gemieden: {1}</translation>
+    </message>
+    <message>
         <source>nobody has said where the site is, or how large: make its coarse model again with --origin, and with a distance or control points, or set its origin on the Site tab once its size is known</source>
         <translation>niemand hat gesagt, wo der Standort ist, oder wie groß: machen Sie sein Grobmodell noch einmal mit --origin und mit einer Strecke oder Passpunkten, oder setzen Sie seinen Ursprung im Reiter Standort, sobald seine Größe bekannt ist</translation>
+    </message>
+    <message>
+        <source>none</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <source>none begins so</source>
@@ -7615,6 +8495,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>none of the photos says where it was taken; name their COLMAP model</source>
         <translation>keines der Fotos sagt, wo es aufgenommen wurde; ihr COLMAP-Modell nennen</translation>
+    </message>
+    <message>
+        <source>none of the tiles in the folder ({0}) covers the site; it needs {1}</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <source>none of the {0} images of the COLMAP model is a photo in {1}; are the names in the model the paths below the folder of photos?</source>
@@ -7633,8 +8517,16 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>keines von {0} Fotos hat ein Pixel, das ganz auf einer Scheibe liegt; größere Fotos nehmen (--width) oder näher herangehen</translation>
     </message>
     <message>
+        <source>not a map in PMTiles format, or damaged ({0}); choose another file, or export the map again</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>not allowed with argument %s</source>
         <translation>nicht zusammen mit Argument %s erlaubt</translation>
+    </message>
+    <message>
+        <source>not kept out of</source>
+        <translation>wird nicht gemieden</translation>
     </message>
     <message>
         <source>not readable</source>
@@ -7721,6 +8613,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Nummer {0}</translation>
     </message>
     <message>
+        <source>obstacles from the surface: {0} boxes, and {1} where it has no heights</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>of all sections</source>
         <translation>von allen Sektoren</translation>
     </message>
@@ -7757,6 +8653,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>eines der Argumente %s ist nötig</translation>
     </message>
     <message>
+        <source>open it</source>
+        <translation>es öffnen</translation>
+    </message>
+    <message>
         <source>opened no link at {0} within {1} s</source>
         <translation>öffnete innerhalb von {1} s keinen Link unter {0}</translation>
     </message>
@@ -7765,8 +8665,16 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Optimum</translation>
     </message>
     <message>
+        <source>order of sorties</source>
+        <translation>Reihenfolge der Einsätze</translation>
+    </message>
+    <message>
         <source>origin {0}, {1}, {2} m above the ellipsoid</source>
         <translation>Ursprung {0}, {1}, {2} m über dem Ellipsoid</translation>
+    </message>
+    <message>
+        <source>over terrain of which no heights are known</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <source>overall IoU of glass</source>
@@ -7789,12 +8697,24 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Scheiben des Fotos &apos;{0}&apos; sind gegeben, das keines der {1} Fotos mit einer Pose ist; die Datei des Fotos im Feld &apos;image&apos; nennen oder die Scheibendatei aus dem Ordner nehmen</translation>
     </message>
     <message>
+        <source>panels: {0}</source>
+        <translation>Scheiben: {0}</translation>
+    </message>
+    <message>
         <source>parts of the log are damaged and were skipped</source>
         <translation>Teile des Logs sind beschädigt und wurden übersprungen</translation>
     </message>
     <message>
         <source>passphrase: </source>
         <translation>Passphrase: </translation>
+    </message>
+    <message>
+        <source>permissions of the old state of &apos;{0}&apos; have ended, state them again: {1}</source>
+        <translation>Genehmigungen für den alten Stand von '{0}' sind beendet, erneut angeben: {1}</translation>
+    </message>
+    <message>
+        <source>permitted by &apos;{0}&apos;</source>
+        <translation>genehmigt durch '{0}'</translation>
     </message>
     <message>
         <source>photo &apos;{0}&apos; is in {1} already; keep one of them</source>
@@ -7817,6 +8737,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Fotos von {0}</translation>
     </message>
     <message>
+        <source>photos read: {0}</source>
+        <translation>gelesene Fotos: {0}</translation>
+    </message>
+    <message>
         <source>photos: {0} of {1} views</source>
         <translation>Fotos: {0} von {1} Aufnahmen</translation>
     </message>
@@ -7829,12 +8753,24 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Fotos werden nach ihren Empfängern gesetzt</translation>
     </message>
     <message>
+        <source>plan a flight first</source>
+        <translation>zuerst einen Flug planen</translation>
+    </message>
+    <message>
+        <source>plan again, or ask {0} and state the authorisation (--permit)</source>
+        <translation>neu planen oder {0} fragen und die Genehmigung angeben (--permit)</translation>
+    </message>
+    <message>
         <source>plan ready</source>
         <translation>Plan fertig</translation>
     </message>
     <message>
         <source>plan the flight again</source>
         <translation>den Flug neu planen</translation>
+    </message>
+    <message>
+        <source>plan the flight as the form says</source>
+        <translation>den Flug planen, wie das Formular sagt</translation>
     </message>
     <message>
         <source>plan them further apart, or one after the other</source>
@@ -7883,6 +8819,22 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>read back and compared, files: {0}; take the device out by the system&apos;s eject before you pull it</source>
         <translation>zurückgelesen und verglichen, Dateien: {0}; werfen Sie das Gerät aus, bevor Sie es abziehen</translation>
+    </message>
+    <message>
+        <source>read the photos of a flight; the sample project has some</source>
+        <translation>die Fotos eines Flugs lesen; das Beispielprojekt hat welche</translation>
+    </message>
+    <message>
+        <source>read the photos of the flight</source>
+        <translation>die Fotos des Flugs lesen</translation>
+    </message>
+    <message>
+        <source>reading geo-zones</source>
+        <translation>Geozonen werden gelesen</translation>
+    </message>
+    <message>
+        <source>reading heights</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <source>reading the IFC file</source>
@@ -7942,7 +8894,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>route &apos;{0}&apos;: expected the beginning of one route&apos;s id, {1}</source>
-        <translation>Route '{0}': erwartet wurde der Anfang der Kennung einer Route, {1}</translation>
+        <translation>Route &apos;{0}&apos;: erwartet wurde der Anfang der Kennung einer Route, {1}</translation>
     </message>
     <message>
         <source>route {0} is named twice; each sortie needs one of its own</source>
@@ -7997,6 +8949,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>gibt {0} Punkte an; höchstens {1} werden gelesen</translation>
     </message>
     <message>
+        <source>says two units of height: {0} m with its heights and {1} m in its reference system; say the right one with --height-unit</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>scheduler and workers need the same program and libraries as here; {0} {1}: install it there</source>
         <translation>Scheduler und Worker brauchen dasselbe Programm und dieselben Bibliotheken wie hier; {0} {1}: dort installieren</translation>
     </message>
@@ -8023,6 +8979,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>seen: {0} of {1} directions of view ({2} for each of {3})</source>
         <translation>gesehen: {0} von {1} Blickrichtungen ({2} für jede von {3})</translation>
+    </message>
+    <message>
+        <source>send the mission to the vehicle</source>
+        <translation>die Mission zum Fluggerät schicken</translation>
     </message>
     <message>
         <source>setting</source>
@@ -8053,6 +9013,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Simulation, {0}-mal so schnell</translation>
     </message>
     <message>
+        <source>site &apos;{0}&apos; with terrain from {1} m to {2} m in its own frame, known on {3} % of the area</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>site &apos;{0}&apos; without terrain</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>site &apos;{0}&apos;, {1}</source>
         <translation>Standort &apos;{0}&apos;, {1}</translation>
     </message>
@@ -8081,6 +9049,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>kleinster Abstand zwischen Fluggeräten, die wie geplant starten, {0} s nach dem ersten Start</translation>
     </message>
     <message>
+        <source>somebody else reads its files</source>
+        <translation>jemand anderes liest seine Dateien</translation>
+    </message>
+    <message>
         <source>something stands in front of panels in {0} of {1} photos looked at</source>
         <translation>auf {0} von {1} betrachteten Fotos steht etwas vor Scheiben</translation>
     </message>
@@ -8091,6 +9063,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>sorties {0} and {1} need one aircraft at the same time; plan the flight again</source>
         <translation>Einsätze {0} und {1} brauchen zugleich dasselbe Fluggerät; den Flug neu planen</translation>
+    </message>
+    <message>
+        <source>sorties {0} at once</source>
+        <translation>Einsätze {0} zugleich</translation>
     </message>
     <message>
         <source>sound</source>
@@ -8117,6 +9093,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Streuung der Logarithmen der Verstärkungen</translation>
     </message>
     <message>
+        <source>start; it asks first</source>
+        <translation>starten; es wird vorher gefragt</translation>
+    </message>
+    <message>
         <source>starting the simulation</source>
         <translation>die Simulation beginnt</translation>
     </message>
@@ -8127,6 +9107,38 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>steps</source>
         <translation>Schritte</translation>
+    </message>
+    <message>
+        <source>steps of {0} m from heights {1} m apart: bounds at most {2} m off, and {3} m for the accuracy</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>stop once the curve is flat, or let it end by itself</source>
+        <translation>stoppen, wenn die Kurve flach ist, oder das Ende abwarten</translation>
+    </message>
+    <message>
+        <source>sun</source>
+        <translation>Sonne</translation>
+    </message>
+    <message>
+        <source>sun in panes</source>
+        <translation>Sonne in Scheiben</translation>
+    </message>
+    <message>
+        <source>sun in pictures</source>
+        <translation>Sonne in Bildern</translation>
+    </message>
+    <message>
+        <source>sun over &apos;{0}&apos; on {1} ({2})</source>
+        <translation>Sonne über '{0}' am {1} ({2})</translation>
+    </message>
+    <message>
+        <source>sun over the pilot</source>
+        <translation>Sonne über dem Piloten</translation>
+    </message>
+    <message>
+        <source>take off at {0} (as good: {1})</source>
+        <translation>Start um {0} (ebenso gut: {1})</translation>
     </message>
     <message>
         <source>take-off</source>
@@ -8151,6 +9163,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>template and waylines name different cameras</source>
         <translation>template und waylines nennen verschiedene Kameras</translation>
+    </message>
+    <message>
+        <source>terrain and site differ by {0} m at home: where the ground is level there, one of them is wrong; &apos;--shift home&apos; brings the terrain to the site</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>the KML file {0}; expected areas alone</source>
+        <translation>die KML-Datei {0}; erwartet werden nur Flächen</translation>
     </message>
     <message>
         <source>the ULog cannot be read ({0}); copy it from the vehicle again</source>
@@ -8217,20 +9237,72 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>die Daten der Datei enden nicht (ENDSEC fehlt)</translation>
     </message>
     <message>
+        <source>the data set is made</source>
+        <translation>der Datensatz ist erstellt</translation>
+    </message>
+    <message>
+        <source>the data set is there</source>
+        <translation>der Datensatz ist da</translation>
+    </message>
+    <message>
         <source>the device was removed, or no longer answers ({0}); connect it and send again</source>
         <translation>das Gerät wurde entfernt oder antwortet nicht mehr ({0}); schließen Sie es an und senden Sie erneut</translation>
+    </message>
+    <message>
+        <source>the ellipsoid</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <source>the facade&apos;s horizon runs through its middle: it is seen edge-on, or the lines are wrong</source>
         <translation>der Horizont der Fassade geht durch ihre Mitte: sie ist von der Kante zu sehen, oder die Linien sind falsch</translation>
     </message>
     <message>
+        <source>the file does not say when this applies</source>
+        <translation>die Datei sagt nicht, wann das gilt</translation>
+    </message>
+    <message>
+        <source>the file does not say where this zone lies</source>
+        <translation>die Datei sagt nicht, wo diese Zone liegt</translation>
+    </message>
+    <message>
+        <source>the file gives no lower limit</source>
+        <translation>die Datei nennt keine Untergrenze</translation>
+    </message>
+    <message>
+        <source>the file gives no upper limit</source>
+        <translation>die Datei nennt keine Obergrenze</translation>
+    </message>
+    <message>
+        <source>the file is protected</source>
+        <translation>die Datei ist geschützt</translation>
+    </message>
+    <message>
+        <source>the file says &apos;{0}&apos; of &apos;{1}&apos;, which is not known here</source>
+        <translation>die Datei sagt '{0}' zu '{1}', was hier nicht bekannt ist</translation>
+    </message>
+    <message>
+        <source>the file says where this is, but not what it means; until you say, it counts as prohibited</source>
+        <translation>die Datei sagt, wo das ist, aber nicht, was es bedeutet; bis Sie es sagen, gilt es als verboten</translation>
+    </message>
+    <message>
         <source>the flight is {0} km from the site &apos;{1}&apos;; expected at most {2} km; is it the right log, and the right site?</source>
         <translation>der Flug ist {0} km vom Standort &apos;{1}&apos; entfernt; erwartet werden höchstens {2} km; ist es das richtige Log und der richtige Standort?</translation>
     </message>
     <message>
+        <source>the folder has no files of heights; expected .tif or .hgt</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>the folder has {0} files that may cover the site; expected at most {1}; name the right ones</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>the following arguments are required: %s</source>
         <translation>folgende Argumente fehlen: %s</translation>
+    </message>
+    <message>
+        <source>the ground</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <source>the ground falls by {0} degrees; heights count from the building&apos;s foot</source>
@@ -8239,6 +9311,18 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the ground station disconnected; the aircraft went on by itself</source>
         <translation>die Bodenstation hat die Verbindung getrennt; das Fluggerät flog allein weiter</translation>
+    </message>
+    <message>
+        <source>the height &apos;{0}&apos; cannot be read</source>
+        <translation>die Höhe '{0}' ist nicht lesbar</translation>
+    </message>
+    <message>
+        <source>the heights are damaged (expected {0} nodes, found {1}); attach the terrain again</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>the heights are damaged ({0}); attach the terrain again</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <source>the image name at byte {0} has no end; the file is damaged</source>
@@ -8281,12 +9365,36 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>das Log sagt, wann Fotos ausgelöst wurden, nicht dass sie aufgenommen wurden</translation>
     </message>
     <message>
+        <source>the log was not fetched: stopped</source>
+        <translation>das Log wurde nicht geholt: abgebrochen</translation>
+    </message>
+    <message>
+        <source>the log was not fetched: the vehicle is armed</source>
+        <translation>das Log wurde nicht geholt: das Fahrzeug ist scharf</translation>
+    </message>
+    <message>
+        <source>the logs on the vehicle are empty</source>
+        <translation>die Logs auf dem Fahrzeug sind leer</translation>
+    </message>
+    <message>
         <source>the lower bound</source>
         <translation>die untere Schranke</translation>
     </message>
     <message>
+        <source>the map is compressed with {0}; expected gzip, Zstandard or none; convert it with the program pmtiles</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>the mission is called &apos;{0}&apos; there: DJI&apos;s apps take no dots and underscores in names</source>
-        <translation>die Mission heißt dort '{0}': DJIs Apps nehmen keine Punkte und Unterstriche in Namen</translation>
+        <translation>die Mission heißt dort &apos;{0}&apos;: DJIs Apps nehmen keine Punkte und Unterstriche in Namen</translation>
+    </message>
+    <message>
+        <source>the mission is on board</source>
+        <translation>die Mission ist an Bord</translation>
+    </message>
+    <message>
+        <source>the model is open</source>
+        <translation>das Modell ist offen</translation>
     </message>
     <message>
         <source>the model misses the control points by {0} m in the median; a receiver without corrections measures them no better, else look at their coordinates, the order of east and north, and their pixels</source>
@@ -8295,6 +9403,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the model that a flight brings, on unseen views of &apos;{0}&apos;</source>
         <translation>das Modell, das ein Flug bringt, in ungesehenen Ansichten von &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>the name does not say where the tile lies; expected one such as N22E114.hgt</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>the name says a place that is not on earth</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <source>the nearest neighbour ends where there is no leg back; take another method</source>
@@ -8405,6 +9521,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>dieselben Punkte sind in anderen Fotos um {0} % heller oder dunkler</translation>
     </message>
     <message>
+        <source>the sample project cannot be written: {0}</source>
+        <translation>das Beispielprojekt kann nicht geschrieben werden: {0}</translation>
+    </message>
+    <message>
         <source>the shortest there is</source>
         <translation>die kürzeste überhaupt</translation>
     </message>
@@ -8417,8 +9537,28 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>der Standort hat kein Gebäudenetz, und Scheiben werden auf einem gefunden; stattdessen ein Netz nennen</translation>
     </message>
     <message>
+        <source>the site has no file of geo-zones &apos;{0}&apos;; it has: {1}</source>
+        <translation>der Standort hat keine Datei mit Geozonen '{0}'; er hat: {1}</translation>
+    </message>
+    <message>
+        <source>the site has no geo-zones, so which apply here is not looked at</source>
+        <translation>der Standort hat keine Geozonen, darum wird nicht geprüft, welche hier gelten</translation>
+    </message>
+    <message>
         <source>the site has no panels</source>
         <translation>der Standort hat keine Paneele</translation>
+    </message>
+    <message>
+        <source>the site has no panels yet</source>
+        <translation>der Standort hat noch keine Scheiben</translation>
+    </message>
+    <message>
+        <source>the site has no terrain</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>the site needs panels first</source>
+        <translation>der Standort braucht zuerst Scheiben</translation>
     </message>
     <message>
         <source>the site that this plan was made for is not beside it; name its file, too</source>
@@ -8441,6 +9581,38 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>die Einsätze mehrerer Fluggeräte haben keine Startzeiten mehr; den Flug neu planen</translation>
     </message>
     <message>
+        <source>the sun does not rise on this day</source>
+        <translation>die Sonne geht an diesem Tag nicht auf</translation>
+    </message>
+    <message>
+        <source>the sun is before its panes on this day</source>
+        <translation>die Sonne steht an diesem Tag vor ihren Scheiben</translation>
+    </message>
+    <message>
+        <source>the sun is in the picture of {0} of {1} photos with take-off at {2}</source>
+        <translation>mit Start um {2} ist die Sonne in {0} von {1} Fotos im Bild</translation>
+    </message>
+    <message>
+        <source>the sun is never before its panes on this day</source>
+        <translation>die Sonne steht an diesem Tag nie vor ihren Scheiben</translation>
+    </message>
+    <message>
+        <source>the sun sets before the last sortie has landed</source>
+        <translation>die Sonne geht unter, bevor der letzte Einsatz gelandet ist</translation>
+    </message>
+    <message>
+        <source>the sun stands within {0} degrees of the aircraft as the pilot sees it from home for {1} s with take-off at {2}: fly at another time, or with an observer who stands elsewhere</source>
+        <translation>mit Start um {2} steht die Sonne, vom Startplatz des Piloten aus gesehen, {1} s lang weniger als {0} Grad neben dem Fluggerät: zu anderer Zeit fliegen, oder mit einem Beobachter, der anderswo steht</translation>
+    </message>
+    <message>
+        <source>the surface</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>the surface makes more than {0} separate obstacles; give a longer --resolution, or a greater --taller-than</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>the table is empty; expected a line with the names of its columns</source>
         <translation>die Tabelle ist leer; erwartet wird eine Zeile mit den Namen ihrer Spalten</translation>
     </message>
@@ -8453,8 +9625,60 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>die Höhen des Templates sind {0}, die Wayline wird aber in {1} geflogen; hier zählt die Wayline, ein Programm, das vom Template ausgeht, flöge woanders</translation>
     </message>
     <message>
+        <source>the terrain below the airspace departs from its level ground by up to {0} m</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>the terrain cannot be brought to home: it has no heights there; give the shift in metres</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>the terrain has no heights below it</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>the terrain has no heights below the path (legs concerned: {0}): what is not known is not clear; attach terrain that covers it, or plan it again</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>the terrain has no heights for a part below the airspace</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>the terrain of the site is not used, as you asked, though {0}; heights count from level ground</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>the terrain of the site was made for the place where it is, and would lie wrong elsewhere; take it off first (&apos;site terrain --remove&apos;), and attach it again after the move</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>the terrain was shifted by {0} m, so that home stands on it</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>the time since boot began again</source>
         <translation>die Zeit seit dem Einschalten begann von vorn</translation>
+    </message>
+    <message>
+        <source>the transfer does not get on; a vehicle that restarts again and again, or a bad link</source>
+        <translation>die Übertragung kommt nicht voran; ein Fahrzeug, das immer wieder neu startet, oder eine schlechte Verbindung</translation>
+    </message>
+    <message>
+        <source>the vehicle does not answer to file transfer (MAVFTP); take its card out</source>
+        <translation>das Fahrzeug antwortet nicht auf Dateiübertragung (MAVFTP); nehmen Sie seine Karte heraus</translation>
+    </message>
+    <message>
+        <source>the vehicle knows no file transfer (MAVFTP); take its card out</source>
+        <translation>das Fahrzeug kennt keine Dateiübertragung (MAVFTP); nehmen Sie seine Karte heraus</translation>
+    </message>
+    <message>
+        <source>the vehicle no longer answers</source>
+        <translation>das Fahrzeug antwortet nicht mehr</translation>
+    </message>
+    <message>
+        <source>the vehicle refuses: {0}</source>
+        <translation>das Fahrzeug lehnt ab: {0}</translation>
     </message>
     <message>
         <source>the walls do not close to blocks; each got a depth of {0} m</source>
@@ -8469,6 +9693,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>das Fenster umspannt {0} Grad des Zylinders</translation>
     </message>
     <message>
+        <source>there are no logs on the vehicle</source>
+        <translation>auf dem Fahrzeug sind keine Logs</translation>
+    </message>
+    <message>
         <source>there are no records to write</source>
         <translation>es gibt keine Einträge zu schreiben</translation>
     </message>
@@ -8477,24 +9705,56 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>es gibt zu wenige Punkte ({0})</translation>
     </message>
     <message>
+        <source>there are two lines &apos;{0}&apos;</source>
+        <translation>es gibt zwei Zeilen '{0}'</translation>
+    </message>
+    <message>
+        <source>there is another file of that name beside the site; rename one</source>
+        <translation>neben dem Standort liegt eine andere Datei dieses Namens; eine umbenennen</translation>
+    </message>
+    <message>
         <source>there is no &apos;{0}&apos;; known are: {1}</source>
         <translation>&apos;{0}&apos; gibt es nicht; bekannt sind: {1}</translation>
     </message>
     <message>
         <source>there is no folder or device &apos;{0}&apos;; connected: {1}</source>
-        <translation>es gibt keinen Ordner und kein Gerät '{0}'; angeschlossen: {1}</translation>
+        <translation>es gibt keinen Ordner und kein Gerät &apos;{0}&apos;; angeschlossen: {1}</translation>
+    </message>
+    <message>
+        <source>there is no log &apos;{0}&apos; on the vehicle; the newest are: {1}</source>
+        <translation>auf dem Fahrzeug gibt es kein Log '{0}'; die neuesten sind: {1}</translation>
     </message>
     <message>
         <source>there is no point {0}</source>
         <translation>es gibt keinen Punkt {0}</translation>
     </message>
     <message>
+        <source>there is no such file or folder</source>
+        <translation>diese Datei oder diesen Ordner gibt es nicht</translation>
+    </message>
+    <message>
+        <source>there is no such file; choose an MBTiles or PMTiles file</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>there is no such folder or device; connect it and look again</source>
         <translation>diesen Ordner oder dieses Gerät gibt es nicht; schließen Sie es an und sehen Sie erneut nach</translation>
     </message>
     <message>
+        <source>there is no zone &apos;{0}&apos; in the site&apos;s files; those near it are: {1}</source>
+        <translation>in den Dateien des Standorts gibt es keine Zone '{0}'; nahe liegen: {1}</translation>
+    </message>
+    <message>
+        <source>there is no zone in this {0} file</source>
+        <translation>in dieser {0}-Datei ist keine Zone</translation>
+    </message>
+    <message>
         <source>there is one photo</source>
         <translation>es gibt ein Foto</translation>
+    </message>
+    <message>
+        <source>these times spoil {0} photos, and any others of this day at least {1}</source>
+        <translation>diese Zeiten verderben {0} Fotos, alle anderen dieses Tages mindestens {1}</translation>
     </message>
     <message>
         <source>this folder cannot be made or written into ({0}); name another</source>
@@ -8503,6 +9763,18 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>this looks like the card of a camera (it has a folder DCIM); DJI Pilot 2 reads the card in the remote controller</source>
         <translation>das sieht nach der Karte einer Kamera aus (sie hat einen Ordner DCIM); DJI Pilot 2 liest die Karte in der Fernsteuerung</translation>
+    </message>
+    <message>
+        <source>this source begins on {0} only</source>
+        <translation>diese Quelle beginnt erst am {0}</translation>
+    </message>
+    <message>
+        <source>this source ended on {0}: take its present state</source>
+        <translation>diese Quelle endete am {0}: den heutigen Stand nehmen</translation>
+    </message>
+    <message>
+        <source>this source is {0} days old, and zones change every month: take its present state, and add it again</source>
+        <translation>diese Quelle ist {0} Tage alt, und Zonen ändern sich jeden Monat: den heutigen Stand nehmen und erneut hinzufügen</translation>
     </message>
     <message>
         <source>time goes back in the log, by {0} s at most; what it says was put in order</source>
@@ -8517,8 +9789,24 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>zu wenige Punkte sind in mehreren Fotos zu sehen</translation>
     </message>
     <message>
+        <source>train a model</source>
+        <translation>ein Modell trainieren</translation>
+    </message>
+    <message>
+        <source>train a model first</source>
+        <translation>zuerst ein Modell trainieren</translation>
+    </message>
+    <message>
+        <source>train a model of it</source>
+        <translation>ein Modell davon trainieren</translation>
+    </message>
+    <message>
         <source>two facades at a right angle, whose glass sees glass</source>
         <translation>zwei Fassaden im rechten Winkel, deren Glas Glas sieht</translation>
+    </message>
+    <message>
+        <source>unpacking</source>
+        <translation>auspacken</translation>
     </message>
     <message>
         <source>unseen views</source>
@@ -8533,8 +9821,16 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>ungesehene Ansichten eines Modells aus den Fotos, erwartet: {0} dB</translation>
     </message>
     <message>
+        <source>up {0}, {1}</source>
+        <translation>über dem Horizont {0}, {1}</translation>
+    </message>
+    <message>
         <source>uploading</source>
         <translation>wird hochgeladen</translation>
+    </message>
+    <message>
+        <source>viewpoints: {0}</source>
+        <translation>Aufnahmepunkte: {0}</translation>
     </message>
     <message>
         <source>views found after</source>
@@ -8547,10 +9843,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>views held back have {0} dB with it, {1} dB with splats alone</source>
         <translation>zurückgehaltene Ansichten haben damit {0} dB, mit Splats allein {1} dB</translation>
-    </message>
-    <message>
-        <source>way flown</source>
-        <translation>Flugweg</translation>
     </message>
     <message>
         <source>waypoints: {0}</source>
@@ -8751,6 +10043,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>{0}; another battery would bring {1} dB more</source>
         <translation>{0}; ein weiterer Akku brächte {1} dB mehr</translation>
+    </message>
+    <message>
+        <source>{0}; the sun or its mirror image is in {1} of {2} photos, {3} show uneven light, the pilot is blinded for {4} s</source>
+        <translation>{0}; die Sonne oder ihr Spiegelbild ist in {1} von {2} Fotos, {3} zeigen ungleichmäßiges Licht, der Pilot ist {4} s lang geblendet</translation>
     </message>
     <message>
         <source>{0}; what was flown before is in {1}</source>
@@ -9141,10 +10437,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>{0} m zu weit weg für den größten Abstand oder die gröbste Pixelgröße</translation>
     </message>
     <message>
-        <source>below the ground</source>
-        <translation>unter dem Boden</translation>
-    </message>
-    <message>
         <source>hidden by {0}</source>
         <translation>verdeckt von {0}</translation>
     </message>
@@ -9503,18 +10795,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the sun is below the horizon ({0} degrees) at the planned time</source>
         <translation>die Sonne steht zur geplanten Zeit unter dem Horizont ({0} Grad)</translation>
-    </message>
-    <message>
-        <source>; at {0} it would be {1}</source>
-        <translation>; um {0} wären es {1}</translation>
-    </message>
-    <message>
-        <source>the sun is in the picture of {0} of {1} photos at the planned time{2}</source>
-        <translation>die Sonne ist zur geplanten Zeit im Bild von {0} von {1} Fotos{2}</translation>
-    </message>
-    <message>
-        <source>glass mirrors the sun into {0} of {1} photos at the planned time{2}</source>
-        <translation>Glas spiegelt die Sonne zur geplanten Zeit in {0} von {1} Fotos{2}</translation>
     </message>
     <message>
         <source>the sun is in no photo at the planned time, and no glass mirrors it into one</source>
@@ -9979,6 +11259,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>whole number</source>
         <translation>ganze Zahl</translation>
+    </message>
+    <message>
+        <source>the terrain of the site was made for the place where it is, and would lie wrong elsewhere; take it off first (Site &gt; Terrain), and attach it again after the move</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>terrain and site differ by {0} m at home: where the ground is level there, one of them is wrong; the terrain can be brought to home</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <source>the picture is distorted, and splats are rendered without distortion; make a data set of it (Photos tab)</source>
@@ -10485,6 +11773,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Aufnahmen sind geplant oder rechtwinklig zu den Fassaden; eine Zahl angeben, nicht beide</translation>
     </message>
     <message>
+        <source>wait for the vehicle</source>
+        <translation>auf das Fluggerät warten</translation>
+    </message>
+    <message>
+        <source>wait until every line of the list before take-off is well, or put it right</source>
+        <translation>warten, bis jede Zeile der Liste vor dem Start in Ordnung ist, oder nachhelfen</translation>
+    </message>
+    <message>
         <source>warning: sortie {0}, {1} s: {2}</source>
         <translation>Warnung: Einsatz {0}, {1} s: {2}</translation>
     </message>
@@ -10493,8 +11789,40 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Warnung: {0}, {1}: {2}</translation>
     </message>
     <message>
+        <source>watch the flight until it has landed</source>
+        <translation>den Flug bis zur Landung verfolgen</translation>
+    </message>
+    <message>
+        <source>what airspace &apos;{0}&apos; means for unmanned aircraft is national law: ask what holds here</source>
+        <translation>was Luftraum '{0}' für unbemannte Luftfahrzeuge bedeutet, ist Landesrecht: fragen, was hier gilt</translation>
+    </message>
+    <message>
         <source>what is missing cannot be shown</source>
         <translation>was fehlt, ist nicht zu zeigen</translation>
+    </message>
+    <message>
+        <source>what the vehicle sends makes no sense; take the card out</source>
+        <translation>was das Fahrzeug sendet, ergibt keinen Sinn; nehmen Sie die Karte heraus</translation>
+    </message>
+    <message>
+        <source>what {0} elements &apos;{1}&apos; show is not read; look at them yourself</source>
+        <translation>was {0} Elemente '{1}' zeigen, wird nicht gelesen; selbst ansehen</translation>
+    </message>
+    <message>
+        <source>when it applies cannot be read</source>
+        <translation>wann sie gilt, ist nicht lesbar</translation>
+    </message>
+    <message>
+        <source>when it is active, &apos;{0}&apos;, is decided elsewhere: ask for NOTAMs</source>
+        <translation>wann sie aktiv ist, '{0}', wird anderswo entschieden: nach NOTAMs fragen</translation>
+    </message>
+    <message>
+        <source>where home stands the files have no heights: no flight can be planned until home is moved</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>where the ground is not known, the surface counts as ground</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <source>whole</source>
@@ -10515,6 +11843,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>worst</source>
         <translation>schlechteste</translation>
+    </message>
+    <message>
+        <source>zone &apos;{0}&apos; is in several files: {1}</source>
+        <translation>Zone '{0}' steht in mehreren Dateien: {1}</translation>
+    </message>
+    <message>
+        <source>zone &apos;{0}&apos;: expected the reference of the authorisation, got an empty text</source>
+        <translation>Zone '{0}': erwartet wird das Aktenzeichen der Genehmigung, angegeben ist ein leerer Text</translation>
     </message>
     <message>
         <source>{0}  {1}: {2} of {3} added ({4})</source>
@@ -10545,6 +11881,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>{0} MB</translation>
     </message>
     <message>
+        <source>{0} MB  {1}</source>
+        <translation>{0} MB  {1}</translation>
+    </message>
+    <message>
         <source>{0} added, {1} in the project</source>
         <translation>{0} dazugekommen, {1} im Projekt</translation>
     </message>
@@ -10573,6 +11913,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>{0} decken {1} von {2} Sektoren ab; kein Flug kann mehr als {3} abdecken</translation>
     </message>
     <message>
+        <source>{0} did not come: {1}</source>
+        <translation>{0} kam nicht: {1}</translation>
+    </message>
+    <message>
         <source>{0} facade</source>
         <translation>{0} Fassade</translation>
     </message>
@@ -10581,8 +11925,16 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>{0} Fassaden</translation>
     </message>
     <message>
+        <source>{0} geo-zones that apply at some times only count as if they always did (the first is &apos;{1}&apos;): no time is planned (--at)</source>
+        <translation>{0} Geozonen, die nur zu manchen Zeiten gelten, zählen, als gälten sie immer (die erste ist '{1}'): es ist keine Zeit geplant (--at)</translation>
+    </message>
+    <message>
         <source>{0} goes with --panel-grid, which is missing</source>
         <translation>{0} gehört zu --panel-grid, das fehlt</translation>
+    </message>
+    <message>
+        <source>{0} has roofs and trees in it, smoothed: they count as ground, not as obstacles</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <source>{0} has {1} x {2} pixels; expected at most {3}</source>
@@ -10617,6 +11969,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>{0} ist beschädigt</translation>
     </message>
     <message>
+        <source>{0} is good to {1} m at nine of ten places: so much more is kept above the ground; another value can be given with --accuracy</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>{0} is missing</source>
         <translation>{0} fehlt</translation>
     </message>
@@ -10625,12 +11981,20 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>{0} fehlt; erwartet wird {1}</translation>
     </message>
     <message>
+        <source>{0} is not known on {1} % of the area: no flight is planned there</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>{0} is {1}, which has no place in MISSION_ITEM_INT; expected {2}</source>
         <translation>{0} ist {1}, wofür MISSION_ITEM_INT keinen Platz hat; erwartet wird {2}</translation>
     </message>
     <message>
         <source>{0} looked at in {1} s; glass of held-out photos: {2} dB</source>
         <translation>{0} in {1} s betrachtet; Glas zurückgehaltener Fotos: {2} dB</translation>
+    </message>
+    <message>
+        <source>{0} m above the terrain</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <source>{0} m kept at least</source>
@@ -10661,12 +12025,24 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>{0} eines Akkus{1}</translation>
     </message>
     <message>
+        <source>{0} of facade {1}</source>
+        <translation>{0} der Fassade {1}</translation>
+    </message>
+    <message>
         <source>{0} of these with pixels up to {1} mm on the panel, the coarsest with {2} mm</source>
         <translation>{0} davon mit Pixeln bis {1} mm auf der Scheibe, die gröbsten mit {2} mm</translation>
     </message>
     <message>
         <source>{0} of {1}</source>
         <translation>{0} aus {1}</translation>
+    </message>
+    <message>
+        <source>{0} of {1} corners of an outline are no places on earth</source>
+        <translation>{0} von {1} Ecken eines Umrisses sind keine Orte auf der Erde</translation>
+    </message>
+    <message>
+        <source>{0} of {1} photos show a facade half in the sun with take-off at {2}</source>
+        <translation>mit Start um {2} zeigen {0} von {1} Fotos eine Fassade, die zum Teil in der Sonne liegt</translation>
     </message>
     <message>
         <source>{0} of {1} views</source>
@@ -10831,6 +12207,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>{0} x {1} Pixel, aber sein Foto hat {2} x {3}</translation>
     </message>
     <message>
+        <source>{0} zones</source>
+        <translation>{0} Zonen</translation>
+    </message>
+    <message>
+        <source>{0} zones in {1}, {2} of them within {3} m of the airspace; SHA-256 {4}</source>
+        <translation>{0} Zonen in {1}, {2} davon bis {3} m vom Luftraum; SHA-256 {4}</translation>
+    </message>
+    <message>
         <source>{0} {1}</source>
         <translation>{0} {1}</translation>
     </message>
@@ -10845,6 +12229,38 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>{0}, the coarsest with {1} mm</source>
         <translation>{0}, das gröbste mit {1} mm</translation>
+    </message>
+    <message>
+        <source>{0}: continue mission ({1})</source>
+        <translation>{0}: Mission fortsetzen ({1})</translation>
+    </message>
+    <message>
+        <source>{0}: it does not apply at the planned time</source>
+        <translation>{0}: sie gilt zur geplanten Zeit nicht</translation>
+    </message>
+    <message>
+        <source>{0}: it restricts nothing</source>
+        <translation>{0}: sie beschränkt nichts</translation>
+    </message>
+    <message>
+        <source>{0}: the path enters it</source>
+        <translation>{0}: der Weg führt hinein</translation>
+    </message>
+    <message>
+        <source>{0}: the path runs inside, by the authorisation &apos;{1}&apos;</source>
+        <translation>{0}: der Weg führt hindurch, mit der Genehmigung '{1}'</translation>
+    </message>
+    <message>
+        <source>{0}: the path stays out of it, {1} m away</source>
+        <translation>{0}: der Weg bleibt draußen, {1} m entfernt</translation>
+    </message>
+    <message>
+        <source>{0}: where it lies is not sure, so it is not clear: {1}; ask, and state the answer (--permit)</source>
+        <translation>{0}: wo sie liegt, ist nicht sicher, darum gilt sie nicht als frei: {1}; fragen und die Antwort angeben (--permit)</translation>
+    </message>
+    <message>
+        <source>{0}: {1}</source>
+        <translation>{0}: {1}</translation>
     </message>
     <message>
         <source>{0}; allow more views, or a larger pixel</source>
@@ -11411,28 +12827,12 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>{0} wurde abgebrochen</translation>
     </message>
     <message>
-        <source>there is no such file; choose an MBTiles file</source>
-        <translation>es gibt keine solche Datei; eine MBTiles-Datei wählen</translation>
-    </message>
-    <message>
         <source>the map has no tiles; export it again with the area of the site</source>
         <translation>die Karte hat keine Kacheln; sie mit dem Gebiet des Standorts neu exportieren</translation>
     </message>
     <message>
         <source>expected zoom levels from 0 to {0}, found {1} to {2}</source>
         <translation>erwartet wurden Zoomstufen von 0 bis {0}, gefunden: {1} bis {2}</translation>
-    </message>
-    <message>
-        <source>the map holds vector tiles (pbf), which Reflight does not draw; export it with picture tiles (PNG, JPEG or WebP)</source>
-        <translation>die Karte enthält Vektorkacheln (pbf), die Reflight nicht zeichnet; sie mit Bildkacheln exportieren (PNG, JPEG oder WebP)</translation>
-    </message>
-    <message>
-        <source>expected tiles in PNG, JPEG or WebP, found something else (the file says {0}); export the map again</source>
-        <translation>erwartet wurden Kacheln in PNG, JPEG oder WebP, gefunden etwas anderes (die Datei sagt {0}); die Karte neu exportieren</translation>
-    </message>
-    <message>
-        <source>expected tiles in PNG, JPEG or WebP, found something else; export the map again</source>
-        <translation>erwartet wurden Kacheln in PNG, JPEG oder WebP, gefunden etwas anderes; die Karte neu exportieren</translation>
     </message>
     <message>
         <source>looking a tile up takes more than {0} s; the index on tiles is missing or the file is damaged; export the map again</source>
@@ -13327,10 +14727,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>die Passphrase für die Signatur ist leer; erwartet wurde die, die das Fluggerät erhalten hat</translation>
     </message>
     <message>
-        <source>without the link it flies the mission on, and lands at home</source>
-        <translation>Ohne Verbindung fliegt es die Mission weiter und landet am Startplatz</translation>
-    </message>
-    <message>
         <source>it climbs within {0} m of the building or an obstacle before it returns ({1})</source>
         <translation>er steigt vor der Rückkehr bis auf {0} m an das Gebäude oder ein Hindernis heran auf ({1})</translation>
     </message>
@@ -13353,10 +14749,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the battery was empty at the end ({0}): the aircraft could have fallen</source>
         <translation>der Akku war am Ende leer ({0}): Das Fluggerät hätte abstürzen können</translation>
-    </message>
-    <message>
-        <source>{0}, and it flies the mission on ({1})</source>
-        <translation>{0}, und es fliegt die Mission weiter ({1})</translation>
     </message>
     <message>
         <source>{0}, and it breaks the mission off and returns ({1})</source>
@@ -13729,10 +15121,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>it can be armed, but has trouble with: </source>
         <translation>er lässt sich scharfschalten, hat aber Mühe mit: </translation>
-    </message>
-    <message>
-        <source>the autopilot is content with all sensors</source>
-        <translation>der Autopilot ist mit allen Sensoren zufrieden</translation>
     </message>
     <message>
         <source>not measured on the ground; look up</source>
@@ -16408,8 +17796,20 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Baum des Standorts</translation>
     </message>
     <message>
-        <source>Remove what is selected</source>
-        <translation>Ausgewähltes entfernen</translation>
+        <source>Delete what is selected</source>
+        <translation>Ausgewähltes löschen</translation>
+    </message>
+    <message>
+        <source>Start, Return and Land</source>
+        <translation>Start, Heimkehr und Landen</translation>
+    </message>
+    <message>
+        <source>Hold for 0.7 s; the key of the Fly tab acts at once</source>
+        <translation>0,7 s halten; die Taste des Reiters Fliegen wirkt sofort</translation>
+    </message>
+    <message>
+        <source>Delete the line, or the panel</source>
+        <translation>Linie oder Scheibe löschen</translation>
     </message>
     <message>
         <source>Photo strip of a flight</source>
@@ -16442,10 +17842,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>Choose the next line</source>
         <translation>Nächste Linie wählen</translation>
-    </message>
-    <message>
-        <source>Remove the line, or the panel</source>
-        <translation>Linie oder Scheibe entfernen</translation>
     </message>
     <message>
         <source>Add a line beside it, or put the panel back</source>
@@ -16625,8 +18021,8 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
 <context>
     <name>SiteEditor</name>
     <message>
-        <source>Remove {0}</source>
-        <translation>{0} entfernen</translation>
+        <source>Delete {0}</source>
+        <translation>{0} löschen</translation>
     </message>
     <message>
         <source>Turn facade {0}</source>
@@ -16707,8 +18103,8 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Name des Standorts</translation>
     </message>
     <message>
-        <source>Place of the site&apos;s zero</source>
-        <translation>Lage des Nullpunkts</translation>
+        <source>Site origin</source>
+        <translation>Nullpunkt des Standorts</translation>
     </message>
     <message>
         <source>Rename site</source>
@@ -16742,8 +18138,8 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Gebäude importieren...</translation>
     </message>
     <message>
-        <source>Remove what is selected</source>
-        <translation>Ausgewähltes entfernen</translation>
+        <source>Delete what is selected</source>
+        <translation>Ausgewähltes löschen</translation>
     </message>
 </context>
 <context>
@@ -16766,12 +18162,12 @@ Größe: {3}; Dreiecke: {4}</translation>
         <translation>Hindernis aus einer Netzdatei in Koordinaten des Standorts hinzufügen (Kran, Baum)</translation>
     </message>
     <message>
-        <source>Panel grid</source>
-        <translation>Scheibenraster</translation>
-    </message>
-    <message>
         <source>Equal panels in a rectangle on a wall</source>
         <translation>Gleiche Scheiben in einem Rechteck an einer Wand</translation>
+    </message>
+    <message>
+        <source>Facade grid</source>
+        <translation>Fassadenraster</translation>
     </message>
     <message>
         <source>Home</source>
@@ -16865,8 +18261,8 @@ Größe: {3}; Dreiecke: {4}</translation>
         <translation>Seite umdrehen</translation>
     </message>
     <message>
-        <source>Remove</source>
-        <translation>Entfernen</translation>
+        <source>Delete</source>
+        <translation>Löschen</translation>
     </message>
 </context>
 <context>
@@ -16985,6 +18381,86 @@ Größe: {3}; Dreiecke: {4}</translation>
         <source>To look around, and to try a plan</source>
         <translation>Zum Umsehen und Probeplanen</translation>
     </message>
+    <message>
+        <source>Recent projects</source>
+        <translation>Zuletzt geöffnet</translation>
+    </message>
+    <message>
+        <source>Sample project</source>
+        <translation>Beispielprojekt</translation>
+    </message>
+    <message>
+        <source>A small glass facade with everything done, from the plan to the model</source>
+        <translation>Eine kleine Glasfassade, an der alles getan ist, vom Plan bis zum Modell</translation>
+    </message>
+    <message>
+        <source>Bundled site</source>
+        <translation>Beispiel</translation>
+    </message>
+    <message>
+        <source>An office building with 280 panels, to plan and fly in simulation</source>
+        <translation>Ein Bürohaus mit 280 Scheiben, zum Planen und für einen simulierten Flug</translation>
+    </message>
+    <message>
+        <source>Open a project ...</source>
+        <translation>Projekt öffnen ...</translation>
+    </message>
+    <message>
+        <source>A folder that Reflight has saved</source>
+        <translation>Ein Ordner, den Reflight gespeichert hat</translation>
+    </message>
+    <message>
+        <source>Building model ...</source>
+        <translation>Gebäudemodell ...</translation>
+    </message>
+    <message>
+        <source>Photos of a first flight ...</source>
+        <translation>Fotos eines ersten Flugs ...</translation>
+    </message>
+    <message>
+        <source>Walls, roofs and ground are made of the photos alone</source>
+        <translation>Wände, Dächer und Boden entstehen aus den Fotos allein</translation>
+    </message>
+    <message>
+        <source>Mission of another program ...</source>
+        <translation>Mission eines anderen Programms ...</translation>
+    </message>
+    <message>
+        <source>A KMZ, .plan, .waypoints, KML or CSV file</source>
+        <translation>Eine KMZ-, .plan-, .waypoints-, KML- oder CSV-Datei</translation>
+    </message>
+    <message>
+        <source>Look around</source>
+        <translation>Umsehen</translation>
+    </message>
+    <message>
+        <source>Begin a project with</source>
+        <translation>Ein Projekt beginnen mit</translation>
+    </message>
+    <message>
+        <source>Learn</source>
+        <translation>Lernen</translation>
+    </message>
+    <message>
+        <source>Manual</source>
+        <translation>Handbuch</translation>
+    </message>
+    <message>
+        <source>Tour of the window</source>
+        <translation>Rundgang durch das Fenster</translation>
+    </message>
+    <message>
+        <source>New here? The tour shows the window in a minute; it can be left at any time.</source>
+        <translation>Neu hier? Der Rundgang zeigt das Fenster in einer Minute; er kann jederzeit verlassen werden.</translation>
+    </message>
+    <message>
+        <source>Take the tour</source>
+        <translation>Rundgang beginnen</translation>
+    </message>
+    <message>
+        <source>Not now</source>
+        <translation>Jetzt nicht</translation>
+    </message>
 </context>
 <context>
     <name>Tabs</name>
@@ -16999,6 +18475,14 @@ Größe: {3}; Dreiecke: {4}</translation>
     <message>
         <source>Mission</source>
         <translation>Mission</translation>
+    </message>
+    <message>
+        <source>Start</source>
+        <translation>Start</translation>
+    </message>
+    <message>
+        <source>Where to begin: a sample, your projects, and three ways to a new one</source>
+        <translation>Wo es beginnt: ein Beispiel, Ihre Projekte und drei Wege zu einem neuen</translation>
     </message>
     <message>
         <source>Waypoints, checks, mission files and the flight brief</source>
@@ -17043,6 +18527,29 @@ Größe: {3}; Dreiecke: {4}</translation>
     <message>
         <source>The building, its glass, and where you may fly</source>
         <translation>Das Gebäude, sein Glas und der erlaubte Flugraum</translation>
+    </message>
+</context>
+<context>
+    <name>TerrainForm</name>
+    <message>
+        <source>Accuracy</source>
+        <translation type="unfinished">Genauigkeit</translation>
+    </message>
+    <message>
+        <source>Unit of heights</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Step of the grid</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Obstacles taller than</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Heights are above</source>
+        <translation type="unfinished"></translation>
     </message>
 </context>
 <context>
@@ -17123,12 +18630,12 @@ Größe: {3}; Dreiecke: {4}</translation>
         <translation>Ein Druck fügt dem Raster eine waagrechte Linie hinzu</translation>
     </message>
     <message>
-        <source>Remove line</source>
-        <translation>Linie entfernen</translation>
+        <source>Delete line</source>
+        <translation>Linie löschen</translation>
     </message>
     <message>
-        <source>A press on a line removes it</source>
-        <translation>Ein Druck auf eine Linie entfernt sie</translation>
+        <source>A press on a line deletes it</source>
+        <translation>Ein Druck auf eine Linie löscht sie</translation>
     </message>
     <message>
         <source>To the left</source>
@@ -17441,6 +18948,37 @@ Größe: {3}; Dreiecke: {4}</translation>
     </message>
 </context>
 <context>
+    <name>WarningBanner</name>
+    <message>
+        <source>Warnings</source>
+        <translation>Warnungen</translation>
+    </message>
+    <message>
+        <source>Mute</source>
+        <translation>Stumm</translation>
+    </message>
+    <message>
+        <source>Warnings are shown, and not spoken</source>
+        <translation>Warnungen werden gezeigt und nicht gesprochen</translation>
+    </message>
+    <message>
+        <source>{0} more in the list</source>
+        <translation>{0} weitere in der Liste</translation>
+    </message>
+    <message>
+        <source>DANGER</source>
+        <translation>GEFAHR</translation>
+    </message>
+    <message>
+        <source>Warning</source>
+        <translation>Warnung</translation>
+    </message>
+    <message>
+        <source>{0} ({1}): {2}</source>
+        <translation>{0} ({1}): {2}</translation>
+    </message>
+</context>
+<context>
     <name>WarningsView</name>
     <message>
         <source>No warnings.</source>
@@ -17622,6 +19160,13 @@ Größe: {3}; Dreiecke: {4}</translation>
     <message>
         <source>“{0}”</source>
         <translation>„{0}“</translation>
+    </message>
+</context>
+<context>
+    <name>ZonesForm</name>
+    <message>
+        <source>Authorisation</source>
+        <translation>Genehmigung</translation>
     </message>
 </context>
 <context>
