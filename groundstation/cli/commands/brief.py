@@ -69,8 +69,13 @@ def run(options: argparse.Namespace) -> int:
             replace(each, message=localized(each.message, words, units), place=localized(each.place, words, units))
             for each in found.findings
         )
-        brief = flight_brief(site_model, plan, findings, today, options.plan.name, day=day)
-        sources = sources_in_page(brief_pictures(site_model, plan, units, titles))
+        brief = flight_brief(site_model, plan, findings, today, options.plan.name, day=day, sun=found.sun)
+
+        def localize(text: str) -> str:
+            return localized(text, words, units)
+
+        brief = replace(brief, sun=tuple(map(localize, brief.sun)))
+        sources = sources_in_page(brief_pictures(site_model, plan, units, titles, found.sun, localize))
         is_letter = None if options.paper is None else options.paper == "letter"
         return brief_html(brief, units, sources, titles, is_letter=is_letter), brief.readiness, len(brief.findings)
 

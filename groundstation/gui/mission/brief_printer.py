@@ -21,7 +21,7 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QDialog, QHBoxLayout, QLabel, QPushButton, QTextBrowser, QVBoxLayout, QWidget
 
 from groundstation.gui.application.context import ApplicationContext
-from groundstation.gui.application.translate import QT_TRANSLATE_NOOP, translated_finding
+from groundstation.gui.application.translate import QT_TRANSLATE_NOOP, translated, translated_finding
 from groundstation.gui.map.map_paint import (
     paint_landings,
     paint_north,
@@ -71,6 +71,10 @@ WORDS = (
     QT_TRANSLATE_NOOP("Brief", "Findings"),
     QT_TRANSLATE_NOOP("Brief", "Before take-off"),
     QT_TRANSLATE_NOOP("Brief", "Map"),
+    QT_TRANSLATE_NOOP("Brief", "Sun"),
+    QT_TRANSLATE_NOOP(
+        "Brief", "Tall, half, low: facades in the sun, in part, in shade; take-offs that spoil no, few, many photos"
+    ),
     QT_TRANSLATE_NOOP("Brief", "Height of sortie {0}"),
     QT_TRANSLATE_NOOP("Brief", "All pre-flight rules are kept: ready to fly."),
     QT_TRANSLATE_NOOP("Brief", "Ready to fly, but read the warnings."),
@@ -322,9 +326,11 @@ class BriefDialog(QDialog):
         entry = context.document.current
         today = QLocale().toString(QDate.currentDate(), QLocale.FormatType.LongFormat)
         title = entry.title if entry is not None and entry.plan is plan else ""
-        found = flight_brief(site_model, plan, checked.findings, today, title, day=checked.day)
+        found = flight_brief(site_model, plan, checked.findings, today, title, day=checked.day, sun=checked.sun)
         translated_findings = tuple(translated_finding(finding, self._units) for finding in found.findings)
-        self._brief = replace(found, findings=translated_findings)
+        self._sun = checked.sun
+        sun_lines = tuple(translated(line, self._units) for line in found.sun)
+        self._brief = replace(found, findings=translated_findings, sun=sun_lines)
         self._page, self._paper = QTextBrowser(), ChoiceBox()
         # Paper is white in every theme.
         self._page.setStyleSheet("QTextBrowser { background: #ffffff; color: #000000; }")
@@ -373,10 +379,14 @@ class BriefDialog(QDialog):
         return True
 
     def _draw(self, site_model: SiteModel, plan: Plan, tiles: Path | None) -> None:
-        units = self._units
+        units, sun = self._units, self._sun
+
+        def localize(text: str) -> str:
+            return translated(text, units)
 
         def work(_context: JobContext) -> tuple[dict[str, str | QImage], str]:
-            pictures: dict[str, str | QImage] = {**brief_pictures(site_model, plan, units, translate)}
+            drawn = brief_pictures(site_model, plan, units, translate, sun, localize)
+            pictures: dict[str, str | QImage] = {**drawn}
             try:
                 if tiles is not None:
                     shapes = site_shapes(site_model), plan_shapes(plan, site_model.site.origin)

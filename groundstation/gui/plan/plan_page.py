@@ -19,6 +19,7 @@ from groundstation.gui.charts.quality_chart import QualityChart
 from groundstation.gui.plan.plan_controller import EffectsController, PlanController
 from groundstation.gui.plan.plan_form import PlanForm
 from groundstation.gui.plan.plan_lists import PlanLists
+from groundstation.gui.plan.sun_panel import SunController, SunPanel
 from groundstation.gui.plan.viewpoint_page import PanelDetail, ViewpointPage
 from groundstation.gui.shared_view import SharedView
 from groundstation.gui.view3d.hemispheres import OPEN, UNDECIDED, UNREACHABLE
@@ -178,6 +179,8 @@ class PlanPage(QObject):
         self.controller = PlanController(context, self)
         self.form, self.chart = PlanForm(), QualityChart(time.perf_counter)
         self.effects, self.panel, self.paint = EffectsPanel(), PanelDetail(), PaintBar()
+        self.sun = SunPanel()
+        self.sun_controller = SunController(context, self.sun, lambda: self.controller.is_planning)
         self.effects_controller = EffectsController(
             context, self.effects.isVisible, lambda: self.controller.is_planning, self
         )
@@ -190,6 +193,8 @@ class PlanPage(QObject):
             self.tr("Expected PSNR [dB]"),
             self.tr("What this plan is worth is not known, or it was changed since; plan it again."),
         )
+        # Below the shared view there is width, which a bar over a day needs.
+        self.lists.addTab(self.sun, self.tr("Sun"))
         self._result, self._verdict = QLabel(), QLabel()
         self._plan_button = QPushButton(self.tr("Plan"))
         self._make_actions()
@@ -440,7 +445,7 @@ class PlanPage(QObject):
             self.controller.set_request(replace(request, constraints=replace(request.constraints, occlusion=setting)))
 
     def _show_units(self, units: UnitSystem) -> None:
-        for widget in (self.form, self.panel, self.lists, self.effects):
+        for widget in (self.form, self.panel, self.lists, self.effects, self.sun):
             widget.set_units(units)
         if self.controller.active is not None:
             self._show_result(self.controller.active)

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from groundstation.services.mission.readiness import UNKNOWN_DAY, FlightDay, Readiness, by_severity, readiness_of
+from groundstation.services.mission.sunlight import SunReport, flight_lines
 from groundstation.services.mission.waypoints import WaypointRow, waypoint_rows
 from missions.formats.encode import TakeoffCheck, dji_return_height, takeoff_check
 from missions.formats.options import ExportOptions
@@ -94,6 +95,8 @@ class FlightBrief:
         Pixel of the sharpest view of the section that is seen most coarsely.
     worth
         What a model of the photos is expected to be like; None where the plan does not say.
+    sun
+        Of the day it is flown on, in lines; empty where no time is known.
     """
 
     site: str
@@ -124,6 +127,7 @@ class FlightBrief:
     no_fly: tuple[str, ...]
     obstacles: tuple[str, ...]
     findings: tuple[Finding, ...]
+    sun: tuple[str, ...] = ()
 
     @property
     def readiness(self) -> Readiness:
@@ -144,6 +148,7 @@ def flight_brief(
     title: str = "",
     options: ExportOptions | None = None,
     day: FlightDay = UNKNOWN_DAY,
+    sun: SunReport | None = None,
 ) -> FlightBrief:
     """The brief of a plan on its site.
 
@@ -153,8 +158,8 @@ def flight_brief(
         Of the pre-flight check of this very plan.
     options
         Those of the export, for the return height and what happens without a radio link.
-    day
-        For which the findings hold.
+    day, sun
+        For which the findings hold, and what the sun does on it.
     """
     options = options or ExportOptions(site=site_model)
     site = site_model.site
@@ -191,6 +196,7 @@ def flight_brief(
         no_fly=tuple(zone.id for zone in site.airspace.no_fly),
         obstacles=tuple(obstacle.id for obstacle in site.obstacles),
         findings=by_severity(found for found in (*findings, *objections) if found.severity is not Severity.OK),
+        sun=() if sun is None else tuple(flight_lines(sun)),
     )
 
 

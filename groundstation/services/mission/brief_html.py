@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import base64
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from html import escape
 
 import numpy as np
@@ -19,6 +19,7 @@ from groundstation.services.map.web_mercator import geodetic_from_world, metres_
 from groundstation.services.messages import Translate
 from groundstation.services.mission.brief import FlightBrief
 from groundstation.services.mission.readiness import Readiness, duration_text, measured_text
+from groundstation.services.mission.sunlight import HEIGHTS, Look, SunReport, day_rows, hour_marks
 from groundstation.services.mission.waypoints import HeightLimits, ProfileCurves, height_limits, plan_profiles
 from groundstation.services.units import (
     UnitSystem,
@@ -135,6 +136,48 @@ def profile_svg(curves: ProfileCurves, limits: HeightLimits, units: UnitSystem, 
     return _svg(PROFILE_SIZE, parts)
 
 
+SUN_ROW, SUN_LABEL, SUN_FOOT = 24.0, 110.0, 44.0
+"""Height of a row of the bar over the day, and room for names beside it and for hours and a legend below."""
+
+SUN_LOOKS = {
+    Look.NIGHT: "#5b6570",
+    Look.SKY: "#cfe3f5",
+    Look.SUN: "#f0b400",
+    Look.PARTLY: "#d55e00",
+    Look.SHADE: "#7f8b96",
+    Look.GOOD: "#009e73",
+    Look.FAIR: "#e0c23c",
+    Look.BAD: "#d55e00",
+}
+
+
+def sun_svg(report: SunReport, tr: Translate, localize: Callable[[str], str]) -> str:
+    """The day of a site as rows: when the sun is up, light on facades, take-offs of sorties; hours below."""
+    rows = day_rows(report)
+    width, height = MAP_SIZE[0], SUN_ROW * len(rows) + SUN_FOOT
+    left, wide = SUN_LABEL, MAP_SIZE[0] - SUN_LABEL - 24.0
+    parts = []
+    for number, row in enumerate(rows):
+        top, tall = number * SUN_ROW + 3.0, SUN_ROW - 6.0
+        parts.append(_text((left - 6.0, top + tall - 4.0), localize(row.name), INK, "end"))
+        for stretch in row.stretches:
+            share = HEIGHTS[stretch.look]
+            x, long = left + wide * stretch.first, wide * (stretch.last - stretch.first)
+            box = f'x="{x:.1f}" y="{top + (1.0 - share) * tall:.1f}" width="{long:.1f}" height="{share * tall:.1f}"'
+            if stretch.look is Look.FLIGHT:
+                parts.append(f'<rect {box} fill="none" stroke="{INK}" stroke-width="2"/>')
+            else:
+                parts.append(f'<rect {box} fill="{SUN_LOOKS[stretch.look]}"/>')
+        parts.append(f'<rect x="{left}" y="{top}" width="{wide}" height="{tall}" fill="none" stroke="{GREY}"/>')
+    for at, text in hour_marks(report.day.track):
+        x = left + wide * at
+        parts.append(f'<line x1="{x:.1f}" y1="0" x2="{x:.1f}" y2="{height - SUN_FOOT + 3.0:g}" stroke="{GREY}"/>')
+        parts.append(_text((x, height - SUN_FOOT + 16.0), text, INK))
+    legend = tr("Tall, half, low: facades in the sun, in part, in shade; take-offs that spoil no, few, many photos")
+    parts.append(_text((left, height - 6.0), legend, INK, "start"))
+    return _svg((width, height), parts)
+
+
 def _ticks(low: float, high: float, n_most: int) -> list[float]:
     """Round values from `low` to `high`, at most about `n_most`."""
     step = round_length(max(high - low, 1e-9) / n_most * 2.0)
@@ -181,8 +224,8 @@ def _north(width: float) -> str:
     return arrow + _text((x, 40.0), "N", INK)
 
 
-MAP = "map"
-"""Name of the map's picture; those of the profiles are `profile_name(number)`."""
+MAP, SUN = "map", "sun"
+"""Names of the pictures of map and day; those of the profiles are `profile_name(number)`."""
 
 WIDTH_PX = 680
 """Of the page's content; A4 less margins of 15 mm is 680 px of 1/96 inch."""
@@ -193,10 +236,19 @@ def profile_name(number: int) -> str:
     return f"profile-{number}"
 
 
-def brief_pictures(site_model: SiteModel, plan: Plan, units: UnitSystem, tr: Translate = str) -> dict[str, str]:
-    """All pictures of a brief as SVG, by name."""
+def brief_pictures(
+    site_model: SiteModel,
+    plan: Plan,
+    units: UnitSystem,
+    tr: Translate = str,
+    sun: SunReport | None = None,
+    localize: Callable[[str], str] = str,
+) -> dict[str, str]:
+    """All pictures of a brief as SVG, by name; `localize` says messages in the user's language."""
     shapes = site_shapes(site_model)
     pictures = {MAP: map_svg(shapes, plan_shapes(plan, site_model.site.origin), units)}
+    if sun is not None:
+        pictures[SUN] = sun_svg(sun, tr, localize)
     height = tr("height above take-off [{0}]").format(length_unit(units).symbol)
     limits = height_limits(site_model)
     for curves in plan_profiles(plan):
@@ -247,6 +299,11 @@ def brief_html(
         f"<h2>{escape(tr('Before take-off'))}</h2>",
         _checklist(_steps(brief, units, tr)),
     ]
+    if brief.sun:
+        body.append(f"<h2>{escape(tr('Sun'))}</h2>")
+        body += [f"<p>{escape(line)}</p>" for line in brief.sun]
+    if SUN in sources:
+        body.append(f'<p><img src="{sources[SUN]}" width="{WIDTH_PX}" alt="{escape(tr("Sun"))}"></p>')
     if MAP in sources:
         body.append(f'<h2 style="page-break-before: always">{escape(tr("Map"))}</h2>')
         body.append(f'<p><img src="{sources[MAP]}" width="{WIDTH_PX}" alt="{escape(tr("Map"))}"></p>')

@@ -11,12 +11,13 @@ import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from datetime import UTC, datetime, timedelta
+from datetime import UTC, datetime
 from enum import StrEnum
 
 import numpy as np
 from numpy.typing import NDArray
 
+from groundstation.services.mission.sunlight import SunReport, flight_report
 from groundstation.services.units import UnitSystem, length_unit, minutes_text, sampling_unit, speed_unit
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.items import photos_that_fit
@@ -26,9 +27,9 @@ from planning.base.progress import QUIET, Monitor
 from planning.checks import check_case
 from planning.checks.case import Case, pose_of
 from planning.checks.zones import source_ages
-from planning.geo.sun import is_within, sun_place_deg, sun_track
-from planning.insight.sun_times import PAUSE_S, SortieSun, flight_times, flown_from, sorties_in_sun
-from planning.insight.sunlight import BLINDING_RAD, SunDay, SunSite, sun_day
+from planning.geo.sun import is_within, sun_place_deg
+from planning.insight.sun_times import PAUSE_S, flown_from
+from planning.insight.sunlight import BLINDING_RAD
 from planning.plan import Plan
 from planning.planner import resplit_sorties
 from planning.revision.top_up import METHOD as TOP_UP
@@ -174,12 +175,14 @@ class FlightDay:
 UNKNOWN_DAY = FlightDay()
 
 
-def readiness_findings(case: Case, day: FlightDay = UNKNOWN_DAY, monitor: Monitor = QUIET) -> tuple[Finding, ...]:
-    """All findings of the rules of planning, and of those here."""
+def readiness_findings(
+    case: Case, day: FlightDay = UNKNOWN_DAY, monitor: Monitor = QUIET, sun: SunReport | None = None
+) -> tuple[Finding, ...]:
+    """All findings of the rules of planning, and of those here; `sun` is of that day, where it was looked at."""
     return (
         *check_case(case, monitor),
         *additional_findings(case),
-        *_sun(case, day.at),
+        *_sun(case, day.at, sun),
         *_cold(case, day.temperature_c),
         *source_ages(case.site_model, day.at or datetime.now(UTC)),
     )
@@ -264,7 +267,7 @@ def _glass(case: Case) -> Iterator[Finding]:
 # Sun
 
 
-def _sun(case: Case, at: datetime | None) -> Iterator[Finding]:
+def _sun(case: Case, at: datetime | None, known: SunReport | None) -> Iterator[Finding]:
     plan = case.plan
     if not plan.viewpoints:
         return
@@ -272,21 +275,17 @@ def _sun(case: Case, at: datetime | None) -> Iterator[Finding]:
         yield Finding(Severity.NOTE, "sun", say("where the sun stands is not looked at: no time is planned (--at)"))
         return
     origin = case.site_model.site.origin
-    flight_s = sum(sortie.duration_s + PAUSE_S for sortie in plan.sorties)
-    midnight = at.replace(hour=0, minute=0, second=0, microsecond=0)
-    stop = max(midnight + timedelta(days=1), at + timedelta(seconds=flight_s + 60.0))
-    site = SunSite(case.site_model)
-    day = sun_day(site, sun_track(origin.lat_deg, origin.lon_deg, midnight, stop), plan.viewpoints, plan.camera)
+    report = flight_report(case.site_model, plan, at) if known is None else known
+    day = report.day
     start_s = day.track.seconds(at)
     if not is_within(day.track.up, start_s):
         _, elevation_deg = sun_place_deg(origin.lat_deg, origin.lon_deg, at)
         text = say("the sun is below the horizon ({:.0f} degrees) at the planned time", elevation_deg)
         yield Finding(Severity.WARNING, "sun", text, "", elevation_deg, 0.0, "deg")
         return
-    sorties = sorties_in_sun(site, day, plan)
-    found = flown_from(sorties, day, start_s)
+    found = flown_from(report.sorties, day, start_s)
     spoiled = [*found.direct, *found.mirrored, *found.uneven]
-    better = _better_times(sorties, day, len(set(spoiled))) if spoiled or found.blinded_s else glue()
+    better = _better_times(report, len(set(spoiled))) if spoiled or found.blinded_s else glue()
     total = len(plan.viewpoints)
     for code, ids, text in (
         (
@@ -328,14 +327,16 @@ MOST_TIMES = 4
 """Of take-offs that a finding names."""
 
 
-def _better_times(sorties: Sequence[SortieSun], day: SunDay, n_now: int) -> Message:
+def _better_times(report: SunReport, n_now: int) -> Message:
     """Take-offs of that day that spoil fewer photos, and how many; nothing where there are none."""
-    times = flight_times(sorties, day)
+    times = report.times
+    if times is None:
+        return glue()
     starts = [each.start_s for each in times.sorties if each.start_s is not None]
     n_best = sum(int(each.spoiled.photos[0]) for each in times.sorties if each.spoiled is not None)
     if len(starts) < len(times.sorties) or n_best >= n_now:
         return glue()
-    texts = [f"{day.track.time(start):%H:%M}" for start in starts]
+    texts = [f"{report.day.track.time(start):%H:%M}" for start in starts]
     more = ["..."] if len(texts) > MOST_TIMES else []
     return say("; with take-off at {} it would be {}", ", ".join((*texts[:MOST_TIMES], *more)), n_best)
 
@@ -392,6 +393,8 @@ class Preflight:
         Number of panels by viewpoint.
     day
         What was known of the day of the flight.
+    sun
+        Of that day; None where no time was known.
     """
 
     plan: Plan
@@ -399,6 +402,7 @@ class Preflight:
     findings: tuple[Finding, ...]
     panels_covered: Mapping[str, int]
     day: FlightDay = UNKNOWN_DAY
+    sun: SunReport | None = None
 
     def is_of(self, plan: Plan | None, site_model: SiteModel | None) -> bool:
         """Whether this is about these very values."""
@@ -412,4 +416,7 @@ def preflight(plan: Plan, site_model: SiteModel, day: FlightDay = UNKNOWN_DAY, m
     seen = case.measures.seen
     # A view sees a panel in one section only: as many elements, as many panels.
     covered = {view.id: len(seen[pose_of(view)].elements) for view in plan.viewpoints}
-    return Preflight(plan, site_model, readiness_findings(case, day, monitor), covered, day)
+    sun = None
+    if day.at is not None and plan.viewpoints:
+        sun = flight_report(site_model, plan, day.at, monitor)
+    return Preflight(plan, site_model, readiness_findings(case, day, monitor, sun), covered, day, sun)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, date, datetime, time, timedelta, timezone, tzinfo
@@ -16,8 +17,8 @@ from planning.base.errors import InputError
 from planning.base.messages import Message, glue, joined, say
 from planning.base.progress import QUIET, Monitor
 from planning.geo.frames import wrap_heading_deg
-from planning.geo.sun import LEAST_S, Spans, SunTrack, sun_track, total_s, without_spans
-from planning.insight.sun_times import PAUSE_S, FlightTimes, SortieTimes, flight_times, sorties_in_sun
+from planning.geo.sun import LEAST_S, Spans, SunTrack, is_within, sun_place_deg, sun_track, total_s, without_spans
+from planning.insight.sun_times import PAUSE_S, FlightTimes, SortieSun, SortieTimes, flight_times, sorties_in_sun
 from planning.insight.sunlight import SunDay, SunSite, sun_day
 from planning.plan import Plan
 from planning.site.records import SiteModel
@@ -65,17 +66,22 @@ class SunReport:
 
     Parameters
     ----------
-    times
-        Of the plan's sorties; None without a plan.
     plan, site_model
         What it is of: it is as fresh as these are the ones in the window.
+    sorties, times
+        How the plan's sorties meet the sun, and when to start them; none and None without viewpoints.
     """
 
     request: SunRequest
     site_model: SiteModel
     plan: Plan | None
     day: SunDay
+    sorties: tuple[SortieSun, ...]
     times: FlightTimes | None
+
+    def is_of(self, plan: Plan | None, site_model: SiteModel | None, day: date) -> bool:
+        """Whether this is about these very values."""
+        return self.plan is plan and self.site_model is site_model and self.request.day == day
 
 
 def local_zone(day: date) -> tzinfo:
@@ -126,8 +132,14 @@ def day_bounds(day: date, zone: tzinfo) -> tuple[datetime, datetime]:
         raise InputError(say("expected a day before the year 9999, got {}", day)) from error
 
 
-def sun_report(site_model: SiteModel, plan: Plan | None, request: SunRequest, monitor: Monitor = QUIET) -> SunReport:
-    """Look at a day.
+def sun_report(
+    site_model: SiteModel,
+    plan: Plan | None,
+    request: SunRequest,
+    monitor: Monitor = QUIET,
+    until: datetime | None = None,
+) -> SunReport:
+    """Look at a day, and further than its end where a flight lasts `until` then.
 
     Raises
     ------
@@ -135,18 +147,30 @@ def sun_report(site_model: SiteModel, plan: Plan | None, request: SunRequest, mo
         The calendar ends.
     """
     start, stop = day_bounds(request.day, request.zone)
+    if until is not None and until.astimezone(UTC) > stop.astimezone(UTC):
+        stop = until
     origin = site_model.site.origin
     track = sun_track(origin.lat_deg, origin.lon_deg, start, stop, request.shortest_s)
     site = SunSite(site_model)
     views, camera = (plan.viewpoints, plan.camera) if plan is not None else ((), None)
     settings: Mapping[str, EffectSetting] = dict(request.effects)
     day = sun_day(site, track, views, camera, settings, request.shortest_s, monitor)
+    sorties: tuple[SortieSun, ...] = ()
     times = None
-    if plan is not None and plan.sorties and plan.viewpoints:
+    if plan is not None and plan.viewpoints:
         bounds = [_second(track, request.day, minute) for minute in (request.first_min, request.last_min)]
         sorties = sorties_in_sun(site, day, plan, monitor)
         times = flight_times(sorties, day, np.array([bounds]), request.pause_s, monitor)
-    return SunReport(request, site_model, plan, day, times)
+    return SunReport(request, site_model, plan, day, sorties, times)
+
+
+def flight_report(site_model: SiteModel, plan: Plan, at: datetime, monitor: Monitor = QUIET) -> SunReport:
+    """Look at the day of a take-off, in its zone, until the last sortie has landed."""
+    flight_s = sum(sortie.duration_s + PAUSE_S for sortie in plan.sorties)
+    zone = at.tzinfo
+    assert zone is not None
+    until = at.astimezone(UTC) + timedelta(seconds=flight_s + 60.0)
+    return sun_report(site_model, plan, SunRequest(at.date(), zone), monitor, until)
 
 
 def _second(track: SunTrack, day: date, minute: int) -> float:
@@ -160,9 +184,8 @@ def _second(track: SunTrack, day: date, minute: int) -> float:
 
 def clock_text(track: SunTrack, seconds: float) -> str:
     """Time of day, to the minute; 24:00 at the end."""
-    if seconds >= track.length_s - 30.0:
-        return "24:00"
-    return f"{track.time(seconds + 30.0):%H:%M}"
+    text = f"{track.time(seconds + 30.0):%H:%M}"
+    return "24:00" if text == "00:00" and seconds > 0.5 * track.length_s else text
 
 
 def spans_text(track: SunTrack, spans: Spans) -> str:
@@ -218,6 +241,8 @@ STEEP_DEG = 80.0
 def sortie_name(times: SortieTimes) -> Message:
     """Sortie, or all that fly at once."""
     numbers = times.sortie.numbers
+    if not numbers:
+        return say("all photos")
     return say("sortie {}", numbers[0]) if len(numbers) == 1 else say("sorties {} at once", joined(", ", numbers))
 
 
@@ -243,8 +268,8 @@ def verdict_line(times: FlightTimes) -> Message:
     return say("these times spoil {:.1f} photos, and any others of this day at least {:.1f}", times.loss, times.bound)
 
 
-def sun_lines(report: SunReport) -> Iterator[Message]:
-    """The report for people."""
+def flight_lines(report: SunReport) -> Iterator[Message]:
+    """The report for whoever flies: without effects."""
     yield sun_line(report)
     yield from facade_lines(report)
     if report.times is not None:
@@ -252,8 +277,45 @@ def sun_lines(report: SunReport) -> Iterator[Message]:
             yield sortie_line(report, times)
         if report.day.track.up.size:
             yield verdict_line(report.times)
+
+
+def sun_lines(report: SunReport) -> Iterator[Message]:
+    """The report for people."""
+    yield from flight_lines(report)
     for decision in report.day.decisions:
         yield glue(str(decision))
+
+
+def moment_lines(report: SunReport, seconds: float) -> Iterator[Message]:
+    """What a second of the day means: where the sun stands, light on facades, and sorties that would start then."""
+    track, at = report.day.track, report.day.track.time(seconds)
+    heading_deg, elevation_deg = sun_place_deg(track.lat_deg, track.lon_deg, at)
+    clock = clock_text(track, seconds)
+    yield say("sun at heading {:.0f}, elevation {:.1f} degrees", heading_deg, elevation_deg, place=clock)
+    if not is_within(track.up, seconds):
+        return
+    for facade in report.day.facades:
+        name = say("facade '{}'", facade.id)
+        if is_within(facade.lit, seconds):
+            yield say("in the sun", place=name)
+        elif is_within(facade.partly, seconds):
+            yield say("in the sun in part", place=name)
+        else:
+            yield say("in shade", place=name)
+    if report.times is None:
+        return
+    for times in sorted(report.times.sorties, key=lambda each: each.sortie.numbers):
+        starts, n = np.array([seconds]), len(times.sortie.taken_s)
+        found, name = times.sortie.spoiled(starts), sortie_name(times)
+        if math.isnan(start_losses(times.sortie, report.times, starts)[0]):
+            yield say("it would not land in the light", place=name)
+        else:
+            yield say(
+                "with take-off then, the sun or its mirror image is in {:.0f} of {} photos, {:.0f} show uneven light, "
+                "the pilot is blinded for {:.0f} s",
+                *(found.dazzled[0], n, found.uneven[0], found.blinded_s[0]),
+                place=name,
+            )
 
 
 def sun_summary(report: SunReport) -> dict[str, Any]:
@@ -327,14 +389,27 @@ class Look(StrEnum):
     FLIGHT = "flight"
 
 
+HEIGHTS = {
+    Look.NIGHT: 1.0,
+    Look.SKY: 1.0,
+    Look.SUN: 1.0,
+    Look.PARTLY: 0.6,
+    Look.SHADE: 0.25,
+    Look.GOOD: 1.0,
+    Look.FAIR: 0.6,
+    Look.BAD: 0.25,
+    Look.FLIGHT: 1.0,
+}
+"""Of a row that a stretch takes up: not all people see all colours."""
+
+
 @dataclass(frozen=True, slots=True)
 class Stretch:
-    """From one part of the day to another, 0 to 1. `share` is of the photos that a start there spoils."""
+    """From one part of the day to another, 0 to 1."""
 
     first: float
     last: float
     look: Look
-    share: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -372,24 +447,33 @@ def day_rows(report: SunReport) -> tuple[DayRow, ...]:
             )
         )
     if report.times is not None:
-        steps = np.linspace(0.0, length, MOST_STEPS + 1)
         for times in sorted(report.times.sorties, key=lambda each: each.sortie.numbers):
-            rows.append(DayRow(sortie_name(times), (*dark, *_start_stretches(times, report.times, steps, length))))
+            rows.append(DayRow(sortie_name(times), (*dark, *_start_stretches(times, report.times, length))))
     return tuple(rows)
 
 
-def _start_stretches(times: SortieTimes, flight: FlightTimes, steps: np.ndarray, length: float) -> Iterator[Stretch]:
-    sortie = times.sortie
-    n = max(1, len(sortie.taken_s))
-    middles = 0.5 * (steps[:-1] + steps[1:])
-    losses = sortie.losses(middles) / n
-    last = middles + sortie.duration_s
-    for first, stop, at, end, share in zip(steps[:-1], steps[1:], middles, last, losses, strict=True):
-        if any(a <= at and end <= b for a, b in flight.allowed):
-            look = Look.GOOD if share <= GOOD_SHARE else Look.FAIR if share <= FAIR_SHARE else Look.BAD
-            yield Stretch(first / length, stop / length, look, float(share))
+def start_losses(sortie: SortieSun, flight: FlightTimes, starts_s: np.ndarray) -> np.ndarray:
+    """Part of a sortie's photos that starts spoil, shape (n,); NaN where the sun is not up for the whole sortie."""
+    shares = sortie.losses(starts_s) / max(1, len(sortie.taken_s))
+    inside = [(starts_s >= first) & (starts_s + sortie.duration_s <= last) for first, last in flight.allowed]
+    return np.where(np.any(inside, axis=0) if inside else False, shares, np.nan)
+
+
+def _start_stretches(times: SortieTimes, flight: FlightTimes, length: float) -> Iterator[Stretch]:
+    edges = np.linspace(0.0, length, MOST_STEPS + 1)
+    shares = start_losses(times.sortie, flight, 0.5 * (edges[:-1] + edges[1:]))
+    looks = [
+        Look.NIGHT if math.isnan(s) else Look.GOOD if s <= GOOD_SHARE else Look.FAIR if s <= FAIR_SHARE else Look.BAD
+        for s in shares
+    ]
+    first = 0
+    for n in range(1, len(looks) + 1):
+        if n == len(looks) or looks[n] is not looks[first]:
+            if looks[first] is not Look.NIGHT:
+                yield Stretch(edges[first] / length, edges[n] / length, looks[first])
+            first = n
     if times.start_s is not None:
-        yield Stretch(times.start_s / length, (times.start_s + sortie.duration_s) / length, Look.FLIGHT)
+        yield Stretch(times.start_s / length, (times.start_s + times.sortie.duration_s) / length, Look.FLIGHT)
 
 
 def hour_marks(track: SunTrack, every: int = 3) -> Sequence[tuple[float, str]]:
@@ -397,5 +481,5 @@ def hour_marks(track: SunTrack, every: int = 3) -> Sequence[tuple[float, str]]:
     marks = []
     for hour in range(0, 24, every):
         at = datetime.combine(track.start.date(), time(hour), track.start.tzinfo)
-        marks.append((track.seconds(at.astimezone(UTC)) / track.length_s, f"{hour:02}:00"))
-    return (*marks, (1.0, "24:00"))
+        marks.append((track.seconds(at) / track.length_s, f"{hour:02}:00"))
+    return (*marks, (1.0, clock_text(track, track.length_s)))

@@ -12,6 +12,7 @@ from groundstation.services.mission import brief_html as brief_html_module
 from groundstation.services.mission.brief import flight_brief
 from groundstation.services.mission.brief_html import brief_html, brief_pictures
 from groundstation.services.mission.readiness import FlightDay
+from groundstation.services.mission.sunlight import flight_report
 from groundstation.services.units import UnitSystem
 from missions.formats.encode import takeoff_check
 from missions.mission.export_choices import LinkLoss
@@ -115,11 +116,13 @@ def test_every_word_of_the_page_is_there_for_the_translators(application):
     low = replace(takeoff_check(plan, MODEL.site, 1), is_upper_edge=False, above_edge_m=-2.0)
     high = replace(low, is_upper_edge=True, above_edge_m=2.0)
     sorties = tuple(replace(full.sorties[0], takeoff_check=check) for check in (low, high))
-    pictures = brief_pictures(MODEL, plan, UNITS, translate)
+    sun = flight_report(MODEL, plan, datetime(2027, 6, 21, 10, 30, tzinfo=UTC))
+    pictures = brief_pictures(MODEL, plan, UNITS, translate, sun)
+    sunny = flight_brief(MODEL, plan, errors, "today", sun=sun)
     near = replace(full, low=LowFlight(6.0, 12.0, 100.0))
     sharp = replace(full, sharp_share=0.8, wanted_gsd_mm=5.0, coarsest_gsd_mm=9.0)
     worth = replace(full, worth=FlightWorth((BatteryWorth(1, 11.0, 40, 31.0),), None, 0.7))
-    for brief in (full, empty, bare, warned, near, sharp, worth, replace(full, sorties=sorties)):
+    for brief in (full, empty, bare, warned, near, sharp, worth, sunny, replace(full, sorties=sorties)):
         brief_html(brief, UNITS, dict.fromkeys(pictures, "x"), translate)
     assert said <= set(WORDS)
     assert set(WORDS) - said == {"Page {0} of {1}"}

@@ -1,5 +1,6 @@
 """The flight brief holds what the pilot needs, from the plan's own numbers, in the user's units."""
 
+import html
 import re
 from dataclasses import replace
 from datetime import datetime, timedelta, timezone
@@ -156,6 +157,23 @@ def test_what_is_known_of_the_day_stands_on_the_page(plan):
     unknown = page_text(brief_html(flight_brief(MODEL, plan, (), "today"), METRIC, {}))
     assert "Planned for" not in unknown
     assert "Temperature" not in unknown
+
+
+def test_the_sun_of_the_day_stands_on_the_page_in_words_and_as_a_bar(plan):
+    at = datetime(2027, 6, 21, 10, 30, tzinfo=timezone(timedelta(hours=8)))
+    found = preflight(plan, MODEL, FlightDay(at))
+    brief = flight_brief(MODEL, plan, found.findings, "today", day=found.day, sun=found.sun)
+    pictures = brief_pictures(MODEL, plan, METRIC, sun=found.sun)
+    page = brief_html(brief, METRIC, dict.fromkeys(pictures, "x"))
+    text = page_text(page)
+    assert "sun over 'kiosk' on 2027-06-21 (UTC+08:00): up 05:40-19:10" in html.unescape(text)
+    assert "sortie 1: take off at" in text
+    assert 'alt="Sun"' in page
+    assert 'alt="Sun"' not in brief_html(brief, METRIC, {"map": "x"})
+    bar = ElementTree.fromstring(pictures["sun"])
+    words = [each.text for each in bar.iter() if each.tag.endswith("text")]
+    assert {"sun", "facade 'A'", "facade 'B'", "sortie 1", "00:00", "24:00"} <= set(words)
+    assert not flight_brief(MODEL, plan, (), "today").sun
 
 
 def test_page_names_every_height_reference_and_uses_the_users_units(brief):
