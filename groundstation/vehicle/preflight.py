@@ -12,6 +12,7 @@ from groundstation.vehicle.setup import ParameterChange, change_text
 from groundstation.vehicle.state import VehicleState
 from groundstation.vehicle.watch import FIX_3D, RTK_FLOAT, STALE_S
 from missions.mavlink.autopilots import Autopilot
+from missions.mavlink.remote_id import refusal_text
 from missions.mavlink.transfer.exchange import MissionType
 from missions.mission.model import altitude_amsl_m as home_altitude_amsl_m
 from planning.base.messages import glue, joined, say
@@ -30,6 +31,9 @@ PRE_ARM = say("pre-arm checks")
 
 HEIGHT_ROUNDING_M = 1e-3
 """Heights of plans are rounded to less than this."""
+
+REMOTE_ID_S = 3.0
+"""The module speaks once a second, and ArduPilot does not arm where it was silent for so long."""
 
 FIX_NAMES = {0: "none", 1: "none", 2: "2-D", 3: "3-D", 4: "differential", 5: "RTK float", 6: "RTK fixed", 7: "static"}
 
@@ -120,6 +124,7 @@ def preflight_checks(
         _home_height(state, orders),
         _battery(state, orders, now_s),
         *_sensors(state),
+        *_remote_id(state, now_s),
         _wind(state, orders),
         *_low_flight(orders),
         _board("mission", "mission", on_board.mission, on_board.reason_to_reread),
@@ -358,6 +363,8 @@ def _sensors(state: VehicleState) -> Iterator[PreflightCheck]:
     if PRE_ARM in problems:
         texts = (text.text for text in reversed(state.texts) if text.text.startswith("PreArm"))
         reason = next(texts, say("it does not say why"))
+        if "OpenDroneID" in reason:
+            reason = say("remote ID: {}", refusal_text(reason))
         yield PreflightCheck("sensors", Verdict.WAIT, say("the autopilot cannot be armed yet ({})", reason))
     elif problems:
         yield PreflightCheck(
@@ -365,6 +372,20 @@ def _sensors(state: VehicleState) -> Iterator[PreflightCheck]:
         )
     else:
         yield PreflightCheck("sensors", Verdict.OK, say("healthy"))
+
+
+def _remote_id(state: VehicleState, now_s: float) -> Iterator[PreflightCheck]:
+    """What the module for remote identification says; vehicles without one have no such line."""
+    told = state.remote_id
+    if told is None:
+        return
+    if told.age_s(now_s) > REMOTE_ID_S:
+        text = say("the module has been silent for {:.0f} s; it may not let the aircraft arm", told.age_s(now_s))
+        yield PreflightCheck("remote-id", Verdict.WAIT, text)
+    elif told.value.problem:
+        yield PreflightCheck("remote-id", Verdict.WAIT, refusal_text(told.value.problem))
+    else:
+        yield PreflightCheck("remote-id", Verdict.OK, say("the module is content"))
 
 
 def _wind(state: VehicleState, orders: SortieOrders) -> PreflightCheck:

@@ -114,6 +114,13 @@ class MissionProgress:
 
 
 @dataclass(frozen=True, slots=True)
+class RemoteIdStatus:
+    """What the module for remote identification says; `problem` is empty where it is content."""
+
+    problem: str
+
+
+@dataclass(frozen=True, slots=True)
 class VehicleText:
     """A text of the autopilot; `severity` 0 emergency to 7 debug."""
 
@@ -158,6 +165,8 @@ class VehicleState:
     impostor, left_enu_m
         Why there must be two vehicles with its number, empty where nothing says so; and the place that its positions
         last jumped away from.
+    remote_id
+        What its module for remote identification says; None for a vehicle without one.
     sensor_problems
         Names of enabled sensors that are not healthy.
     photos
@@ -187,6 +196,7 @@ class VehicleState:
     home_enu_m: Timed[Vec3] | None = None
     mission: Timed[MissionProgress] | None = None
     sensor_problems: Timed[tuple[str, ...]] | None = None
+    remote_id: Timed[RemoteIdStatus] | None = None
     others: frozenset[int] = frozenset()
     turns_back_s: tuple[float, ...] = ()
     vehicle_type: int | None = None

@@ -20,6 +20,7 @@ from groundstation.vehicle.state import (
     Landed,
     MissionProgress,
     Motion,
+    RemoteIdStatus,
     Timed,
     VehicleState,
     VehicleText,
@@ -368,6 +369,14 @@ def _finite(*values: float) -> bool:
     return all(map(math.isfinite, values))
 
 
+def _remote_id(
+    state: VehicleState, message: messages.OpenDroneIdArmStatus, now_s: float, _frame: LocalFrame
+) -> VehicleState:
+    # A module that refuses without a reason still refuses.
+    problem = "" if message.status == 0 else message.error or "?"
+    return replace(state, remote_id=Timed(RemoteIdStatus(problem), now_s))
+
+
 _HANDLERS: dict[type[messages.Message], Callable[..., VehicleState]] = {
     messages.SystemTime: _system_time,
     messages.GlobalPositionInt: _position,
@@ -385,6 +394,7 @@ _HANDLERS: dict[type[messages.Message], Callable[..., VehicleState]] = {
     messages.MissionCurrent: _mission_current,
     messages.MissionItemReached: _reached,
     messages.Statustext: _text,
+    messages.OpenDroneIdArmStatus: _remote_id,
     messages.CameraFeedback: _feedback,
     messages.CameraImageCaptured: _captured,
 }

@@ -294,6 +294,66 @@ class FileTransferProtocol(Message):
     payload: tuple[int, ...]
     target_network: int = ...
 
+# OPEN_DRONE_ID_BASIC_ID (12900).
+@dataclass(frozen=True, slots=True)
+class OpenDroneIdBasicId(Message):
+    target_system: int
+    target_component: int
+    id_or_mac: tuple[int, ...]
+    id_type: int  # MAV_ODID_ID_TYPE
+    ua_type: int  # MAV_ODID_UA_TYPE
+    uas_id: tuple[int, ...]
+
+# OPEN_DRONE_ID_SELF_ID (12903).
+@dataclass(frozen=True, slots=True)
+class OpenDroneIdSelfId(Message):
+    target_system: int
+    target_component: int
+    id_or_mac: tuple[int, ...]
+    description_type: int  # MAV_ODID_DESC_TYPE
+    description: str
+
+# OPEN_DRONE_ID_SYSTEM (12904). Heights above the ellipsoid; `timestamp` counts seconds from 2019.
+@dataclass(frozen=True, slots=True)
+class OpenDroneIdSystem(Message):
+    target_system: int
+    target_component: int
+    id_or_mac: tuple[int, ...]
+    operator_location_type: int  # MAV_ODID_OPERATOR_LOCATION_TYPE
+    classification_type: int  # MAV_ODID_CLASSIFICATION_TYPE
+    operator_latitude: int  # degE7
+    operator_longitude: int  # degE7
+    area_count: int
+    area_radius: int  # m
+    area_ceiling: float  # m
+    area_floor: float  # m
+    category_eu: int  # MAV_ODID_CATEGORY_EU
+    class_eu: int  # MAV_ODID_CLASS_EU
+    operator_altitude_geo: float  # m
+    timestamp: int  # s
+
+# OPEN_DRONE_ID_OPERATOR_ID (12905).
+@dataclass(frozen=True, slots=True)
+class OpenDroneIdOperatorId(Message):
+    target_system: int
+    target_component: int
+    id_or_mac: tuple[int, ...]
+    operator_id_type: int  # MAV_ODID_OPERATOR_ID_TYPE
+    operator_id: str
+
+# OPEN_DRONE_ID_ARM_STATUS (12918). `status` 0: content; `error` says what is missing.
+@dataclass(frozen=True, slots=True)
+class OpenDroneIdArmStatus(Message):
+    status: int  # MAV_ODID_ARM_STATUS
+    error: str
+
+# GPS_RTCM_DATA (233). `flags`: bit 0 fragmented, bits 1 and 2 which fragment, bits 3 to 7 which message.
+@dataclass(frozen=True, slots=True)
+class GpsRtcmData(Message):
+    flags: int
+    len: int  # bytes
+    data: tuple[int, ...]
+
 # GLOBAL_POSITION_INT (33). `alt` is above mean sea level.
 @dataclass(frozen=True, slots=True)
 class GlobalPositionInt(Message):

@@ -94,6 +94,13 @@ MESSAGES: Mapping[str, Mapping[str, Any]] = {
     "MissionSetCurrent": {},
     # Files on the vehicle
     "FileTransferProtocol": {"target_network": 0},
+    # Remote identification, and corrections for the receiver
+    "OpenDroneIdBasicId": {},
+    "OpenDroneIdSelfId": {},
+    "OpenDroneIdSystem": {},
+    "OpenDroneIdOperatorId": {},
+    "OpenDroneIdArmStatus": {},
+    "GpsRtcmData": {},
     # Where it is and how it does
     "GlobalPositionInt": {},
     "LocalPositionNed": {},

@@ -21,6 +21,10 @@ from missions.mavlink.messages import (
     Message,
     MissionItemReached,
     MissionSetCurrent,
+    OpenDroneIdBasicId,
+    OpenDroneIdOperatorId,
+    OpenDroneIdSelfId,
+    OpenDroneIdSystem,
     ParamRequestList,
     ParamRequestRead,
     ParamSet,
@@ -45,6 +49,7 @@ from missions.simulator.autopilot.parameters import ParameterTable
 from missions.simulator.autopilot.payload import Actions, CameraControl, GimbalControl
 from missions.simulator.autopilot.profiles import vehicle_profile
 from missions.simulator.autopilot.px4_scheduler import Px4Scheduler
+from missions.simulator.autopilot.remote_id import RemoteIdModule
 from missions.simulator.autopilot.scheduler import MissionState, Scheduler, SchedulerContext
 from planning.geo.frames import Origin, Vec3
 
@@ -114,6 +119,7 @@ class SimulatedVehicle:
         self._start_s = profile.estimator_ready_s if is_ready else 0.0
         self.parameters = ParameterTable(autopilot, parameters)
         self._parameters_revision = self.parameters.revision
+        self.remote_id = RemoteIdModule(self.parameters)
         self.place = Place(origin, airframe.estimate.position_enu_m if home_enu_m is None else home_enu_m)
         self._guidance = Guidance(airframe)
         self._guidance.now_s = self._start_s
@@ -140,6 +146,7 @@ class SimulatedVehicle:
             self.parameters,
             self._take_speeds,
             self._say,
+            lambda: self.remote_id.arming_refusal(self.now_s, self.modes.has_position),
         )
         self.modes = FlightModes(deck)
         self._failsafe = Failsafe(
@@ -189,6 +196,8 @@ class SimulatedVehicle:
                 self._out += self.parameters.receive(message)
             case FileTransferProtocol():
                 self._out += self._file_server.receive(message, source)
+            case OpenDroneIdBasicId() | OpenDroneIdOperatorId() | OpenDroneIdSelfId() | OpenDroneIdSystem():
+                self.remote_id.receive(message, self.now_s)
             case MissionSetCurrent():
                 self.scheduler.set_current(message.seq)
                 self._out.append(self.instruments.mission_current())
@@ -223,6 +232,7 @@ class SimulatedVehicle:
         self.modes.update()
         self.log.update(guidance.now_s, self.modes.is_armed, self.modes.mode, self._believed)
         self._out += self._file_server.tick()
+        self._out += self.remote_id.tick(guidance.now_s, self.modes.has_position)
         if self._lift_off_s == math.inf and not self.modes.is_landed:
             self._lift_off_s = guidance.now_s
         if self.stores.is_receiving:

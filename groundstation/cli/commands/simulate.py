@@ -18,6 +18,7 @@ from planning.base.parameters import declared, with_values
 
 if TYPE_CHECKING:
     from groundstation.services.fly.flying import FlightRequest, Flown
+    from missions.mavlink.remote_id import RemoteId
     from planning.base.effects import EffectSetting
     from planning.base.progress import Monitor
 
@@ -80,6 +81,8 @@ def add_parser(subparsers: Any) -> None:
     add("--raise", type=number, dest="raised", metavar="M", help="take-off lies this much lower than the planned home")
     add("--overrule", action="append", default=[], metavar="CHECK", help="fly though this check grounds it")
     add("--signed", action="store_true", help="sign the link with this computer's key ('signing set')")
+    add("--operator", metavar="NUMBER", help="operator's registration number, for vehicles with remote ID")
+    add("--serial-number", default="", metavar="TEXT", help="of the aircraft, for remote ID (default: its module's)")
     add("--logs", type=Path, metavar="DIR", help="folder for telemetry logs of a link (default: beside FLIGHT)")
     add("--json", action="store_true", help="print one JSON object instead of text")
 
@@ -156,7 +159,21 @@ def _request(options: argparse.Namespace) -> FlightRequest:
         raised_m=options.raised or 0.0,
         log_folder=None if is_simulated else (options.logs or options.out.parent / "logs"),
         signer=link_signer() if options.signed else None,
+        identity=_identity(options),
     )
+
+
+def _identity(options: argparse.Namespace) -> RemoteId:
+    """What the operator says of itself."""
+    from missions.mavlink.remote_id import NOBODY, operator_number, serial_number
+
+    serial = serial_number(options.serial_number) if options.serial_number else ""
+    if options.operator is None:
+        return replace(NOBODY, serial_number=serial)
+    number = operator_number(options.operator)
+    if number.is_eu and not number.is_proved:
+        tell("the operator number has the right form; with its secret part its checksum can be proved", file=sys.stderr)
+    return replace(NOBODY, operator=number.public, serial_number=serial)
 
 
 def _overrules(codes: list[str]) -> frozenset[str]:

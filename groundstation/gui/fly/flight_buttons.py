@@ -148,6 +148,8 @@ class PreflightList(QWidget):
             "home-height": self.tr("Height of home"),
             "battery": self.tr("Battery"),
             "sensors": self.tr("Sensors"),
+            "remote-id": self.tr("Remote ID"),
+            "corrections": self.tr("RTK corrections"),
             "wind": self.tr("Wind"),
             "low-flight": self.tr("Lowest flight"),
             "mission": self.tr("Mission on board"),

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from PySide6.QtCore import QObject, QSignalBlocker, Qt, Signal
 from PySide6.QtGui import QAction, QCloseEvent, QColor
 from PySide6.QtWidgets import (
     QCheckBox,
     QLabel,
+    QLineEdit,
     QListWidget,
     QListWidgetItem,
     QMainWindow,
@@ -28,7 +31,7 @@ from groundstation.gui.fly.readouts_view import ReadoutsView, ReportView
 from groundstation.gui.fly.simulation_controller import SimulationPage
 from groundstation.gui.shared_view import SharedView
 from groundstation.gui.widgets.findings_list import FindingsList
-from groundstation.gui.widgets.inputs import ChoiceBox
+from groundstation.gui.widgets.inputs import ChoiceBox, Form
 from groundstation.gui.widgets.scrolling import scrolled
 from groundstation.gui.widgets.tab_order import set_enabled
 from groundstation.gui.widgets.theme import colours
@@ -42,6 +45,8 @@ from groundstation.services.units import UnitSystem, minutes_text
 from groundstation.vehicle.preflight import PreflightCheck, Remedy
 from groundstation.vehicle.sortie.run_records import Phase
 from groundstation.vehicle.watch import FlightWarning
+from missions.mavlink.remote_id import EXAMPLE, operator_number, serial_number
+from planning.base.errors import InputError
 from planning.base.findings import Severity
 from planning.revision.top_up import TopUp
 
@@ -260,21 +265,72 @@ class SettingsPage(QWidget):
         says = QLabel(self.tr("Start waits for RTK, and a warning comes when it is lost in flight."))
         says.setWordWrap(True)
         says.setProperty("role", "muted")
+        self._kept = FlightSettings()
+        self.operator, self.serial, self._said = QLineEdit(), QLineEdit(), QLabel()
+        self.operator.setPlaceholderText(EXAMPLE)
+        self.operator.setToolTip(
+            self.tr("For aircraft with remote ID. The secret part proves the checksum, and is neither sent nor kept")
+        )
+        self.serial.setToolTip(self.tr("Only where the aircraft's module does not know it"))
+        self._said.setWordWrap(True)
+        form = Form()
+        form.addRow(self.tr("Operator number"), self.operator)
+        form.addRow(self.tr("Serial number"), self.serial)
         layout = QVBoxLayout(self)
         layout.addWidget(self.needs_rtk)
         layout.addWidget(says)
+        layout.addLayout(form)
+        layout.addWidget(self._said)
         layout.addStretch(1)
         self.needs_rtk.toggled.connect(self._edited)
+        self.operator.editingFinished.connect(self._identity_typed)
+        self.serial.editingFinished.connect(self._identity_typed)
 
     def value(self) -> FlightSettings:
         """What was chosen."""
-        return FlightSettings(self.needs_rtk.isChecked())
+        return replace(self._kept, needs_rtk=self.needs_rtk.isChecked())
 
     def setValue(self, value: FlightSettings) -> None:  # noqa: N802
         """Show another choice."""
         blocker = QSignalBlocker(self.needs_rtk)
         self.needs_rtk.setChecked(value.needs_rtk)
         del blocker
+        self._kept = value
+        self.operator.setText(value.operator)
+        self.serial.setText(value.serial_number)
+
+    def said(self) -> str:
+        """What is said of the numbers that were typed."""
+        return self._said.text()
+
+    def _identity_typed(self) -> None:
+        """Take the operator's and the aircraft's numbers, or say what is wrong with them."""
+        typed, serial = self.operator.text().strip(), self.serial.text().strip()
+        if (typed, serial) == (self._kept.operator, self._kept.serial_number):
+            return
+        try:
+            number = operator_number(typed) if typed else None
+            numbers = "" if number is None else number.public, serial_number(serial) if serial else ""
+            kept = replace(self._kept, operator=numbers[0], serial_number=numbers[1])
+        except InputError as error:
+            self._say("error", translated(str(error), UnitSystem.METRIC))
+            return
+        if number is None:
+            self._say("muted", "")
+        elif number.is_proved:
+            self._say("ok", self.tr("Operator number: its checksum is right."))
+        elif number.is_eu:
+            self._say("muted", self.tr("The form is right. With the secret part the checksum can be proved."))
+        else:
+            self._say("muted", self.tr("No number of an EASA state: nothing about it can be proved."))
+        self._kept = kept
+        self.operator.setText(kept.operator)
+        self.valueChanged.emit(self.value())
+
+    def _say(self, role: str, text: str) -> None:
+        self._said.setProperty("role", role)
+        self._said.style().polish(self._said)
+        self._said.setText(text)
 
     def _edited(self, _is_on: bool) -> None:
         self.valueChanged.emit(self.value())

@@ -48,6 +48,7 @@ from groundstation.vehicle.commands import CommandCall, CommandOutcome, set_mode
 from groundstation.vehicle.onboard_logs import NewestLog
 from groundstation.vehicle.preflight import OnBoard, is_ready, preflight_checks
 from groundstation.vehicle.setup import ParameterChange, message_requests
+from groundstation.vehicle.sortie.conduct import Companion
 from groundstation.vehicle.sortie.flight_run import FlightRun
 from groundstation.vehicle.sortie.run_records import ORDER_MODES, Phase, PilotOrder, RunOptions
 from groundstation.vehicle.state import VehicleState
@@ -59,6 +60,7 @@ from missions.flight.report_rules import DEFAULT_LIMITS, Limits
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.link import GROUND_HEARTBEAT, GROUND_STATION, HEARTBEAT_EVERY_S
 from missions.mavlink.messages import Address, Message, Received
+from missions.mavlink.remote_id import RemoteIdSender
 from missions.mavlink.transfer.exchange import Route
 from planning.base.errors import GroundStationError, LinkError
 from planning.base.messages import say
@@ -414,6 +416,7 @@ class LiveFlight:
         self._ordered: deque[Request] = deque()
         self._events = FlightEvents(publish, self._coverage)
         self._signing = SigningEvents(publish)
+        self._remote_id = RemoteIdSender(settings.identity, sortie.orders.home, unix_clock)
         self._activate(sortie, VehicleState())
         for record in flown:
             for photo in record.photos:
@@ -500,11 +503,20 @@ class LiveFlight:
                 break
             wait_s = 0.0
             yield from self._machine.receive(received)
+            for companion in self._companions:
+                yield from companion.receive(received)
             if self._log is not None:
                 yield from self._log.receive(received)
         yield from self._machine.tick(self._wire.now_s())
+        for companion in self._companions:
+            yield from companion.tick(self._wire.now_s())
         if self._log is not None:
             yield from self._log.cancel() if self._machine.state.is_armed else self._log.tick(self._wire.now_s())
+
+    @property
+    def _companions(self) -> tuple[Companion, ...]:
+        """What goes along on the link."""
+        return (self._remote_id,)
 
     @property
     def _machine(self) -> FlightRun | Listener:
@@ -530,6 +542,7 @@ class LiveFlight:
 
     def _settle(self, settings: FlightSettings) -> None:
         self._settings = settings
+        self._remote_id.identity = settings.identity
         if self._run is not None:
             self._run.options = replace(self._run.options, needs_rtk=settings.needs_rtk)
 
@@ -682,6 +695,7 @@ class LiveFlight:
         frame = LocalFrame.of_home(orders.site.origin, orders.home_enu_m)
         self._sortie, self._listener = sortie, Listener(frame, replace(state, photos=()))
         self._times = SortieTimes.of(sortie)
+        self._remote_id.place = orders.home
         self._run = self._awaited = None
         self._ordered.clear()
         self._events.begin()

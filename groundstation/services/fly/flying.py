@@ -22,7 +22,7 @@ from groundstation.vehicle.duration import items_duration_s, timed_by_items
 from groundstation.vehicle.orders import SortieOrders, sortie_orders
 from groundstation.vehicle.preflight import OVERRULABLE
 from groundstation.vehicle.recorder import TelemetryLog, new_log_path
-from groundstation.vehicle.sortie.conduct import conduct
+from groundstation.vehicle.sortie.conduct import Companion, conduct
 from groundstation.vehicle.sortie.flight_run import FlightRun
 from groundstation.vehicle.sortie.run_records import RunOptions, RunOutcome, RunView
 from missions.flight.flight_file import Flight, flight_of, write_flight
@@ -36,6 +36,7 @@ from missions.formats.encode import default_autopilot
 from missions.formats.options import ExportOptions
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.link import ChannelLink, open_link
+from missions.mavlink.remote_id import NOBODY, RemoteId, RemoteIdSender
 from missions.mavlink.signing import Signer
 from missions.mission.build import missions_from_plan
 from missions.mission.model import GeoPoint, altitude_amsl_m
@@ -303,6 +304,7 @@ def fly_link(
     show: Callable[[RunView], None] | None = None,
     started: Callable[[FlightRun], None] | None = None,
     signer: Signer | None = None,
+    companions: Sequence[Companion] = (),
     monitor: Monitor = QUIET,
 ) -> tuple[FlightRun, RunOutcome, Path]:
     """Fly a sortie: the run as it ended, how it ended, and its telemetry log.
@@ -313,6 +315,8 @@ def fly_link(
         Called with the run before it begins: whoever keeps it may give it the pilot's orders from any thread.
     signer
         Signs what is sent, and lets nothing in that the vehicle did not sign; None: unsigned.
+    companions
+        What goes along on the link.
 
     Raises
     ------
@@ -343,7 +347,9 @@ def fly_link(
         link = opened()
         if started is not None:
             started(run)
-        outcome = conduct(run, link, time.perf_counter, reopen=opened, show=look, monitor=monitor)
+        outcome = conduct(
+            run, link, time.perf_counter, reopen=opened, companions=companions, show=look, monitor=monitor
+        )
     finally:
         log.close()
     return run, outcome, log.path
@@ -383,6 +389,8 @@ class FlightRequest:
         For telemetry logs, which a flight over a link always has; None in the simulation.
     signer
         At a link: signs what is sent, and lets nothing in that the vehicle did not sign; None: unsigned.
+    identity
+        What the operator says of itself to vehicles with remote identification.
     """
 
     link: str = SIMULATED
@@ -398,6 +406,7 @@ class FlightRequest:
     raised_m: float = 0.0
     log_folder: Path | None = None
     signer: Signer | None = None
+    identity: RemoteId = NOBODY
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -613,8 +622,16 @@ class _Case:
             needs_rtk=request.needs_rtk,
             overrules=request.overrules,
         )
+        companions = (RemoteIdSender(request.identity, orders.home, time.time),)
         run, outcome, log = fly_link(
-            orders, request.link, options, request.log_folder, self.show, signer=request.signer, monitor=self.monitor
+            orders,
+            request.link,
+            options,
+            request.log_folder,
+            self.show,
+            signer=request.signer,
+            companions=companions,
+            monitor=self.monitor,
         )
         found = run.state.autopilot or self.autopilot
         sortie = FlownSortie(orders.number, items_duration_s(orders, found), (), outcome.notes, log)

@@ -9,6 +9,7 @@ from pathlib import Path
 from groundstation.services.settings import Tell, read_preferences, settings_path
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.link import DEFAULT_BAUD
+from missions.mavlink.remote_id import RemoteId
 
 # How the pilot reaches the vehicle: what was chosen in the window, as a url, and kept for the next time.
 
@@ -89,9 +90,24 @@ class FlightSettings:
     ----------
     needs_rtk
         Do not start without RTK, and warn when it is lost.
+    operator, serial_number
+        For remote identification: public part of the operator's number, and the aircraft's serial number; empty: none.
+    corrections
+        Where RTK corrections come from, `USER@HOST:PORT/MOUNTPOINT`; empty: nowhere. A password is never kept.
     """
 
     needs_rtk: bool = False
+    operator: str = ""
+    serial_number: str = ""
+    corrections: str = ""
+
+    @property
+    def identity(self) -> RemoteId:
+        """What the operator says of itself; a file that was edited by hand may hold what does not fit."""
+        try:
+            return RemoteId(self.operator, self.serial_number)
+        except ValueError:
+            return RemoteId()
 
 
 USUAL = FlightSettings()

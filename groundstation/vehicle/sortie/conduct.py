@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
+from typing import Protocol
 
 from groundstation.vehicle.sortie.flight_run import FlightRun
 from groundstation.vehicle.sortie.run_records import Phase, RunOutcome, RunView
@@ -18,6 +19,17 @@ VIEW_EVERY_S = 0.1
 REOPEN_EVERY_S = 1.0
 SHORTEST_WAIT_S = 0.02
 
+
+class Companion(Protocol):
+    """What goes along with a flight on the same link, such as remote identification."""
+
+    def receive(self, received: Received) -> list[Message]:
+        """Take a message."""
+
+    def tick(self, now_s: float) -> list[Message]:
+        """What is due."""
+
+
 Reopen = Callable[[], Link]
 """Opens the link anew; raises LinkError where it cannot."""
 
@@ -29,6 +41,7 @@ def conduct(
     *,
     reopen: Reopen | None = None,
     show: Callable[[RunView], None] | None = None,
+    companions: Sequence[Companion] = (),
     wait: Callable[[float], None] = time.sleep,
     monitor: Monitor = QUIET,
 ) -> RunOutcome:
@@ -40,6 +53,8 @@ def conduct(
         The link's: real time for real vehicles, the simulation's for one in this process.
     reopen
         Without it a link that breaks ends the sortie.
+    companions
+        What goes along on the link.
     show
         Called ten times a second (of the clock) with the run as it stands.
     wait
@@ -54,13 +69,18 @@ def conduct(
     """
     line = _Line(link, reopen, clock, wait)
     try:
-        return _conduct(run, line, clock, show, monitor)
+        return _conduct(run, line, clock, show, companions, monitor)
     finally:
         line.close()
 
 
 def _conduct(
-    run: FlightRun, line: _Line, clock: Clock, show: Callable[[RunView], None] | None, monitor: Monitor
+    run: FlightRun,
+    line: _Line,
+    clock: Clock,
+    show: Callable[[RunView], None] | None,
+    companions: Sequence[Companion],
+    monitor: Monitor,
 ) -> RunOutcome:
     shown_s = -math.inf
     line.send(run.start(clock()))
@@ -76,6 +96,10 @@ def _conduct(
         received = line.receive(max(wait_s, SHORTEST_WAIT_S) if wait_s > 0.0 else 0.0)
         if received is not None:
             line.send(run.receive(received))
+            for companion in companions:
+                line.send(companion.receive(received))
+        for companion in companions:
+            line.send(companion.tick(clock()))
         if clock() >= run.next_deadline_s:
             line.send(run.tick(clock()))
     if show is not None:

@@ -53,6 +53,7 @@ from groundstation.vehicle.watch import STALE_S
 from missions.flight.report_rules import FRESH_S
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.messages import Address, CommandLong
+from missions.mavlink.remote_id import refusal_text
 from missions.mavlink.transfer.exchange import Download, DownloadOutcome, Ending, MissionType, Route
 from missions.mavlink.transfer.verified import NotVerified, Verified, VerifiedUpload
 from missions.mavlink.transfer.wire_items import to_wire
@@ -495,6 +496,8 @@ def _pause(run: SortieRun, duration_s: float) -> Steps:
 def _last_complaint(run: SortieRun) -> str:
     """The autopilot's own last words, warnings or worse, in brackets."""
     text = next((text.text for text in reversed(run.state.texts) if text.severity <= 4), "")
+    if "OpenDroneID" in text:
+        return say(" (remote ID: {})", refusal_text(text))
     return glue(" (", text, ")") if text else ""
 
 

@@ -55,6 +55,7 @@ class ModeContext:
     parameters: ParameterTable
     take_speeds: Callable[[], None]
     say: Callable[[int, str], None]
+    arming_refusal: Callable[[], str | None] = lambda: None
 
 
 class FlightModes:
@@ -148,7 +149,7 @@ class FlightModes:
             in_auto = self.activity is Activity.MISSION and bool(options & ARM_IN_AUTO)
             if not (deck.profile.modes[self.mode].armable or in_auto):
                 return f"Arm: {self.mode} mode not armable"
-            refusal = deck.scheduler.arming_refusal()
+            refusal = deck.scheduler.arming_refusal() or deck.arming_refusal()
             if refusal is None and self.activity is Activity.MISSION:
                 refusal = deck.scheduler.refusal(is_landed=True)
             if refusal is not None:

@@ -47,3 +47,38 @@ def test_times_of_notes_never_have_sixty_seconds(application, time_s, words):
     notes = FlightNotes()
     notes.add(time_s, Severity.NOTE, "armed")
     assert notes.texts().startswith(words)
+
+
+def test_an_operators_number_is_proved_kept_without_its_secret_and_refused_where_it_is_wrong(application):
+    from PySide6.QtWidgets import QApplication
+
+    from groundstation.gui.fly.fly_page import SettingsPage
+    from tests.gui.driving import type_into
+
+    page = SettingsPage()
+    page.show()
+    heard = []
+    page.valueChanged.connect(heard.append)
+
+    def typed(line, text):
+        type_into(line, text)
+        line.clearFocus()
+        line.editingFinished.emit()
+        QApplication.processEvents()
+
+    typed(page.operator, "FIN87astrdge12k9-xyz")
+    assert "its checksum is wrong" in page.said()
+    assert heard == []
+    typed(page.operator, "FIN87astrdge12k8-xyz")
+    assert page.said() == "Operator number: its checksum is right."
+    assert page.operator.text() == heard[-1].operator == "FIN87astrdge12k8"
+    typed(page.serial, "1581F5FHB229F0020")
+    assert (heard[-1].serial_number, heard[-1].operator) == ("1581F5FHB229F0020", "FIN87astrdge12k8")
+    page.needs_rtk.setChecked(True)
+    assert (heard[-1].needs_rtk, heard[-1].operator) == (True, "FIN87astrdge12k8")
+    typed(page.operator, "")
+    assert heard[-1].operator == ""
+    other = SettingsPage()
+    other.setValue(heard[2])
+    assert other.operator.text() == "FIN87astrdge12k8"
+    page.close()
