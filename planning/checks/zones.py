@@ -195,12 +195,10 @@ def _counted_from(local: LocalZone, case: Case) -> str:
             limits = (each.volume.lower, each.volume.upper)
             above |= {limit.above for limit in limits if limit.value_m}
     words = []
-    if HeightAbove.GROUND in above:
+    if HeightAbove.GROUND in above and case.space.ground.terrain is None:
+        level_m = case.site_model.site.airspace.ground_z_m
         words.append(
-            say(
-                "heights above ground count from the site's ground: are {:g} m its height all around?",
-                case.site_model.site.airspace.ground_z_m,
-            )
+            say("heights above ground count from the site's ground: are {:g} m its height all around?", level_m)
         )
     if HeightAbove.FLIGHT_LEVEL in above:
         words.append(say("flight levels count as low as 930 hPa and -50 degrees bring them"))

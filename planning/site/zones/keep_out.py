@@ -13,7 +13,9 @@ from planning.base.errors import InputError
 from planning.base.files import read_input_file
 from planning.base.messages import say, without_place
 from planning.geo.frames import Origin
-from planning.site.records import Airspace, NoFlyZone, Site, SiteModel
+from planning.site.ground import Ground, ground_of
+from planning.site.records import Airspace, NoFlyZone, SiteModel
+from planning.site.terrain import Terrain, surfaces
 from planning.site.zones.local import LocalZone, LocalZones, local_zones, prisms
 from planning.site.zones.reading import ZONES_FILE, known_zones
 from planning.site.zones.records import Restriction, SiteZones, TimeWindow, ZoneFile, ZoneSet
@@ -39,12 +41,6 @@ def site_zones(source: ZoneFile, content: bytes) -> SiteZones:
     return SiteZones(source, content, problem)
 
 
-def missing_sources(site: Site, zones: tuple[SiteZones, ...]) -> tuple[ZoneFile, ...]:
-    """Files that a site names and nobody has looked for."""
-    known = {each.source for each in zones}
-    return tuple(source for source in site.zones if source not in known)
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class KnownFile:
     """What a site knows from one of its files; both None where the file cannot be used."""
@@ -65,17 +61,20 @@ def known_files(model: SiteModel) -> tuple[KnownFile, ...]:
             problem = say("has not been read") if each is None else each.problem
             found.append(KnownFile(source, problem))
             continue
-        content, local = _local(each, model.site.origin, model.site.airspace)
+        site = model.site
+        held_to = site.terrain if ground_of(site).terrain is not None else None
+        content, local = _local(each, site.origin, site.airspace, held_to)
         found.append(KnownFile(source, "", content, local))
     return tuple(found)
 
 
 @lru_cache(maxsize=32)
-def _local(zones: SiteZones, origin: Origin, airspace: Airspace) -> tuple[ZoneSet, LocalZones]:
+def _local(zones: SiteZones, origin: Origin, airspace: Airspace, terrain: Terrain | None) -> tuple[ZoneSet, LocalZones]:
     found = known_zones(zones.content, Path(zones.source.file))
     if isinstance(found, InputError):  # `site_zones` has named it as a problem
         raise found
-    return found, local_zones(found, origin, airspace)
+    ground = Ground(airspace.ground_z_m, None if terrain is None else surfaces(terrain))
+    return found, local_zones(found, origin, airspace, ground)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

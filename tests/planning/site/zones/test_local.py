@@ -2,6 +2,7 @@
 
 import math
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,7 +14,10 @@ from pyproj import Geod
 from planning.geo.enu import enu_from_geodetic
 from planning.geo.frames import Origin
 from planning.geo.geoid import undulation_m
+from planning.geo.height_field import HeightField
+from planning.site.ground import Ground
 from planning.site.records import Airspace
+from planning.site.terrain import Surfaces
 from planning.site.zones.local import (
     AREA_TOLERANCE_M,
     CIRCLE_TOLERANCE_M,
@@ -204,6 +208,21 @@ def test_flight_levels_count_wherever_pressure_and_temperature_may_bring_them(le
     z_m = true_m + geoid_m - ORIGIN.ellipsoid_height_m
     below, above = Volume(Outline(ring), level, UNLIMITED), Volume(Outline(ring), FROM_GROUND, level)
     assert found(below).near[0].volumes[0].floor_m <= z_m <= found(above).near[0].volumes[0].ceiling_m
+
+
+def test_heights_above_ground_count_from_the_bounds_of_terrain_and_are_open_where_it_has_none():
+    grid = HeightField(-200.0, -200.0, 10.0, np.add.outer(np.zeros(41), np.linspace(-20.0, 20.0, 41)))
+    ground = Ground(0.0, Surfaces(grid, replace(grid, z_m=grid.z_m + 1.0), replace(grid, z_m=grid.z_m - 1.0)))
+    ring = tuple((lon, lat) for lon, lat in square(0.0, 0.0, 50.0))
+    limits = Limit(30.0, HeightAbove.GROUND, ""), Limit(60.0, HeightAbove.GROUND, "")
+    zones = ZoneSet("test", (Zone("Z", "Z", Restriction.PROHIBITED, volumes=(Volume(Outline(ring), *limits),)),))
+    (near,) = local_zones(zones, ORIGIN, AIRSPACE, ground).near
+    assert near.volumes[0].floor_m == pytest.approx(30.0 - 6.0 - 1.0, abs=1e-9)
+    assert near.volumes[0].ceiling_m == pytest.approx(60.0 + 6.0 + 1.0, abs=1e-9)
+    lost = replace(grid, z_m=np.where(grid.z_m > 4.5, np.nan, grid.z_m))
+    (near,) = local_zones(zones, ORIGIN, AIRSPACE, Ground(0.0, Surfaces(lost, lost, lost))).near
+    assert (near.volumes[0].floor_m, near.volumes[0].ceiling_m) == (-math.inf, math.inf)
+    assert "no heights" in near.questions[0]
 
 
 def test_limits_that_contradict_each_other_count_at_all_heights_and_ask():
