@@ -126,7 +126,7 @@ class Constraints:
         None,
         "each direction of view is wanted with pixels up to this size on the panel; those seen only more coarsely are "
         "counted and named",
-        label="Wanted pixel",
+        label="Wanted GSD",
         unit="mm",
         least=0.0,
         expected="0 mm or more",
@@ -325,7 +325,7 @@ class PlanParameters:
     share: float | None = parameter(
         None,
         "share of what can be covered, 0 to 1, with as few views as possible",
-        label="Coverage",
+        label="Target coverage",
         name="coverage",
         unit="share",
         above=0.0,

@@ -119,6 +119,8 @@ class Settings:
         Aircraft and camera that a new plan starts with: see `planning.aircraft.catalogue.profile`.
     window_layouts
         Layout of the window as text, by its size ("1280x720").
+    has_seen_tour
+        The start page offers the tour no more.
     """
 
     theme: Theme = Theme.SYSTEM
@@ -130,6 +132,7 @@ class Settings:
     map_tiles: str = ""
     default_profile: str = DEFAULT_PROFILE
     window_layouts: Mapping[str, str] = field(default_factory=dict, hash=False)
+    has_seen_tour: bool = False
 
     def __post_init__(self) -> None:
         if not 0.8 <= self.text_scale <= 2.0:

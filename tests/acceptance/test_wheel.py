@@ -76,7 +76,7 @@ def installed(tmp_path_factory):
     folder = tmp_path_factory.mktemp("wheel") / "Flug über Glas"
     sources, wheels, venv = folder / "Quellen", folder / "Räder", folder / "Umgebung für Flüge"
     shutil.copytree(
-        ROOT, sources, ignore=shutil.ignore_patterns(".*", "__pycache__", "tests", "docs", "build", "*.egg-info")
+        ROOT, sources, ignore=shutil.ignore_patterns(".*", "__pycache__", "tests", "_build", "build", "*.egg-info")
     )
     pip = [sys.executable, "-m", "pip", "--quiet", "--disable-pip-version-check"]
     subprocess.run(

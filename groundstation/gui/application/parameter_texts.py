@@ -12,7 +12,7 @@ TEXTS = (
     QT_TRANSLATE_NOOP("Parameters", "how views are chosen"),
     QT_TRANSLATE_NOOP("Parameters", "Views"),
     QT_TRANSLATE_NOOP("Parameters", "number of views"),
-    QT_TRANSLATE_NOOP("Parameters", "Coverage"),
+    QT_TRANSLATE_NOOP("Parameters", "Target coverage"),
     QT_TRANSLATE_NOOP("Parameters", "share of what can be covered, 0 to 1, with as few views as possible"),
     QT_TRANSLATE_NOOP("Parameters", "Batteries"),
     QT_TRANSLATE_NOOP("Parameters", "number of sorties: as much as can be covered within them"),
@@ -31,7 +31,7 @@ TEXTS = (
     QT_TRANSLATE_NOOP(
         "Parameters", "a view counts only when all four corners of a panel are in the picture, not just its middle"
     ),
-    QT_TRANSLATE_NOOP("Parameters", "Wanted pixel"),
+    QT_TRANSLATE_NOOP("Parameters", "Wanted GSD"),
     QT_TRANSLATE_NOOP(
         "Parameters",
         "each direction of view is wanted with pixels up to this size on the panel; those seen only more coarsely are"

@@ -183,7 +183,7 @@ class PlanForm(QWidget):
             title = title_of(declared(PlanParameters)["profile_id"].parameter)
             own = {"profile_id": (title, self.aircraft), "goal": (self.tr("Plan for"), self._goal)}
             return {**rows, **own, "method": self._method}
-        rows["gsd_limit"], rows["gsd"] = ("", self._is_gsd_limited), (self.tr("Coarsest pixel"), self._gsd)
+        rows["gsd_limit"], rows["gsd"] = ("", self._is_gsd_limited), (self.tr("Coarsest GSD"), self._gsd)
         return {**rows, "constraints.wanted_gsd_mm": self._sharp}
 
     def _connect(self) -> None:

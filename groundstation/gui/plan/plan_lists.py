@@ -201,7 +201,7 @@ class CompareWindow(QDialog):
             "only-here": self.tr("Sections no other plan covers"),
             "depth": self.tr("Covered at least {0} times"),
             "gsd-best": self.tr("Finest pixel"),
-            "gsd-worst": self.tr("Coarsest pixel"),
+            "gsd-worst": self.tr("Coarsest GSD"),
             "gsd-worst-panel": self.tr("Finest pixel on the worst panel"),
             "clearance": self.tr("Smallest clearance"),
             "findings": self.tr("Findings: {0}"),

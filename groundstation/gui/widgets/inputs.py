@@ -29,6 +29,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from groundstation.gui.widgets.terms import label_of
 from groundstation.services.units import Unit, UnitSystem, length_unit, speed_unit
 
 SAME = 1e-9
@@ -172,11 +173,15 @@ class Form(QFormLayout):
         self.setLabelAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
 
     def addRow(self, *parts: Any) -> None:  # noqa: N802
-        """As forms do; a list to choose from has room for its words."""
+        """As forms do; a list to choose from has room for its words, and a term has a "?"."""
         field = parts[-1]
         if isinstance(field, ChoiceBox):
             field.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
             field.want_letters(N_LETTERS_IN_FORM)
+        if len(parts) == 2 and isinstance(parts[0], str) and isinstance(field, QWidget):
+            label = label_of(parts[0], field)
+            label.setBuddy(field)
+            parts = label, field
         super().addRow(*parts)
 
 

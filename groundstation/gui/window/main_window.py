@@ -6,9 +6,10 @@ It arranges; what happens in a tab is the tab's own matter, and what happens to 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QEvent, Qt, QTimer, Signal
-from PySide6.QtGui import QAction, QCloseEvent, QShowEvent
+from PySide6.QtGui import QAction, QCloseEvent, QShowEvent, QWhatsThisClickedEvent
 from PySide6.QtWidgets import (
     QHBoxLayout,
     QMainWindow,
@@ -17,6 +18,7 @@ from PySide6.QtWidgets import (
     QTabBar,
     QToolButton,
     QVBoxLayout,
+    QWhatsThis,
     QWidget,
 )
 
@@ -39,7 +41,13 @@ BOTTOM_HEIGHT_PX = 190
 """First sizes of what stands around the shared view, at 1280 x 720."""
 
 
+if TYPE_CHECKING:
+    from groundstation.gui.window.manual import ManualWindow
+
 STEPS = frozenset(Step)
+
+MAKE_NEXT_MS = 500
+"""After a tab was shown, the next one is made, which takes about a tenth of a second."""
 
 TABS_OF_ACTS = {Act(f"to-{spec.name}"): spec.name for spec in TABS}
 """Where each act leads that is nothing but a way to another tab."""
@@ -67,6 +75,8 @@ class MainWindow(QMainWindow):
         self._tabs: dict[str, Tab] = {}
         self._shown: TabSpec | None = None
         self._was_shown = False
+        self._ready: set[str] = set()
+        self._manual: ManualWindow | None = None
         self._quick_buttons: list[QToolButton] = []
         self.shared_view = SharedView(context)
         self.shared_view.tabRequested.connect(self.show_tab)
@@ -77,8 +87,11 @@ class MainWindow(QMainWindow):
         self._make_layout()
         self._bar.currentChanged.connect(self._tab_chosen)
         self.next_step.wanted.connect(self.take_step)
+        self.next_step.helpRequested.connect(lambda: self.open_manual(f"guide/{self.shown_tab()}.md"))
         context.milestonesChanged.connect(self._show_steps)
         context.documentChanged.connect(self._leave_start)
+        self._make_soon = QTimer(self, interval=MAKE_NEXT_MS, singleShot=True)
+        self._make_soon.timeout.connect(self._make_next)
         self._show_steps()
 
     def _make_layout(self) -> None:
@@ -128,6 +141,26 @@ class MainWindow(QMainWindow):
             self._quick_buttons.append(button)
         self._show_steps()
 
+    def tab_bar(self) -> QTabBar:
+        """The row of tabs."""
+        return self._bar
+
+    def open_manual(self, place: str = "") -> None:
+        """Show the manual, at a page where one is wanted."""
+        if self._manual is None:
+            from groundstation.gui.window.manual import ManualWindow
+
+            self._manual = ManualWindow(self._context, self)
+        self._manual.open_page(*([place] if place else []))
+
+    def event(self, event: QEvent) -> bool:
+        """Follow a link of "What's this?" into the manual."""
+        if isinstance(event, QWhatsThisClickedEvent):
+            QWhatsThis.hideText()
+            self.open_manual(event.href())
+            return True
+        return super().event(event)
+
     def tab_names(self) -> tuple[str, ...]:
         """Names of all tabs, in order."""
         return tuple(spec.name for spec in TABS)
@@ -165,6 +198,17 @@ class MainWindow(QMainWindow):
             self.show_tab(TABS_OF_ACTS[act])
         elif self._shown is not None:
             self._tabs[self._shown.name].take_step(act)
+
+    def _make_next(self) -> None:
+        """Make the tab that will be wanted next, while nothing else happens, so that it is there at once."""
+        if self._context.is_busy:
+            self._make_soon.start()
+        elif self._shown is not None and not self._bar.signalsBlocked():
+            following = TABS[min(TABS.index(self._shown) + 1, len(TABS) - 1)]
+            if following.module in self._ready:
+                self.tab(following.name)
+            else:
+                self._make_soon.start()
 
     def _leave_start(self, before: Document, after: Document) -> None:
         """Show a site that was opened from the start page."""
@@ -204,6 +248,8 @@ class MainWindow(QMainWindow):
         tab = self.tab(spec.name)
         self._context.report_plugin_problems()
         self._shown = spec
+        # Before the page: what is shown is laid out once, with its final room.
+        self._show_steps()
         if spec.place is Place.WHOLE_PAGE:
             self._pages.setCurrentWidget(tab.left)
         else:
@@ -218,7 +264,7 @@ class MainWindow(QMainWindow):
             for action in page.actions():
                 (self.addAction if name == spec.name else self.removeAction)(action)
         tab.shown()
-        self._show_steps()
+        self._make_soon.start()
         self.tabShown.emit(spec.name)
 
     def _set_view_alone(self, is_alone: bool) -> None:
@@ -282,6 +328,7 @@ class MainWindow(QMainWindow):
         """Show the first tab, then the 3-D view, as they can be had."""
         if self._shown is None:
             self._tab_chosen(max(0, self._bar.currentIndex()))
+        self._ready.add(module)
         if module == SCENE_MODULE:
             self.shared_view.make_scene()
 

@@ -200,6 +200,9 @@ class Commands(Protocol):
     def save_as(self) -> None:
         """Ask for a folder, and save there."""
 
+    def take_tour(self) -> None:
+        """Show the window part by part."""
+
     def open_map_tiles(self) -> None:
         """Ask for a file with map tiles."""
 
@@ -313,6 +316,8 @@ class Menus(QObject):
             self._add(menu, spec.shown_title(), f"Ctrl+{number}", partial(self._window.show_tab, name))
 
     def _help_menu(self, menu: QMenu) -> None:
+        self._add(menu, self.tr("&Manual"), "Ctrl+F1", self._window.open_manual)
+        self._add(menu, self.tr("&Tour"), "", self._commands.take_tour)
         self._add(menu, self.tr("&Shortcuts"), "F1", self.show_shortcuts)
         self._add(menu, self.tr("&About Reflight"), "", self._show_about)
 

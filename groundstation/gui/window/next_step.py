@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from PySide6.QtCore import Signal
 from PySide6.QtGui import QPixmap
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QToolButton, QWidget
 
 from groundstation.gui.widgets.icons import ICON_PX, picture, set_icon
 from groundstation.gui.widgets.scrolling import ShortText
@@ -19,14 +19,22 @@ class NextStepBar(QWidget):
     -------
     wanted(Act)
         The user wants to be led on.
+    helpRequested()
+        The manual's page of this step is wanted.
     """
 
     wanted = Signal(object)
+    helpRequested = Signal()  # noqa: N815  (Qt's own way of naming)
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._act: Act | None = None
         self._tick, self._text, self.button = QLabel(), ShortText(), QPushButton()
+        self.help = QToolButton()
+        self.help.setAccessibleName(self.tr("Manual: this tab"))
+        self.help.setToolTip(self.tr("What the manual says of this tab"))
+        set_icon(self.help, "help")
+        self.help.clicked.connect(self.helpRequested)
         self._tick.setFixedWidth(ICON_PX)
         self._text.setAccessibleName(self.tr("What is done, and what comes next"))
         self.button.setProperty("primary", True)
@@ -37,6 +45,7 @@ class NextStepBar(QWidget):
         layout.addWidget(self.button)
         layout.addWidget(self._tick)
         layout.addWidget(self._text, 1)
+        layout.addWidget(self.help)
         # Without a button, too: nothing below moves.
         self.setMinimumHeight(TOUCH_PX + 4)
         self.button.clicked.connect(self._pressed)

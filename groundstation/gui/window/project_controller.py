@@ -103,7 +103,23 @@ class ProjectController(QObject):
             (start.missionRequested, "mission", Act.IMPORT_MISSION),
         ):
             signal.connect(partial(self._begin, tab, act))
+        start.tourRequested.connect(self._answer_tour)
+        start.manualRequested.connect(lambda: self.window.open_manual())
         start.set_recent(self._settings.recent_projects)
+        start.offer_tour(not self._settings.has_seen_tour)
+
+    def take_tour(self) -> None:
+        """Show the window part by part."""
+        from groundstation.gui.window.tour import Tour, stops_of
+
+        Tour(self.window, stops_of(self.window)).begin()
+
+    def _answer_tour(self, is_wanted: bool) -> None:
+        """Take the tour or not; it is not offered again."""
+        self.choose(has_seen_tour=True)
+        start_page_of(self.window).offer_tour(False)
+        if is_wanted:
+            self.take_tour()
 
     def _begin(self, tab: str, act: Act) -> None:
         """Begin a project in the way that was chosen; what is open is left first."""

@@ -1,0 +1,181 @@
+"""The terms of the trade, each said once: the "?" beside a word of the window shows it, and so does the manual."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from planning.base.messages import Message, say
+
+
+@dataclass(frozen=True, slots=True)
+class Term:
+    """A term.
+
+    Parameters
+    ----------
+    name
+        As it stands in the window.
+    also
+        Other words of the window that mean it, or a choice of it.
+    says
+        What it is, in a sentence or two.
+    page
+        Of the manual, with the heading after "#" where there is one.
+    """
+
+    name: Message
+    says: Message
+    page: str
+    also: tuple[Message, ...] = ()
+
+
+TERMS = (
+    Term(
+        say("Section"),
+        say(
+            "A part of the hemisphere of directions before a panel. A photo covers the section that it is taken from; "
+            "glass looks different from each."
+        ),
+        "concepts/coverage.md",
+        (say("Section step"), say("Weight sections by solid angle")),
+    ),
+    Term(
+        say("Coverage"),
+        say("The share of sections that photos show, of those that any flight could show at this site."),
+        "concepts/coverage.md",
+        (say("Target coverage"), say("Not covered"), say("Count whole panels only")),
+    ),
+    Term(
+        say("Viewpoint"),
+        say("A place in the air with heading and gimbal pitch, from where one photo is taken."),
+        "concepts/planning.md",
+        (say("Views"), say("Viewpoints"), say("Views are chosen for")),
+    ),
+    Term(
+        say("Sortie"),
+        say("A flight with one battery, from take-off to landing."),
+        "concepts/planning.md",
+        (say("Batteries"), say("Aircraft at once")),
+    ),
+    Term(
+        say("GSD"),
+        say("Ground sampling distance: how much of the facade one pixel shows. 2.7 mm shows a scratch, 20 mm a frame."),
+        "concepts/coverage.md",
+        (say("Coarsest GSD"), say("Wanted GSD")),
+    ),
+    Term(
+        say("Safety distance"),
+        say("Nothing of the flight comes nearer than this to panels, building and obstacles."),
+        "guide/plan.md",
+        (say("Clearance"), say("smallest clearance")),
+    ),
+    Term(
+        say("Method"),
+        say(
+            "How viewpoints are chosen. The optimised one takes the viewpoint that adds most, again and again, and "
+            "proves how far from the best it can be; the others are there to compare with."
+        ),
+        "concepts/planning.md",
+        (say("Quality"),),
+    ),
+    Term(
+        say("Time to plan"),
+        say("The longest that the search may take. It ends sooner where nothing can be won any more."),
+        "guide/plan.md",
+    ),
+    Term(
+        say("Battery reserve"),
+        say("The share of the charge with which the aircraft has to be back."),
+        "concepts/planning.md",
+    ),
+    Term(
+        say("Worth another battery"),
+        say("By how much unseen views of the model must get better, in decibels, for one battery more to be planned."),
+        "concepts/worth.md",
+        (say("Worth"),),
+    ),
+    Term(
+        say("Precision"),
+        say("Single precision counts sections several times as fast, and errs on borders of sections alone."),
+        "concepts/coverage.md",
+    ),
+    Term(
+        say("Above ellipsoid"),
+        say("Height above the WGS 84 ellipsoid, as GNSS measures it. It is no height above the sea."),
+        "decisions/heights.md",
+        (say("Above sea level"), say("Heights are"), say("Above take-off")),
+    ),
+    Term(
+        say("Site origin"),
+        say("The place on earth from which the site counts metres east, north and up."),
+        "guide/site.md",
+        (say("Place on earth"),),
+    ),
+    Term(
+        say("Facade grid"),
+        say("Equal panels in rows and columns, laid into a rectangle on a wall."),
+        "guide/site.md",
+        (say("Panel grid"),),
+    ),
+    Term(
+        say("Airspace"),
+        say("The box in which the aircraft must stay; only the climb above home may be below it."),
+        "guide/site.md",
+        (say("Airspace around the building"),),
+    ),
+    Term(
+        say("Rally point"),
+        say("A place where the aircraft may land instead of home when it returns."),
+        "guide/site.md",
+    ),
+    Term(
+        say("Autopilot"),
+        say("The computer that flies the aircraft: ArduPilot or PX4. They land, return and count battery differently."),
+        "reference/autopilots.md",
+    ),
+    Term(
+        say("Speed-up"),
+        say("How many times faster than real time a simulated vehicle flies."),
+        "guide/fly.md",
+    ),
+    Term(
+        say("Link"),
+        say("The connection to the vehicle. A signed link takes no orders from others."),
+        "concepts/flying.md",
+        (say("Address"),),
+    ),
+    Term(
+        say("RTK"),
+        say("Corrections by which GNSS knows its place to centimetres instead of metres."),
+        "concepts/flying.md",
+        (say("GNSS"),),
+    ),
+    Term(
+        say("Pose"),
+        say("Where a photo was taken, and in which direction the camera looked."),
+        "concepts/photos.md",
+        (say("Refine poses"), say("Own poses")),
+    ),
+    Term(
+        say("Data set"),
+        say("Photos with their poses, and the panels of the site: what a model learns from."),
+        "guide/reconstruct.md",
+    ),
+    Term(
+        say("Splat"),
+        say("A small blurred ellipse in space. A model is made of many, and of the light that panes mirror."),
+        "concepts/splats.md",
+        (say("Layer"),),
+    ),
+    Term(
+        say("Effects"),
+        say("What is simulated because this scene calls for it; each says how large it is, why, and what it costs."),
+        "decisions/effects.md",
+    ),
+)
+
+
+def terms_by_word(say_in: Callable[[Message], str]) -> dict[str, Term]:
+    """Terms by all of their words in a language, in small letters; `say_in` puts a message into it."""
+    return {say_in(word).casefold(): term for term in TERMS for word in (term.name, *term.also)}
