@@ -149,6 +149,7 @@ def view_keys() -> list[tuple[str, list[Row]]]:
             ],
         ),
         (translate("Shortcuts", "Messages"), [("Esc", translate("Shortcuts", "Close the list"))]),
+        (translate("Shortcuts", "Tour"), [("Esc", translate("Shortcuts", "Leave the tour"))]),
     ]
 
 

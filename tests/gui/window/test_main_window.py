@@ -236,6 +236,7 @@ SECTIONS = {
     "photos/grid_view.py": ("Photos",),
     "reconstruct/model_view.py": ("Models",),
     "window/message_area.py": ("Messages",),
+    "window/tour.py": ("Tour",),
 }
 """Sections of the list of keys that tell of the keys that a module takes by itself."""
 
