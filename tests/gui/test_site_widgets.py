@@ -58,11 +58,11 @@ def rows(model, parent=None):
 
 def test_tree_lists_everything_on_the_site_and_survives_the_model_tester(tree_model):
     tree_model.set_site(COURT, METRIC)
-    site, facades, obstacles, zones, rally, airspace, home = rows(tree_model)
+    site, facades, obstacles, zones, rally, geo_zones, airspace, home = rows(tree_model)
     assert site[:2] == ("court", "panels: 294")
     assert [row[:2] for row in facades[2]] == [("A", "panels: 126"), ("B", "panels: 168")]
     assert len(facades[2][1][2]) == 168
-    assert obstacles[1] == zones[1] == rally[1] == "0"
+    assert obstacles[1] == zones[1] == rally[1] == geo_zones[1] == "0"
     assert airspace[1] == "145 × 135 × 52 m"
     assert home == ("Home", "0.0 m", [])
     model, _ = add_box(COURT, (0.0, -60.0, 0.0), (1.0, -58.0, 3.0))

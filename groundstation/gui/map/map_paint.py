@@ -13,10 +13,11 @@ from PySide6.QtGui import QBrush, QColor, QImage, QPainter, QPainterPath, QPen, 
 
 from groundstation.gui.map.viewport import Viewport
 from groundstation.gui.widgets.theme import FACADES, SORTIES, Colours
-from groundstation.services.map.shapes import Area, PlanShapes, SiteShapes, round_length
+from groundstation.services.map.shapes import Area, PlanShapes, SiteShapes, ZoneArea, round_length
 from groundstation.services.map.tile_source import TileSetInfo
 from groundstation.services.map.web_mercator import TILE_POINTS, Tile
 from groundstation.services.units import UnitSystem, distance_unit, length_unit
+from planning.site.zones.records import Restriction
 
 WEDGE_PX, WEDGE_HALF_RAD = 15.0, math.radians(20.0)
 SCALE_BAR_PX = 140.0
@@ -33,6 +34,10 @@ MAX_OVERZOOM = 6
 """Levels above that a missing tile is taken from; a point then has become 64 pixels."""
 
 BUILDING, OBSTACLE, RALLY, PAPER = (QColor("#8d96a0"), QColor("#b5793f"), QColor("#7a4fa3"), QColor(255, 255, 255, 220))
+
+
+AUTHORISATION, CONDITION, NO_LIMIT = QColor("#c2570c"), QColor("#8a7a00"), QColor("#4f6d7a")
+"""Of geo-zones; what is prohibited or not known has the colour of errors."""
 
 
 def tile_level(viewport: Viewport, min_zoom: int, max_zoom: int, tile_points: int = TILE_POINTS) -> int:
@@ -122,6 +127,52 @@ def paint_site(painter: QPainter, viewport: Viewport, shapes: SiteShapes, found:
             path.addPolygon(_polygon(corners))
             path.closeSubpath()
         painter.drawPath(path)
+
+
+def zone_colour(restriction: Restriction, found: Colours) -> QColor:
+    """Colour of a geo-zone."""
+    colours = {
+        Restriction.AUTHORISATION: AUTHORISATION,
+        Restriction.U_SPACE: AUTHORISATION,
+        Restriction.CONDITIONAL: CONDITION,
+        Restriction.NONE: NO_LIMIT,
+    }
+    return colours.get(restriction, QColor(found.error))
+
+
+def paint_zones(painter: QPainter, viewport: Viewport, zones: tuple[ZoneArea, ...], found: Colours) -> None:
+    """Geo-zones, the largest below: hatched where flights keep out, an outline where they need not."""
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    for zone in reversed(zones):
+        colour, path = zone_colour(zone.restriction, found), _path(zone, viewport)
+        fill = QColor(colour)
+        fill.setAlpha(38 if zone.is_kept else 12)
+        painter.setBrush(fill)
+        painter.setPen(QPen(colour, 2, Qt.PenStyle.SolidLine if zone.is_kept else Qt.PenStyle.DotLine))
+        painter.drawPath(path)
+        if zone.is_kept:
+            pattern = QColor(colour)
+            pattern.setAlpha(110)
+            painter.fillPath(path, QBrush(pattern, Qt.BrushStyle.FDiagPattern))
+
+
+def paint_legend(painter: QPainter, viewport: Viewport, rows: list[tuple[QColor, bool, str]], found: Colours) -> None:
+    """Colours and what they mean, in the lower right corner; rows are colour, whether it is hatched, and text."""
+    if not rows:
+        return
+    metrics = painter.fontMetrics()
+    height = metrics.height() + 6
+    width = max(metrics.horizontalAdvance(text) for _, _, text in rows) + 44
+    box = QRectF(viewport.width_px - width - 8, viewport.height_px - 34 - height * len(rows), width, height * len(rows))
+    painter.fillRect(box, _paper(found))
+    for number, (colour, is_kept, text) in enumerate(rows):
+        row = QRectF(box.left() + 6, box.top() + number * height, width - 12, height)
+        mark = QRectF(row.left(), row.top() + 4, 24, height - 8)
+        painter.setPen(QPen(colour, 2, Qt.PenStyle.SolidLine if is_kept else Qt.PenStyle.DotLine))
+        painter.setBrush(QBrush(colour, Qt.BrushStyle.FDiagPattern) if is_kept else Qt.BrushStyle.NoBrush)
+        painter.drawRect(mark)
+        painter.setPen(QColor(found.text))
+        painter.drawText(row.adjusted(32, 0, 0, 0), Qt.AlignmentFlag.AlignVCenter, text)
 
 
 def paint_plan(painter: QPainter, viewport: Viewport, plan: PlanShapes) -> None:

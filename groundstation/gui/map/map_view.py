@@ -19,6 +19,7 @@ from groundstation.gui.application.translate import translated
 from groundstation.gui.map.map_paint import (
     paint_grid,
     paint_landings,
+    paint_legend,
     paint_north,
     paint_note,
     paint_plan,
@@ -27,6 +28,8 @@ from groundstation.gui.map.map_paint import (
     paint_site,
     paint_text_box,
     paint_tiles,
+    paint_zones,
+    zone_colour,
 )
 from groundstation.gui.map.tile_store import TileStore
 from groundstation.gui.map.viewport import MapCanvas, Viewport
@@ -40,6 +43,7 @@ from groundstation.services.units import UnitSystem
 from planning.base.errors import InputError
 from planning.plan import Plan
 from planning.site.records import SiteModel
+from planning.site.zones.records import RESTRICTIONS, Restriction
 
 # Site and plan painted once into a picture larger than the map, so that panning and zooming only move that picture.
 
@@ -89,6 +93,7 @@ class MapLayer:
         picture.fill(Qt.GlobalColor.transparent)
         painter = QPainter(picture)
         painter.setFont(font)
+        paint_zones(painter, wide, site.zones, found)
         paint_site(painter, wide, site, found)
         if plan is not None:
             paint_plan(painter, wide, plan)
@@ -142,7 +147,7 @@ def find_item(
         corners = viewport.screen(panels.reshape(-1, 2)).reshape(-1, 4, 2)
         if _distance_px(corners, np.roll(corners, -1, axis=1), at_px) <= LINE_REACH_PX:
             return item
-    areas = (*site.no_fly, *reversed(site.solids))
+    areas = (*site.no_fly, *reversed(site.solids), *site.zones)
     return next((area.item for area in areas if _is_inside(area, viewport, at_px)), None)
 
 
@@ -162,7 +167,7 @@ def place_of(item: Item, site: SiteShapes | None, plan: PlanShapes | None) -> ND
         return site.airspace.rings[0]
     if item.kind is ItemKind.RALLY:
         return next((place[None] for point, place in site.rally if point == item), None)
-    areas = (*site.no_fly, *site.solids)
+    areas = (*site.no_fly, *site.solids, *site.zones)
     found = next((area for area in areas if area.item == item), None)
     if found is not None and found.rings:
         return np.concatenate(found.rings)
@@ -427,9 +432,29 @@ class MapView(MapCanvas):
         item = None if at is None else self.item_at(at)
         if item != self._hover:
             self._hover = item
-            self.setToolTip("" if item is None else item.id)
+            self.setToolTip(self._name_of(item, is_long=True))
             self.hovered.emit(item)
         self.update()
+
+    def _name_of(self, item: Item | None, *, is_long: bool = False) -> str:
+        """What a thing is called on the map; of a geo-zone also what it asks for, where `is_long`."""
+        if item is None:
+            return ""
+        zones = () if self._site is None else self._site.zones
+        zone = next((area for area in zones if area.item == item), None)
+        if zone is None:
+            return item.id
+        return translated(zone.what, self._units) if is_long else zone.name
+
+    def legend(self) -> list[tuple[QColor, bool, str]]:
+        """Colours of the geo-zones that are shown, whether flights keep out of them, and what they mean."""
+        rows: dict[tuple[Restriction, bool], tuple[QColor, bool, str]] = {}
+        for zone in () if self._site is None else self._site.zones:
+            text = translated(RESTRICTIONS[zone.restriction], self._units)
+            if not zone.is_kept:
+                text = self.tr("{0}: not kept out of").format(text)
+            rows[zone.restriction, zone.is_kept] = zone_colour(zone.restriction, colours()), zone.is_kept, text
+        return [rows[key] for key in sorted(rows, key=lambda key: (list(Restriction).index(key[0]), not key[1]))]
 
     def _choose_map(self) -> None:
         path = choose_file(self, self.tr("Open map"), self.tr("Offline maps (*.mbtiles *.pmtiles);;All files (*)"))
@@ -500,7 +525,8 @@ class MapView(MapCanvas):
         if self._selection is not None and self._site is not None and self._site.is_on_map:
             place = place_of(self._selection, self._site, self._plan_shapes)
             if place is not None:
-                paint_ring(painter, viewport.screen(place.mean(axis=0)[None])[0], self._selection.id, found)
+                name = self._name_of(self._selection)
+                paint_ring(painter, viewport.screen(place.mean(axis=0)[None])[0], name, found)
         source, insets = self._tiles.source(), self._insets
         # Marks stand at the edges of what nothing lies over.
         painter.translate(insets.left(), insets.top())
@@ -513,6 +539,7 @@ class MapView(MapCanvas):
             corner = QPointF(viewport.width_px, viewport.height_px)
             paint_text_box(painter, corner, source.info.attribution, found, is_right=True)
         paint_text_box(painter, QPointF(56, 34), self.pointer_text(), found)
+        paint_legend(painter, viewport, self.legend(), found)
         paint_note(painter, viewport, self.note(), found)
 
 

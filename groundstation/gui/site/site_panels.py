@@ -30,6 +30,7 @@ from groundstation.gui.site.site_editor import SiteEditor
 from groundstation.gui.site.site_opener import SiteOpener
 from groundstation.gui.site.site_tools import SiteTool, SiteTools
 from groundstation.gui.site.site_tree import SiteTree
+from groundstation.gui.site.zone_pages import ZoneFilePage, ZonePage
 from groundstation.gui.widgets.scrolling import ButtonGrid, CurrentStack, scrolled
 from groundstation.gui.widgets.theme import colours
 from groundstation.gui.widgets.value_boxes import muted
@@ -135,6 +136,8 @@ PAGES: dict[ItemKind, Callable[[UnitSystem], Page]] = {
     ItemKind.AIRSPACE: AirspacePage,
     ItemKind.HOME: HomePage,
     ItemKind.RALLY: RallyPage,
+    ItemKind.ZONE: ZonePage,
+    ItemKind.ZONE_FILE: ZoneFilePage,
 }
 
 
@@ -263,8 +266,8 @@ class SiteTab:
         self.detail.cancel_drawing()
 
     def actions(self) -> tuple[QAction, ...]:
-        """Open and import."""
-        return self.left.actions_of_tab
+        """Open, import, and add geo-zones."""
+        return (*self.left.actions_of_tab, self.detail.tools.zones_action)
 
     def take_step(self, act: Act) -> None:
         """Import a building, or lay panels on its facade."""

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from datetime import date
 from enum import Enum, auto
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import Signal
+from PySide6.QtGui import QAction
 from PySide6.QtWidgets import QPushButton, QWidget
 
 from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.shared_view import SharedView, SharedViewPage
 from groundstation.gui.site.pages import Edit
 from groundstation.gui.site.site_editor import SiteEditor
-from groundstation.gui.widgets.questions import choose_file
+from groundstation.gui.widgets.questions import choose_file, choose_files
 from groundstation.gui.widgets.scrolling import ButtonGrid
 from groundstation.services.project.document import Item, ItemKind
 from groundstation.services.site.edits import (
@@ -25,6 +27,7 @@ from groundstation.services.site.edits import (
     move_home,
     set_airspace,
 )
+from groundstation.services.site.zones import AddedZones, add_zones
 from planning.base.findings import Severity
 from planning.geo.mesh import MESH_SUFFIXES, TriangleMesh, read_mesh
 from planning.site.records import SiteModel
@@ -81,6 +84,13 @@ class SiteTools(QWidget):
         mesh.setToolTip(self.tr("Add an obstacle from a mesh file in the site's coordinates (a crane, a tree)"))
         mesh.clicked.connect(self._choose_mesh)
         layout.addWidget(mesh)
+        self.zones_action = QAction(self.tr("Add zones..."), self)
+        self.zones_action.setToolTip(self.tr("Add geo-zones of your authority (ED-269, ED-318, GeoJSON, KML, OpenAir)"))
+        self.zones_action.triggered.connect(self._choose_zones)
+        self.zones_button = QPushButton(self.zones_action.text())
+        self.zones_button.setToolTip(self.zones_action.toolTip())
+        self.zones_button.clicked.connect(self._choose_zones)
+        layout.addWidget(self.zones_button)
         shared_view.with_scene(self._connect)
 
     def _texts(self) -> tuple[tuple[SiteTool, str, str], ...]:
@@ -144,6 +154,30 @@ class SiteTools(QWidget):
                 self._context.jump_to(Item(ItemKind.OBSTACLE, chosen))
 
         self._context.start(self.tr("Read {0}").format(path.name), lambda _context: read_mesh(path), added)
+
+    def add_zones(self, paths: tuple[Path, ...]) -> None:
+        """Add files of geo-zones."""
+        model = self._context.document.site
+        if model is None or not paths:
+            return
+        label = self.tr("Add zones of {0}").format(", ".join(path.name for path in paths))
+
+        def added(found: AddedZones) -> None:
+            before = self._context.document.site
+            if before is not model:  # the site was edited while files were read: they are known now, so this is quick
+                found = add_zones(before, paths, date.today()) if before is not None else found
+            self._apply(label, lambda _model: found.model)
+            names = [source.file for source in found.model.site.zones if source.file.endswith(paths[-1].name)]
+            if names:
+                self._context.select(Item(ItemKind.ZONE_FILE, names[-1]))
+            for note in found.notes:
+                self._context.say(Severity.WARNING, self._context.localized(note))
+
+        self._context.start(label, lambda context: add_zones(model, paths, date.today(), context), added)
+
+    def _choose_zones(self) -> None:
+        kinds = self.tr("Geo-zones (*.json *.geojson *.kml *.txt *.openair);;All files (*)")
+        self.add_zones(choose_files(self, self.tr("Geo-zones"), kinds, Path.home()))
 
     def _connect(self, scene: SceneView) -> None:
         self._scene = scene

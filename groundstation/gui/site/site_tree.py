@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -22,8 +22,9 @@ from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QMenu, QTreeView, 
 
 from groundstation.services.project.document import Item, ItemKind
 from groundstation.services.site.edits import REMOVABLE
-from groundstation.services.units import UnitSystem, length_unit
+from groundstation.services.units import Unit, UnitSystem, length_unit
 from planning.site.records import Site, SiteModel
+from planning.site.zones.keep_out import near_zones
 
 # The things on a site as a Qt item model: name and size of each, grouped by kind.
 
@@ -45,7 +46,7 @@ class _Node:
 
 
 class SiteTreeModel(QAbstractItemModel):
-    """Site, facades with their panels, obstacles, no-fly zones, rally points, airspace and home.
+    """Site, facades with their panels, obstacles, no-fly zones, rally points, geo-zones, airspace and home.
 
     The first row is the site itself; it stands for `ItemKind.BUILDING`. Rows of groups stand for nothing.
     """
@@ -151,8 +152,20 @@ class SiteTreeModel(QAbstractItemModel):
         group = add(None, self.tr("Rally points"), str(len(site.rally_points)))
         for point in site.rally_points:
             add(Item(ItemKind.RALLY, point.id), point.id, height.text(point.position_enu_m[2]), group)
+        self._fill_zones(add, model, height)
         add(Item(ItemKind.AIRSPACE), self.tr("Airspace"), size_text(_airspace_size(site), units))
         add(Item(ItemKind.HOME), self.tr("Home"), height.text(site.home_enu_m[2]))
+
+    def _fill_zones(self, add: Callable[[Item | None, str, str, int], int], model: SiteModel, height: Unit) -> None:
+        """Files of geo-zones, and below each the zones near the site, the nearest first."""
+        site = model.site
+        group = add(None, self.tr("Geo-zones"), str(len(site.zones)), ROOT)
+        near = sorted(near_zones(model), key=lambda each: each.local.distance_m)
+        for source in site.zones:
+            own = [each for each in near if each.source == source]
+            row = add(Item(ItemKind.ZONE_FILE, source.file), source.file, self.tr("near: {0}").format(len(own)), group)
+            for each in own:
+                add(Item(ItemKind.ZONE, each.key), each.local.zone.name, height.text(each.local.distance_m), row)
 
 
 def _airspace_size(site: Site) -> list[float]:

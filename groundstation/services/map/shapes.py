@@ -10,10 +10,13 @@ from numpy.typing import NDArray
 
 from groundstation.services.map.web_mercator import MAX_LAT_DEG, world_from_enu
 from groundstation.services.project.document import Item, ItemKind
+from planning.checks.zones import zone_text
 from planning.geo.frames import Origin
 from planning.geo.mesh import TriangleMesh
 from planning.plan import Plan
 from planning.site.records import Site, SiteModel, panel_corners
+from planning.site.zones.keep_out import near_zones
+from planning.site.zones.records import Restriction
 
 Floats = NDArray[np.float64]
 
@@ -33,6 +36,24 @@ class Area:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class ZoneArea(Area):
+    """A geo-zone, cut to the surroundings of the site.
+
+    Parameters
+    ----------
+    what
+        Name, restriction, reasons and heights, in words.
+    is_kept
+        Whether flights keep out of it.
+    """
+
+    name: str
+    what: str
+    restriction: Restriction
+    is_kept: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class SiteShapes:
     """What a map shows of a site.
 
@@ -44,6 +65,8 @@ class SiteShapes:
         Building (where there is one) and obstacles.
     no_fly, airspace
         Zones, and the airspace's box.
+    zones
+        Geo-zones near the site, the smallest first.
     facades
         Panels by facade, shape (p, 4, 2); panels above one another are drawn once.
     home
@@ -59,6 +82,7 @@ class SiteShapes:
     facades: tuple[tuple[Item, Floats], ...]
     home: Floats
     rally: tuple[tuple[Item, Floats], ...]
+    zones: tuple[ZoneArea, ...] = ()
 
     @property
     def is_on_map(self) -> bool:
@@ -122,7 +146,31 @@ def site_shapes(model: SiteModel) -> SiteShapes:
             (Item(ItemKind.RALLY, point.id), world_from_enu(origin, [point.position_enu_m])[0])
             for point in site.rally_points
         ),
+        zones=_zones(model),
     )
+
+
+def _zones(model: SiteModel) -> tuple[ZoneArea, ...]:
+    import shapely
+
+    ground_z, found = model.site.airspace.ground_z_m, []
+    for near in near_zones(model):
+        if not near.local.volumes:
+            continue
+        union = shapely.union_all([volume.area for volume in near.local.volumes])
+        rings = [
+            shapely.get_coordinates(ring)
+            for part in shapely.get_parts(union)
+            if part.geom_type == "Polygon"
+            for ring in (part.exterior, *part.interiors)
+        ]
+        world = tuple(world_from_enu(model.site.origin, np.c_[ring, np.full(len(ring), ground_z)]) for ring in rings)
+        zone = near.local.zone
+        area = ZoneArea(
+            Item(ItemKind.ZONE, near.key), world, zone.name, zone_text(near), zone.restriction, near.is_kept
+        )
+        found.append((union.area, area))
+    return tuple(area for _, area in sorted(found, key=lambda each: each[0]))
 
 
 def airspace_outline(site: Site) -> Floats:

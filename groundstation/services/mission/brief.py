@@ -85,6 +85,8 @@ class FlightBrief:
         Lowest flight above the ground that was to be kept.
     return_height_m
         Above take-off, to be set on the remote controller; None where it cannot be worked out, which a finding says.
+    zones
+        All that was found about geo-zones, what is kept included.
     findings
         All that are not OK, the gravest first.
     covered_share
@@ -128,6 +130,7 @@ class FlightBrief:
     obstacles: tuple[str, ...]
     findings: tuple[Finding, ...]
     sun: tuple[str, ...] = ()
+    zones: tuple[Finding, ...] = ()
 
     @property
     def readiness(self) -> Readiness:
@@ -197,6 +200,7 @@ def flight_brief(
         obstacles=tuple(obstacle.id for obstacle in site.obstacles),
         findings=by_severity(found for found in (*findings, *objections) if found.severity is not Severity.OK),
         sun=() if sun is None else tuple(flight_lines(sun)),
+        zones=tuple(found for found in findings if found.code in ("zone", "zone-question", "zones-file")),
     )
 
 

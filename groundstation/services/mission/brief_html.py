@@ -66,7 +66,11 @@ def map_svg(site: SiteShapes, plan: PlanShapes, units: UnitSystem) -> str:
     def place(world: Floats) -> Floats:
         return np.asarray((world - middle) * scale + (width / 2.0, height / 2.0 - 10.0))
 
-    parts = [_rings([place(ring) for ring in site.airspace.rings], "none", GREY, 'stroke-dasharray="6 4"')]
+    parts = [
+        _rings([place(ring) for ring in zone.rings], "#fbe3d6" if zone.is_kept else "none", "#c2570c")
+        for zone in reversed(site.zones)
+    ]
+    parts.append(_rings([place(ring) for ring in site.airspace.rings], "none", GREY, 'stroke-dasharray="6 4"'))
     parts += [_rings([place(ring) for ring in area.rings], "#d5dade", INK) for area in site.solids]
     for zone in site.no_fly:
         rings = [place(ring) for ring in zone.rings]
@@ -296,6 +300,7 @@ def brief_html(
         _table(_settings(brief, units, tr)),
         f"<h2>{escape(tr('Findings'))}</h2>",
         _findings(brief, units, tr),
+        *_zones(brief, tr),
         f"<h2>{escape(tr('Before take-off'))}</h2>",
         _checklist(_steps(brief, units, tr)),
     ]
@@ -467,6 +472,13 @@ def _findings(brief: FlightBrief, units: UnitSystem, tr: Translate) -> str:
         for found in brief.findings
     ]
     return _grid((tr("Severity"), tr("Finding"), tr("Measured"), tr("Place")), rows)
+
+
+def _zones(brief: FlightBrief, tr: Translate) -> Iterable[str]:
+    """What the check says of geo-zones and their sources, kept or not."""
+    if brief.zones:
+        yield f"<h2>{escape(tr('Geo-zones'))}</h2>"
+        yield f"<ul>{''.join(f'<li>{escape(found.message)}</li>' for found in brief.zones)}</ul>"
 
 
 def _steps(brief: FlightBrief, units: UnitSystem, tr: Translate) -> Iterable[str]:

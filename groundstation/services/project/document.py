@@ -14,6 +14,7 @@ from pathlib import Path
 from planning.plan import Plan, Sortie, Viewpoint
 from planning.request import PlanRequest
 from planning.site.records import SiteModel
+from planning.site.zones.keep_out import near_zones
 from reconstruction.panels.solving.accuracy import FoundFacades
 
 
@@ -25,6 +26,8 @@ class ItemKind(StrEnum):
     PANEL = "panel"
     OBSTACLE = "obstacle"
     NO_FLY = "no-fly"
+    ZONE = "geo-zone"
+    ZONE_FILE = "zone-file"
     AIRSPACE = "airspace"
     HOME = "home"
     RALLY = "rally"
@@ -37,8 +40,8 @@ class ItemKind(StrEnum):
 class Item:
     """One thing that is pointed at, by its kind and the identifier it has in the site or plan file.
 
-    Sorties are named by their number from 1 ("2"), legs by sortie and leg, both from 1 ("2/5"); building, airspace and
-    home have no identifier.
+    Geo-zones are named by file and zone ("zones.json/CTR7"), sorties by their number from 1 ("2"), legs by sortie and
+    leg, both from 1 ("2/5"); building, airspace and home have no identifier.
     """
 
     kind: ItemKind
@@ -153,6 +156,10 @@ def exists(document: Document, item: Item) -> bool:
             return model is not None and any(obstacle.id == item.id for obstacle in model.site.obstacles)
         case ItemKind.NO_FLY:
             return model is not None and any(zone.id == item.id for zone in model.site.airspace.no_fly)
+        case ItemKind.ZONE:
+            return model is not None and any(near.key == item.id for near in near_zones(model))
+        case ItemKind.ZONE_FILE:
+            return model is not None and any(source.file == item.id for source in model.site.zones)
         case ItemKind.RALLY:
             return model is not None and any(point.id == item.id for point in model.site.rally_points)
         case ItemKind.BUILDING | ItemKind.AIRSPACE | ItemKind.HOME:

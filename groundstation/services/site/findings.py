@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
+from datetime import UTC, datetime
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +13,7 @@ from planning.base.errors import InfeasibleError
 from planning.base.findings import Finding, Severity
 from planning.base.messages import say, without_place
 from planning.base.progress import QUIET, Monitor
+from planning.checks.zones import source_ages, source_text
 from planning.coverage.sections import PanelFrames, panel_frames
 from planning.geo.bvh import OCCLUSION_OFFSET_M
 from planning.parameters import Constraints
@@ -18,6 +21,7 @@ from planning.routing.rally import rally_findings
 from planning.site.free_space import FreeSpace, free_space, unchecked_space
 from planning.site.ground import height_at
 from planning.site.records import NoFlyZone, SiteModel, panel_corners
+from planning.site.zones.keep_out import known_files
 
 AWAY_M = (0.01, 0.5, 2.0, 5.0)
 """Beyond the distance to be kept; the farther ones because frames and ledges stand out in front of panels."""
@@ -50,7 +54,19 @@ def site_findings(
         space = unchecked_space(model, min_distance_m)
     monitor.report(say("checking the site"), 1, 2)
     found += [finding for finding in rally_findings(model, space) if finding.severity is not Severity.OK]
+    found += _zones(model)
     return (*found, *_no_panels(model), *_heights(model), *_without_effect(model), *_facades_in_reach(model, space))
+
+
+def _zones(model: SiteModel) -> Iterator[Finding]:
+    """Files of geo-zones that cannot be used, or are too old."""
+    for known in known_files(model):
+        if known.content is None:
+            text = say("no zone of {} counts as clear: {}", source_text(known), known.problem)
+            yield Finding(Severity.ERROR, "zones-file", text, f"zone-file/{known.source.file}")
+    if model.site.zones:
+        for finding in source_ages(model, datetime.now(UTC)):
+            yield replace(finding, place=f"zone-file/{finding.place}")
 
 
 def _no_panels(model: SiteModel) -> Iterator[Finding]:

@@ -27,6 +27,7 @@ from planning.site.records import SiteModel
 from planning.site.zones.keep_out import NearZone, at_time, known_files, near_zones, site_zones
 from planning.site.zones.reading import ZONES_FILE, known_zones
 from planning.site.zones.records import SiteZones, ZoneFile, ZoneSet
+from planning.site.zones.times import State
 
 LISTED_WINDOW_S = 3600.0
 """Time after take-off in which listed zones are looked at: nothing is known of the flight yet."""
@@ -107,8 +108,13 @@ def remove_zones(model: SiteModel, name: str) -> SiteModel:
     return replace(with_site(model, replace(model.site, zones=kept)), zones=zones)
 
 
-def permit(model: SiteModel, zone_id: str, reference: str) -> SiteModel:
+def permit(model: SiteModel, zone_id: str, reference: str, file: str = "") -> SiteModel:
     """The site with the pilot's authorisation for a zone; an empty reference takes it back.
+
+    Parameters
+    ----------
+    file
+        In which the zone is, where several have one of that identifier.
 
     Raises
     ------
@@ -118,7 +124,9 @@ def permit(model: SiteModel, zone_id: str, reference: str) -> SiteModel:
     of_zone = [
         known.source
         for known in known_files(model)
-        if known.content is not None and any(zone.id == zone_id for zone in known.content.zones)
+        if known.content is not None
+        and file in ("", known.source.file)
+        and any(zone.id == zone_id for zone in known.content.zones)
     ]
     if len(of_zone) != 1:
         near = ", ".join(f"'{each.local.zone.id}'" for each in near_zones(model)) or say("none")
@@ -258,6 +266,27 @@ def _content_summary(content: ZoneSet) -> dict[str, Any]:
         "issued": None if issued is None else issued.isoformat(),
         "zones": len(content.zones),
     }
+
+
+def zone_facts(near: NearZone) -> tuple[str, ...]:
+    """What the window says of a zone, line by line."""
+    zone = near.local.zone
+    lines = [zone_text(near), *(text for text in (zone.conditions, zone.message) if text)]
+    if near.permitted:
+        lines.append(say("permitted by '{}'", near.permitted))
+    elif near.is_kept:
+        lines.append(say("plans keep out of it"))
+    else:
+        lines.append(say("plans need not keep out of it"))
+    if near.state is not State.APPLIES:
+        lines.append(say("it applies at some times only"))
+    for authority in zone.authorities:
+        told = ", ".join(
+            text for text in (authority.name, authority.contact, authority.purpose, authority.interval_before) if text
+        )
+        lines.append(say("authority: {}", told))
+    questions = (*zone.questions, *zone.place_questions, *near.local.questions)
+    return (*lines, *(say("question: {}", question) for question in questions))
 
 
 def file_lines(model: SiteModel) -> tuple[str, ...]:

@@ -95,6 +95,11 @@ class NearZone:
     state: State
 
     @property
+    def key(self) -> str:
+        """File and identifier: unique on a site."""
+        return f"{self.source.file}/{self.local.zone.id}"
+
+    @property
     def is_kept(self) -> bool:
         """Whether flights keep out of it."""
         return not self.permitted and self.is_restricting

@@ -33,6 +33,7 @@ from planning.site.free_space import unchecked_space
 from planning.site.ground import Ground
 from tests.missions.plans import HONG_KONG, example_plan
 from tests.planning.plan_cases import kiosk
+from tests.planning.site.zones.zone_files import ed269, ed269_feature, ed269_volume, polygon, square, with_zones
 
 MODEL = kiosk(home_enu_m=(3.0, -40.0, 1.5))
 METRIC, IMPERIAL = UnitSystem.METRIC, UnitSystem.IMPERIAL
@@ -239,3 +240,21 @@ def test_a_plan_that_is_no_mission_still_has_a_brief_that_says_so(plan):
     text = page_text(brief_html(brief, METRIC, sources_in_page(brief_pictures(MODEL, empty, METRIC))))
     assert "The plan has no sorties." in text
     assert "not known" in text
+
+
+def test_geo_zones_are_listed_with_what_the_path_does_and_drawn(plan):
+    ring = square(0.0, 0.0, 30.0, MODEL.site.origin)
+    other = square(400.0, 0.0, 30.0, MODEL.site.origin)
+    zones = ed269(
+        ed269_feature(ed269_volume(polygon(ring)), name="Market"),
+        ed269_feature(ed269_volume(polygon(other)), name="Park", identifier="Z2"),
+    )
+    model = with_zones(zones, MODEL)
+    text = page_text(brief_html(flight_brief(model, plan, preflight(plan, model).findings, "today"), METRIC, {}))
+    assert "Geo-zones" in text
+    assert "Market: flights prohibited (SENSITIVE), 0 m AGL - 120 m AGL: the path enters it" in text
+    assert "Park: flights prohibited" in text
+    assert "'zones.json' (ED-269, Test, added on 2026-11-28)" in text
+    shapes, routes = site_shapes(model), plan_shapes(plan, model.site.origin)
+    with_both, without = map_svg(shapes, routes, METRIC), map_svg(site_shapes(MODEL), routes, METRIC)
+    assert with_both.count("<polygon") + with_both.count("<path") > without.count("<polygon") + without.count("<path")

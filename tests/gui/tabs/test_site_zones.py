@@ -1,0 +1,113 @@
+"""Geo-zones in the real window: added by the Site tab's button, seen on the map and in the tree, authorised, undone."""
+
+import pytest
+from PySide6.QtCore import QPoint, Qt
+from PySide6.QtTest import QTest
+
+from groundstation.gui.shared_view import SharedViewPage
+from groundstation.services.project.document import Item, ItemKind
+from planning.base.findings import Severity
+from planning.site.bundled import ORIGIN
+from planning.site.zones.keep_out import no_fly_volumes
+from planning.site.zones.records import Restriction
+from tests.gui.driving import choose, click_on, clicked, type_into
+from tests.gui.tabs.test_site_tab import Window
+from tests.planning.site.zones.zone_files import ed269, ed269_feature, ed269_volume, lon_lat, polygon, square
+
+SCHOOL, HELIPORT = Item(ItemKind.ZONE, "zones.json/SCHOOL"), Item(ItemKind.ZONE, "zones.json/HELI")
+
+
+@pytest.fixture
+def hands(application):
+    window = Window(application, "single-panel")
+    yield window
+    window.close()
+
+
+@pytest.fixture
+def zones(tmp_path):
+    circle = {"type": "Circle", "center": lon_lat([(-200.0, 0.0)], ORIGIN)[0], "radius": 170}
+    school = ed269_feature(ed269_volume(polygon(square(40.0, -40.0, 15.0, ORIGIN))), identifier="SCHOOL")
+    heliport = ed269_feature(ed269_volume(circle), identifier="HELI", name="Heliport", restriction="REQ_AUTHORISATION")
+    path = tmp_path / "zones.json"
+    path.write_bytes(ed269(school, heliport))
+    return path
+
+
+def add(hands, path):
+    with clicked(choose(path)):
+        click_on(hands.window, hands.tab.detail.tools.zones_button)
+    hands.idle()
+
+
+def show_map(hands):
+    hands.window.shared_view.show_page(SharedViewPage.MAP)
+    view = hands.window.shared_view.map_page()
+    hands.until(view.is_complete)
+    hands.until(lambda: view._site is not None and view._model is hands.context.document.site)
+    return view
+
+
+def test_zones_are_added_seen_authorised_and_taken_away(hands, zones):
+    add(hands, zones)
+    assert [source.file for source in hands.site.zones] == ["zones.json"]
+    assert hands.context.selection == Item(ItemKind.ZONE_FILE, "zones.json")
+    assert "ED-269" in hands.tab.detail.properties.page().text()
+    assert len(no_fly_volumes(hands.context.document.site)) == 2
+    view = show_map(hands)
+    assert [zone.restriction for zone in view._site.zones] == [Restriction.PROHIBITED, Restriction.AUTHORISATION]
+    assert [(is_kept, text) for _, is_kept, text in view.legend()] == [
+        (True, "flights prohibited"),
+        (True, "flights with an authorisation only"),
+    ]
+    ring = view._viewport.screen(view._site.zones[0].rings[0])
+    middle = ring.mean(axis=0)
+    QTest.mouseMove(view, QPoint(*(round(value) for value in middle)))
+    hands.until(lambda: "School: flights prohibited (SENSITIVE)" in view.toolTip())
+    QTest.mouseClick(view, Qt.MouseButton.LeftButton, pos=QPoint(*(round(value) for value in middle)))
+    hands.until(lambda: hands.context.selection == SCHOOL)
+    page = hands.tab.detail.properties.page()
+    assert "plans keep out of it" in page.text()
+    assert hands.tab.left.tree.value() == SCHOOL
+    type_into(page.reference_box(), "No. 4711")
+    QTest.keyClick(page.reference_box(), Qt.Key.Key_Return)
+    hands.idle()
+    assert hands.site.zones[0].permitted == {"SCHOOL": "No. 4711"}
+    assert len(no_fly_volumes(hands.context.document.site)) == 1
+    assert "permitted by 'No. 4711'" in page.text()
+    assert next((is_kept, text) for _, is_kept, text in show_map(hands).legend()) == (
+        False,
+        "flights prohibited: not kept out of",
+    )
+    hands.undo()
+    assert not hands.site.zones[0].permitted
+    hands.context.select(Item(ItemKind.ZONE_FILE, "zones.json"))
+    from PySide6.QtWidgets import QPushButton
+
+    page = hands.tab.detail.properties.page()
+    click_on(hands.window, next(each for each in page.findChildren(QPushButton) if each.text() == "Remove this file"))
+    hands.idle()
+    assert not hands.site.zones
+    assert hands.context.selection == Item(ItemKind.BUILDING)
+
+
+def test_a_file_that_cannot_be_read_is_refused_in_words_and_changes_nothing(hands, zones):
+    zones.write_bytes(zones.read_bytes()[:-30])
+    add(hands, zones)
+    assert not hands.site.zones
+    assert any(message.severity is Severity.ERROR and "not valid JSON" in message.text for message in hands.messages), (
+        hands.messages
+    )
+
+
+@pytest.mark.slow
+def test_a_home_in_a_zone_is_told_by_the_site_s_check(hands, tmp_path):
+    path = tmp_path / "all.json"
+    path.write_bytes(ed269(ed269_feature(ed269_volume(polygon(square(0.0, 0.0, 90.0, ORIGIN))))))
+    add(hands, path)
+    found = hands.tab.detail.findings.findings()
+    assert next(finding.code for finding in found) == "home-unusable"
+    assert "geo-zone 'School'" in found[0].message
+    shown = hands.tab.detail.findings._list.item(0).text()
+    assert "“Authorisation”" in shown
+    assert "--" not in shown
