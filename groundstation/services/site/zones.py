@@ -294,5 +294,5 @@ def file_lines(model: SiteModel) -> tuple[str, ...]:
     lines = []
     for known in known_files(model):
         n = 0 if known.content is None else len(known.content.zones)
-        lines.append(say("{}: {}", source_text(known), known.problem or say("{} zones", n)))
+        lines.append(say("{}: {}", source_text(known), known.problem or say("zones: {}", n)))
     return tuple(lines)
