@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from groundstation.gui.camera_preview.preview import CameraPreview
     from groundstation.gui.map.map_view import MapView
     from groundstation.gui.view3d.scene_view import SceneView
+    from groundstation.services.map.online import OnlineMap
 
 
 class SharedViewPage(StrEnum):
@@ -43,8 +44,8 @@ class SharedView(QWidget):
     -------
     sceneReady(SceneView)
         Once, when the 3-D view is there.
-    tilesChanged(str)
-        Another file with map tiles is shown.
+    tilesChanged(str), overlaysChanged(tuple of Path), onlineChanged(OnlineMap)
+        Another file with map tiles is shown; there are other overlays; the online map is set up otherwise.
     tabRequested(str)
         Another tab should come to the front.
     closing(QCloseEvent)
@@ -57,6 +58,8 @@ class SharedView(QWidget):
 
     sceneReady = Signal(object)  # noqa: N815  (Qt's own way of naming)
     tilesChanged = Signal(str)  # noqa: N815
+    overlaysChanged = Signal(object)  # noqa: N815
+    onlineChanged = Signal(object)  # noqa: N815
     tabRequested = Signal(str)  # noqa: N815
     closing = Signal(object)
     pageShown = Signal(object)  # noqa: N815
@@ -70,6 +73,8 @@ class SharedView(QWidget):
         self._scene: SceneView | None = None
         self._map: MapView | None = None
         self._tiles: Path | None = None
+        self._overlays: tuple[Path, ...] = ()
+        self._online: OnlineMap | None = None
         self._follows_camera = False
         self._camera_viewpoint = ""
         self._in_camera: tuple[SiteModel | None, Plan | None, str] = (None, None, "")
@@ -173,13 +178,23 @@ class SharedView(QWidget):
             self._map.refused.connect(lambda text: self._context.say(Severity.ERROR, text))
             if self._tiles is not None:
                 self._map.open_map(self._tiles)
+            if self._online is not None:
+                self._map.set_online(self._online)
+            for path in self._overlays:
+                self._map.add_overlay(path)
             self._map.mapChanged.connect(lambda path: self.tilesChanged.emit(str(path)))
+            self._map.overlaysChanged.connect(self.overlaysChanged)
+            self._map.onlineChanged.connect(self.onlineChanged)
             self._pages.addWidget(self._map)
         return self._map
 
     def set_tiles(self, path: Path) -> None:
         """Show these tiles once the map is shown."""
         self._tiles = path
+
+    def set_map(self, overlays: tuple[Path, ...], online: OnlineMap) -> None:
+        """Show these overlays and this online map once the map is shown."""
+        self._overlays, self._online = overlays, online
 
     def open_tiles(self, path: Path) -> None:
         """Show the map, with other tiles."""

@@ -80,6 +80,7 @@ HEADER = """\
 # Settings of Reflight. Edit them while no window is open; what they mean is in docs/guide/projects.md.
 # theme: system, light, dark, sunlight; language: system, en, de; units: metric, imperial
 # text_scale: 0.8 to 2.0; autosave_s: 5 to 3600, or 0 for never; map_tiles: an MBTiles or PMTiles file, or empty
+# online_map_is_on: no map tile is asked for from the network while it is false
 
 """
 
@@ -115,6 +116,11 @@ class Settings:
         Folders, the latest first.
     map_tiles
         Path of an MBTiles or PMTiles file for maps without network; empty for none.
+    map_overlays
+        Files that lie on the map: GeoJSON, KML, KMZ or GeoTIFF.
+    online_map_url, online_map_attribution, online_map_max_zoom, online_map_cache_mb, online_map_is_on
+        A server of map tiles: address with {z}, {x} and {y}, licence as it stands on the map, deepest level, room for
+        tiles on the disk, and whether tiles may be asked for.
     default_profile
         Aircraft and camera that a new plan starts with: see `planning.aircraft.catalogue.profile`.
     window_layouts
@@ -130,6 +136,12 @@ class Settings:
     autosave_s: float = 30.0
     recent_projects: tuple[str, ...] = ()
     map_tiles: str = ""
+    map_overlays: tuple[str, ...] = ()
+    online_map_url: str = ""
+    online_map_attribution: str = ""
+    online_map_max_zoom: int = 19
+    online_map_cache_mb: int = 200
+    online_map_is_on: bool = False
     default_profile: str = DEFAULT_PROFILE
     window_layouts: Mapping[str, str] = field(default_factory=dict, hash=False)
     has_seen_tour: bool = False
@@ -143,6 +155,10 @@ class Settings:
             raise ValueError(
                 f"recent_projects: expected at most {MAX_RECENT_PROJECTS} folders, got {len(self.recent_projects)}"
             )
+        if not 0 <= self.online_map_max_zoom <= 24:
+            raise ValueError(f"online_map_max_zoom: expected 0 to 24, got {self.online_map_max_zoom}")
+        if not 10 <= self.online_map_cache_mb <= 10_000:
+            raise ValueError(f"online_map_cache_mb: expected 10 to 10000, got {self.online_map_cache_mb}")
         if not self.default_profile:
             raise ValueError("default_profile: expected the name of an aircraft profile, got an empty text")
         for size in self.window_layouts:

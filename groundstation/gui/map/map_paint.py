@@ -117,7 +117,7 @@ def paint_site(painter: QPainter, viewport: Viewport, shapes: SiteShapes, found:
         painter.setBrush(fill)
         painter.drawPath(path)
         painter.fillPath(path, QBrush(red, Qt.BrushStyle.BDiagPattern))
-        _label(painter, path.boundingRect().center(), zone.item.id, found)
+        paint_label(painter, path.boundingRect().center(), zone.item.id, found)
     for number, (_, panels) in enumerate(shapes.facades):
         colour = QColor(FACADES[number % len(FACADES)])
         painter.setPen(QPen(colour, 4))
@@ -272,7 +272,7 @@ def paint_ring(painter: QPainter, centre: NDArray[np.float64], text: str, found:
         painter.setPen(QPen(colour, width))
         painter.drawEllipse(at, 12, 12)
     if text:
-        _label(painter, QPointF(at.x(), at.y() - 26), text, found)
+        paint_label(painter, QPointF(at.x(), at.y() - 26), text, found)
 
 
 def paint_landings(painter: QPainter, at: NDArray[np.float64], found: Colours) -> None:
@@ -288,7 +288,8 @@ def paint_landings(painter: QPainter, at: NDArray[np.float64], found: Colours) -
         painter.drawText(QRectF(x - 11, y - 11, 22, 22), Qt.AlignmentFlag.AlignCenter, "R" if number else "H")
 
 
-def _label(painter: QPainter, centre: QPointF, text: str, found: Colours) -> None:
+def paint_label(painter: QPainter, centre: QPointF, text: str, found: Colours) -> None:
+    """A text on paper about a point."""
     size = painter.fontMetrics().size(0, text)
     box = QRectF(0, 0, size.width() + 8, size.height() + 2)
     box.moveCenter(centre)

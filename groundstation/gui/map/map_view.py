@@ -1,4 +1,4 @@
-"""The 2-D map: offline tiles or a metric grid, the site's footprint, and the plan's routes and viewpoints. No network.
+"""The 2-D map: tiles or a metric grid, overlays, the site's footprint, and the plan's routes and viewpoints.
 
 Site and plan are painted into a picture of their own (`MapLayer`): panning and zooming only move it, and once the map
 rests it is painted sharp again.
@@ -7,15 +7,18 @@ rests it is painted sharp again.
 from __future__ import annotations
 
 import threading
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QEvent, QMargins, QPointF, QRectF, QSize, Qt, QTimer, Signal
 from PySide6.QtGui import QColor, QFont, QImage, QPainter, QPaintEvent, QResizeEvent
-from PySide6.QtWidgets import QHBoxLayout, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QLineEdit, QPushButton, QToolButton, QVBoxLayout, QWidget
 
 from groundstation.gui.application.translate import translated
+from groundstation.gui.map.map_layers import PLAN, SITE, ZONES, MapLayers
 from groundstation.gui.map.map_paint import (
     paint_grid,
     paint_landings,
@@ -27,18 +30,21 @@ from groundstation.gui.map.map_paint import (
     paint_scale_bar,
     paint_site,
     paint_text_box,
-    paint_tiles,
     paint_zones,
     zone_colour,
 )
-from groundstation.gui.map.tile_store import TileStore
+from groundstation.gui.map.online_dialog import OnlineMapDialog
 from groundstation.gui.map.viewport import MapCanvas, Viewport
+from groundstation.gui.widgets.layer_list import LayerPanel
 from groundstation.gui.widgets.questions import choose_file
-from groundstation.gui.widgets.theme import Colours, colours
+from groundstation.gui.widgets.theme import colours
+from groundstation.services.map.coordinates import EXAMPLES, parse_place
+from groundstation.services.map.online import OnlineMap
+from groundstation.services.map.overlays import OVERLAY_SUFFIXES
 from groundstation.services.map.shapes import Area, PlanShapes, SiteShapes, airspace_outline, plan_shapes, site_shapes
-from groundstation.services.map.tiles import open_map_file
 from groundstation.services.map.web_mercator import MAX_LAT_DEG, geodetic_from_world, world_from_geodetic
 from groundstation.services.project.document import Document, Item, ItemKind
+from groundstation.services.settings import data_folder
 from groundstation.services.units import UnitSystem
 from planning.base.errors import InputError
 from planning.plan import Plan
@@ -75,15 +81,9 @@ class MapLayer:
         return self._target(viewport).contains(QRectF(0.0, 0.0, viewport.width_px, viewport.height_px))
 
     def make(
-        self,
-        viewport: Viewport,
-        site: SiteShapes,
-        plan: PlanShapes | None,
-        found: Colours,
-        font: QFont,
-        pixel_ratio: float,
+        self, viewport: Viewport, paint: Callable[[QPainter, Viewport], None], font: QFont, pixel_ratio: float
     ) -> None:
-        """Paint site and plan for what is in sight and its margin."""
+        """Paint shapes for what is in sight and its margin."""
         width, height = (round(size * (1.0 + 2.0 * MARGIN)) for size in (viewport.width_px, viewport.height_px))
         wide = viewport.resized(width, height)
         picture = QImage(
@@ -93,11 +93,7 @@ class MapLayer:
         picture.fill(Qt.GlobalColor.transparent)
         painter = QPainter(picture)
         painter.setFont(font)
-        paint_zones(painter, wide, site.zones, found)
-        paint_site(painter, wide, site, found)
-        if plan is not None:
-            paint_plan(painter, wide, plan)
-        paint_landings(painter, wide.screen(site.landings()), found)
+        paint(painter, wide)
         painter.end()
         self._picture, self._made_for = picture, wide
 
@@ -208,6 +204,17 @@ def _is_inside(area: Area, viewport: Viewport, at_px: NDArray[np.float64]) -> bo
 MARGIN_PX = 64.0
 """Around the site when all of it is shown: room for the scale bar and the note above it."""
 
+FOUND_ZOOM = 17.0
+"""How near a place that was searched for is looked at, at least."""
+
+SEARCH_PX = 250
+
+EDGES = QMargins(56, 8, 8, 42)
+"""Around the buttons: room for the north arrow and the scale bar."""
+
+ONLINE_FOLDER = "map-tiles"
+"""Where tiles of online maps are kept, in the folder for data."""
+
 REST_MS = 60
 """Without zooming for so long, the stretched picture is painted anew."""
 
@@ -223,13 +230,21 @@ class MapView(MapCanvas):
     mapChanged(Path)
         Another map file was opened.
     refused(str)
-        A map file could not be opened, and why.
+        A map file or an overlay could not be opened, and why.
+    placePicked(float, float), pickEnded()
+        Latitude and longitude that the user clicked after `start_pick`; that has ended, picked or not.
+    onlineChanged(OnlineMap), overlaysChanged(tuple of Path)
+        The user has set the online map up otherwise; there are other overlays.
     """
 
     picked = Signal(object)
     hovered = Signal(object)
     mapChanged = Signal(object)  # noqa: N815  (Qt's own way of naming)
     refused = Signal(str)
+    placePicked = Signal(float, float)  # noqa: N815
+    pickEnded = Signal()  # noqa: N815
+    onlineChanged = Signal(object)  # noqa: N815
+    overlaysChanged = Signal(object)  # noqa: N815
     _shapesReady = Signal(object, object)  # noqa: N815
 
     def __init__(self, parent: QWidget | None = None) -> None:
@@ -248,8 +263,16 @@ class MapView(MapCanvas):
         self._layer = MapLayer()
         self._sharpen_soon = QTimer(self, interval=REST_MS, singleShot=True)
         self._sharpen_soon.timeout.connect(self._sharpen)
-        self._tiles = TileStore(self)
-        self._tiles.tilesReady.connect(self.update)
+        self._pick_hint = ""
+        self._found: tuple[float, float] | None = None
+        self._not_found = ""
+        self.layers = MapLayers(self)
+        self.layers.changed.connect(self.update)
+        self.layers.shapesChanged.connect(self._draw_anew)
+        self.layers.rowsChanged.connect(self._show_rows)
+        self.layers.refused.connect(self._refuse)
+        self.layers.overlayAdded.connect(self._bring_in_overlay)
+        self.layers.overlaysChanged.connect(self.overlaysChanged)
         self._shapesReady.connect(self._take_shapes)
         self.clicked.connect(self._clicked)
         self.pointed.connect(self._pointed)
@@ -298,20 +321,17 @@ class MapView(MapCanvas):
     def set_insets(self, insets: QMargins) -> None:
         """Keep buttons and marks away from the edges, where something else lies over them."""
         self._insets = insets
-        self._row.setContentsMargins(8, 8 + insets.top(), 8 + insets.right(), 8 + insets.bottom())
+        self._row.setContentsMargins(EDGES + insets)
         self.update()
 
     def open_map(self, path: Path) -> bool:
         """Put tiles of a file under the site; False where it cannot be used, which `refused` tells."""
         try:
-            source = open_map_file(path)
+            self.layers.open_file(path)
         except InputError as error:
-            self._refusal = translated(str(error), self._units)
-            self.update()
-            self.refused.emit(self._refusal)
+            self._refuse(str(error))
             return False
         self._refusal = ""
-        self._tiles.set_source(source)
         self.mapChanged.emit(path)
         if self._model is None:
             self._look_at_map()
@@ -320,8 +340,54 @@ class MapView(MapCanvas):
 
     def map_file(self) -> Path | None:
         """The map that is shown."""
-        source = self._tiles.source()
+        source = self.layers.file.source()
         return None if source is None else source.info.path
+
+    def set_online(self, online: OnlineMap) -> None:
+        """Set the online map up; one that cannot be used is told."""
+        try:
+            self.layers.set_online(online, data_folder() / ONLINE_FOLDER)
+        except InputError as error:
+            self._refuse(str(error))
+
+    def add_overlay(self, path: Path) -> None:
+        """Put an overlay on the map, once it is read."""
+        self._refusal = ""
+        self.layers.add_overlay(path)
+
+    def find_place(self, text: str) -> bool:
+        """Bring the place of a text to the middle and mark it; False where it is none, which the map says."""
+        try:
+            lat, lon = parse_place(text)
+        except InputError as error:
+            self._not_found, self._found = translated(str(error), self._units), None
+            self.update()
+            return False
+        self._not_found, self._found = "", (lat, lon)
+        if abs(lat) >= MAX_LAT_DEG:
+            self._not_found = self.tr("This place lies beyond the end of web maps (85.05 degrees).")
+        place = world_from_geodetic(lat, lon)
+        self.set_viewport(self._viewport.fitted(place, max_zoom=max(self._viewport.zoom, FOUND_ZOOM)))
+        return True
+
+    def start_pick(self, hint: str) -> None:
+        """Let the user click a place; `hint` says what for."""
+        self._pick_hint = hint
+        self.setCursor(Qt.CursorShape.CrossCursor)
+        self.setFocus()
+        self.update()
+
+    def is_picking(self) -> bool:
+        """Whether a place is waited for."""
+        return bool(self._pick_hint)
+
+    def cancel_pick(self) -> None:
+        """Wait for a place no longer."""
+        if self._pick_hint:
+            self._pick_hint = ""
+            self.unsetCursor()
+            self.update()
+            self.pickEnded.emit()
 
     def look_at(self, item: Item) -> None:
         """Bring a thing to the middle; near enough to see it."""
@@ -332,22 +398,29 @@ class MapView(MapCanvas):
 
     def look_at_all(self) -> None:
         """Bring the whole site into view."""
-        if self._site is not None:
-            self.set_viewport(self._viewport.fitted(self._site.extent(), MARGIN_PX))
+        extent = self._site.extent() if self._site is not None else self.layers.extent()
+        if extent is not None:
+            self.set_viewport(self._viewport.fitted(extent, MARGIN_PX))
         else:
             self._look_at_map()
 
     def is_complete(self) -> bool:
         """Whether everything that is in sight is drawn: outlines are there, and no tile is waited for."""
-        return (self._model is None) == (self._site is None) and not self._tiles.is_busy()
+        return (self._model is None) == (self._site is None) and not self.layers.is_busy()
+
+    def is_sharp(self) -> bool:
+        """Whether shapes are painted for what is in sight, rather than moved and stretched."""
+        return self._layer.is_sharp(self._viewport)
 
     def note(self) -> str:
-        """What stands in the way of a map: a file that was refused, none, or one of another place; else empty."""
-        if self._refusal:
-            return self._refusal
+        """What is to be done, or stands in the way of a map: a file that was refused, none, or one of another place."""
+        if self._pick_hint or self._not_found or self._refusal:
+            return self._pick_hint or self._not_found or self._refusal
         if self._site is not None and not self._site.is_on_map:
             return self.tr("This site lies beyond the end of web maps (85.05 degrees); use the 3-D view.")
-        source = self._tiles.source()
+        source = self.layers.file.source()
+        if self.layers.online().is_on:
+            return translated(self.layers.problem(), self._units)
         if source is None and self._model is None:
             return self.tr("Open or import a site on the Site tab, or a map with “Map file”; no network is used.")
         if source is None:
@@ -358,7 +431,7 @@ class MapView(MapCanvas):
 
     def close_view(self) -> None:
         """End reading tiles; call before the widget goes away."""
-        self._tiles.close()
+        self.layers.close()
 
     def sizeHint(self) -> QSize:  # noqa: N802
         """Room for a site."""
@@ -369,10 +442,8 @@ class MapView(MapCanvas):
         found, viewport = colours(), self._viewport
         painter = QPainter(self)
         painter.fillRect(event.rect(), QColor(found.scene))
-        source = self._tiles.source()
-        if source is not None:
-            self._tiles.want(paint_tiles(painter, viewport, source.info, self._tiles.picture, self._tiles.knows))
-        if self._site is not None and (source is None or not _covers(source.info.bounds_deg, viewport)):
+        self.layers.paint_tiles(painter, viewport)
+        if self._site is not None and not self._has_ground():
             paint_grid(painter, viewport, self._site.home, self._units, found.line)
         self._paint_layer(painter)
         self._paint_marks(painter)
@@ -391,16 +462,48 @@ class MapView(MapCanvas):
 
     def item_at(self, at: QPointF) -> Item | None:
         """What is drawn at a point of the widget; the nearest of what is small comes before what is large."""
-        return find_item(np.array([at.x(), at.y()]), self._viewport, self._site, self._plan_shapes)
+        site = self._site if self.layers.state(SITE).is_visible else None
+        if site is not None and not self.layers.state(ZONES).is_visible:
+            site = replace(site, zones=())
+        plan = self._plan_shapes if self.layers.state(PLAN).is_visible else None
+        return find_item(np.array([at.x(), at.y()]), self._viewport, site, plan)
 
     def pointer_text(self) -> str:
         """Latitude and longitude under the pointer (WGS 84); empty where there is none."""
         if self._pointer is None:
             return ""
         lat, lon = geodetic_from_world(*self._viewport.world(self._pointer.x(), self._pointer.y()))
-        return f"{abs(lat):.6f}° {'N' if lat >= 0 else 'S'}  {abs(lon):.6f}° {'E' if lon >= 0 else 'W'}"
+        return coordinates_text(lat, lon)
+
+    def search(self) -> QLineEdit:
+        """The line for coordinates."""
+        return self._search
+
+    def layer_panel(self) -> LayerPanel:
+        """The list of layers; hidden until "Layers" is pressed."""
+        return self._panel
 
     def _add_buttons(self) -> None:
+        self._search = QLineEdit()
+        self._search.setPlaceholderText(self.tr("Find: {0}, UTM or MGRS").format(EXAMPLES))
+        self._search.setAccessibleName(self.tr("Find a place by its coordinates"))
+        self._search.setToolTip(self.tr("Coordinates of a place (WGS 84), then Enter"))
+        self._search.setClearButtonEnabled(True)
+        self._search.setFixedWidth(SEARCH_PX)
+        self._search.returnPressed.connect(lambda: self.find_place(self._search.text()))
+        self._search.textEdited.connect(self._search_edited)
+        self._panel = LayerPanel(self.tr("Layers"), self)
+        self._panel.list.changed.connect(self.layers.set_state)
+        self._panel.list.removed.connect(self.layers.remove)
+        for text, tip, slot in (
+            (self.tr("Overlay ..."), self.tr("Put GeoJSON, KML, KMZ or GeoTIFF on the map"), self._choose_overlay),
+            (self.tr("Online map ..."), self.tr("A server for map tiles; off until you agree"), self.set_online_up),
+        ):
+            below = QPushButton(text)
+            below.setToolTip(tip)
+            below.clicked.connect(lambda _checked=False, slot=slot: slot())
+            self._panel.add(below)
+        self._panel.hide()
         column = QVBoxLayout()
         for text, tip, slot in (
             ("+", self.tr("Nearer (+)"), lambda: self.zoom_by(1.0)),
@@ -418,13 +521,81 @@ class MapView(MapCanvas):
             button.setCursor(Qt.CursorShape.ArrowCursor)
             button.clicked.connect(lambda _checked=False, slot=slot: slot())
             column.addWidget(button, 0, Qt.AlignmentFlag.AlignRight)
+        shown = QToolButton(self)
+        shown.setText(self.tr("Layers"))
+        shown.setToolTip(self.tr("What is shown on the map, and how strongly; overlays and the online map"))
+        shown.setCheckable(True)
+        shown.setCursor(Qt.CursorShape.ArrowCursor)
+        shown.toggled.connect(self._panel.setVisible)
+        column.addWidget(shown, 0, Qt.AlignmentFlag.AlignRight)
         column.addStretch(1)
         row = self._row = QHBoxLayout(self)
-        row.setContentsMargins(8, 8, 8, 8)
+        row.setContentsMargins(EDGES)
+        row.addWidget(self._search, 0, Qt.AlignmentFlag.AlignTop)
         row.addStretch(1)
+        row.addWidget(self._panel, 0, Qt.AlignmentFlag.AlignTop)
         row.addLayout(column)
+        self._show_rows()
+
+    def _show_rows(self) -> None:
+        has_zones = self._site is not None and len(self._site.zones) > 0
+        rows = self.layers.rows(has_site=self._model is not None, has_plan=self._plan is not None, has_zones=has_zones)
+        self._panel.setValue(rows)
+
+    def _search_edited(self, text: str) -> None:
+        self._not_found = ""
+        if not text:
+            self._found = None
+        self.update()
+
+    def _refuse(self, text: str) -> None:
+        self._refusal = translated(text, self._units)
+        self.update()
+        self.refused.emit(self._refusal)
+
+    def _choose_overlay(self) -> None:
+        kinds = " ".join(f"*{suffix}" for suffix in OVERLAY_SUFFIXES)
+        path = choose_file(self, self.tr("Overlay for the map"), self.tr("Overlays ({0})").format(kinds))
+        if path is not None:
+            self.add_overlay(path)
+
+    def set_online_up(self) -> None:
+        """Ask for the server of an online map, and whether it may be used."""
+        dialog = OnlineMapDialog(self.layers.online(), self._units, self)
+        dialog.valueChanged.connect(self._online_edited)
+        dialog.exec()
+        dialog.deleteLater()
+
+    def _online_edited(self, online: OnlineMap) -> None:
+        self._refusal = ""
+        self.set_online(online)
+        self.onlineChanged.emit(online)
+
+    def _bring_in_overlay(self, key: str) -> None:
+        """Show where a new overlay lies, where nothing of it is in sight."""
+        extent = self.layers.overlay(key).extent()
+        points = self._viewport.screen(extent)
+        size = (self._viewport.width_px, self._viewport.height_px)
+        is_in_sight = (points.max(axis=0) >= 0.0).all() and (points.min(axis=0) <= size).all()
+        if not is_in_sight or self._model is None:
+            self.set_viewport(self._viewport.fitted(extent, MARGIN_PX))
+
+    def _has_ground(self) -> bool:
+        """Whether a map lies under what is in sight."""
+        if not self.layers.has_tiles():
+            return False
+        source = self.layers.file.source()
+        return self.layers.online().is_on or source is None or _covers(source.info.bounds_deg, self._viewport)
 
     def _clicked(self, at: QPointF) -> None:
+        if self._pick_hint:
+            lat, lon = geodetic_from_world(*self._viewport.world(at.x(), at.y()))
+            self._pick_hint = ""
+            self.unsetCursor()
+            self.update()
+            self.placePicked.emit(lat, lon)
+            self.pickEnded.emit()
+            return
         self.picked.emit(self.item_at(at))
 
     def _pointed(self, at: QPointF | None) -> None:
@@ -449,7 +620,8 @@ class MapView(MapCanvas):
     def legend(self) -> list[tuple[QColor, bool, str]]:
         """Colours of the geo-zones that are shown, whether flights keep out of them, and what they mean."""
         rows: dict[tuple[Restriction, bool], tuple[QColor, bool, str]] = {}
-        for zone in () if self._site is None else self._site.zones:
+        is_shown = self.layers.state(ZONES).is_visible
+        for zone in self._site.zones if self._site is not None and is_shown else ():
             text = translated(RESTRICTIONS[zone.restriction], self._units)
             if not zone.is_kept:
                 text = self.tr("{0}: not kept out of").format(text)
@@ -467,6 +639,7 @@ class MapView(MapCanvas):
     def _take_shapes(self, model: SiteModel | None, shapes: SiteShapes | None) -> None:
         if model is self._model:
             self._site = shapes
+            self._show_rows()
             self._fit_once()
             self._draw_anew()
 
@@ -474,6 +647,7 @@ class MapView(MapCanvas):
         self._plan_shapes = None
         if self._plan is not None and self._model is not None:
             self._plan_shapes = plan_shapes(self._plan, self._model.site.origin)
+        self._show_rows()
         self._draw_anew()
 
     def _draw_anew(self) -> None:
@@ -498,13 +672,13 @@ class MapView(MapCanvas):
         self._fit_once()
 
     def _look_at_map(self) -> None:
-        source = self._tiles.source()
+        source = self.layers.file.source()
         if source is not None and source.info.bounds_deg is not None:
             west, south, east, north = source.info.bounds_deg
             self.set_viewport(self._viewport.fitted(world_from_geodetic([south, north], [west, east])))
 
     def _paint_layer(self, painter: QPainter) -> None:
-        if self._site is None or not self._site.is_on_map:
+        if not self._has_site_to_paint() and self.layers.extent() is None:
             return
         if not self._layer.is_usable():
             self._sharpen()
@@ -513,11 +687,33 @@ class MapView(MapCanvas):
         self._layer.paint(painter, self._viewport)
 
     def _sharpen(self) -> None:
-        if self._site is not None:
-            self._layer.make(
-                self._viewport, self._site, self._plan_shapes, colours(), self.font(), self.devicePixelRatioF()
-            )
-            self.update()
+        self._layer.make(self._viewport, self._paint_shapes, self.font(), self.devicePixelRatioF())
+        self.update()
+
+    def _has_site_to_paint(self) -> bool:
+        return self._site is not None and self._site.is_on_map
+
+    def _paint_shapes(self, painter: QPainter, viewport: Viewport) -> None:
+        """Overlays, site and plan, each as strongly as its layer is shown."""
+        found, site, plan = colours(), self._site, self._plan_shapes
+        self.layers.paint_overlays(painter, viewport, found)
+        if site is None or not site.is_on_map:
+            return
+        of_site, of_plan = self.layers.state(SITE), self.layers.state(PLAN)
+        of_zones = self.layers.state(ZONES)
+        if of_zones.is_visible:
+            painter.setOpacity(of_zones.opacity)
+            paint_zones(painter, viewport, site.zones, found)
+        painter.setOpacity(of_site.opacity)
+        if of_site.is_visible:
+            paint_site(painter, viewport, site, found)
+        if plan is not None and of_plan.is_visible:
+            painter.setOpacity(of_plan.opacity)
+            paint_plan(painter, viewport, plan)
+            painter.setOpacity(of_site.opacity)
+        if of_site.is_visible:
+            paint_landings(painter, viewport.screen(site.landings()), found)
+        painter.setOpacity(1.0)
 
     def _paint_marks(self, painter: QPainter) -> None:
         found, viewport = colours(), self._viewport
@@ -527,20 +723,29 @@ class MapView(MapCanvas):
             if place is not None:
                 name = self._name_of(self._selection)
                 paint_ring(painter, viewport.screen(place.mean(axis=0)[None])[0], name, found)
-        source, insets = self._tiles.source(), self._insets
+        if self._found is not None:
+            lat, lon = self._found
+            place = world_from_geodetic(lat, lon)
+            place[:, 0] += round(viewport.centre[0] - place[0, 0])
+            paint_ring(painter, viewport.screen(place)[0], coordinates_text(lat, lon), found)
+        insets = self._insets
         # Marks stand at the edges of what nothing lies over.
         painter.translate(insets.left(), insets.top())
         wide, high = insets.left() + insets.right(), insets.top() + insets.bottom()
         viewport = viewport.resized(viewport.width_px - wide, viewport.height_px - high)
-        if self._model is not None or source is not None:
+        if self._model is not None or self.layers.has_tiles() or self.layers.extent() is not None:
             paint_scale_bar(painter, viewport, self._units, found)
             paint_north(painter, QPointF(28, 28), found)
-        if source is not None:
-            corner = QPointF(viewport.width_px, viewport.height_px)
-            paint_text_box(painter, corner, source.info.attribution, found, is_right=True)
-        paint_text_box(painter, QPointF(56, 34), self.pointer_text(), found)
+        corner = QPointF(viewport.width_px, viewport.height_px)
+        paint_text_box(painter, corner, self.layers.attribution(), found, is_right=True)
+        paint_text_box(painter, QPointF(56, 72), self.pointer_text(), found)
         paint_legend(painter, viewport, self.legend(), found)
         paint_note(painter, viewport, self.note(), found)
+
+
+def coordinates_text(lat_deg: float, lon_deg: float) -> str:
+    """Latitude and longitude to 10 cm."""
+    return f"{abs(lat_deg):.6f}° {'N' if lat_deg >= 0 else 'S'}  {abs(lon_deg):.6f}° {'E' if lon_deg >= 0 else 'W'}"
 
 
 def _covers(bounds_deg: tuple[float, float, float, float] | None, viewport: Viewport) -> bool:

@@ -136,6 +136,13 @@ class MapCanvas(QWidget):
     def look_at_all(self) -> None:
         """Bring everything into view: for widgets that have something to show."""
 
+    def is_picking(self) -> bool:
+        """Whether a place is waited for: for widgets that ask for one."""
+        return False
+
+    def cancel_pick(self) -> None:
+        """Wait for a place no longer."""
+
     def zoom_by(self, levels: float) -> None:
         """Zoom around the middle."""
         self.set_viewport(self._viewport.zoomed(levels, self.width() / 2.0, self.height() / 2.0))
@@ -189,7 +196,7 @@ class MapCanvas(QWidget):
         self.pointed.emit(None)
 
     def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802
-        """Arrows pan, plus and minus zoom, F shows everything."""
+        """Arrows pan, plus and minus zoom, F shows everything, Escape ends picking."""
         moves = {
             Qt.Key.Key_Left: (KEY_PX, 0.0),
             Qt.Key.Key_Right: (-KEY_PX, 0.0),
@@ -204,6 +211,8 @@ class MapCanvas(QWidget):
             self.zoom_by(levels[key])
         elif key == Qt.Key.Key_F:
             self.look_at_all()
+        elif key == Qt.Key.Key_Escape and self.is_picking():
+            self.cancel_pick()
         else:
             super().keyPressEvent(event)
 

@@ -20,12 +20,16 @@ from groundstation.gui.widgets.questions import choose_file, choose_files
 from groundstation.gui.widgets.scrolling import ButtonGrid
 from groundstation.services.project.document import Item, ItemKind
 from groundstation.services.site.edits import (
+    HeightReference,
     add_box,
     add_mesh_obstacle,
     add_rally_point,
     add_zone,
+    ground_at,
+    height_above_sea_m,
     move_home,
     set_airspace,
+    set_origin,
 )
 from groundstation.services.site.zones import AddedZones, add_zones
 from planning.base.findings import Severity
@@ -33,6 +37,7 @@ from planning.geo.mesh import MESH_SUFFIXES, TriangleMesh, read_mesh
 from planning.site.records import SiteModel
 
 if TYPE_CHECKING:
+    from groundstation.gui.map.map_view import MapView
     from groundstation.gui.view3d.drawing_tools import DrawnBox, DrawnPolygon, PickedRectangle, RectangleTool
     from groundstation.gui.view3d.scene_view import SceneView
     from groundstation.gui.view3d.tools import PickedHome, Tool
@@ -46,6 +51,7 @@ class SiteTool(Enum):
     HOME = auto()
     AIRSPACE = auto()
     RALLY = auto()
+    ORIGIN = auto()
     GRID = auto()
 
 
@@ -70,6 +76,7 @@ class SiteTools(QWidget):
         self._context, self._shared_view, self._editor = context, shared_view, editor
         self._active: SiteTool | None = None
         self._scene: SceneView | None = None
+        self._map: MapView | None = None
         self._grid_tool: RectangleTool | None = None
         self._buttons: dict[SiteTool, QPushButton] = {}
         layout = ButtonGrid(parent=self)
@@ -104,6 +111,7 @@ class SiteTools(QWidget):
             ),
             (SiteTool.NO_FLY, self.tr("No-fly zone"), self.tr("Draw a zone that must not be entered on the ground")),
             (SiteTool.BOX, self.tr("Obstacle box"), self.tr("Draw a box: two corners on the ground, then the height")),
+            (SiteTool.ORIGIN, self.tr("Zero on map"), self.tr("Click on the map where the site's zero lies")),
             (SiteTool.AIRSPACE, self.tr("Airspace"), self.tr("Draw the box in which the aircraft must stay")),
         )
 
@@ -116,7 +124,14 @@ class SiteTools(QWidget):
         return self._buttons[tool]
 
     def use(self, tool: SiteTool, n_rows: int = 1, n_columns: int = 1) -> None:
-        """Start a tool in the 3-D view; rows and columns are those of a panel grid."""
+        """Start a tool: in the 3-D view, and on the map where that is shown and the tool marks a place on the ground.
+
+        Rows and columns are those of a panel grid.
+        """
+        is_on_map = self._shared_view.page() is SharedViewPage.MAP and tool in (SiteTool.HOME, SiteTool.RALLY)
+        if tool is SiteTool.ORIGIN or is_on_map:
+            self._pick_on_map(tool)
+            return
         if tool is SiteTool.GRID and self._active is not SiteTool.GRID:
             self.gridRequested.emit()
         self._shared_view.show_page(SharedViewPage.SCENE)
@@ -131,6 +146,8 @@ class SiteTools(QWidget):
         """Put the tool in use away; nothing comes of it."""
         if self._scene is not None and self._active is not None:
             self._scene.cancel_tool()
+        if self._map is not None and self._active is not None:
+            self._map.cancel_pick()
         self._set_active(None)
 
     def set_grid(self, n_rows: int, n_columns: int) -> None:
@@ -184,6 +201,50 @@ class SiteTools(QWidget):
         scene.toolFinished.connect(self._finished)
         scene.toolEnded.connect(self._ended)
 
+    def _pick_on_map(self, tool: SiteTool) -> None:
+        self.cancel_drawing()
+        self._shared_view.show_page(SharedViewPage.MAP)
+        if self._map is None:
+            self._map = self._shared_view.map_page()
+            self._map.placePicked.connect(self._place_picked)
+            self._map.pickEnded.connect(self._ended)
+        hints = {
+            SiteTool.HOME: self.tr("Click where the aircraft takes off and lands. Esc cancels."),
+            SiteTool.RALLY: self.tr("Click where the aircraft may land when it returns. Esc cancels."),
+            SiteTool.ORIGIN: self.tr("Click where the site's zero lies: all of the site moves there. Esc cancels."),
+        }
+        self._map.start_pick(hints[tool])
+        self._set_active(tool)
+
+    def _place_picked(self, lat_deg: float, lon_deg: float) -> None:
+        tool = self._active
+        if tool is None:
+            return
+        self._set_active(None)
+        if tool is SiteTool.ORIGIN:
+            self._move_origin(lat_deg, lon_deg)
+        elif tool is SiteTool.HOME:
+            self._apply(
+                self.tr("Move home"),
+                lambda model: move_home(model, ground_at(model, lat_deg, lon_deg)),
+                Item(ItemKind.HOME),
+            )
+        elif tool is SiteTool.RALLY:
+            self._add(
+                self.tr("Mark rally point"),
+                lambda model: add_rally_point(model, ground_at(model, lat_deg, lon_deg)),
+                ItemKind.RALLY,
+            )
+
+    def _move_origin(self, lat_deg: float, lon_deg: float) -> None:
+        """Move the site's zero; its height above sea level stays, for a map has none."""
+
+        def edit(model: SiteModel) -> SiteModel:
+            height_m = height_above_sea_m(model.site.origin)
+            return set_origin(model, lat_deg, lon_deg, height_m, HeightReference.SEA_LEVEL)
+
+        self._apply(self.tr("Set origin"), edit)
+
     def _made(self, tool: SiteTool, n_rows: int, n_columns: int) -> Tool:
         from groundstation.gui.view3d.drawing_tools import BoxTool, PolygonTool, RectangleTool
         from groundstation.gui.view3d.tools import HomeTool, RallyTool
@@ -197,6 +258,8 @@ class SiteTools(QWidget):
                 return HomeTool()
             case SiteTool.RALLY:
                 return RallyTool()
+            case SiteTool.ORIGIN:
+                raise ValueError("the origin is picked on the map")
             case SiteTool.GRID:
                 self._grid_tool = RectangleTool(n_rows, n_columns)
                 return self._grid_tool

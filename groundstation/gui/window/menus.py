@@ -101,6 +101,7 @@ def view_keys() -> list[tuple[str, list[Row]]]:
                 (arrows, translate("Shortcuts", "Shift")),
                 ("+ = -", translate("Shortcuts", "Nearer, farther")),
                 ("F", translate("Shortcuts", "Show everything")),
+                ("Esc", translate("Shortcuts", "Pick no place")),
             ],
         ),
         (

@@ -28,6 +28,7 @@ from groundstation.gui.window.main_window import MainWindow
 from groundstation.gui.window.menus import Menus
 from groundstation.services.jobs.runner import JobRunner
 from groundstation.services.jobs.worker import Worker
+from groundstation.services.map.online import OnlineMap
 from groundstation.services.project.document import Document
 from groundstation.services.project.folder import create_project, save_project
 from groundstation.services.project.lock import ProjectLock
@@ -86,6 +87,8 @@ class ProjectController(QObject):
         self.menus = Menus(window, self.context, self)
         window.closing.connect(self._window_closing)
         window.shared_view.tilesChanged.connect(self._tiles_changed)
+        window.shared_view.overlaysChanged.connect(self._overlays_changed)
+        window.shared_view.onlineChanged.connect(self._online_changed)
         window.shared_view.sceneReady.connect(lambda _scene: self._scene_is_ready())
         self._title_of(window)
         self._serve(start_page_of(window))
@@ -165,8 +168,7 @@ class ProjectController(QObject):
     def _after_first_paint(self) -> None:
         for problem in self._settings_problems:
             self.context.say(Severity.WARNING, self.context.localized(problem), about=f"settings.{problem}")
-        if self._settings.map_tiles:
-            self.window.shared_view.set_tiles(Path(self._settings.map_tiles))
+        self._set_map()
         if self.context.session.folder is None:
             self._offer_unsaved(find_unsaved())
 
@@ -190,8 +192,7 @@ class ProjectController(QObject):
             self.window.show_tab(shown)
         self.window.set_layout_text(layout)
         self.window.show()
-        if self._settings.map_tiles:
-            self.window.shared_view.set_tiles(Path(self._settings.map_tiles))
+        self._set_map()
         old.deleteLater()
 
     def _show_title(self) -> None:
@@ -230,8 +231,34 @@ class ProjectController(QObject):
         if name is not None:
             self.window.shared_view.open_tiles(name)
 
+    def _set_map(self) -> None:
+        """Let the map be as it was left, once it is shown."""
+        kept, view = self._settings, self.window.shared_view
+        if kept.map_tiles:
+            view.set_tiles(Path(kept.map_tiles))
+        online = OnlineMap(
+            kept.online_map_url,
+            kept.online_map_attribution,
+            kept.online_map_max_zoom,
+            kept.online_map_cache_mb,
+            kept.online_map_is_on,
+        )
+        view.set_map(tuple(map(Path, kept.map_overlays)), online)
+
     def _tiles_changed(self, path: str) -> None:
         self.choose(map_tiles=path)
+
+    def _overlays_changed(self, paths: tuple[Path, ...]) -> None:
+        self.choose(map_overlays=tuple(map(str, paths)))
+
+    def _online_changed(self, online: OnlineMap) -> None:
+        self.choose(
+            online_map_url=online.url,
+            online_map_attribution=online.attribution,
+            online_map_max_zoom=online.max_zoom,
+            online_map_cache_mb=online.cache_mb,
+            online_map_is_on=online.is_on,
+        )
 
     def _dress(self) -> None:
         self._translations.use(self._settings.language)

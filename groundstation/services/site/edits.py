@@ -6,6 +6,7 @@ field; what makes a site merely useless for a flight is left to `site_findings`,
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
@@ -17,6 +18,7 @@ import numpy as np
 from groundstation.services.project.document import Item, ItemKind, first_free
 from planning.base.errors import InputError
 from planning.base.messages import say
+from planning.geo.enu import enu_from_geodetic
 from planning.geo.frames import Origin, Vec3
 from planning.geo.geoid import amsl_from_ellipsoid_m, ellipsoid_from_amsl_m
 from planning.geo.mesh import TriangleMesh
@@ -33,6 +35,10 @@ COORDINATE_DECIMALS = 3
 
 HEIGHT_DECIMALS = 4
 """Of heights converted between references, as in imported sites."""
+
+
+FARTHEST_PICK_M = 20_000.0
+"""From the site's zero to a place that is picked on the map: sites have no coordinates beyond."""
 
 
 class HeightReference(StrEnum):
@@ -205,6 +211,26 @@ def move_home(model: SiteModel, home_enu_m: Vec3, *, on_ground: bool = False) ->
         height_m = height_at(model.site, east, north) if on_ground else up
         site = replace(model.site, home_enu_m=_rounded((east, north, height_m)))
     return with_site(model, site)
+
+
+def ground_at(model: SiteModel, lat_deg: float, lon_deg: float) -> Vec3:
+    """Local point on the site's ground at a place on earth.
+
+    Raises
+    ------
+    InputError
+        The place is further from the site's zero than anything on a site.
+    """
+    origin, ground_z_m = model.site.origin, model.site.airspace.ground_z_m
+    with input_checked():
+        height_m = origin.ellipsoid_height_m + ground_z_m
+        east_m, north_m, _ = enu_from_geodetic(origin, lat_deg, lon_deg, height_m)[0]
+    if math.hypot(east_m, north_m) > FARTHEST_PICK_M:
+        raise InputError.say(
+            "this place is {:.0f} km from the site; move the site's zero there first",
+            math.hypot(east_m, north_m) / 1000.0,
+        )
+    return float(east_m), float(north_m), ground_z_m
 
 
 def rally_ids(model: SiteModel) -> list[str]:

@@ -2,6 +2,7 @@
 
 import contextlib
 import gzip
+import json
 import math
 import sqlite3
 import threading
@@ -13,11 +14,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from groundstation.services.map.online import OnlineMap
 from groundstation.services.map.web_mercator import Tile, world_from_enu, world_from_geodetic
 from groundstation.services.project.document import Document, Item, ItemKind, PlanEntry
 from groundstation.services.units import UnitSystem
 from planning.geo.frames import Origin
-from tests.gui.driving import turn_until
+from tests.gui.driving import click_on, clicked, turn_until, type_into, words_of
 from tests.missions.plans import example_plan
 from tests.planning.plan_cases import kiosk
 from tests.services.map_files import (
@@ -29,6 +31,7 @@ from tests.services.map_files import (
     write_map,
     write_pmtiles,
 )
+from tests.services.map_server import Server, send
 
 HERE = (22.3372, 114.2636)
 
@@ -439,3 +442,230 @@ def test_without_a_site_there_is_no_scale_but_what_to_do(application):
     view = MapView()
     assert "Open or import a site" in view.note()
     view.close_view()
+
+
+def write_overlay(path, east=0.0):
+    """A square of 80 m around the site, and a point with a name."""
+    lat, lon = HERE[0], HERE[1] + east
+    ring = [[lon - 4e-4, lat - 4e-4], [lon + 4e-4, lat - 4e-4], [lon + 4e-4, lat + 4e-4], [lon - 4e-4, lat + 4e-4]]
+    ring.append(ring[0])
+    geometries = {"Polygon": [ring], "Point": [lon + 1e-4, lat + 1e-4]}
+    features = [
+        {"type": "Feature", "properties": {"name": "Yard"}, "geometry": {"type": kind, "coordinates": places}}
+        for kind, places in geometries.items()
+    ]
+    path.write_text(json.dumps({"type": "FeatureCollection", "features": features}))
+    return path
+
+
+def test_overlays_lie_on_the_map_and_can_be_faint_hidden_and_removed(view, settle, tmp_path):
+    view.set_document(document())
+    settle()
+    plain = view.grab().toImage()
+    at = view.viewport().screen(world_from_geodetic(HERE[0] + 2.6e-4, HERE[1] + 2.6e-4))[0]
+    ground = pixel(view, *at)
+    heard = []
+    view.overlaysChanged.connect(heard.append)
+    path = write_overlay(tmp_path / "yard.geojson")
+    view.add_overlay(path)
+    settle()
+    strong = pixel(view, *at)
+    assert np.abs(strong - ground).max() > 15
+    (row,) = [row for row in view.layer_panel().list.value() if row.can_remove]
+    assert (row.title, heard) == ("yard.geojson", [(path,)])
+    box, slider = view.layer_panel().list.boxes(row.key)
+    slider.setValue(20)
+    settle()
+    assert 0 < np.abs(pixel(view, *at) - ground).max() < np.abs(strong - ground).max()
+    box.click()
+    settle()
+    assert np.abs(pixel(view, *at) - ground).max() == 0
+    view.layers.remove(row.key)
+    settle()
+    assert heard[-1] == ()
+    assert view.grab().toImage() == plain
+
+
+def test_an_overlay_elsewhere_is_brought_into_view_and_a_bad_one_is_told(view, settle, tmp_path):
+    view.set_document(document())
+    settle()
+    view.add_overlay(write_overlay(tmp_path / "far.geojson", east=0.5))
+    settle()
+    middle = view.viewport().screen(world_from_geodetic(HERE[0], HERE[1] + 0.5))[0]
+    assert middle == pytest.approx([350, 250], abs=2.0)
+    bad = tmp_path / "bad.kml"
+    bad.write_text("nonsense")
+    view.add_overlay(bad)
+    settle()
+    assert "not KML" in view.note()
+
+
+def test_an_overlay_over_the_date_line_is_drawn_from_both_sides(application, view, settle, tmp_path):
+    path = tmp_path / "line.geojson"
+    path.write_text(json.dumps({"type": "LineString", "coordinates": [[179.99, -16.5], [-179.99, -16.5]]}))
+    view.add_overlay(path)
+    settle()
+    for lon in (-179.995, 179.995):
+        view.set_viewport(_viewport(tuple(world_from_geodetic(-16.5, lon)[0]), 14.0, 700, 500))
+        view.repaint()
+        turn_until(application, view.is_sharp)
+        assert pixel(view, 350, 250).tolist() == [0x7B, 0x32, 0x94]
+
+
+def test_site_and_plan_are_layers(view, settle):
+    view.set_document(document())
+    settle()
+    at = on_screen(view, (0.0, 4.0, 0.0), kiosk().site.origin)
+    rows = view.layer_panel().list
+    assert [row.key for row in rows.value()] == ["plan", "site"]
+    rows.boxes("site")[0].click()
+    settle()
+    assert view.item_at(_point(*at)) is None
+    assert np.abs(pixel(view, *at) - [0x8D, 0x96, 0xA0]).max() > 30
+    plan = on_screen(view, example_plan().viewpoints[3].position_enu_m, kiosk().site.origin)
+    assert view.item_at(_point(*plan)).kind is ItemKind.VIEWPOINT
+    rows.boxes("plan")[0].click()
+    assert view.item_at(_point(*plan)) is None
+
+
+def test_coordinates_are_searched_for_and_errors_are_in_plain_words(view, settle, qtbot):
+    from PySide6.QtCore import Qt
+
+    view.set_document(document())
+    settle()
+    type_into(view.search(), "50Q 218155 2472500")
+    qtbot.keyClick(view.search(), Qt.Key.Key_Return)
+    settle()
+    place = view.viewport().screen(world_from_geodetic(22.335303, 114.263759))[0]
+    assert place == pytest.approx([350, 250], abs=1.0)
+    assert view.note().startswith("No map is loaded")
+    marked = pixel(view, 350 + 12, 250)
+    type_into(view.search(), "114.26, 22.3")
+    qtbot.keyClick(view.search(), Qt.Key.Key_Return)
+    assert "is the longitude written first" in view.note()
+    assert place == pytest.approx([350, 250], abs=1.0)
+    type_into(view.search(), "86, 20")
+    qtbot.keyClick(view.search(), Qt.Key.Key_Return)
+    assert "85.05" in view.note()
+    type_into(view.search(), "")
+    assert view.note().startswith("No map is loaded")
+    assert (pixel(view, 350 + 12, 250) != marked).any()
+
+
+def test_a_place_is_picked_once_and_escape_picks_none(view, settle, qtbot):
+    from PySide6.QtCore import QPoint, Qt
+
+    view.set_document(document())
+    settle()
+    places, ended, items = [], [], []
+    view.placePicked.connect(lambda *place: places.append(place))
+    view.pickEnded.connect(lambda: ended.append(1))
+    view.picked.connect(items.append)
+    view.start_pick("Click somewhere.")
+    assert view.note() == "Click somewhere."
+    qtbot.mouseClick(view, Qt.MouseButton.LeftButton, pos=QPoint(300, 200))
+    expected = view.viewport().world(300, 200)
+    assert world_from_geodetic(*places[0])[0] == pytest.approx(expected, abs=1e-12)
+    assert (len(places), len(ended), items) == (1, 1, [])
+    view.start_pick("Click somewhere.")
+    qtbot.keyClick(view, Qt.Key.Key_Escape)
+    qtbot.mouseClick(view, Qt.MouseButton.LeftButton, pos=QPoint(300, 200))
+    assert (len(places), len(ended), len(items)) == (1, 2, 1)
+
+
+@pytest.mark.parametrize(("lon", "lat"), [(180.0, -16.5), (-180.0, -16.5), (20.0, 84.9)])
+def test_panning_stays_within_a_frame_at_the_edges_of_the_map(view, settle, tmp_path, lon, lat):
+    """Vector tiles, an overlay of many points and a site at the date line and in the far north."""
+    model = kiosk(origin=Origin(lat, lon, 55.0))
+    view.set_document(Document(site=model))
+    settle()
+    layer = gzip.compress(vector_layer("water", [(3, square(500, 3500), {})]))
+    tiles = dict.fromkeys(tiles_around(lat, lon, (12,), reach=2), layer)
+    assert view.open_map(write_pmtiles(tmp_path / "m.pmtiles", tiles, tile_type=1))
+    turns = np.linspace(0.0, 6.0, 5000)
+    line = [[(lon + 1e-3 * math.sin(t) + 180.0) % 360.0 - 180.0, lat + 1e-4 * math.cos(t)] for t in turns]
+    path = tmp_path / "ring.geojson"
+    path.write_text(json.dumps({"type": "LineString", "coordinates": line}))
+    view.add_overlay(path)
+    settle()
+    times = []
+    for _ in range(30):
+        started = time.thread_time()
+        view.set_viewport(view.viewport().panned(3.0, 2.0))
+        view.repaint()
+        times.append(time.thread_time() - started)
+    assert np.median(times) < 0.016
+    settle()
+    home = on_screen(view, model.site.home_enu_m, model.site.origin)
+    assert view.item_at(_point(*home)) == Item(ItemKind.HOME)
+
+
+@pytest.fixture
+def server():
+    with contextlib.closing(Server()) as found:
+        found.answer = lambda handler: send(handler, answer_of(handler.path))
+        yield found
+
+
+def answer_of(path):
+    zoom, column, row = (int(part) for part in path.removesuffix(".png").split("/")[1:])
+    return picture(Tile(zoom, column, row))
+
+
+def test_an_online_map_is_asked_only_after_consent_and_shows_its_licence(view, settle, server, monkeypatch, tmp_path):
+    from PySide6.QtWidgets import QDialogButtonBox
+
+    monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path))
+    view.set_document(document())
+    settle()
+    assert server.asked == []
+    words, heard = [], []
+    view.onlineChanged.connect(heard.append)
+
+    def fill(dialog):
+        ok = dialog.findChild(QDialogButtonBox).button(QDialogButtonBox.StandardButton.Ok)
+        type_into(dialog.url, server.url + "/{z}/{x}/{y}.png")
+        dialog.is_on.click()
+        click_on(dialog, ok)
+        words.append(words_of(dialog))
+        assert server.asked == []
+        type_into(dialog.attribution, "© The testers")
+        click_on(dialog, ok)
+
+    with clicked(fill):
+        view.set_online_up()
+    assert "licence is missing" in words[0]
+    settle()
+    assert view.note() == ""
+    assert view.layers.attribution() == "© The testers"
+    assert heard[0].is_on
+    n_asked = len(server.asked)
+    assert 0 < n_asked < 60
+    x, y = 100, 400
+    level = min(round(view.viewport().zoom), 19)
+    tile = next(tile for tile, _, _ in view.viewport().tiles(level) if _holds(view, tile, x, y))
+    assert np.abs(pixel(view, x, y) - colour_of(tile)).max() <= 3
+    view.layer_panel().list.boxes("online")[0].click()
+    settle()
+    assert view.layers.attribution() == ""
+
+
+def _holds(view, tile, x, y):
+    world = np.array(view.viewport().world(x, y)) * 2**tile.zoom
+    return (int(world[0]) % 2**tile.zoom, int(world[1])) == (tile.column, tile.row)
+
+
+def test_a_server_that_refuses_is_told_and_not_asked_again_at_once(view, settle, server, monkeypatch, tmp_path):
+    monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path))
+    server.answer = lambda handler: send(handler, b"", 403)
+    view.set_document(document())
+    view.set_online(OnlineMap(server.url + "/{z}/{x}/{y}.png", "© testers", is_on=True))
+    settle()
+    assert "does not let Reflight in (answer 403)" in view.note()
+    for _ in range(20):
+        view.set_viewport(view.viewport().panned(30.0, 0.0))
+        settle()
+    assert len(server.asked) == 1
+    view.set_online(OnlineMap(server.url + "/{z}/{x}/{y}.png", "© testers"))
+    settle()
+    assert view.note().startswith("No map is loaded")

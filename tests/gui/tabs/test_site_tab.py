@@ -173,6 +173,48 @@ def test_a_rally_point_is_clicked_put_down_and_removed(opened):
 
 
 @pytest.mark.slow
+def test_home_rally_point_and_zero_are_picked_on_the_map_in_one_step_each(opened, qtbot):
+    from PySide6.QtCore import QPoint, Qt
+
+    from groundstation.gui.shared_view import SharedViewPage
+    from groundstation.gui.site.site_tools import SiteTool
+    from groundstation.services.map.web_mercator import geodetic_from_world, world_from_enu
+
+    hands = opened("office")
+    tools, view = hands.tab.detail.tools, hands.window.shared_view
+    view.show_page(SharedViewPage.MAP)
+    found = view.map_page()
+    turn_until(hands.application, found.is_complete)
+    before = hands.site
+
+    def click(point_enu_m):
+        x, y = found.viewport().screen(world_from_enu(hands.site.origin, [point_enu_m]))[0]
+        place = geodetic_from_world(*found.viewport().world(round(x), round(y)))
+        qtbot.mouseClick(found, Qt.MouseButton.LeftButton, pos=QPoint(round(x), round(y)))
+        return place
+
+    tools.button(SiteTool.HOME).click()
+    assert "Esc cancels" in found.note()
+    click((5.0, -35.0, 0.0))
+    np.testing.assert_allclose(hands.site.home_enu_m, (5.0, -35.0, before.airspace.ground_z_m), atol=0.5)
+    assert tools.active() is None
+    tools.button(SiteTool.RALLY).click()
+    click((-8.0, -38.0, 0.0))
+    np.testing.assert_allclose(hands.site.rally_points[0].position_enu_m[:2], (-8.0, -38.0), atol=0.5)
+    tools.button(SiteTool.ORIGIN).click()
+    qtbot.keyClick(found, Qt.Key.Key_Escape)
+    assert tools.active() is None
+    tools.button(SiteTool.ORIGIN).click()
+    lat, lon = click((20.0, 10.0, 0.0))
+    assert (hands.site.origin.lat_deg, hands.site.origin.lon_deg) == pytest.approx((lat, lon), abs=1e-12)
+    assert hands.site.origin.ellipsoid_height_m == pytest.approx(before.origin.ellipsoid_height_m, abs=0.01)
+    for _ in range(3):
+        hands.undo()
+    assert hands.site == before
+    hands.idle()
+
+
+@pytest.mark.slow
 def test_home_in_a_bad_place_is_taken_and_told_until_it_is_put_right(opened):
     from groundstation.gui.site.site_tools import SiteTool
 
