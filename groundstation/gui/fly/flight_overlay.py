@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QMargins, QObject, QRect, QSize, Qt, Signal
+from PySide6.QtCore import QMargins, QObject, QRect, QSignalBlocker, QSize, Qt, Signal
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QPushButton, QSizePolicy, QVBoxLayout, QWidget
 
 from groundstation.gui.application.translate import translated
@@ -10,6 +10,7 @@ from groundstation.gui.fly.instruments import AttitudeView, FlightFigures
 from groundstation.gui.fly.live_camera import LiveCamera
 from groundstation.gui.shared_view import SharedView, SharedViewPage
 from groundstation.gui.widgets.theme import colours
+from groundstation.services.fly.announce import ordered_warnings
 from groundstation.services.fly.events import LinkState, LiveView
 from groundstation.services.fly.sortie import LiveSortie
 from groundstation.services.units import UnitSystem, minutes_text
@@ -23,11 +24,6 @@ SIDE_PX = 210
 ATTITUDE_PX = 180
 MAX_SHOWN = 3
 """Warnings; the rest are counted."""
-
-
-def ordered_warnings(warnings: tuple[FlightWarning, ...]) -> tuple[FlightWarning, ...]:
-    """The worst first, the newest of these first."""
-    return tuple(sorted(warnings, key=lambda each: (each.severity is not Severity.ERROR, -each.since_s)))
 
 
 class WarningBanner(QFrame):
@@ -69,6 +65,13 @@ class WarningBanner(QFrame):
     def set_units(self, units: UnitSystem) -> None:
         """Show lengths in other units."""
         self._units = units
+
+    def set_muted(self, *, is_muted: bool, has_voice: bool) -> None:
+        """Show whether warnings are spoken; without a voice nothing is to be chosen."""
+        blocker = QSignalBlocker(self.mute)
+        self.mute.setChecked(is_muted)
+        del blocker
+        self.mute.setVisible(has_voice)
 
     def set_view(self, view: LiveView | None) -> bool:
         """Show the warnings of a flight as it stands; returns whether another size is needed."""

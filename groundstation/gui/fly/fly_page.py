@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from PySide6.QtCore import QObject, QSignalBlocker, Qt, Signal
+from PySide6.QtCore import QObject, Qt
 from PySide6.QtGui import QAction, QCloseEvent, QColor
 from PySide6.QtWidgets import (
-    QCheckBox,
     QLabel,
-    QLineEdit,
     QListWidget,
     QListWidgetItem,
     QMainWindow,
@@ -24,14 +22,16 @@ from groundstation.gui.application.translate import translated
 from groundstation.gui.fly.connection_box import ConnectionBox
 from groundstation.gui.fly.flight_buttons import APART_PX, FlightButtons, PreflightList
 from groundstation.gui.fly.flight_overlay import FlightOverlay
+from groundstation.gui.fly.flight_settings_page import SettingsPage
 from groundstation.gui.fly.fly_controller import BEFORE_FLIGHT, ActiveFlight, FlyController
 from groundstation.gui.fly.live_pictures import LivePictures, PhotoStrip, ScrolledStrip
 from groundstation.gui.fly.questions import FlightQuestions
 from groundstation.gui.fly.readouts_view import ReadoutsView, ReportView
 from groundstation.gui.fly.simulation_controller import SimulationPage
+from groundstation.gui.fly.speech import Voice, WarningSpeaker
 from groundstation.gui.shared_view import SharedView
 from groundstation.gui.widgets.findings_list import FindingsList
-from groundstation.gui.widgets.inputs import ChoiceBox, Form
+from groundstation.gui.widgets.inputs import ChoiceBox
 from groundstation.gui.widgets.scrolling import scrolled
 from groundstation.gui.widgets.tab_order import set_enabled
 from groundstation.gui.widgets.theme import colours
@@ -45,8 +45,6 @@ from groundstation.services.units import UnitSystem, minutes_text
 from groundstation.vehicle.preflight import PreflightCheck, Remedy
 from groundstation.vehicle.sortie.run_records import Phase
 from groundstation.vehicle.watch import FlightWarning
-from missions.mavlink.remote_id import EXAMPLE, operator_number, serial_number
-from planning.base.errors import InputError
 from planning.base.findings import Severity
 from planning.revision.top_up import TopUp
 
@@ -246,96 +244,6 @@ class FlightNotes(QListWidget):
         return "\n".join(self.item(row).text() for row in range(self.count()))
 
 
-# What the pilot decides: whether RTK is needed.
-
-
-class SettingsPage(QWidget):
-    """Edits `FlightSettings`.
-
-    Signals
-    -------
-    valueChanged(FlightSettings)
-    """
-
-    valueChanged = Signal(object)  # noqa: N815  (Qt's own way of naming)
-
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
-        self.needs_rtk = QCheckBox(self.tr("RTK needed for take-off"))
-        says = QLabel(self.tr("Start waits for RTK, and a warning comes when it is lost in flight."))
-        says.setWordWrap(True)
-        says.setProperty("role", "muted")
-        self._kept = FlightSettings()
-        self.operator, self.serial, self._said = QLineEdit(), QLineEdit(), QLabel()
-        self.operator.setPlaceholderText(EXAMPLE)
-        self.operator.setToolTip(
-            self.tr("For aircraft with remote ID. The secret part proves the checksum, and is neither sent nor kept")
-        )
-        self.serial.setToolTip(self.tr("Only where the aircraft's module does not know it"))
-        self._said.setWordWrap(True)
-        form = Form()
-        form.addRow(self.tr("Operator number"), self.operator)
-        form.addRow(self.tr("Serial number"), self.serial)
-        layout = QVBoxLayout(self)
-        layout.addWidget(self.needs_rtk)
-        layout.addWidget(says)
-        layout.addLayout(form)
-        layout.addWidget(self._said)
-        layout.addStretch(1)
-        self.needs_rtk.toggled.connect(self._edited)
-        self.operator.editingFinished.connect(self._identity_typed)
-        self.serial.editingFinished.connect(self._identity_typed)
-
-    def value(self) -> FlightSettings:
-        """What was chosen."""
-        return replace(self._kept, needs_rtk=self.needs_rtk.isChecked())
-
-    def setValue(self, value: FlightSettings) -> None:  # noqa: N802
-        """Show another choice."""
-        blocker = QSignalBlocker(self.needs_rtk)
-        self.needs_rtk.setChecked(value.needs_rtk)
-        del blocker
-        self._kept = value
-        self.operator.setText(value.operator)
-        self.serial.setText(value.serial_number)
-
-    def said(self) -> str:
-        """What is said of the numbers that were typed."""
-        return self._said.text()
-
-    def _identity_typed(self) -> None:
-        """Take the operator's and the aircraft's numbers, or say what is wrong with them."""
-        typed, serial = self.operator.text().strip(), self.serial.text().strip()
-        if (typed, serial) == (self._kept.operator, self._kept.serial_number):
-            return
-        try:
-            number = operator_number(typed) if typed else None
-            numbers = "" if number is None else number.public, serial_number(serial) if serial else ""
-            kept = replace(self._kept, operator=numbers[0], serial_number=numbers[1])
-        except InputError as error:
-            self._say("error", translated(str(error), UnitSystem.METRIC))
-            return
-        if number is None:
-            self._say("muted", "")
-        elif number.is_proved:
-            self._say("ok", self.tr("Operator number: its checksum is right."))
-        elif number.is_eu:
-            self._say("muted", self.tr("The form is right. With the secret part the checksum can be proved."))
-        else:
-            self._say("muted", self.tr("No number of an EASA state: nothing about it can be proved."))
-        self._kept = kept
-        self.operator.setText(kept.operator)
-        self.valueChanged.emit(self.value())
-
-    def _say(self, role: str, text: str) -> None:
-        self._said.setProperty("role", role)
-        self._said.style().polish(self._said)
-        self._said.setText(text)
-
-    def _edited(self, _is_on: bool) -> None:
-        self.valueChanged.emit(self.value())
-
-
 class FlyPage(QObject):
     """The tab."""
 
@@ -357,6 +265,8 @@ class FlyPage(QObject):
         self.lists.hide()
         shared_view.add_overlay_bar(self.lists)
         self._is_shown = False
+        self._voice = Voice(self)
+        self._speaker = WarningSpeaker(self._voice, self)
         self._phase = QLabel()
         self._phase.setWordWrap(True)
         self._phase.setProperty("role", "heading")
@@ -366,7 +276,9 @@ class FlyPage(QObject):
         self.band.put_into(shared_view.window())
         self._connect()
         self.connection.setValue(self.controller.choice)
+        self.settings.set_voice(has_voice=self._voice.is_there())
         self.settings.setValue(self.controller.settings)
+        self._take_settings(self.controller.settings)
         self._show_units(context.units)
         self._show_document()
         self._show_all()
@@ -464,7 +376,8 @@ class FlyPage(QObject):
         self.buttons.requested.connect(self._request)
         self.checks.remedyRequested.connect(self._mend)
         self.simulation.valueChanged.connect(self._simulation_chosen)
-        self.settings.valueChanged.connect(controller.set_settings)
+        self.settings.valueChanged.connect(self._settings_chosen)
+        self.overlay.banner.muteToggled.connect(self._mute)
         self.findings.placePicked.connect(self._go_to_place)
         self.strip.picked.connect(self._go_to)
         self.report.picked.connect(self._go_to)
@@ -502,6 +415,19 @@ class FlyPage(QObject):
     def _request(self, request: Request) -> None:
         if request is not Request.START or self._may_start():
             self.controller.request(request)
+
+    def _settings_chosen(self, settings: FlightSettings) -> None:
+        self.controller.set_settings(settings)
+        self._take_settings(settings)
+
+    def _mute(self, is_muted: bool) -> None:
+        settings = replace(self.settings.value(), speaks=not is_muted)
+        self.settings.setValue(settings)
+        self._settings_chosen(settings)
+
+    def _take_settings(self, settings: FlightSettings) -> None:
+        self._speaker.set_muted(is_muted=not settings.speaks)
+        self.overlay.banner.set_muted(is_muted=not settings.speaks, has_voice=self._voice.is_there())
 
     def _mend(self, remedy: Remedy, check: PreflightCheck) -> None:
         """Do something about a check before take-off, once the pilot agrees."""
@@ -552,6 +478,7 @@ class FlyPage(QObject):
             return
         self.controller.close()
         self.overlay.close_view()
+        self._voice.stop()
 
     def _go_to(self, view_id: str) -> None:
         self._context.jump_to(Item(ItemKind.VIEWPOINT, view_id))
@@ -654,6 +581,9 @@ class FlyPage(QObject):
         self.readouts.set_view(view)
         self.overlay.set_view(view)
         self.warnings.set_warnings(view.warnings)
+        if self.controller.is_connected:
+            worded = {each.code: translated(each.text, self._context.units) for each in view.warnings}
+            self._speaker.take(view.warnings, worded)
         self.strip.set_states(view.view_states)
         note = self.tr("In flight; the list comes back after the landing.") if view.state.is_armed else ""
         is_connected = self.controller.is_connected

@@ -94,12 +94,15 @@ class FlightSettings:
         For remote identification: public part of the operator's number, and the aircraft's serial number; empty: none.
     corrections
         Where RTK corrections come from, `USER@HOST:PORT/MOUNTPOINT`; empty: nowhere. A password is never kept.
+    speaks
+        Warnings are spoken, where the computer can.
     """
 
     needs_rtk: bool = False
     operator: str = ""
     serial_number: str = ""
     corrections: str = ""
+    speaks: bool = True
 
     @property
     def identity(self) -> RemoteId:

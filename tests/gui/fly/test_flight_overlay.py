@@ -10,9 +10,10 @@ from hypothesis import strategies as st
 from PySide6.QtGui import QColor, QImage, QPainter
 
 from groundstation.gui.fly.aircraft_shape import aircraft_drawables, body_axes, paint_aircraft
-from groundstation.gui.fly.flight_overlay import WarningBanner, ordered_warnings
+from groundstation.gui.fly.flight_overlay import WarningBanner
 from groundstation.gui.fly.instruments import AttitudeView, FlightFigures
 from groundstation.gui.widgets.theme import LIGHT
+from groundstation.services.fly.announce import ordered_warnings
 from groundstation.services.fly.events import LinkState, LiveView, Readouts, ViewState
 from groundstation.services.units import UnitSystem
 from groundstation.vehicle.preflight import OnBoard

@@ -1,0 +1,122 @@
+"""What the pilot decides about flights: whether RTK is needed, remote identification, spoken warnings."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from PySide6.QtCore import QSignalBlocker, Signal
+from PySide6.QtWidgets import QCheckBox, QLabel, QLineEdit, QVBoxLayout, QWidget
+
+from groundstation.gui.application.translate import translated
+from groundstation.gui.widgets.inputs import Form
+from groundstation.gui.widgets.tab_order import set_enabled
+from groundstation.services.fly.options import FlightSettings
+from groundstation.services.units import UnitSystem
+from missions.mavlink.remote_id import EXAMPLE, operator_number, serial_number
+from planning.base.errors import InputError
+
+
+class SettingsPage(QWidget):
+    """Edits `FlightSettings`.
+
+    Signals
+    -------
+    valueChanged(FlightSettings)
+    """
+
+    valueChanged = Signal(object)  # noqa: N815  (Qt's own way of naming)
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.needs_rtk = QCheckBox(self.tr("RTK needed for take-off"))
+        self.speaks = QCheckBox(self.tr("Warnings are spoken"))
+        self._voice_text = _muted("")
+        self._kept = FlightSettings()
+        self.operator, self.serial, self._said = QLineEdit(), QLineEdit(), QLabel()
+        self.operator.setPlaceholderText(EXAMPLE)
+        self.operator.setToolTip(
+            self.tr("For aircraft with remote ID. The secret part proves the checksum, and is neither sent nor kept")
+        )
+        self.serial.setToolTip(self.tr("Only where the aircraft's module does not know it"))
+        self._said.setWordWrap(True)
+        form = Form()
+        form.addRow(self.tr("Operator number"), self.operator)
+        form.addRow(self.tr("Serial number"), self.serial)
+        layout = QVBoxLayout(self)
+        layout.addWidget(self.needs_rtk)
+        layout.addWidget(_muted(self.tr("Start waits for RTK, and a warning comes when it is lost in flight.")))
+        layout.addWidget(self.speaks)
+        layout.addWidget(self._voice_text)
+        layout.addLayout(form)
+        layout.addWidget(self._said)
+        layout.addStretch(1)
+        self.needs_rtk.toggled.connect(self._edited)
+        self.speaks.toggled.connect(self._edited)
+        self.operator.editingFinished.connect(self._identity_typed)
+        self.serial.editingFinished.connect(self._identity_typed)
+
+    def value(self) -> FlightSettings:
+        """What was chosen."""
+        return replace(self._kept, needs_rtk=self.needs_rtk.isChecked(), speaks=self.speaks.isChecked())
+
+    def setValue(self, value: FlightSettings) -> None:  # noqa: N802
+        """Show another choice."""
+        blockers = [QSignalBlocker(box) for box in (self.needs_rtk, self.speaks)]
+        self.needs_rtk.setChecked(value.needs_rtk)
+        self.speaks.setChecked(value.speaks)
+        del blockers
+        self._kept = value
+        self.operator.setText(value.operator)
+        self.serial.setText(value.serial_number)
+
+    def set_voice(self, *, has_voice: bool) -> None:
+        """Say whether this computer can speak, and what it lacks."""
+        set_enabled(self.speaks, has_voice)
+        self._voice_text.setText(
+            self.tr("Each as it comes, and again while it holds.")
+            if has_voice
+            else self.tr("This computer has no speech program: install speech-dispatcher or espeak-ng.")
+        )
+
+    def said(self) -> str:
+        """What is said of the numbers that were typed."""
+        return self._said.text()
+
+    def _identity_typed(self) -> None:
+        """Take the operator's and the aircraft's numbers, or say what is wrong with them."""
+        typed, serial = self.operator.text().strip(), self.serial.text().strip()
+        if (typed, serial) == (self._kept.operator, self._kept.serial_number):
+            return
+        try:
+            number = operator_number(typed) if typed else None
+            numbers = "" if number is None else number.public, serial_number(serial) if serial else ""
+            kept = replace(self._kept, operator=numbers[0], serial_number=numbers[1])
+        except InputError as error:
+            self._say("error", translated(str(error), UnitSystem.METRIC))
+            return
+        if number is None:
+            self._say("muted", "")
+        elif number.is_proved:
+            self._say("ok", self.tr("Operator number: its checksum is right."))
+        elif number.is_eu:
+            self._say("muted", self.tr("The form is right. With the secret part the checksum can be proved."))
+        else:
+            self._say("muted", self.tr("No number of an EASA state: nothing about it can be proved."))
+        self._kept = kept
+        self.operator.setText(kept.operator)
+        self.valueChanged.emit(self.value())
+
+    def _say(self, role: str, text: str) -> None:
+        self._said.setProperty("role", role)
+        self._said.style().polish(self._said)
+        self._said.setText(text)
+
+    def _edited(self, _is_on: bool) -> None:
+        self.valueChanged.emit(self.value())
+
+
+def _muted(text: str) -> QLabel:
+    label = QLabel(text)
+    label.setWordWrap(True)
+    label.setProperty("role", "muted")
+    return label

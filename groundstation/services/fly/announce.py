@@ -1,0 +1,58 @@
+"""Which warning is spoken next: new and worse ones at once, those that go on again and again, one at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from types import MappingProxyType
+
+from groundstation.vehicle.watch import FlightWarning
+from planning.base.findings import Severity
+
+AGAIN_S = {Severity.ERROR: 12.0, Severity.WARNING: 45.0}
+"""Between two times that the same warning is spoken: a sentence takes some 5 s, and a pilot has to hear his crew."""
+
+
+def ordered_warnings(warnings: Sequence[FlightWarning]) -> tuple[FlightWarning, ...]:
+    """The worst first, the newest of these first."""
+    return tuple(sorted(warnings, key=lambda each: (each.severity is not Severity.ERROR, -each.since_s)))
+
+
+@dataclass(frozen=True, slots=True)
+class Spoken:
+    """How severe a warning was when it was spoken last, and when."""
+
+    severity: Severity
+    time_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class Announcements:
+    """What was spoken of the warnings that hold, by their code."""
+
+    spoken: Mapping[str, Spoken] = field(default_factory=lambda: MappingProxyType({}))
+
+    def after(self, warnings: Sequence[FlightWarning]) -> Announcements:
+        """Forget what is over: when it comes back it is new."""
+        codes = {warning.code for warning in warnings}
+        return replace(self, spoken={code: said for code, said in self.spoken.items() if code in codes})
+
+    def next(self, warnings: Sequence[FlightWarning], now_s: float) -> FlightWarning | None:
+        """The warning to be spoken now, the worst and newest first; None where all were spoken lately.
+
+        Parameters
+        ----------
+        now_s
+            By any clock that runs as the pilot's does; that of a simulation runs ahead.
+        """
+        return next((each for each in ordered_warnings(warnings) if self._is_due(each, now_s)), None)
+
+    def with_spoken(self, warning: FlightWarning, now_s: float) -> Announcements:
+        """It is spoken now."""
+        return replace(self, spoken={**self.spoken, warning.code: Spoken(warning.severity, now_s)})
+
+    def _is_due(self, warning: FlightWarning, now_s: float) -> bool:
+        said = self.spoken.get(warning.code)
+        if said is None or (warning.severity is Severity.ERROR and said.severity is not Severity.ERROR):
+            return True
+        return now_s - said.time_s >= AGAIN_S.get(warning.severity, AGAIN_S[Severity.WARNING])
