@@ -288,6 +288,16 @@ class FlightButtons(QWidget):
         """The button of a request."""
         return self._buttons[request]
 
+    def held(self, request: Request) -> HoldButton:
+        """The button of a request that is held."""
+        button = self._buttons[request]
+        assert isinstance(button, HoldButton)
+        return button
+
+    def emergency_actions(self) -> list[QAction]:
+        """Return and Land."""
+        return [self._actions[request] for request in (Request.RETURN, Request.LAND)]
+
     def flight_actions(self) -> list[QAction]:
         """For the tab's menu."""
         return list(self._actions.values())

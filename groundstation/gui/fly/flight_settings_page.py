@@ -8,6 +8,7 @@ from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import QCheckBox, QLabel, QLineEdit, QVBoxLayout, QWidget
 
 from groundstation.gui.application.translate import translated
+from groundstation.gui.fly.joystick_controller import JoystickBox
 from groundstation.gui.widgets.inputs import Form
 from groundstation.gui.widgets.tab_order import set_enabled
 from groundstation.services.fly.options import FlightSettings
@@ -30,7 +31,7 @@ class SettingsPage(QWidget):
         super().__init__(parent)
         self.needs_rtk = QCheckBox(self.tr("RTK needed for take-off"))
         self.speaks = QCheckBox(self.tr("Warnings are spoken"))
-        self._voice_text = _muted("")
+        self._voice_text, self.joystick = _muted(""), JoystickBox()
         self._kept = FlightSettings()
         self.operator, self.serial, self._said = QLineEdit(), QLineEdit(), QLabel()
         self.operator.setPlaceholderText(EXAMPLE)
@@ -49,6 +50,7 @@ class SettingsPage(QWidget):
         layout.addWidget(self._voice_text)
         layout.addLayout(form)
         layout.addWidget(self._said)
+        layout.addWidget(self.joystick)
         layout.addStretch(1)
         self.needs_rtk.toggled.connect(self._edited)
         self.speaks.toggled.connect(self._edited)

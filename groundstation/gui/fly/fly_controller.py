@@ -36,6 +36,7 @@ from groundstation.services.fly.events import (
 )
 from groundstation.services.fly.flight import LiveFlight
 from groundstation.services.fly.flying import report_of_log
+from groundstation.services.fly.joystick import JoystickButtons, joystick_path, read_joystick_buttons
 from groundstation.services.fly.options import (
     ConnectionChoice,
     FlightSettings,
@@ -356,6 +357,7 @@ class FlyController(QObject):
         self._preparing_id = 0
         self.choice = read_choice(choice_path(), self._say_soon)
         self.settings = read_flight_settings(flight_settings_path(), self._say_soon)
+        self.joystick = read_joystick_buttons(joystick_path(), self._say_soon)
         self.simulation, self.limit = SimulationController(context, self), ItemLimit(context, self)
         self.number = 1
         self.active: ActiveFlight | None = None
@@ -422,6 +424,11 @@ class FlyController(QObject):
         self._keep(flight_settings_path(), settings)
         if self._flight is not None:
             self._flight.set_settings(settings)
+
+    def set_joystick(self, buttons: JoystickButtons) -> None:
+        """The buttons of the joystick do something else; kept for the next start of the program too."""
+        self.joystick = buttons
+        self._keep(joystick_path(), buttons)
 
     def share_out(self, found: TooLong) -> None:
         """Share the views out among sorties that fit, and connect for that plan."""

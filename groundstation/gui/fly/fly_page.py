@@ -7,6 +7,7 @@ from dataclasses import replace
 from PySide6.QtCore import QObject, Qt
 from PySide6.QtGui import QAction, QCloseEvent, QColor
 from PySide6.QtWidgets import (
+    QApplication,
     QLabel,
     QListWidget,
     QListWidgetItem,
@@ -24,18 +25,20 @@ from groundstation.gui.fly.flight_buttons import APART_PX, FlightButtons, Prefli
 from groundstation.gui.fly.flight_overlay import FlightOverlay
 from groundstation.gui.fly.flight_settings_page import SettingsPage
 from groundstation.gui.fly.fly_controller import BEFORE_FLIGHT, ActiveFlight, FlyController
+from groundstation.gui.fly.joystick_controller import JoystickController
 from groundstation.gui.fly.live_pictures import LivePictures, PhotoStrip, ScrolledStrip
 from groundstation.gui.fly.questions import FlightQuestions
 from groundstation.gui.fly.readouts_view import ReadoutsView, ReportView
 from groundstation.gui.fly.simulation_controller import SimulationPage
 from groundstation.gui.fly.speech import Voice, WarningSpeaker
-from groundstation.gui.shared_view import SharedView
+from groundstation.gui.shared_view import SharedView, SharedViewPage
 from groundstation.gui.widgets.findings_list import FindingsList
 from groundstation.gui.widgets.inputs import ChoiceBox
 from groundstation.gui.widgets.scrolling import scrolled
 from groundstation.gui.widgets.tab_order import set_enabled
 from groundstation.gui.widgets.theme import colours
 from groundstation.services.fly.events import FlightEnded, LinkState, LiveView, PhotoCounted, Request
+from groundstation.services.fly.joystick import JoystickAction
 from groundstation.services.fly.options import FlightSettings
 from groundstation.services.fly.sortie import is_same_place, take_off_of
 from groundstation.services.plan.places import item_of_place
@@ -244,6 +247,9 @@ class FlightNotes(QListWidget):
         return "\n".join(self.item(row).text() for row in range(self.count()))
 
 
+_HELD_BY = {JoystickAction.RETURN: Request.RETURN, JoystickAction.LAND: Request.LAND}
+
+
 class FlyPage(QObject):
     """The tab."""
 
@@ -267,6 +273,7 @@ class FlyPage(QObject):
         self._is_shown = False
         self._voice = Voice(self)
         self._speaker = WarningSpeaker(self._voice, self)
+        self.joystick = JoystickController(self)
         self._phase = QLabel()
         self._phase.setWordWrap(True)
         self._phase.setProperty("role", "heading")
@@ -279,6 +286,8 @@ class FlyPage(QObject):
         self.settings.set_voice(has_voice=self._voice.is_there())
         self.settings.setValue(self.controller.settings)
         self._take_settings(self.controller.settings)
+        self.settings.joystick.setValue(self.controller.joystick)
+        self.joystick.set_buttons(self.controller.joystick)
         self._show_units(context.units)
         self._show_document()
         self._show_all()
@@ -378,6 +387,13 @@ class FlyPage(QObject):
         self.simulation.valueChanged.connect(self._simulation_chosen)
         self.settings.valueChanged.connect(self._settings_chosen)
         self.overlay.banner.muteToggled.connect(self._mute)
+        self.settings.joystick.valueChanged.connect(controller.set_joystick)
+        self.settings.joystick.valueChanged.connect(self.joystick.set_buttons)
+        self.settings.joystick.learningChanged.connect(lambda is_on: self.joystick.learn(is_learning=is_on))
+        self.joystick.learned.connect(self.settings.joystick.learn)
+        self.joystick.foundChanged.connect(lambda is_found: self.settings.joystick.set_found(is_found=is_found))
+        self.joystick.pressed.connect(self._joystick_pressed)
+        self.joystick.released.connect(self._joystick_released)
         self.findings.placePicked.connect(self._go_to_place)
         self.strip.picked.connect(self._go_to)
         self.report.picked.connect(self._go_to)
@@ -398,6 +414,15 @@ class FlyPage(QObject):
         self._shared_view.closing.connect(self._window_closing)
         self.pictures.drawn.connect(self.overlay.draw)
         self.lists.toggled.connect(lambda _is_on: self._make_room())
+        application = QApplication.instance()
+        assert isinstance(application, QApplication)
+        application.focusWindowChanged.connect(self._focus_moved)
+
+    def _focus_moved(self, _window: object) -> None:
+        """Let the keys of Return and Land work in a dialog, too, while it keeps the window from being used."""
+        dialog = QApplication.activeModalWidget()
+        if dialog is not None and self.controller.is_connected:
+            dialog.addActions(self.buttons.emergency_actions())
 
     def _make_room(self) -> None:
         """While connected the view has the room of the lists, unless these are wanted; what matters lies over it."""
@@ -424,6 +449,25 @@ class FlyPage(QObject):
         settings = replace(self.settings.value(), speaks=not is_muted)
         self.settings.setValue(settings)
         self._settings_chosen(settings)
+
+    def _joystick_pressed(self, action: JoystickAction) -> None:
+        match action:
+            case JoystickAction.PAUSE | JoystickAction.RESUME:
+                request = Request.PAUSE if action is JoystickAction.PAUSE else Request.RESUME
+                self.buttons.button(request).click()
+            case JoystickAction.RETURN | JoystickAction.LAND:
+                self.buttons.held(_HELD_BY[action]).hold()
+            case JoystickAction.VIEW:
+                is_map = self._shared_view.page() is SharedViewPage.MAP
+                self._shared_view.show_page(SharedViewPage.SCENE if is_map else SharedViewPage.MAP)
+            case JoystickAction.LISTS:
+                self.lists.toggle()
+            case JoystickAction.MUTE:
+                self._mute(self.settings.value().speaks)
+
+    def _joystick_released(self, action: JoystickAction) -> None:
+        if action in _HELD_BY:
+            self.buttons.held(_HELD_BY[action]).let_go()
 
     def _take_settings(self, settings: FlightSettings) -> None:
         self._speaker.set_muted(is_muted=not settings.speaks)
@@ -479,6 +523,7 @@ class FlyPage(QObject):
         self.controller.close()
         self.overlay.close_view()
         self._voice.stop()
+        self.joystick.close()
 
     def _go_to(self, view_id: str) -> None:
         self._context.jump_to(Item(ItemKind.VIEWPOINT, view_id))
