@@ -85,7 +85,7 @@ class Voice(QObject):
 
     def is_speaking(self) -> bool:
         """Whether a sentence is being spoken."""
-        return self._process is not None and self._process.state() is not QProcess.ProcessState.NotRunning
+        return self._process is not None and self._process.state() != QProcess.ProcessState.NotRunning
 
     def say(self, text: str) -> bool:
         """Speak a sentence; False where there is no voice, or it is speaking."""
