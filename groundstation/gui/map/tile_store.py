@@ -88,6 +88,7 @@ class TileStore(QObject):
         self._wanted: list[Tile] = []
         self._lock = threading.Lock()
         self._worker: threading.Thread | None = None
+        self._n_on_their_way = 0
         self._paused_until_s = 0.0
         self._problem = ""
         self._decoded.connect(self._keep)
@@ -129,9 +130,9 @@ class TileStore(QObject):
         self._worker.start()
 
     def is_busy(self) -> bool:
-        """Whether tiles are being read."""
+        """Whether tiles are being read, or are on their way to the window's thread."""
         with self._lock:
-            return self._worker is not None
+            return self._worker is not None or self._n_on_their_way > 0
 
     def close(self) -> None:
         """Read nothing more, and wait for the tile that is being read."""
@@ -162,6 +163,8 @@ class TileStore(QObject):
                 self._tell(reader, str(error))
                 return
             self._tell(reader, "")
+            with self._lock:
+                self._n_on_their_way += 1
             self._decoded.emit(reader, tile, picture)
 
     def _tell(self, reader: TileReader, problem: str) -> None:
@@ -173,6 +176,8 @@ class TileStore(QObject):
             self.failed.emit(problem)
 
     def _keep(self, reader: TileReader, tile: Tile, picture: QImage | None) -> None:
+        with self._lock:
+            self._n_on_their_way -= 1
         if reader is not self._reader:
             return
         self._cached[tile] = picture
