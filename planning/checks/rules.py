@@ -22,7 +22,7 @@ from planning.plan import Sortie, Viewpoint, viewpoint_arrays
 from planning.routing.at_once import nearest_at_once_m, sortie_leg_times
 from planning.routing.rally import RETURN_TOLERANCE_M, rally_findings, return_height
 from planning.site.file import is_planned_on
-from planning.site.ground import decide_terrain
+from planning.site.ground import decide_terrain, terrain_text
 from planning.site.records import MIN_HEIGHT_ABOVE_GROUND_M
 
 # Rules about where the aircraft is: airspace, distances, no-fly volumes, altitude, leg lengths.
@@ -111,18 +111,9 @@ def terrain_in_use(case: Case) -> Iterator[Finding]:
     if terrain is None:
         return
     decision = decide_terrain(case.site_model.site)
-    if decision.on:
-        text = say("heights above the ground count from the terrain: {}", decision.reason)
-        yield Finding(Severity.OK, "terrain", text, "", decision.size, decision.tolerance, "m")
-    elif decision.decided_by == "scene":
-        text = say("heights above the ground count from level ground: {}", decision.reason)
-        yield Finding(Severity.OK, "terrain", text, "", decision.size, decision.tolerance, "m")
-    elif decision.size > decision.tolerance:
-        text = say(
-            "the terrain of the site is not used, as you asked, though {}; heights count from level ground",
-            decision.reason,
-        )
-        yield Finding(Severity.WARNING, "terrain", text, "", decision.size, decision.tolerance, "m")
+    is_ignored = not decision.on and decision.size > decision.tolerance
+    severity = Severity.WARNING if is_ignored else Severity.OK
+    yield Finding(severity, "terrain", terrain_text(decision), "", decision.size, decision.tolerance, "m")
 
 
 def low_flight_allowed(limit_m: float) -> Finding:
@@ -621,7 +612,8 @@ def return_home(case: Case) -> Iterator[Finding]:
             else say("over terrain of which no heights are known")
         )
         text = say("an aircraft that returns by itself would fly {}; raise the ceiling of the airspace", text)
-        yield Finding(Severity.ERROR, "return-height", text, "", above_ground_m, lowest_m, "m")
+        value = above_ground_m if math.isfinite(above_ground_m) else None
+        yield Finding(Severity.ERROR, "return-height", text, "", value, lowest_m, "m")
     elif crosses_by_itself:
         text = say(
             "an aircraft that returns by itself, {:g} m above take-off, crosses a no-fly zone; fly it back by hand",

@@ -171,6 +171,32 @@ class HeightField:
         heights_below(self.z_m, self.west_m, self.south_m, self.step_m, points, result)
         return result
 
+    def first_met(self, from_enu_m: Array, to_enu_m: Array, n_steps: int = 2000) -> Array | None:
+        """Where a line from above comes down to the surface first, shape (3,); None where it does not, or not known.
+
+        Looked for in steps where the line is at heights that the surface has, and then halved: for pointing at things.
+        """
+        known = self.z_m[np.isfinite(self.z_m)]
+        way = to_enu_m - from_enu_m
+        if len(known) == 0 or way[2] >= 0.0:
+            return None
+        low, high = (float((z - from_enu_m[2]) / way[2]) for z in (known.max() + 1e-3, known.min() - 1e-3))
+        t = np.linspace(min(max(low, 0.0), 1.0), min(max(high, 0.0), 1.0), n_steps)
+        points = from_enu_m + t[:, None] * way
+        above = points[:, 2] - self.heights_m(points)
+        below = np.flatnonzero((above[1:] <= 0.0) & (above[:-1] > 0.0))
+        if len(below) == 0:
+            return None
+        first, last = t[below[0]], t[below[0] + 1]
+        for _ in range(30):
+            middle = 0.5 * (first + last)
+            point = (from_enu_m + middle * way)[None]
+            if point[0, 2] > self.heights_m(point)[0]:
+                first = middle
+            else:
+                last = middle
+        return np.asarray(from_enu_m + last * way)
+
     def leg_heights_m(self, a_enu_m: Array, b_enu_m: Array) -> tuple[Array, Array]:
         """Least and greatest height above the surface along whole legs, ends of shape (n, 3), which may coincide.
 

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from planning.base.effects import Assessment, Decision, decide
 from planning.base.messages import say
+from planning.geo.height_field import HeightField
 from planning.site.terrain import Surfaces, Terrain, surfaces
 
 if TYPE_CHECKING:
@@ -38,7 +39,7 @@ class Relief:
     tolerance = 0.5
 
     def assess(self, scene: Site) -> Assessment:
-        """The largest departure of the bounds; infinite where a part below the airspace is not known."""
+        """The largest departure of the bounds; all up to the ceiling where a part below the airspace is not known."""
         if scene.terrain is None:
             return Assessment(0.0, say("the site has no terrain"), 0.0)
         return _departure(scene.terrain, scene.airspace)
@@ -52,7 +53,8 @@ def _departure(terrain: Terrain, airspace: Airspace) -> Assessment:
     width_m = max(high - low for low, high in zip(ends[0][:2], ends[1][:2], strict=True))
     cost_s = LEGS_LOOKED_AT * (1.0 + width_m / terrain.step_m) / CELLS_PER_SECOND
     if np.isnan(upper).any():
-        return Assessment(np.inf, say("the terrain has no heights for a part below the airspace"), cost_s)
+        height_m = ends[1][2] - airspace.ground_z_m
+        return Assessment(height_m, say("the terrain has no heights for a part below the airspace"), cost_s)
     size = float(max(upper.max() - airspace.ground_z_m, airspace.ground_z_m - lower.min()))
     reason = say("the terrain below the airspace departs from its level ground by up to {:.2f} m", size)
     return Assessment(size, reason, cost_s)
@@ -61,6 +63,18 @@ def _departure(terrain: Terrain, airspace: Airspace) -> Assessment:
 def decide_terrain(site: Site) -> Decision:
     """Whether flights on a site are held to its terrain, and why; `off` without terrain."""
     return decide(Relief(), site, "off" if site.terrain is None else site.terrain.use)
+
+
+def terrain_text(decision: Decision) -> str:
+    """What heights above the ground count from, and why, from the decision on a site's terrain."""
+    if decision.on:
+        return say("heights above the ground count from the terrain: {}", decision.reason)
+    if decision.decided_by == "scene":
+        return say("heights above the ground count from level ground: {}", decision.reason)
+    return say(
+        "the terrain of the site is not used, as you asked, though {}; heights count from level ground",
+        decision.reason,
+    )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -115,9 +129,15 @@ def ground_of(site: Site) -> Ground:
     return Ground(site.airspace.ground_z_m, surfaces(site.terrain) if is_held and site.terrain else None)
 
 
+def drawn_terrain(site: Site) -> HeightField | None:
+    """The terrain that things are put on and that views show; None where a site has none, or none in use."""
+    return None if site.terrain is None or site.terrain.use == "off" else surfaces(site.terrain).ground
+
+
 def height_at(site: Site, east_m: float, north_m: float) -> float:
     """Height of the ground at a place, ENU z, for what is put on it: the terrain's where known, else the level one."""
-    if site.terrain is None or site.terrain.use == "off":
+    terrain = drawn_terrain(site)
+    if terrain is None:
         return site.airspace.ground_z_m
-    found = float(surfaces(site.terrain).ground.heights_m(np.array([[east_m, north_m]]))[0])
+    found = float(terrain.heights_m(np.array([[east_m, north_m]]))[0])
     return site.airspace.ground_z_m if np.isnan(found) else found

@@ -153,10 +153,11 @@ def test_terrain_is_attached_and_told_and_taken_off_again(reflight, heights, tmp
     told = ["--vertical", "ellipsoid", "--surface", heights / "dsm.tif", "--resolution", 2]
     done = reflight("site", "terrain", site, heights / "dtm.tif", *told, "-o", out)
     assert done.status == 0
+    assert f"{out}: site 'office'\n" in done.out
+    assert "terrain from -5.5 m to 12.5 m in the site's own frame, known on 100.0 % of the area" in done.out
     assert (
-        f"{out}: site 'office' with terrain from -5.5 m to 12.5 m in its own frame, known on 100.0 % of the" in done.out
+        "count from the terrain: the terrain below the airspace departs from its level ground by up to 9.5" in done.out
     )
-    assert "terrain: on - the terrain below the airspace departs from its level ground by up to 9.5" in done.out
     assert "obstacles from the surface: " in done.out
     assert sorted(path.name for path in tmp_path.iterdir()) == ["hill.site.json", "hill.surface.ply", "office.ply"]
     model = read_site(out)

@@ -380,7 +380,7 @@ def run_terrain(options: argparse.Namespace) -> int:
     """Attach terrain to a site; returns the exit status."""
     from groundstation.services.project.input_files import read_input_site
     from groundstation.services.project.project_file import check_not_index
-    from groundstation.services.site.terrain import terrain_attached, terrain_removed, terrain_summary
+    from groundstation.services.site.terrain import attached_facts, terrain_attached, terrain_removed, terrain_summary
     from planning.base.json_file import check_output
     from planning.site.importing.attach_terrain import TerrainRequest
     from planning.site.importing.elevation import HeightOptions
@@ -415,35 +415,10 @@ def run_terrain(options: argparse.Namespace) -> int:
     if options.json:
         print_json({"site": str(options.out), **found})
         return 0
-    _print_terrain(attached.model.site, found, options.out)
+    tell("site '{}'", attached.model.site.name, place=options.out)
+    for fact in attached_facts(attached):
+        show(fact)
     for note in attached.notes:
         tell("note: {}", note, file=sys.stderr)
     _print_next_step(attached.model.site, options.out)
     return 0
-
-
-def _print_terrain(site: Site, found: dict[str, Any], out: Path) -> None:
-    from planning.site.ground import decide_terrain
-
-    tell(
-        "site '{}' with terrain from {:.1f} m to {:.1f} m in its own frame, known on {:.1f} % of the area",
-        site.name,
-        found["lowest_m"],
-        found["highest_m"],
-        100.0 * (1.0 - found["unknown_share"]),
-        place=out,
-    )
-    tell(
-        "steps of {:.3g} m from heights {:.3g} m apart: bounds at most {:.2f} m off, and {:g} m for the accuracy",
-        found["step_m"],
-        found["post_spacing_m"],
-        found["error_m"],
-        found["accuracy_m"],
-    )
-    if found["obstacle_boxes"] or found["unknown_boxes"]:
-        tell(
-            "obstacles from the surface: {} boxes, and {} where it has no heights",
-            found["obstacle_boxes"],
-            found["unknown_boxes"],
-        )
-    show(str(decide_terrain(site)))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -12,9 +13,10 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QVBoxLayout, QWidget
 from groundstation.gui.map.map_paint import sortie_colour
 from groundstation.gui.widgets.inputs import ChoiceBox
 from groundstation.gui.widgets.theme import colours
-from groundstation.services.mission.waypoints import HeightLimits, ProfileCurves, nearest_photo
+from groundstation.services.mission.waypoints import GroundCurve, HeightLimits, ProfileCurves, nearest_photo
 from groundstation.services.project.document import Item, ItemKind
 from groundstation.services.units import UnitSystem, length_unit, minutes_text, speed_unit
+from planning.checks.rules import MAX_ALTITUDE_M
 from planning.insight.clearance import RouteClearance
 
 # Clearance along one sortie: what is kept from building, obstacles and no-fly volumes, and what must be.
@@ -294,6 +296,9 @@ class ProfileChart(QWidget):
             self._speed.plot(x, curve.speed_m_s * speed.factor, pen=pg.mkPen(sortie_colour(curve.sortie), width=1))
             # Room for the names of the lines; a ceiling far above would flatten what is flown.
             lowest = min(0.0, 0.0 if self._limits is None else self._limits.ground_m)
+            if curve.ground is not None:
+                lowest = min(0.0, float(np.nanmin(curve.ground.height_m, initial=0.0)))
+                self._draw_ground(curve.ground)
             room = 0.25 * max(float(curve.height_m.max()) - lowest, 5.0)
             shown = lowest - room, float(curve.height_m.max()) + room
             self._height.setYRange(*(height_m * length.factor for height_m in shown), padding=0.0)
@@ -302,16 +307,30 @@ class ProfileChart(QWidget):
             self._add_marks()
         self._mark()
 
+    def _draw_ground(self, ground: GroundCurve) -> None:
+        """The terrain, and how high above it no permit is needed; gaps where it is not known."""
+        found, factor = colours(), length_unit(self._units).factor
+        x = ground.t_s / 60.0 if self._is_over_time() else ground.distance_m * factor
+        for above_m, colour, style in (
+            (0.0, found.muted, Qt.PenStyle.SolidLine),
+            (MAX_ALTITUDE_M, found.error, Qt.PenStyle.DashLine),
+        ):
+            pen = pg.mkPen(colour, width=1.5, style=style)
+            self._height.plot(x, (ground.height_m + above_m) * factor, pen=pen, connect="finite")
+
     def _draw_limits(self, shown_m: tuple[float, float]) -> None:
         limits, found = self._limits, colours()
         if limits is None:
             return
         length = length_unit(self._units)
-        for height_m, name, colour, place, is_below in (
+        level = (
             (limits.ground_m, self.tr("ground"), found.muted, 0.15, True),
+            (limits.legal_m, self.tr("legal ceiling"), found.error, 0.25, True),
+        )
+        for height_m, name, colour, place, is_below in (
+            *(level if limits.is_level else ()),
             (limits.floor_m, self.tr("airspace floor"), found.warning, 0.45, False),
             (limits.ceiling_m, self.tr("airspace ceiling"), found.warning, 0.75, True),
-            (limits.legal_m, self.tr("legal ceiling"), found.error, 0.25, True),
         ):
             if not shown_m[0] <= height_m <= shown_m[1]:
                 continue
@@ -368,15 +387,20 @@ class ProfileChart(QWidget):
         if sample is None or curve is None:
             return
         length, speed = length_unit(self._units), speed_unit(self._units)
-        self._hover.setText(
-            self.tr("{0} min, {1} flown: {2} above take-off, {3}, nearest photo {4}").format(
-                minutes_text(float(curve.t_s[sample])),
-                length.text(float(curve.distance_m[sample])),
-                length.text(float(curve.height_m[sample])),
-                speed.text(float(curve.speed_m_s[sample])),
-                nearest_photo(curve, float(curve.t_s[sample])) or "–",
-            )
-        )
+        values = [
+            minutes_text(float(curve.t_s[sample])),
+            length.text(float(curve.distance_m[sample])),
+            length.text(float(curve.height_m[sample])),
+            speed.text(float(curve.speed_m_s[sample])),
+            nearest_photo(curve, float(curve.t_s[sample])) or "–",
+        ]
+        text = self.tr("{0} min, {1} flown: {2} above take-off, {3}, nearest photo {4}")
+        if curve.ground is not None:
+            ground_m = float(np.interp(curve.t_s[sample], curve.ground.t_s, curve.ground.height_m))
+            above_m = float(curve.height_m[sample]) - ground_m
+            values.append(length.text(above_m) if math.isfinite(above_m) else "?")
+            text = self.tr("{0} min, {1} flown: {2} above take-off, {5} above the terrain, {3}, nearest photo {4}")
+        self._hover.setText(text.format(*values))
 
     def _clicked(self, scene: QPointF) -> None:
         sample, curve = self._sample_at(scene), self._curve()

@@ -29,6 +29,7 @@ from groundstation.services.project.document import Item, ItemKind
 from groundstation.services.units import UnitSystem, distance_unit, length_unit, minutes_text
 from planning.base.findings import Severity
 from planning.plan import Plan
+from planning.site.ground import ground_of
 from planning.site.records import SiteModel
 
 # Is this mission file the plan? The answer, and the photos that differ.
@@ -375,6 +376,8 @@ class MissionLists(QTabWidget):
                 self.waypoints.set_rows(() if plan is None or origin is None else waypoint_rows(plan, origin))
                 self.waypoints.set_panels_covered(self._panels_covered)
             else:
-                limits = None if site_model is None else height_limits(site_model)
-                self.profile.set_curves(() if plan is None or limits is None else plan_profiles(plan), limits)
+                if plan is None or site_model is None:
+                    self.profile.set_curves((), None)
+                else:
+                    self.profile.set_curves(plan_profiles(plan, ground_of(site_model.site)), height_limits(site_model))
             view.set_selection(self._selection)

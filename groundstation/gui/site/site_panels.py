@@ -30,6 +30,7 @@ from groundstation.gui.site.site_editor import SiteEditor
 from groundstation.gui.site.site_opener import SiteOpener
 from groundstation.gui.site.site_tools import SiteTool, SiteTools
 from groundstation.gui.site.site_tree import SiteTree
+from groundstation.gui.site.terrain_dialog import TerrainDialog
 from groundstation.gui.site.zone_pages import ZoneFilePage, ZonePage
 from groundstation.gui.widgets.scrolling import ButtonGrid, CurrentStack, scrolled
 from groundstation.gui.widgets.theme import colours
@@ -312,7 +313,9 @@ class SiteSide(QWidget):
         opened.clicked.connect(self.opener.choose_site)
         imported.clicked.connect(self.opener.choose_import)
         bundled.setMenu(self.opener.bundled_menu(bundled))
-        for button in (imported, opened, bundled):
+        terrain = QPushButton(self.tr("Terrain..."))
+        terrain.clicked.connect(self.open_terrain)
+        for button in (imported, opened, bundled, terrain):
             buttons.addWidget(button)
         layout = QVBoxLayout(page)
         layout.setContentsMargins(0, 0, 0, 0)
@@ -320,11 +323,21 @@ class SiteSide(QWidget):
         layout.addWidget(self.tree, 1)
         return page
 
+    def open_terrain(self) -> None:
+        """Attach terrain to the site, or take it off."""
+        if self._context.document.site is None:
+            self._context.say(Severity.NOTE, self.tr("Open a site first: terrain belongs to its place."))
+            return
+        dialog = TerrainDialog(self._context, self.window())
+        dialog.finished.connect(dialog.deleteLater)
+        dialog.open()
+
     def _make_actions(self) -> tuple[QAction, ...]:
         actions = []
         for text, shortcut, slot in (
             (self.tr("Open site..."), "Ctrl+Shift+O", self.opener.choose_site),
             (self.tr("Import building model..."), "Ctrl+I", self.opener.choose_import),
+            (self.tr("Terrain..."), "", self.open_terrain),
             (self.tr("Delete what is selected"), "Del", self.tree.ask_remove),
         ):
             action = QAction(text, self)

@@ -12,6 +12,7 @@ from groundstation.gui.view3d.orbit import Pinhole
 from groundstation.gui.view3d.site_scene import PlanScene, SiteScene, landing_pad
 from groundstation.services.project.document import Item, ItemKind
 from planning.geo.bvh import Bvh, build_bvh, segment_hits, segment_hits_triangle
+from planning.site.ground import drawn_terrain
 from planning.site.records import panel_triangles
 
 Array = NDArray[np.float64]
@@ -76,6 +77,7 @@ class PickIndex:
         self._starts = np.cumsum([0, *(len(corners) for _, corners in parts)])
         self._bvh: Bvh = build_bvh(np.concatenate([corners for _, corners in parts]))
         self._ground_z_m = site.airspace.ground_z_m
+        self._terrain = drawn_terrain(site)
 
     def surface(self, eye_enu_m: Array, direction: Array, hidden: frozenset[Layer] = frozenset()) -> Hit | None:
         """The first thing that a ray from the eye meets.
@@ -105,9 +107,13 @@ class PickIndex:
         return Hit(item, eye_enu_m + depth * direction, normal, depth)
 
     def ground(self, eye_enu_m: Array, direction: Array) -> Array | None:
-        """Where a ray from the eye meets the level of the ground, shape (3,); None for rays that rise."""
+        """Where a ray from the eye meets terrain, or the level of the ground, shape (3,); None for rays that rise."""
         if direction[2] >= -1e-6:
             return None
+        if self._terrain is not None:
+            met = self._terrain.first_met(eye_enu_m, eye_enu_m + REACH_M * direction)
+            if met is not None:
+                return met
         along = (self._ground_z_m - eye_enu_m[2]) / direction[2]
         return np.asarray(eye_enu_m + along * direction) if 0.0 < along < REACH_M else None
 

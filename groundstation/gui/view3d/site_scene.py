@@ -23,8 +23,10 @@ from groundstation.gui.view3d.paint import ColourScale, flat, rgba, shaded
 from groundstation.gui.widgets.theme import FACADES, SORTIES, Colours
 from planning.coverage.sections import PanelFrames, panel_frames
 from planning.geo.frames import Vec3
+from planning.geo.height_field import HeightField
 from planning.geo.mesh import TriangleMesh, box_mesh
 from planning.plan import Plan, ViewpointArrays, viewpoint_arrays
+from planning.site.ground import drawn_terrain
 from planning.site.records import SiteModel, panel_corners
 
 Array = NDArray[np.float64]
@@ -38,6 +40,9 @@ FRUSTUM_M = 1.5
 ARROW_M = 1.6
 """Lengths of a viewpoint's pyramid and of arrowheads, metres: about the size of the aircraft."""
 
+
+TERRAIN_CELLS = 150
+"""Of drawn terrain on a side: 45 000 triangles, as many as a small building model."""
 
 CASING_SHIFT = 4.0
 """Outlines of lines lie this many steps of the depth buffer behind the lines themselves."""
@@ -248,11 +253,30 @@ def _prism(mesh: TriangleMesh) -> Drawable:
 
 
 def _ground(model: SiteModel, look: Colours) -> Drawable:
-    airspace = model.site.airspace
+    airspace, terrain = model.site.airspace, drawn_terrain(model.site)
+    if terrain is not None:
+        return _terrain(terrain, look)
     (x0, y0, _), (x1, y1, _), z = airspace.min_enu_m, airspace.max_enu_m, airspace.ground_z_m
     # A hand's breadth lower than the ground, so that floors that lie on it do not flicker.
     corners = np.array([[[x0, y0, z], [x1, y0, z], [x1, y1, z], [x0, y1, z]]]) - [0.0, 0.0, 0.1]
     return Drawable(*quads(corners), flat(GROUND_DARK if look.is_dark else GROUND_LIGHT, 1))
+
+
+def _terrain(terrain: HeightField, look: Colours) -> Drawable:
+    """The surface with at most some `TERRAIN_CELLS` cells a side; nothing where it is not known."""
+    every = max(1, -(-max(terrain.z_m.shape) // TERRAIN_CELLS))
+    rows, columns = (np.unique(np.append(np.arange(0, n, every), n - 1)) for n in terrain.z_m.shape)
+    part = np.ix_(rows, columns)
+    points = np.concatenate([terrain.nodes_xy_m()[part], terrain.z_m[part][..., None]], axis=2)
+    number = np.arange(len(rows) * len(columns)).reshape(len(rows), len(columns))
+    a, b, c, d = (each.ravel() for each in (number[:-1, :-1], number[:-1, 1:], number[1:, 1:], number[1:, :-1]))
+    triangles = np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
+    points = points.reshape(-1, 3)
+    triangles = triangles[np.isfinite(points[triangles]).all(axis=(1, 2))]
+    # A hand's breadth lower, as level ground.
+    surface = TriangleMesh(np.nan_to_num(points) - [0.0, 0.0, 0.1], triangles)
+    colours = flat(GROUND_DARK if look.is_dark else GROUND_LIGHT, len(triangles))
+    return Drawable(surface.vertices_enu_m, triangles, shaded(colours, triangle_normals(surface)))
 
 
 def _airspace(model: SiteModel, look: Colours) -> Drawable:

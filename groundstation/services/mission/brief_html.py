@@ -35,6 +35,7 @@ from missions.mission.export_choices import LinkLoss
 from planning.base.findings import Severity
 from planning.insight.flight_profile import LOW_M
 from planning.plan import Plan
+from planning.site.ground import ground_of
 from planning.site.records import SiteModel
 
 # Pictures of the flight brief as SVG: the map of the site with the routes, and the height profile of each sortie.
@@ -106,7 +107,9 @@ def profile_svg(curves: ProfileCurves, limits: HeightLimits, units: UnitSystem, 
     left, right, top, bottom = 52.0, 12.0, 20.0, 34.0
     unit = length_unit(units)
     high_m = max(float(curves.height_m.max()), limits.floor_m, 1.0)
-    low_m = min(float(curves.height_m.min()), limits.ground_m, 0.0)
+    terrain = curves.ground
+    lowest_m = limits.ground_m if terrain is None else float(np.nanmin(terrain.height_m, initial=0.0))
+    low_m = min(float(curves.height_m.min()), lowest_m, 0.0)
     room = 0.08 * (high_m - low_m)
     low_m, high_m = low_m - room, high_m + room
     end_s = max(float(curves.t_s[-1]), 1.0)
@@ -126,7 +129,12 @@ def profile_svg(curves: ProfileCurves, limits: HeightLimits, units: UnitSystem, 
     for minute in _ticks(0.0, end_s / 60.0, 8):
         x = float(place(np.array([minute * 60.0]), np.zeros(1))[0, 0])
         parts.append(_text((x, height - bottom + 14.0), f"{minute:g}", INK))
-    for limit_m in (limits.ground_m, limits.floor_m, limits.ceiling_m):
+    if terrain is not None:
+        for part in _known_parts(terrain.height_m):
+            line = place(terrain.t_s[part], terrain.height_m[part])
+            parts.append(f'<polyline points="{_points(line)}" fill="none" stroke="#8a5300" stroke-width="1.4"/>')
+    level = (limits.ground_m,) if terrain is None else ()
+    for limit_m in (*level, limits.floor_m, limits.ceiling_m):
         if low_m <= limit_m <= high_m:
             line = place(np.array([0.0, end_s]), np.array([limit_m, limit_m]))
             parts.append(f'<polyline points="{_points(line)}" fill="none" stroke="#8a5300" stroke-dasharray="6 3"/>')
@@ -180,6 +188,13 @@ def sun_svg(report: SunReport, tr: Translate, localize: Callable[[str], str]) ->
     legend = tr("Tall, half, low: facades in the sun, in part, in shade; take-offs that spoil no, few, many photos")
     parts.append(_text((left, height - 6.0), legend, INK, "start"))
     return _svg((width, height), parts)
+
+
+def _known_parts(values: Floats) -> list[slice]:
+    """Stretches of values that are known, of two and more."""
+    known = np.concatenate([[False], np.isfinite(values), [False]])
+    starts, ends = np.flatnonzero(known[1:] & ~known[:-1]), np.flatnonzero(known[:-1] & ~known[1:])
+    return [slice(start, end) for start, end in zip(starts.tolist(), ends.tolist(), strict=True) if end - start > 1]
 
 
 def _ticks(low: float, high: float, n_most: int) -> list[float]:
@@ -255,7 +270,7 @@ def brief_pictures(
         pictures[SUN] = sun_svg(sun, tr, localize)
     height = tr("height above take-off [{0}]").format(length_unit(units).symbol)
     limits = height_limits(site_model)
-    for curves in plan_profiles(plan):
+    for curves in plan_profiles(plan, ground_of(site_model.site)):
         svg = profile_svg(curves, limits, units, (height, tr("time [min]")))
         pictures[profile_name(curves.sortie)] = svg
     return pictures

@@ -14,14 +14,29 @@ from numpy.typing import NDArray
 from planning.base.errors import InfeasibleError
 from planning.checks.rules import MAX_ALTITUDE_M
 from planning.geo.frames import Origin, Vec3
-from planning.insight.flight_profile import sortie_profile
+from planning.insight.flight_profile import FlightProfile, sortie_profile
 from planning.motion.timing import motion_limits, photo_vertices, sortie_flight_path, stopping_times_s
 from planning.plan import Plan, Sortie, Viewpoint
+from planning.site.ground import Ground, ground_of
 from planning.site.records import SiteModel
 
 # Height and speed of a plan's sorties, ready for a chart: heights count from take-off.
 
 Floats = NDArray[np.float64]
+
+
+GROUND_STEP_M = 1.0
+MAX_GROUND_SAMPLES = 4000
+"""Of the curve of the terrain: finer than a screen shows."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class GroundCurve:
+    """The terrain below a sortie, shapes (g,): times, distances flown, and heights above take-off, NaN if not known."""
+
+    t_s: Floats
+    distance_m: Floats
+    height_m: Floats
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -38,6 +53,8 @@ class ProfileCurves:
         Shape (p,), at `photo_ids`.
     takeoff_landing_s
         What the sortie's duration has on top of these times: motors, take-off checks, landing.
+    ground
+        The terrain below; None above level ground.
     """
 
     sortie: int
@@ -50,20 +67,25 @@ class ProfileCurves:
     photo_distance_m: Floats
     photo_height_m: Floats
     takeoff_landing_s: float
+    ground: GroundCurve | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class HeightLimits:
-    """Heights above take-off that a chart marks; `legal_m` is the height above ground that needs no permit."""
+    """Heights above take-off that a chart marks; `legal_m` is the height above ground that needs no permit.
+
+    `is_level`: the ground is as high everywhere; else these are those of its lowest place below the airspace.
+    """
 
     ground_m: float
     floor_m: float
     ceiling_m: float
     legal_m: float
+    is_level: bool = True
 
 
-def plan_profiles(plan: Plan) -> tuple[ProfileCurves, ...]:
-    """Curves of all sorties that can be flown; none in wind that the aircraft may not fly in."""
+def plan_profiles(plan: Plan, ground: Ground | None = None) -> tuple[ProfileCurves, ...]:
+    """Curves of all sorties that can be flown, over some ground; none in wind that the aircraft may not fly in."""
     curves = []
     for number, sortie in enumerate(plan.sorties, 1):
         try:
@@ -86,18 +108,31 @@ def plan_profiles(plan: Plan) -> tuple[ProfileCurves, ...]:
                 photos.distance_m,
                 photos.positions_enu_m[:, 2] - takeoff_z,
                 plan.rules.takeoff_landing_s,
+                None if ground is None or ground.terrain is None else _ground_curve(profile, ground),
             )
         )
     return tuple(curves)
 
 
+def _ground_curve(profile: FlightProfile, ground: Ground) -> GroundCurve:
+    """The terrain below a flight, at steps of about `GROUND_STEP_M` of its way and at every change of its motion."""
+    changes = profile.samples()
+    steps = np.diff(changes.distance_m) / max(GROUND_STEP_M, float(changes.distance_m[-1]) / MAX_GROUND_SAMPLES)
+    n = np.maximum(np.ceil(steps), 1).astype(np.int64)
+    part = np.concatenate([np.arange(k) / k for k in n.tolist()])
+    t_s = np.append(np.repeat(changes.t_s[:-1], n) + part * np.repeat(np.diff(changes.t_s), n), changes.t_s[-1])
+    found = profile.at(t_s)
+    heights = ground.heights_m(found.positions_enu_m) - float(profile.vertices_enu_m[0, 2])
+    return GroundCurve(t_s, found.distance_m, heights)
+
+
 def height_limits(site_model: SiteModel) -> HeightLimits:
     """Ground and airspace of a site, counted from home."""
     airspace, home_z = site_model.site.airspace, site_model.site.home_enu_m[2]
-    ground_m = airspace.ground_z_m - home_z
-    return HeightLimits(
-        ground_m, airspace.min_enu_m[2] - home_z, airspace.max_enu_m[2] - home_z, ground_m + MAX_ALTITUDE_M
-    )
+    ground = ground_of(site_model.site)
+    ground_m = ground.range_m(np.array(airspace.min_enu_m), np.array(airspace.max_enu_m))[0] - home_z
+    floor_m, ceiling_m = airspace.min_enu_m[2] - home_z, airspace.max_enu_m[2] - home_z
+    return HeightLimits(ground_m, floor_m, ceiling_m, ground_m + MAX_ALTITUDE_M, ground.terrain is None)
 
 
 def nearest_photo(curves: ProfileCurves, t_s: float) -> str | None:

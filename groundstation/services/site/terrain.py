@@ -10,8 +10,9 @@ import numpy as np
 
 from groundstation.services.project.site import site_files
 from planning.base.json_file import write_atomically
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
-from planning.site.ground import decide_terrain
+from planning.site.ground import decide_terrain, terrain_text
 from planning.site.importing.attach_terrain import Attached, TerrainRequest, attach_terrain, without_terrain
 from planning.site.records import SiteModel
 from planning.site.terrain import surfaces
@@ -48,6 +49,33 @@ def written(model: SiteModel, site_path: Path, out: Path) -> SiteModel:
     return files.model
 
 
+def attached_facts(attached: Attached) -> tuple[str, ...]:
+    """What came of files of heights, a sentence each."""
+    site, ground = attached.model.site, attached.ground
+    assert site.terrain is not None
+    z = surfaces(site.terrain).ground.z_m
+    known = np.isfinite(z)
+    facts: list[str] = [
+        say(
+            "terrain from {:.1f} m to {:.1f} m in the site's own frame, known on {:.1f} % of the area",
+            float(z[known].min()),
+            float(z[known].max()),
+            100.0 * float(known.mean()),
+        ),
+        say(
+            "steps of {:.3g} m from heights {:.3g} m apart: bounds at most {:.2f} m off, and {:g} m for the accuracy",
+            site.terrain.step_m,
+            ground.post_spacing_m,
+            ground.error_m,
+            site.terrain.accuracy_m,
+        ),
+    ]
+    if attached.n_boxes or attached.n_unknown_boxes:
+        n = attached.n_boxes, attached.n_unknown_boxes
+        facts.append(say("obstacles from the surface: {} boxes, and {} where it has no heights", *n))
+    return (*facts, terrain_text(decide_terrain(site)))
+
+
 def terrain_summary(attached: Attached, seconds: float) -> dict[str, Any]:
     """What `site terrain --json` prints."""
     site, ground = attached.model.site, attached.ground
@@ -78,7 +106,7 @@ def terrain_summary(attached: Attached, seconds: float) -> dict[str, Any]:
             "on": decision.on,
             "decided_by": decision.decided_by,
             "reason": decision.reason,
-            "size_m": None if np.isinf(decision.size) else round(decision.size, 3),
+            "size_m": round(decision.size, 3),
             "tolerance_m": decision.tolerance,
         },
         "notes": attached.notes,

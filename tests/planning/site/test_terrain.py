@@ -106,7 +106,7 @@ def test_a_site_file_with_damaged_terrain_says_where(tmp_path):
         (lambda x, y: -0.6 + 0.0 * x, {}, True, 0.6),
         (lambda x, y: 0.3 + 0.0 * x, {"accuracy_m": 4.0}, True, 4.3),
         (lambda x, y: np.where((x > 50.0) | (y < -50.0), 99.0, 0.0), {}, False, 0.0),
-        (lambda x, y: np.where((x == 0.0) & (y == 20.0), np.nan, 0.0), {}, True, np.inf),
+        (lambda x, y: np.where((x == 0.0) & (y == 20.0), np.nan, 0.0), {}, True, 40.0),
         (slope, {"use": "off"}, False, 7.0),
         (lambda x, y: 0.0 * x, {"use": "on"}, True, 0.0),
     ],

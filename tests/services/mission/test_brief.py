@@ -7,6 +7,7 @@ from datetime import datetime, timedelta, timezone
 from html.parser import HTMLParser
 from xml.etree import ElementTree
 
+import numpy as np
 import pytest
 
 from groundstation.services.map.shapes import plan_shapes, site_shapes
@@ -27,12 +28,13 @@ from missions.mission.export_choices import LinkLoss
 from missions.mission.model import altitude_amsl_m
 from planning.base.findings import Finding, Severity
 from planning.geo.frames import Origin
-from planning.insight.flight_profile import low_flight
+from planning.insight.flight_profile import low_flight, lowest_flight
 from planning.routing.rally import CLEARANCE_M, clear_height_z_m
 from planning.site.free_space import unchecked_space
-from planning.site.ground import Ground
+from planning.site.ground import Ground, ground_of
 from tests.missions.plans import HONG_KONG, example_plan
 from tests.planning.plan_cases import kiosk
+from tests.planning.site.test_terrain import hill_site, slope
 from tests.planning.site.zones.zone_files import ed269, ed269_feature, ed269_volume, polygon, square, with_zones
 
 MODEL = kiosk(home_enu_m=(3.0, -40.0, 1.5))
@@ -258,3 +260,19 @@ def test_geo_zones_are_listed_with_what_the_path_does_and_drawn(plan):
     shapes, routes = site_shapes(model), plan_shapes(plan, model.site.origin)
     with_both, without = map_svg(shapes, routes, METRIC), map_svg(site_shapes(MODEL), routes, METRIC)
     assert with_both.count("<polygon") + with_both.count("<path") > without.count("<polygon") + without.count("<path")
+
+
+def test_over_terrain_heights_count_from_it_and_the_profile_draws_it(plan):
+    site = hill_site(slope)
+    over = flight_brief(site, plan, (), "2026-11-28")
+    assert over.low == lowest_flight(plan, site.site.home_enu_m, ground_of(site.site))
+    assert over.low.lowest_m != flight_brief(kiosk(), plan, (), "2026-11-28").low.lowest_m
+    assert over.takeoff.above_ground_m == pytest.approx(0.0, abs=2e-3)
+    pictures, level = brief_pictures(site, plan, METRIC), brief_pictures(kiosk(), plan, METRIC)
+    assert pictures["profile-1"].count("<polyline") == level["profile-1"].count("<polyline")
+    assert "stroke-dasharray" in level["profile-1"]
+    terrain = [line for line in pictures["profile-1"].split("<polyline")[1:] if 'stroke="#8a5300" stroke-width' in line]
+    assert len(terrain) == 1
+    assert terrain[0].count(",") > 20
+    holed = hill_site(lambda x, y: np.where(np.abs(y + 22.0) < 3.0, np.nan, slope(x, y)))
+    assert "nan" not in brief_pictures(holed, plan, METRIC)["profile-1"]

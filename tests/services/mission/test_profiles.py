@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from groundstation.services.mission.waypoints import height_limits, nearest_photo, plan_profiles, waypoint_rows
+from planning.site.ground import ground_of
 from tests.missions.plans import HOME, example_plan
 from tests.planning.plan_cases import kiosk
+from tests.planning.site.test_terrain import hill_site, slope
 
 
 def test_curves_pass_every_waypoint_at_its_time_and_height():
@@ -32,6 +34,23 @@ def test_nearest_photo_is_the_one_nearest_in_time():
 def test_limits_count_from_take_off():
     limits = height_limits(kiosk(home_enu_m=(0.0, -30.0, 2.0)))
     assert (limits.ground_m, limits.floor_m, limits.ceiling_m, limits.legal_m) == (-2.0, 1.0, 38.0, 118.0)
+
+
+def test_terrain_is_drawn_below_the_flight_and_limits_follow_it():
+    model = hill_site(slope)
+    plan = example_plan()
+    for curves in plan_profiles(plan, ground_of(model.site)):
+        assert curves.ground.t_s[[0, -1]] == pytest.approx(curves.t_s[[0, -1]])
+        assert (np.diff(curves.ground.t_s) >= 0.0).all()
+        path = np.array(plan.sorties[curves.sortie - 1].path_enu_m)
+        way = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1)))
+        north = np.interp(curves.ground.distance_m, way, path[:, 1])
+        assert curves.ground.height_m == pytest.approx(slope(0.0, north) - path[0, 2], abs=2e-3)
+    assert [curves.ground for curves in plan_profiles(plan)] == [None, None]
+    limits = height_limits(model)
+    assert not limits.is_level
+    assert limits.ground_m == pytest.approx(-1.0, abs=2e-3)
+    assert limits.legal_m == pytest.approx(119.0, abs=2e-3)
 
 
 def test_plans_that_cannot_be_flown_have_no_profile():
