@@ -158,6 +158,14 @@ class HeightField:
         """Where the last row lies."""
         return float(self.south_m + self.step_m * (self.z_m.shape[0] - 1))
 
+    def triangles(self, most_nodes: int) -> Array:
+        """Two triangles for each cell that is known, shape (t, 3, 3), of so many nodes at most, evenly chosen."""
+        every = max(1, math.ceil(math.sqrt(self.z_m.size / most_nodes)))
+        nodes = np.concatenate([self.nodes_xy_m(), self.z_m[..., None]], axis=2)[::every, ::every]
+        a, b, c, d = nodes[:-1, :-1], nodes[:-1, 1:], nodes[1:, 1:], nodes[1:, :-1]
+        found = np.stack([np.stack([a, b, c], axis=2), np.stack([a, c, d], axis=2)], axis=2).reshape(-1, 3, 3)
+        return np.asarray(found[np.isfinite(found).all(axis=(1, 2))])
+
     def nodes_xy_m(self) -> Array:
         """Where the nodes lie, shape (rows, columns, 2)."""
         rows, columns = self.z_m.shape

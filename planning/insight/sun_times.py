@@ -15,6 +15,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -71,7 +72,26 @@ class Spoiled:
     blinded_s: Array
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+class _Stair:
+    """How many of some moments lie in their bad spans, by the start that they count from: a sum of steps, sorted once.
+
+    Right at a step either side may be said.
+    """
+
+    def __init__(self, moments_s: Array, bad: Sequence[Spans]) -> None:
+        parts = [spans - at for at, spans in zip(moments_s, bad, strict=True)]
+        edges = np.concatenate([NO_SPANS, *parts])
+        changes = np.concatenate([np.ones(len(edges), np.int64), -np.ones(len(edges), np.int64)])
+        order = np.argsort(edges.T.ravel(), kind="stable")
+        self.edges_s: Array = edges.T.ravel()[order]
+        self._counts = np.concatenate([[0], np.cumsum(changes[order])])
+
+    def counts(self, starts_s: Array) -> Array:
+        """Of starts, shape (n,)."""
+        return np.asarray(self._counts[np.searchsorted(self.edges_s, starts_s, side="right")], np.float64)
+
+
+@dataclass(frozen=True, eq=False)
 class SortieSun:
     """How a sortie meets the sun. Spans are of the day, times from its start.
 
@@ -103,35 +123,26 @@ class SortieSun:
         """Time that a photo takes in the mean: what blinds so long counts as one."""
         return max(1.0, self.duration_s / max(1, len(self.taken_s)))
 
+    @cached_property
+    def _stairs(self) -> tuple[_Stair, _Stair, _Stair, _Stair]:
+        either = [joined_spans(list(pair)) for pair in zip(self.dazzled, self.uneven, strict=True)]
+        photos = (_Stair(self.taken_s, bad) for bad in (self.dazzled, self.uneven, either))
+        return (*photos, _Stair(self.watched_s, self.blinded))  # type: ignore[return-value]
+
     def spoiled(self, starts_s: Array) -> Spoiled:
         """What starts, shape (n,), spoil."""
-        dazzled, uneven, photos, blinded = (np.zeros(len(starts_s)) for _ in range(4))
-        for at, sun, mixed in zip(self.taken_s, self.dazzled, self.uneven, strict=True):
-            is_dazzled, is_uneven = is_within(sun, starts_s + at), is_within(mixed, starts_s + at)
-            dazzled += is_dazzled
-            uneven += is_uneven
-            photos += is_dazzled | is_uneven
-        for at, spans in zip(self.watched_s, self.blinded, strict=True):
-            blinded += WATCH_S * is_within(spans, starts_s + at)
-        return Spoiled(dazzled, uneven, photos, blinded)
+        dazzled, uneven, photos, blinded = (stair.counts(starts_s) for stair in self._stairs)
+        return Spoiled(dazzled, uneven, photos, WATCH_S * blinded)
 
     def losses(self, starts_s: Array) -> Array:
         """Spoiled photos and time flown blinded, in photos, shape (n,)."""
-        found = self.spoiled(starts_s)
-        return np.asarray(found.photos + found.blinded_s / self.photo_s)
+        _, _, photos, blinded = self._stairs
+        return np.asarray(photos.counts(starts_s) + WATCH_S / self.photo_s * blinded.counts(starts_s))
 
     def stair(self, allowed: Spans) -> tuple[Spans, Array]:
         """Steps of starts within allowed spans, shape (k, 2), and what is lost on each, shape (k,)."""
-        edges = [
-            spans.ravel() - at
-            for times, all_spans in (
-                (self.taken_s, self.dazzled),
-                (self.taken_s, self.uneven),
-                (self.watched_s, self.blinded),
-            )
-            for at, spans in zip(times, all_spans, strict=True)
-        ]
-        every = np.unique(np.concatenate([np.zeros(0), *edges]))
+        _, _, photos, blinded = self._stairs
+        every = np.unique(np.concatenate([photos.edges_s, blinded.edges_s]))
         steps = [NO_SPANS]
         for first, last in allowed:
             inner = every[(every > first) & (every < last)]

@@ -40,6 +40,7 @@ from planning.geo.sun import (
 )
 from planning.plan import Camera, Viewpoint, ViewpointArrays, viewpoint_arrays
 from planning.site.records import SiteModel, panel_corners, panel_triangles
+from planning.site.terrain import surfaces
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -53,6 +54,9 @@ gap for a shorter time may be missed: at 50 m a gap of 11 cm."""
 
 BEFORE_PANE_M = 0.15
 """Rays begin so far before panes, as lines of sight end (contract): frames and coarse walls hide nothing."""
+
+TERRAIN_NODES = 100_000
+"""Of the terrain that hides the sun: 300 m x 300 m in steps of a metre, and more in larger ones."""
 
 MOST_POINTS = 500
 """Of a facade at which its light is looked at."""
@@ -267,7 +271,11 @@ class SunSite:
         self.tilts_rad = np.radians(np.array(tilts, np.float64).reshape(-1, 2))
         self.has_tilts = any(panel.tilt_deg is not None for panel in site.panels)
         others = join([site_model.building, *site_model.obstacles]).corners_enu_m
-        self._triangles = np.concatenate([panel_triangles(self.frames.corners), others])
+        ground = np.zeros((0, 3, 3))
+        if site.terrain is not None and site.terrain.use != "off":
+            # What the ground hides for certain: its lower bound.
+            ground = surfaces(site.terrain).lower.triangles(TERRAIN_NODES)
+        self._triangles = np.concatenate([panel_triangles(self.frames.corners), others, ground])
         corners = self._triangles.reshape(-1, 3)
         self._middle = np.asarray(corners.mean(axis=0)) if len(corners) else np.zeros(3)
         # Nothing of the site is further from any other part of it, and hides the sun from beyond.
@@ -277,7 +285,7 @@ class SunSite:
 
     @cached_property
     def is_free(self) -> LineOfSight:
-        """Line of sight past panels, building and obstacles."""
+        """Line of sight past panels, building, obstacles and terrain."""
         return line_of_sight(self._triangles)
 
     def sees_sun(self, points_enu_m: Array, suns_enu: Array) -> NDArray[np.bool_]:

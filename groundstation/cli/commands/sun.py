@@ -20,7 +20,7 @@ sun or its mirror image in the picture, by facades that are in the sun in part, 
 watches the aircraft from home. Sorties are put in order by that. Times are good to 2 minutes where panes stand as the
 site has them; a pane that leans by 0.1 degrees more shifts its glare by 0.8 minutes.
 
-FILES are a site file, or a plan file and its site file. Terrain and clouds are not known.
+FILES are a site file, or a plan file and its site file. Clouds are not known.
 """
 
 

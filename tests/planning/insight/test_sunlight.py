@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from planning.geo.bvh import line_of_sight
 from planning.geo.frames import camera_axes
+from planning.geo.height_field import HeightField
 from planning.geo.sun import is_within, joined_spans, total_s
 from planning.insight.sunlight import (
     MIRRORS,
@@ -24,6 +25,7 @@ from planning.insight.sunlight import (
 )
 from planning.plan import viewpoint_arrays
 from planning.site.records import Obstacle, Panel, panel_corners
+from planning.site.terrain import terrain_of
 from tests.planning.insight.sun_cases import CAMERA, aimed, day_of, moment_of, wall
 from tests.planning.plan_cases import kiosk, solid_triangles
 
@@ -238,6 +240,22 @@ def test_a_wall_opposite_shades_panes_up_to_the_profile_angle():
     ((first, last),) = (span for span in found.facades[0].lit if span[1] - span[0] > 3600.0)
     assert first == pytest.approx(times[free][0], abs=30.0)
     assert last == pytest.approx(times[free][-1], abs=30.0)
+
+
+def test_a_hill_of_the_terrain_hides_the_sun_like_a_wall_of_its_height():
+    """A ridge 15 m above the pane and 30 m before it, over the whole width of the terrain."""
+    x = y = np.arange(-400.0, 401.0, 5.0)
+    z = np.where(np.abs(y + 30.0)[:, None] < 1.0, 25.0, 0.0) + 0.0 * x
+    hill = terrain_of(HeightField(-400.0, -400.0, 5.0, z), z, z)
+    flat = wall(size_m=0.2)
+    found = day(replace(flat, site=replace(flat.site, terrain=hill)), on="2026-02-15")
+    opposite = Obstacle("o", box_enu_m=((-400.0, -30.01, 0.0), (400.0, -30.0, 25.0)))
+    expected = day(wall(size_m=0.2, obstacles=(opposite,)), on="2026-02-15")
+    assert found.shadows.on
+    lit = [max(each.facades[0].lit.tolist(), key=lambda span: span[1] - span[0]) for each in (found, expected)]
+    np.testing.assert_allclose(lit[0], lit[1], atol=20.0)
+    unused = replace(flat, site=replace(flat.site, terrain=replace(hill, use="off")))
+    assert not day(unused, on="2026-02-15").shadows.on
 
 
 # Effects, both ways
