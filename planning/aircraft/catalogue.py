@@ -6,12 +6,14 @@ They are from `data/profiles.toml`, a file of the user's own, or plug-ins: an en
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 
 from planning.base.errors import InputError
 from planning.base.json_file import read_toml
+from planning.base.messages import say
 from planning.base.plugins import NAME, Plugin, PluginGroup, load_plugins
 from planning.plan import Aircraft, Camera
 
@@ -19,13 +21,46 @@ PROFILES_PATH = Path(__file__).parent / "data" / "profiles.toml"
 
 
 @dataclass(frozen=True, slots=True)
+class Body:
+    """The aircraft as something that can hurt people, for ground risk (`planning.insight.ground_risk`).
+
+    Parameters
+    ----------
+    characteristic_dimension_m
+        Longest straight line between two of its points, tips of the propellers included.
+    max_takeoff_mass_kg
+        As the maker allows it.
+    full_speed_m_s
+        Fastest it can fly level through calm air in any mode, not what a mission asks for.
+    braking_tilt_deg
+        Tilt with which it brakes.
+    """
+
+    characteristic_dimension_m: float
+    max_takeoff_mass_kg: float
+    full_speed_m_s: float
+    braking_tilt_deg: float
+    source: str = ""
+
+    def __post_init__(self) -> None:
+        for field in ("characteristic_dimension_m", "max_takeoff_mass_kg", "full_speed_m_s", "braking_tilt_deg"):
+            value = getattr(self, field)
+            if not (math.isfinite(value) and value > 0.0):
+                raise ValueError(say("expected a positive number, got {}", value, place=field))
+
+
+@dataclass(frozen=True, slots=True)
 class Profile:
-    """One aircraft with the camera it carries, and where the figures come from; `id` is the name of its table."""
+    """One aircraft with the camera it carries, and where the figures come from; `id` is the name of its table.
+
+    `body` is None where nobody has stated it; ground risk then has to be told.
+    """
 
     aircraft: Aircraft
     camera: Camera
     source: str = ""
     id: str = ""
+    body: Body | None = None
 
 
 @cache

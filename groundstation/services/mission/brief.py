@@ -168,7 +168,7 @@ def flight_brief(
     site = site_model.site
     rows = waypoint_rows(plan, site.origin)
     clearances = {found.place: found.value for found in findings if found.code == "leg-distance"}
-    height_m, objections = _return_height(plan, site_model, options)
+    height_m, objections = return_height(plan, site_model, options)
     stated, bound = plan.coverage, plan.coverage.reachable_upper_bound
     return FlightBrief(
         site=site.name,
@@ -240,7 +240,7 @@ def _sortie(
     )
 
 
-def _return_height(
+def return_height(
     plan: Plan, site_model: SiteModel, options: ExportOptions
 ) -> tuple[float | None, tuple[Finding, ...]]:
     """Return height as an export writes it, and what there is to say; no height where the plan cannot be exported."""

@@ -18,6 +18,11 @@ GRAVITY_M_S2 = 9.80665
 
 NOWHERE: Vec3 = (0.0, 0.0, 0.0)
 
+TINY_M_S = 1e-12
+
+FALL_STEP_S = 0.02
+"""Longest step of a fall with drag: its error over 100 m is below a millimetre."""
+
 
 class Multirotor:
     """An `Airframe` with the limits of an aircraft.
@@ -29,7 +34,11 @@ class Multirotor:
     gimbal_pitch_rad
         Lowest and highest pitch; a target beyond is cut to them without a word, as gimbals do.
     home_enu_m
-        Where it stands at first. The ground is level at this height.
+        Where it is at first.
+    velocity_enu_m_s
+        With which it moves there, over the ground.
+    ground_z_m
+        Height of the level ground; None: it stands on it at first.
     """
 
     def __init__(
@@ -39,12 +48,15 @@ class Multirotor:
         home_enu_m: Vec3,
         parts: Parts,
         heading_rad: float = 0.0,
+        *,
+        velocity_enu_m_s: Vec3 = NOWHERE,
+        ground_z_m: float | None = None,
     ) -> None:
         self._limits, self._gimbal_pitch_rad, self._parts = limits, gimbal_pitch_rad, parts
-        self._ground_z_m = home_enu_m[2]
+        self._ground_z_m = home_enu_m[2] if ground_z_m is None else ground_z_m
         self._trajectory, self._leg_s = resting(home_enu_m), 0.0
         self._steered: tuple[Vec3, Vec3, bool] | None = None
-        self._motion: State = (home_enu_m, NOWHERE, NOWHERE)
+        self._motion: State = (home_enu_m, velocity_enu_m_s, NOWHERE)
         self._heading_rad, self._yaw_rate_rad_s = heading_rad, 0.0
         self._target: Target | None = None
         self._time_s = 0.0
@@ -180,17 +192,40 @@ class Multirotor:
         self._leg_s = 0.0
 
     def _fall(self, duration_s: float) -> None:
-        """Without motors: stand on the ground, or fall there, drag left out."""
+        """Without motors: stand on the ground, or fall there; without drag in one step, which is exact."""
+        has_drag = self._parts.fall_drag_per_m > 0.0
+        left_s = duration_s
+        while True:
+            step_s = min(left_s, FALL_STEP_S) if has_drag else left_s
+            self._drop(step_s, self._mean_pull_m_s2(step_s) if has_drag else (0.0, 0.0, -GRAVITY_M_S2))
+            left_s -= step_s
+            if left_s <= 0.0 or self._stands:
+                break
+        self._trajectory, self._leg_s, self._steered = resting(self._motion[0]), 0.0, None
+
+    def _drop(self, duration_s: float, pull_m_s2: Vec3) -> None:
+        """Move with an acceleration that stays, as far as the ground."""
         (x, y, z), (vx, vy, vz), _ = self._motion
-        height_m = z - self._ground_z_m
-        ground_s = (vz + math.sqrt(vz * vz + 2.0 * GRAVITY_M_S2 * max(0.0, height_m))) / GRAVITY_M_S2
+        ax, ay, az = pull_m_s2
+        height_m = max(0.0, z - self._ground_z_m)
+        root = math.sqrt(max(0.0, vz * vz - 2.0 * az * height_m))
+        # Drag brakes a fall that began faster than it can keep on, so that az may point up.
+        ground_s = (vz + root) / -az if az < 0.0 else 2.0 * height_m / max(root - vz, TINY_M_S)
         t = min(duration_s, ground_s)
-        place = x + t * vx, y + t * vy, z + t * (vz - 0.5 * GRAVITY_M_S2 * t)
+        place = x + t * (vx + 0.5 * ax * t), y + t * (vy + 0.5 * ay * t), z + t * (vz + 0.5 * az * t)
         if ground_s <= duration_s:
             self._motion = (place[0], place[1], self._ground_z_m), NOWHERE, NOWHERE
         else:
-            self._motion = place, (vx, vy, vz - GRAVITY_M_S2 * t), NOWHERE
-        self._trajectory, self._leg_s, self._steered = resting(self._motion[0]), 0.0, None
+            self._motion = place, (vx + ax * t, vy + ay * t, vz + az * t), NOWHERE
+
+    def _mean_pull_m_s2(self, duration_s: float) -> Vec3:
+        """Gravity, and quadratic drag against the wind of now, in the middle of a step (midpoint rule)."""
+        pull = 0.0, 0.0, 0.0
+        for half_s in (0.0, 0.5 * duration_s):
+            ux, uy, uz = (v + half_s * a - w for v, a, w in zip(self._motion[1], pull, self.wind_enu_m_s, strict=True))
+            drag = self._parts.fall_drag_per_m * math.hypot(ux, uy, uz)
+            pull = -drag * ux, -drag * uy, -drag * uz - GRAVITY_M_S2
+        return pull
 
     def _turn(self, duration_s: float, target: Target) -> None:
         before_rad = self._heading_rad

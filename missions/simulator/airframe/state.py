@@ -251,6 +251,8 @@ class Parts:
         From the command to the opening of the shutter.
     exposure_s
         How long the shutter is open.
+    fall_drag_per_m
+        Of a fall with motors off: deceleration over the square of the speed through the air. 0: falls without drag.
     """
 
     gimbal: Gimbal
@@ -260,3 +262,4 @@ class Parts:
     errors: tuple[PositionError, ...] = ()
     latency_s: float = 0.0
     exposure_s: float = 0.0
+    fall_drag_per_m: float = 0.0

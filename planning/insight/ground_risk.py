@@ -1,0 +1,697 @@
+"""Ground risk by SORA 2.5: flight geography, contingency volume, ground-risk buffer and ground risk class of a plan.
+
+Sizes follow the guidance of the German authority for multirotors (`LBA`): what the aircraft may stray (S), then how far
+it flies before the pilot reacts and brakes (contingency), then how far it falls with its motors off (buffer). Its sum
+is extended where it would not hold: an aircraft that still climbs when the motors stop, and one that the wind carries.
+With both, the buffer holds for every fall that begins inside the contingency volume with at most the stated speeds, for
+any drag up to the stated one. With u the speed through the air, w the wind, c the climb and H the height:
+
+    through the air it moves by x <= u T0, T0 = (c + sqrt(c^2 + 2 g H)) / g, since drag takes it down nearer (the slope
+    dz/dx changes by -g / u^2, and drag only lessens u), and by x <= ln(1 + k u T) / k, since u' <= -k u^2,
+    with the air it moves by w T, T(k) the longest fall with the drag k (`longest_fall_s`),
+    so that over the ground it is S <= max over k of min(u T0, ln(1 + k u T) / k) + w T.
+
+Offsets in the plane circumscribe: every polygon holds the exact one, and is wider by at most the arc tolerance. Nothing
+here is legal advice: what comes out is a filled draft that the operator has to check.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Generator, Iterator
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from planning.aircraft.catalogue import Body, profiles
+from planning.base.errors import InfeasibleError, InputError
+from planning.base.findings import Finding, Severity
+from planning.base.json_file import read_toml
+from planning.base.messages import joined, say
+from planning.insight.ground_risk_request import Band, GroundRiskRequest, Robustness
+from planning.plan import Plan
+from planning.site.ground import ground_of
+from planning.site.records import Site
+
+if TYPE_CHECKING:
+    from shapely import Geometry, Polygon
+
+GRAVITY_M_S2 = 9.81
+"""In the sums of the guidance, so that its own examples come out."""
+
+LEAST_GRAVITY_M_S2 = 9.78
+"""At the equator, at sea level: things fall slowest there, and so furthest."""
+
+AIR_KG_M3 = 1.225
+"""ISA at sea level: the densest air that a flight is likely to meet carries a falling aircraft furthest."""
+
+LBA = "LBA guidance 1.7"
+SORA = "SORA 2.5, step 8"
+
+DOCUMENTS = (
+    "LBA guidance 1.7: Luftfahrt-Bundesamt, Guidance for Dimensioning of Flight Geography, Contingency Volume and "
+    "Ground Risk Buffer, revision 1.7, 26 November 2024",
+    "SORA 2.5: JAR-DEL-SRM-SORA-MB-2.5, taken over in AMC1 Article 11 of (EU) 2019/947, ED Decision 2025/018/R",
+)
+"""What the short names of sources stand for."""
+
+WIDTH_IN_DIMENSIONS = 3.0
+"""Narrowest and lowest flight geography, in characteristic dimensions (`LBA`)."""
+
+CLIMB_SHARE = math.sqrt(0.5)
+"""Of the speed that goes upwards before the pilot reacts: a path at 45 degrees (`LBA`, which rounds it to 0.7)."""
+
+BARO_ERROR_M, GNSS_HEIGHT_ERROR_M = 1.0, 4.0
+"""Error of the height, by how it is measured (`LBA`)."""
+
+ADJACENT_S, ADJACENT_LEAST_M, ADJACENT_MOST_M = 180.0, 5_000.0, 35_000.0
+"""Adjacent area: flown in 3 minutes, at least 5 and at most 35 km (SORA 2.5, step 8)."""
+
+HIGHEST_M = 120.0
+"""Above it other rules of the air hold in most places (EU 2019/947, UAS.OPEN.010)."""
+
+# The tables of `data/ground_risk.toml`.
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """A size class: up to which dimension and speed, and the frontal area of its largest aircraft when it falls."""
+
+    dimension_m: float
+    speed_m_s: float
+    frontal_area_m2: float
+
+
+@dataclass(frozen=True, slots=True)
+class PeopleBand:
+    """A row of Table 2: its word, how many people there are fewer of, and the class of each column; 0 beyond SORA."""
+
+    word: Band
+    below_per_km2: float
+    classes: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class GroundRiskTables:
+    """See `data/ground_risk.toml`."""
+
+    source: str
+    mitigation_source: str
+    drag_coefficient: float
+    drag_source: str
+    columns: tuple[Column, ...]
+    bands: tuple[PeopleBand, ...]
+    mitigations: dict[str, dict[Robustness, int]]
+
+    def column_of(self, dimension_m: float, speed_m_s: float) -> int | None:
+        """Number of the size class from 0; None where the aircraft is beyond all."""
+        fits = (dimension_m <= each.dimension_m and speed_m_s <= each.speed_m_s for each in self.columns)
+        return next((number for number, fit in enumerate(fits) if fit), None)
+
+
+@cache
+def ground_risk_tables() -> GroundRiskTables:
+    """The tables of SORA."""
+    return read_toml(Path(__file__).parent / "data" / "ground_risk.toml", GroundRiskTables)
+
+
+def band_of(population: str) -> PeopleBand:
+    """The band of a word, or of a number of people per square kilometre that `GroundRiskRequest` takes."""
+    bands = ground_risk_tables().bands
+    named = next((band for band in bands if band.word == population), None)
+    return named or next(band for band in bands if float(population) < band.below_per_km2)
+
+
+# Quantities: each number with where it comes from.
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """A number of the assessment.
+
+    Parameters
+    ----------
+    formula
+        In symbols of other quantities; "" for what was stated or looked up.
+    source
+        Document, maker or person that the number or formula is from.
+    is_assumed
+        Nobody stated it and no document gives it for this aircraft.
+    """
+
+    symbol: str
+    name: str
+    value: float
+    unit: str
+    formula: str
+    source: str
+    is_assumed: bool = False
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class GroundRisk:
+    """The assessment of a plan.
+
+    Parameters
+    ----------
+    quantities
+        All numbers, in the order in which they follow from each other; `value_of` finds one by its symbol.
+    geography, contingency, buffer
+        Areas in ENU metres, each holding the one before: flight geography, with the contingency volume around it, and
+        with the ground-risk buffer around that.
+    geography_top_m, contingency_top_m
+        Above the ground, in the site's level.
+    ground_z_m
+        Height of the ground in the local frame.
+    band
+        None where nobody stated how many people there are.
+    intrinsic_class, final_class
+        Ground risk class before and after mitigations; None where it is not known, or beyond SORA.
+    """
+
+    request: GroundRiskRequest
+    body: Body
+    quantities: tuple[Quantity, ...]
+    core: Geometry
+    geography: Polygon
+    contingency: Polygon
+    buffer: Polygon
+    ground_z_m: float
+    band: PeopleBand | None
+    intrinsic_class: int | None
+    final_class: int | None
+    findings: tuple[Finding, ...]
+
+    def value_of(self, symbol: str) -> float:
+        """One of the numbers.
+
+        Raises
+        ------
+        KeyError
+            There is none of this symbol.
+        """
+        for each in self.quantities:
+            if each.symbol == symbol:
+                return each.value
+        raise KeyError(symbol)
+
+    @property
+    def geography_top_m(self) -> float:
+        """Height of the flight geography above the ground."""
+        return self.value_of("H_FG")
+
+    @property
+    def contingency_top_m(self) -> float:
+        """Height of the contingency volume above the ground."""
+        return self.value_of("H_CV")
+
+    @property
+    def people_allowed(self) -> str:
+        """Whether people who are not involved may be inside the buffer, for the pilot."""
+        if self.band is None:
+            return say("not stated how many: keep everybody out who is not involved")
+        if self.band.word == "controlled":
+            return say("nobody who is not involved (controlled ground area)")
+        if self.band.below_per_km2 == math.inf:
+            return say("an assembly of people")
+        most = self.band.below_per_km2 * self.buffer.area / 1e6
+        return say("fewer than {:g} per square kilometre, {:.1f} in the whole area", self.band.below_per_km2, most)
+
+
+# Falling.
+
+
+def fall_s(height_m: float, climb_m_s: float, gravity_m_s2: float = LEAST_GRAVITY_M_S2) -> float:
+    """Time from switching motors off to the ground without drag: g t = c + sqrt(c^2 + 2 g h)."""
+    return (climb_m_s + math.sqrt(climb_m_s * climb_m_s + 2.0 * gravity_m_s2 * height_m)) / gravity_m_s2
+
+
+def longest_fall_s(height_m: float, climb_m_s: float, level_m_s: float, drag_per_m: float) -> float:
+    """Longest time to the ground with quadratic drag, of a body that climbs and moves level through the air at first.
+
+    Upwards it takes no longer, and comes no higher, than without drag. Downwards from there, with k the drag,
+
+        v' = g - k sqrt(u^2 + v^2) v,   u <= u0 / (1 + k u0 t),
+
+    since drag on the level speed alone is already k u^2. k u grows with k and u0, so that less drag and less speed fall
+    faster: it holds for every drag up to that of `drag_per_m` and every level speed up to `level_m_s`.
+    """
+    g, k = LEAST_GRAVITY_M_S2, drag_per_m
+    apex_m, up_s = height_m + climb_m_s * climb_m_s / (2.0 * g), climb_m_s / g
+
+    def slope(t: float, v: float) -> float:
+        level = level_m_s / (1.0 + k * level_m_s * t)
+        return g - k * math.hypot(level, v) * v
+
+    def after(h: float) -> tuple[float, float]:
+        """Runge and Kutta's fourth order for v; z by Simpson's rule over the same stages."""
+        a = slope(t, v)
+        b = slope(t + 0.5 * h, v + 0.5 * h * a)
+        c = slope(t + 0.5 * h, v + 0.5 * h * b)
+        d = slope(t + h, v + h * c)
+        return v + h / 6.0 * (a + 2.0 * b + 2.0 * c + d), z + h * v + h * h / 6.0 * (a + b + c)
+
+    t, v, z, step_s = 0.0, 0.0, 0.0, FALL_STEP / math.sqrt(g * k)
+    for _ in range(FALL_STEPS):
+        next_v, next_z = after(step_s)
+        if next_z >= apex_m:
+            low, high = 0.0, step_s
+            for _ in range(60):
+                middle = 0.5 * (low + high)
+                low, high = (middle, high) if after(middle)[1] < apex_m else (low, middle)
+            return max(up_s + t + high, fall_s(height_m, climb_m_s))
+        t, v, z = t + step_s, next_v, next_z
+    # It only becomes faster from here on.
+    return up_s + t + (apex_m - z) / v
+
+
+FALL_STEP, FALL_STEPS = 0.02, 1000
+"""Steps of a fall in times of 1 / sqrt(g k), within which speeds change: 20 of them, after which it is as fast as it
+gets to seven digits. Against steps a tenth as long the time differs by less than 1e-6 of itself."""
+
+
+def reach_m(height_m: float, climb_m_s: float, level_m_s: float, wind_m_s: float, most_drag_per_m: float) -> float:
+    """How far over the ground a body can fall, whatever its drag up to the stated one; see the module.
+
+    Between two drags, the lower bounds the way through the air and the higher the time: the first term falls with the
+    drag and the second rises, so that nothing between them is missed.
+    """
+    drags = most_drag_per_m * np.linspace(0.0, 1.0, DRAGS) ** 2
+    through_m = level_m_s * fall_s(height_m, climb_m_s)
+    if wind_m_s == 0.0:
+        return through_m
+    furthest_m = 0.0
+    for less, more in zip(drags[:-1].tolist(), drags[1:].tolist(), strict=True):
+        time_s = longest_fall_s(height_m, climb_m_s, level_m_s, more)
+        slowed_m = math.log1p(less * level_m_s * time_s) / less if less > 0.0 else math.inf
+        furthest_m = max(furthest_m, min(through_m, slowed_m) + wind_m_s * time_s)
+    return furthest_m
+
+
+DRAGS = 33
+"""Drags that are tried, closer together where they are small: twice as many bring the reach down by 1 % at most."""
+
+
+def drag_per_m(mass_kg: float, drag_area_m2: float) -> float:
+    """Deceleration by drag over the square of the speed."""
+    return 0.5 * AIR_KG_M3 * drag_area_m2 / mass_kg
+
+
+# Areas.
+
+
+def grown(core: Geometry, by_m: float, arc_tolerance_m: float) -> Polygon:
+    """Everything within `by_m` of a geometry, and at most `arc_tolerance_m` more.
+
+    GEOS puts the corners of its arcs on the circle, so that the chords between them lie inside. The circle is widened
+    until the chords touch the wanted one. A step of an arc is up to 1.5 times what was asked for, since it divides the
+    angle by a number that it rounds. Parts are grown one by one and then united: of a line that crosses itself GEOS
+    3.14 loses up to a seventh of the area.
+    """
+    import shapely
+
+    if by_m <= 0.0:
+        return core
+    # cos(x) >= 1 / (1 + tolerance / radius) for half a step x.
+    half_step = math.acos(1.0 / (1.0 + arc_tolerance_m / by_m))
+    per_quarter = max(2, math.ceil(0.75 * (math.pi / 2.0) / half_step))
+    half_step = 0.75 * (math.pi / 2.0) / per_quarter
+    grown_parts = shapely.buffer(shapely.get_parts(core), by_m / math.cos(half_step), quad_segs=per_quarter)
+    return shapely.union_all(grown_parts)
+
+
+def path_geometry(plan: Plan, request: GroundRiskRequest) -> Geometry:
+    """Hull of all paths seen from above, or all their legs.
+
+    Raises
+    ------
+    InfeasibleError
+        No sortie has a path.
+    """
+    import shapely
+
+    paths = [np.array(sortie.path_enu_m, np.float64)[:, :2] for sortie in plan.sorties if sortie.path_enu_m]
+    if not paths:
+        raise InfeasibleError.say("the plan has no sorties, so there is nothing that could fall; plan a flight first")
+    if request.geography == "hull":
+        return shapely.convex_hull(shapely.multipoints(np.concatenate(paths)))
+    legs = np.concatenate(
+        [np.stack([path[:-1], path[1:]], axis=1) if len(path) > 1 else path[None, [0, 0]] for path in paths]
+    )
+    # A leg straight up is a point from above.
+    goes = (legs[:, 0] != legs[:, 1]).any(axis=1)
+    points = np.unique(legs[~goes, 0], axis=0)
+    return shapely.geometrycollections([*shapely.linestrings(legs[goes]), *shapely.points(points)])
+
+
+# The assessment.
+
+
+def assess_ground_risk(
+    plan: Plan, site: Site, request: GroundRiskRequest | None = None, return_height_m: float | None = None
+) -> GroundRisk:
+    """Volumes and ground risk class of a plan's flown paths.
+
+    Parameters
+    ----------
+    return_height_m
+        Above take-off, where it returns home higher than its paths.
+
+    Raises
+    ------
+    InfeasibleError
+        The plan has no sorties, the wind is more than the aircraft may fly in, or the ground falls away without end.
+    InputError
+        Something of the aircraft is neither known nor stated; the message lists all of that.
+    """
+    request = request or GroundRiskRequest()
+    body = _body(plan, request)
+    wind_m_s = _wind(plan, request)
+    core = path_geometry(plan, request)
+    ground_z_m, is_known = _lowest_ground(site, core)
+    for _ in range(GROUND_ROUNDS):
+        top_m = _top_m(plan, site, return_height_m, ground_z_m)
+        quantities = tuple(_quantities(plan, request, body, wind_m_s, top_m))
+        value = {each.symbol: each.value for each in quantities}
+        geography, contingency, buffer = _areas(core, value, request.arc_tolerance_m)
+        # Lower ground makes the buffer wider, and a wider buffer may reach lower ground.
+        lower_z_m, is_known = _lowest_ground(site, buffer)
+        if lower_z_m >= ground_z_m:
+            break
+        ground_z_m = lower_z_m
+    else:
+        raise InfeasibleError.say("the ground falls away as far as the buffer is widened; limit speed or wind")
+    band = None if request.population is None else band_of(request.population)
+    column = ground_risk_tables().column_of(body.characteristic_dimension_m, body.full_speed_m_s)
+    intrinsic, final = _classes(band, column, request)
+    return GroundRisk(
+        request=request,
+        body=body,
+        quantities=quantities,
+        core=core,
+        geography=geography,
+        contingency=contingency,
+        buffer=buffer,
+        ground_z_m=ground_z_m,
+        band=band,
+        intrinsic_class=intrinsic,
+        final_class=final,
+        findings=tuple(_findings(request, plan, value, band, column, intrinsic, final, is_known)),
+    )
+
+
+def _body(plan: Plan, request: GroundRiskRequest) -> Body:
+    """The aircraft's body, with what was stated put over what its profile says."""
+    profile = profiles().get(plan.profile)
+    known = None if profile is None else profile.body
+    stated = {
+        say("largest dimension"): request.dimension_m,
+        say("take-off mass"): request.mass_kg,
+        say("full speed through the air"): request.speed_m_s,
+        say("braking tilt"): request.tilt_deg,
+    }
+    missing = [name for name, value in stated.items() if value is None]
+    if known is None and missing:
+        raise InputError.say(
+            "of {} it is not known how large, heavy and fast it is; state {}, or 'body' in a profile of your own",
+            plan.aircraft.name,
+            joined(", ", missing),
+        )
+    usual = (
+        (0.0, 0.0, 0.0, 0.0)
+        if known is None
+        else (
+            known.characteristic_dimension_m,
+            known.max_takeoff_mass_kg,
+            known.full_speed_m_s,
+            known.braking_tilt_deg,
+        )
+    )
+    dimension, mass, speed, tilt = (
+        own if value is None else value for own, value in zip(usual, stated.values(), strict=True)
+    )
+    return Body(dimension, mass, speed, tilt, "" if known is None else known.source)
+
+
+def _wind(plan: Plan, request: GroundRiskRequest) -> float:
+    most_m_s = plan.aircraft.max_wind_m_s
+    wind_m_s = request.wind_m_s
+    if wind_m_s is None:
+        wind_m_s = plan.rules.wind_m_s or most_m_s
+    if wind_m_s > most_m_s:
+        raise InfeasibleError.say(
+            "{} may fly in wind of up to {:g} m/s, but {:g} m/s are stated; wait for less, or take another aircraft",
+            plan.aircraft.name,
+            most_m_s,
+            wind_m_s,
+        )
+    return wind_m_s
+
+
+def _areas(core: Geometry, value: dict[str, float], tolerance_m: float) -> tuple[Polygon, Polygon, Polygon]:
+    """Flight geography, contingency volume and buffer, each with those before it."""
+    import shapely
+
+    geography = grown(core, value["S_FG"], tolerance_m)
+    reach_m = value["S_FG"] + value["S_CV"]
+    # A ring narrower than the tolerance could lie inside the corners of the one before.
+    contingency = shapely.union(grown(core, reach_m, tolerance_m), geography)
+    return geography, contingency, shapely.union(grown(core, reach_m + value["S_GRB"], tolerance_m), contingency)
+
+
+GROUND_ROUNDS = 50
+"""Of looking for the lowest ground; two or three are usual."""
+
+
+def _lowest_ground(site: Site, area: Geometry) -> tuple[float, bool]:
+    """Lowest ground below the box around an area, ENU z, and whether all of it is known; the level ground else."""
+    ground, (west, south, east, north) = ground_of(site), area.bounds
+    if ground.terrain is None:
+        return ground.level_z_m, True
+    lower = ground.terrain.lower.part_m(np.array([west, south, 0.0]), np.array([east, north, 0.0]))
+    known = lower[np.isfinite(lower)]
+    return float(known.min()) if len(known) else ground.level_z_m, len(known) == lower.size
+
+
+def _top_m(plan: Plan, site: Site, return_height_m: float | None, ground_z_m: float) -> float:
+    """Highest point of paths and return above the ground."""
+    highest_z = max(point[2] for sortie in plan.sorties for point in sortie.path_enu_m)
+    if return_height_m is not None:
+        home = plan.home_enu_m or site.home_enu_m
+        highest_z = max(highest_z, home[2] + return_height_m)
+    return max(0.0, highest_z - ground_z_m)
+
+
+def _quantities(
+    plan: Plan, request: GroundRiskRequest, body: Body, wind_m_s: float, top_m: float
+) -> Iterator[Quantity]:
+    """All numbers, in order; see the module for the sums."""
+    pilot, maker = say("stated by the pilot"), say("profile '{}'", plan.profile)
+    aircraft = plan.aircraft
+
+    def of_body(value: float | None) -> str:
+        return maker if value is None else pilot
+
+    dimension_m, speed_m_s = body.characteristic_dimension_m, body.full_speed_m_s
+    tilt_deg, climb_m_s = body.braking_tilt_deg, aircraft.max_ascent_m_s
+    yield Quantity("CD", say("largest dimension"), dimension_m, "m", "", of_body(request.dimension_m))
+    yield Quantity("m", say("take-off mass"), body.max_takeoff_mass_kg, "kg", "", of_body(request.mass_kg))
+    yield Quantity("v", say("full speed through the air"), speed_m_s, "m/s", "", of_body(request.speed_m_s))
+    if request.wind_m_s is not None:
+        wind_source = pilot
+    else:
+        wind_source = say("of the plan") if plan.rules.wind_m_s else say("strongest that the aircraft may fly in")
+    yield Quantity("w", say("wind, from any side"), wind_m_s, "m/s", "", wind_source)
+    ground_m_s = speed_m_s + wind_m_s
+    yield Quantity("V_0", say("full speed over the ground"), ground_m_s, "m/s", "v + w", say("downwind, full speed"))
+    yield Quantity("c", say("fastest climb"), climb_m_s, "m/s", "", say("of the aircraft in the plan"))
+    yield Quantity("θ", say("braking tilt"), tilt_deg, "deg", "", of_body(request.tilt_deg))
+    is_usual = request.reaction_s == GroundRiskRequest().reaction_s
+    yield Quantity("t_R", say("reaction"), request.reaction_s, "s", "", LBA if is_usual else pilot)
+    height_m = yield from _geography(dimension_m, top_m)
+    yield from _contingency_aside(request, ground_m_s, tilt_deg)
+    contingency_m = yield from _contingency_above(request, ground_m_s, climb_m_s, height_m)
+    yield from _buffer(request, body, wind_m_s, climb_m_s, contingency_m)
+    adjacent_m = min(max(ADJACENT_S * ground_m_s, ADJACENT_LEAST_M), ADJACENT_MOST_M)
+    formula = "min(35 km, max(5 km, 180 s · V_0))"
+    yield Quantity("S_AA", say("adjacent area, from the contingency volume on"), adjacent_m, "m", formula, SORA)
+
+
+def _geography(dimension_m: float, top_m: float) -> Generator[Quantity, None, float]:
+    """Half width and top of the flight geography; the generator's value is the top."""
+    half_m = 0.5 * WIDTH_IN_DIMENSIONS * dimension_m
+    yield Quantity("S_FG", say("flight geography, to each side of the paths"), half_m, "m", "1.5 CD", LBA)
+    yield Quantity("H_top", say("highest point of paths and return, above ground"), top_m, "m", "", say("of the plan"))
+    height_m = max(WIDTH_IN_DIMENSIONS * dimension_m, top_m + half_m)
+    yield Quantity("H_FG", say("top of the flight geography"), height_m, "m", "max(3 CD, H_top + 1.5 CD)", LBA)
+    return height_m
+
+
+def _contingency_aside(request: GroundRiskRequest, ground_m_s: float, tilt_deg: float) -> Iterator[Quantity]:
+    usual, pilot = GroundRiskRequest(), say("stated by the pilot")
+
+    def source(name: str) -> str:
+        return LBA if getattr(request, name) == getattr(usual, name) else pilot
+
+    yield Quantity("S_GPS", say("GNSS error"), request.gnss_error_m, "m", "", source("gnss_error_m"))
+    yield Quantity("S_Pos", say("position hold error"), request.hold_error_m, "m", "", source("hold_error_m"))
+    yield Quantity("S_K", say("map error"), request.map_error_m, "m", "", source("map_error_m"))
+    reaction_m = ground_m_s * request.reaction_s
+    yield Quantity("S_RZ", say("flown before the pilot acts"), reaction_m, "m", "V_0 · t_R", LBA)
+    brake_m = 0.5 * ground_m_s**2 / (GRAVITY_M_S2 * math.tan(math.radians(tilt_deg)))
+    yield Quantity("S_CM", say("way to brake"), brake_m, "m", "V_0² / (2 g tan θ)", LBA)
+    total_m = request.gnss_error_m + request.hold_error_m + request.map_error_m + reaction_m + brake_m
+    formula = "S_GPS + S_Pos + S_K + S_RZ + S_CM"
+    yield Quantity("S_CV", say("contingency volume, to each side"), total_m, "m", formula, LBA)
+
+
+def _contingency_above(
+    request: GroundRiskRequest, ground_m_s: float, climb_m_s: float, geography_m: float
+) -> Generator[Quantity, None, float]:
+    """Heights; the generator's value is the top of the contingency volume."""
+    error_m = BARO_ERROR_M if request.height_by == "barometer" else GNSS_HEIGHT_ERROR_M
+    yield Quantity("H_baro", say("error of the height"), error_m, "m", "", LBA)
+    reaction_m = max(CLIMB_SHARE * ground_m_s, climb_m_s) * request.reaction_s
+    name = say("climbed before the pilot acts")
+    yield Quantity("H_RZ", name, reaction_m, "m", "max(V_0 sin 45°, c) · t_R", LBA)
+    momentum_m = 0.5 * ground_m_s**2 / GRAVITY_M_S2
+    yield Quantity("H_CM", say("climbed by what momentum is left"), momentum_m, "m", "V_0² / (2 g)", LBA)
+    top_m = geography_m + error_m + reaction_m + momentum_m
+    formula = "H_FG + H_baro + H_RZ + H_CM"
+    yield Quantity("H_CV", say("top of the contingency volume"), top_m, "m", formula, LBA)
+    return top_m
+
+
+def _buffer(
+    request: GroundRiskRequest, body: Body, wind_m_s: float, climb_m_s: float, top_m: float
+) -> Iterator[Quantity]:
+    ours = say("sum of this program, see the guide")
+    half_m, speed_m_s = 0.5 * body.characteristic_dimension_m, body.full_speed_m_s
+    ground_m_s = speed_m_s + wind_m_s
+    tables = ground_risk_tables()
+    column = tables.column_of(body.characteristic_dimension_m, speed_m_s)
+    area_m2 = tables.columns[-1 if column is None else column].frontal_area_m2
+    drag_m2 = tables.drag_coefficient * area_m2
+    per_m = drag_per_m(body.max_takeoff_mass_kg, drag_m2)
+    fall_m = ground_m_s * fall_s(top_m, 0.0, GRAVITY_M_S2)
+    more_m = max(0.0, reach_m(top_m, climb_m_s, speed_m_s, wind_m_s, per_m) - fall_m)
+    slow_s = longest_fall_s(top_m, climb_m_s, speed_m_s, per_m)
+    name = say("drag area when it falls, at most")
+    yield Quantity("C_D A", name, drag_m2, "m²", "", tables.drag_source, is_assumed=True)
+    formula = "1.225 kg/m³ · C_D A / (2 m)"
+    yield Quantity("k", say("drag over the square of the speed, at most"), per_m, "1/m", formula, ours)
+    formula = "(c + √(c² + 2 g H_CV)) / g, g = 9.78 m/s²"
+    yield Quantity("T_0", say("fall without drag"), fall_s(top_m, climb_m_s), "s", formula, ours)
+    yield Quantity("T", say("longest fall with drag"), slow_s, "s", "z(T) = H_CV", ours)
+    yield Quantity("S_fall", say("fall from level flight"), fall_m, "m", "V_0 √(2 H_CV / g)", LBA)
+    formula = "max over drags of min(v T_0, ln(1 + k v T) / k) + w T, less S_fall"
+    yield Quantity("S_more", say("more, where it still climbs or the wind carries it"), more_m, "m", formula, ours)
+    by_fall_m = fall_m + more_m + half_m
+    if request.buffer == "one-to-one":
+        name, formula = say("ground-risk buffer, 1:1"), "H_CV + 0.5 CD"
+        yield Quantity("S_ball", say("as far as it falls"), by_fall_m, "m", "S_fall + S_more + 0.5 CD", ours)
+        yield Quantity("S_GRB", name, top_m + half_m, "m", formula, LBA)
+        return
+    formula = "S_fall + S_more + 0.5 CD"
+    yield Quantity("S_GRB", say("ground-risk buffer, to each side"), by_fall_m, "m", formula, ours)
+
+
+def _classes(band: PeopleBand | None, column: int | None, request: GroundRiskRequest) -> tuple[int | None, int | None]:
+    """Intrinsic and final class; no mitigation brings it below that of a controlled ground area."""
+    if band is None or column is None or not band.classes[column]:
+        return None, None
+    tables = ground_risk_tables()
+    points = sum(tables.mitigations[name].get(robustness, 0) for name, robustness in request.mitigations)
+    intrinsic = band.classes[column]
+    least = next(each for each in tables.bands if each.word == "controlled").classes[column]
+    return intrinsic, max(intrinsic - points, least)
+
+
+HIGHEST_CLASS = 7
+"""Above it an operation is not in the specific category (SORA 2.5, step 3)."""
+
+
+def _findings(
+    request: GroundRiskRequest,
+    plan: Plan,
+    value: dict[str, float],
+    band: PeopleBand | None,
+    column: int | None,
+    intrinsic: int | None,
+    final: int | None,
+    is_ground_known: bool,
+) -> Iterator[Finding]:
+    """What the operator has to decide or check."""
+
+    def found(severity: Severity, code: str, message: str) -> Finding:
+        return Finding(severity, code, message)
+
+    if band is None:
+        text = say("state how many people are below; without that there is no ground risk class")
+        yield found(Severity.WARNING, "sora-population", text)
+    elif column is None:
+        text = say("the aircraft is larger or faster than SORA's table goes; ask the authority")
+        yield found(Severity.ERROR, "sora-class", text)
+    elif intrinsic is None or (final is not None and final > HIGHEST_CLASS):
+        text = say("beyond the specific category with these people below; fly elsewhere, or keep people out")
+        yield found(Severity.ERROR, "sora-class", text)
+    if value["w"] == 0.0:
+        text = say("sized for calm air: any wind carries a falling aircraft beyond the buffer")
+        yield found(Severity.WARNING, "sora-wind", text)
+    if "S_ball" in value and value["S_ball"] > value["S_GRB"]:
+        text = say(
+            "1:1 is not enough: it can fall {:.1f} m far, the buffer is {:.1f} m", value["S_ball"], value["S_GRB"]
+        )
+        yield found(Severity.WARNING, "sora-one-to-one", text)
+    if value["H_FG"] > HIGHEST_M:
+        text = say(
+            "the flight geography reaches {:.1f} m above ground; above {:g} m other rules hold",
+            value["H_FG"],
+            HIGHEST_M,
+        )
+        yield found(Severity.WARNING, "sora-height", text)
+    if request.sheltering != "none":
+        text = say("M1(A) needs buildings that hold the aircraft off: glass roofs and facades may not")
+        yield found(Severity.WARNING, "sora-glass", text)
+    if request.geography == "paths":
+        text = say("a straight return home may leave the paths; set hover or land for lost links, or take the hull")
+        yield found(Severity.NOTE, "sora-return", text)
+    if not is_ground_known:
+        text = say("the terrain has no heights for a part of the buffer: what lies lower there is not counted")
+        yield found(Severity.WARNING, "sora-terrain", text)
+    text = say("heights count from the lowest ground in the buffer, as if all of it lay as low")
+    yield found(Severity.NOTE, "sora-ground", text)
+    slow_m_s = min(plan.aircraft.max_speed_m_s, plan.rules.max_speed_m_s or math.inf)
+    if slow_m_s < value["v"] and request.speed_m_s is None:
+        text = say(
+            "sized for {:g} m/s; where a mode limits it to the plan's {:g} m/s, state that as full speed",
+            value["v"],
+            slow_m_s,
+        )
+        yield found(Severity.NOTE, "sora-speed", text)
+
+
+def source_texts(risk: GroundRisk) -> tuple[str, ...]:
+    """Where the numbers are from, in full."""
+    own = (say("profile: {}", risk.body.source),) if risk.body.source else ()
+    text = say(
+        "formulas and tables of both were taken from public implementations that agree, and give the distances that "
+        "German authorities publish (STS-BOS 1.0, tables 1 and 2); compare them with the documents"
+    )
+    return (*DOCUMENTS, text, *own)
+
+
+OUT_OF_SCOPE = (
+    say("air risk class (ARC) and SAIL"),
+    say("tactical mitigations and safety objectives (OSO)"),
+    say("containment, and people in the adjacent area"),
+)
+"""Steps of SORA that nothing here says anything of."""
+
+
+def scope_text() -> str:
+    """What is not assessed, in one line."""
+    return say("not assessed: {}", joined("; ", OUT_OF_SCOPE))
