@@ -17,6 +17,7 @@ from missions.mavlink.messages import (
     CommandInt,
     CommandLong,
     FileTransferProtocol,
+    GpsRtcmData,
     Heartbeat,
     Message,
     MissionItemReached,
@@ -37,6 +38,7 @@ from missions.mavlink.messages import (
 from missions.simulator.airframe.state import Airframe, Pose
 from missions.simulator.autopilot.ardupilot_scheduler import ArduPilotScheduler
 from missions.simulator.autopilot.commands import Commands
+from missions.simulator.autopilot.corrections import CorrectionsReceiver
 from missions.simulator.autopilot.failsafe import Failsafe
 from missions.simulator.autopilot.file_server import FileServer
 from missions.simulator.autopilot.guidance import DEG, Guidance, Place
@@ -152,9 +154,10 @@ class SimulatedVehicle:
         self._failsafe = Failsafe(
             autopilot, profile, self._guidance, self.modes, self.parameters, self.place, self.stores.fence, self._say
         )
+        self.corrections = CorrectionsReceiver()
         self.instruments = Instruments(
             autopilot, self._guidance, self.place, self.gimbal, self.modes, self.scheduler,
-            lambda: len(self.stores.mission), unix_start_s,
+            lambda: len(self.stores.mission), unix_start_s, self.corrections,
         )  # fmt: skip
         self._telemetry = Telemetry(self.instruments)
         self.log = OnboardLog(autopilot, self.place, unix_start_s)
@@ -194,6 +197,8 @@ class SimulatedVehicle:
                 self._out += self._commands.receive_set_mode(message, source)
             case ParamSet() | ParamRequestRead() | ParamRequestList():
                 self._out += self.parameters.receive(message)
+            case GpsRtcmData():
+                self.corrections.receive(message, self.now_s)
             case FileTransferProtocol():
                 self._out += self._file_server.receive(message, source)
             case OpenDroneIdBasicId() | OpenDroneIdOperatorId() | OpenDroneIdSelfId() | OpenDroneIdSystem():

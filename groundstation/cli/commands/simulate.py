@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -38,6 +39,8 @@ examples:
   simulate office.plan.json office.site.json -o office.flight.json
   simulate office.plan.json office.site.json -o windy.flight.json --wind 8 --gnss single
 """
+
+PASSWORD_VARIABLE = "REFLIGHT_NTRIP_PASSWORD"
 
 SITL_SPEEDUP = 10.0
 """Ten times is flown the same as real time, and leaves the link's time-outs room."""
@@ -83,6 +86,7 @@ def add_parser(subparsers: Any) -> None:
     add("--signed", action="store_true", help="sign the link with this computer's key ('signing set')")
     add("--operator", metavar="NUMBER", help="operator's registration number, for vehicles with remote ID")
     add("--serial-number", default="", metavar="TEXT", help="of the aircraft, for remote ID (default: its module's)")
+    add("--ntrip", metavar="CASTER", help="RTK corrections for the vehicle at the link: USER@HOST:PORT/MOUNTPOINT")
     add("--logs", type=Path, metavar="DIR", help="folder for telemetry logs of a link (default: beside FLIGHT)")
     add("--json", action="store_true", help="print one JSON object instead of text")
 
@@ -126,6 +130,7 @@ def _request(options: argparse.Namespace) -> FlightRequest:
     from groundstation.services.fly.flying import SIMULATED, FlightRequest
     from groundstation.services.fly.signing import link_signer
     from missions.mavlink.autopilots import Autopilot
+    from missions.mavlink.ntrip import caster_of
 
     if options.speedup is not None and not options.speedup > 0.0:
         raise InputError(say("expected more than 0, got {:g}", options.speedup, place="--speedup"))
@@ -136,10 +141,11 @@ def _request(options: argparse.Namespace) -> FlightRequest:
         raise InputError(
             say("--take-off, --set-parameters, --raise and --overrule are for --link URL; nothing real moves here")
         )
-    elif options.signed:
-        raise InputError(
-            say("is for --link URL; the simulation in this program has no link to listen to", place="--signed")
-        )
+    for option, value in (("--signed", options.signed), ("--operator", options.operator), ("--ntrip", options.ntrip)):
+        if is_simulated and value:
+            raise InputError(
+                say("is for --link URL; the simulation in this program has no link to listen to", place=option)
+            )
     with in_words_of_options(Conditions):
         conditions = with_values(Conditions(), typed_values(options, Conditions))
     if not hasattr(options, "wind"):
@@ -160,7 +166,21 @@ def _request(options: argparse.Namespace) -> FlightRequest:
         log_folder=None if is_simulated else (options.logs or options.out.parent / "logs"),
         signer=link_signer() if options.signed else None,
         identity=_identity(options),
+        caster=None if options.ntrip is None else caster_of(options.ntrip),
+        caster_password=_caster_password(options),
     )
+
+
+def _caster_password(options: argparse.Namespace) -> str:
+    """From the environment, or typed unseen; none for a caster without a user."""
+    if options.ntrip is None or "@" not in options.ntrip:
+        return ""
+    known = os.environ.get(PASSWORD_VARIABLE)
+    if known is not None or not sys.stdin.isatty():
+        return known or ""
+    from getpass import getpass
+
+    return getpass(worded(say("password of the caster: ")))
 
 
 def _identity(options: argparse.Namespace) -> RemoteId:

@@ -1,4 +1,4 @@
-"""What the pilot decides about flights: whether RTK is needed, remote identification, spoken warnings."""
+"""What the pilot decides about flights: whether RTK is needed, corrections, remote identification, spoken warnings."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from groundstation.gui.widgets.inputs import Form
 from groundstation.gui.widgets.tab_order import set_enabled
 from groundstation.services.fly.options import FlightSettings
 from groundstation.services.units import UnitSystem
+from missions.mavlink.ntrip import EXAMPLE_CASTER, caster_of
 from missions.mavlink.remote_id import EXAMPLE, operator_number, serial_number
 from planning.base.errors import InputError
 
@@ -22,10 +23,11 @@ class SettingsPage(QWidget):
 
     Signals
     -------
-    valueChanged(FlightSettings)
+    valueChanged(FlightSettings), passwordTyped(str)
     """
 
     valueChanged = Signal(object)  # noqa: N815  (Qt's own way of naming)
+    passwordTyped = Signal(str)  # noqa: N815
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -38,11 +40,18 @@ class SettingsPage(QWidget):
         self.operator.setToolTip(
             self.tr("For aircraft with remote ID. The secret part proves the checksum, and is neither sent nor kept")
         )
+        self.corrections, self.password = QLineEdit(), QLineEdit()
+        self.corrections.setPlaceholderText(EXAMPLE_CASTER)
+        self.corrections.setToolTip(self.tr("NTRIP caster, from the next connection on: USER@HOST:PORT/MOUNTPOINT"))
+        self.password.setEchoMode(QLineEdit.EchoMode.Password)
+        self.password.setToolTip(self.tr("Kept until the program ends, and never written down"))
         self.serial.setToolTip(self.tr("Only where the aircraft's module does not know it"))
         self._said.setWordWrap(True)
         form = Form()
         form.addRow(self.tr("Operator number"), self.operator)
         form.addRow(self.tr("Serial number"), self.serial)
+        form.addRow(self.tr("RTK corrections"), self.corrections)
+        form.addRow(self.tr("Their password"), self.password)
         layout = QVBoxLayout(self)
         layout.addWidget(self.needs_rtk)
         layout.addWidget(_muted(self.tr("Start waits for RTK, and a warning comes when it is lost in flight.")))
@@ -56,6 +65,8 @@ class SettingsPage(QWidget):
         self.speaks.toggled.connect(self._edited)
         self.operator.editingFinished.connect(self._identity_typed)
         self.serial.editingFinished.connect(self._identity_typed)
+        self.corrections.editingFinished.connect(self._corrections_typed)
+        self.password.editingFinished.connect(lambda: self.passwordTyped.emit(self.password.text()))
 
     def value(self) -> FlightSettings:
         """What was chosen."""
@@ -70,6 +81,7 @@ class SettingsPage(QWidget):
         self._kept = value
         self.operator.setText(value.operator)
         self.serial.setText(value.serial_number)
+        self.corrections.setText(value.corrections)
 
     def set_voice(self, *, has_voice: bool) -> None:
         """Say whether this computer can speak, and what it lacks."""
@@ -106,6 +118,21 @@ class SettingsPage(QWidget):
             self._say("muted", self.tr("No number of an EASA state: nothing about it can be proved."))
         self._kept = kept
         self.operator.setText(kept.operator)
+        self.valueChanged.emit(self.value())
+
+    def _corrections_typed(self) -> None:
+        """Take the caster's address, or say what is wrong with it."""
+        typed = self.corrections.text().strip()
+        if typed == self._kept.corrections:
+            return
+        try:
+            if typed:
+                caster_of(typed)
+        except InputError as error:
+            self._say("error", translated(str(error), UnitSystem.METRIC))
+            return
+        self._say("muted", "")
+        self._kept = replace(self._kept, corrections=typed)
         self.valueChanged.emit(self.value())
 
     def _say(self, role: str, text: str) -> None:

@@ -18,6 +18,7 @@ from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.fly.signing_controller import SigningController
 from groundstation.gui.fly.simulation_controller import SimulationController
 from groundstation.services.fly.connection import Connection, VehicleAt, flights_folder
+from groundstation.services.fly.corrections import Corrections
 from groundstation.services.fly.events import (
     Answered,
     FlightChanged,
@@ -62,6 +63,7 @@ from groundstation.vehicle.state import VehicleText
 from missions.flight.flight_file import flight_of
 from missions.flight.record import FlightRecord
 from missions.mavlink.autopilots import Autopilot
+from missions.mavlink.ntrip import caster_of
 from missions.mission.resume import Resumed
 from planning.base.errors import InputError
 from planning.base.findings import Finding, Severity
@@ -359,7 +361,7 @@ class FlyController(QObject):
         self.settings = read_flight_settings(flight_settings_path(), self._say_soon)
         self.joystick = read_joystick_buttons(joystick_path(), self._say_soon)
         self.simulation, self.limit = SimulationController(context, self), ItemLimit(context, self)
-        self.number = 1
+        self.number, self.corrections_password = 1, ""
         self.active: ActiveFlight | None = None
         self.after, self.signing = AfterFlight(context, self), SigningController(context, self)
         self._published.connect(self._take)
@@ -429,6 +431,10 @@ class FlyController(QObject):
         """The buttons of the joystick do something else; kept for the next start of the program too."""
         self.joystick = buttons
         self._keep(joystick_path(), buttons)
+
+    def set_corrections_password(self, password: str) -> None:
+        """Of the caster's user; for the next connection, and kept nowhere else."""
+        self.corrections_password = password
 
     def share_out(self, found: TooLong) -> None:
         """Share the views out among sorties that fit, and connect for that plan."""
@@ -553,12 +559,26 @@ class FlyController(QObject):
             flights_folder(self._context.session.folder),
             flown=self.after.flown(plan),
             settings=self.settings,
+            corrections=self._corrections_for(sortie),
         )
         self._flight.start()
         self._note(Severity.NOTE, self.tr("connecting"))
         if charge < 1.0 and self.choice.kind is LinkKind.SIMULATION:
             text = self.tr("simulated battery: {0:.0%}, as the flight before left it").format(charge)
             self._note(Severity.NOTE, text)
+
+    def _corrections_for(self, sortie: LiveSortie) -> Corrections | None:
+        """RTK corrections for a flight, connected; None where none are wanted, or their address is none."""
+        if not self.settings.corrections:
+            return None
+        try:
+            caster = caster_of(self.settings.corrections)
+        except InputError as error:
+            self._say(Severity.WARNING, str(error))
+            return None
+        corrections = Corrections(caster, self.corrections_password, sortie.orders.home)
+        corrections.start()
+        return corrections
 
     def _connection(self, sortie: LiveSortie, charge: float) -> Connection:
         choice = self.choice

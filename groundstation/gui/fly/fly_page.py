@@ -386,6 +386,7 @@ class FlyPage(QObject):
         self.checks.remedyRequested.connect(self._mend)
         self.simulation.valueChanged.connect(self._simulation_chosen)
         self.settings.valueChanged.connect(self._settings_chosen)
+        self.settings.passwordTyped.connect(controller.set_corrections_password)
         self.overlay.banner.muteToggled.connect(self._mute)
         self.settings.joystick.valueChanged.connect(controller.set_joystick)
         self.settings.joystick.valueChanged.connect(self.joystick.set_buttons)

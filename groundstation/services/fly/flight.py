@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from groundstation.services.fly.connection import WAIT_S, Connection, FlightRecordings, LoggedLink, OpenedLink
+from groundstation.services.fly.corrections import Corrections, corrections_check
 from groundstation.services.fly.events import (
     Answered,
     FlightChanged,
@@ -381,6 +382,8 @@ class LiveFlight:
         Where telemetry log and flight file go; where it cannot be written, the user's data folder takes its place.
     flown
         Records of the same plan from before, such as on another battery; photos and coverage count on.
+    corrections
+        Of RTK, begun already; they end with the flight.
     clock, unix_clock
         Real time, by which the vehicle is watched too, unless it is a simulated one: see `OpenedLink`. Its own time, in
         its messages, runs ahead.
@@ -395,6 +398,7 @@ class LiveFlight:
         *,
         flown: tuple[FlightRecord, ...] = (),
         settings: FlightSettings = USUAL,
+        corrections: Corrections | None = None,
         clock: Clock = time.perf_counter,
         unix_clock: Clock = time.time,
     ) -> None:
@@ -407,6 +411,7 @@ class LiveFlight:
         self._recordings = FlightRecordings(sortie.case, folder, flown)
         self._folder = folder
         self._log: NewestLog | None = None
+        self._corrections = corrections
         self._link = LinkState.OPENING
         self._view: LiveView | None = None
         self._shown_s = -math.inf
@@ -481,6 +486,8 @@ class LiveFlight:
         finally:
             self._keep_unfinished()
             self._wire.close()
+            if self._corrections is not None:
+                self._corrections.close()
             self._say_link(LinkState.CLOSED, problem)
 
     def _serve(self) -> None:
@@ -516,7 +523,7 @@ class LiveFlight:
     @property
     def _companions(self) -> tuple[Companion, ...]:
         """What goes along on the link."""
-        return (self._remote_id,)
+        return (self._remote_id,) if self._corrections is None else (self._remote_id, self._corrections)
 
     @property
     def _machine(self) -> FlightRun | Listener:
@@ -711,6 +718,8 @@ class LiveFlight:
         checks = preflight_checks(
             state, orders, on_board, now_s, needs_rtk=self._settings.needs_rtk, overrules=overrules
         )
+        if self._corrections is not None:
+            checks = (*checks, corrections_check(self._corrections.status()))
         phase, watch = (None, Watch()) if run is None else (run.phase, run.watch)
         link = link_state(state, now_s, is_open=self._wire.opened is not None)
         missing = [view_id for view_id, since_s in watch.passed_s if now_s - since_s > PHOTO_LATE_S]

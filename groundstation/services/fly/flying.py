@@ -10,11 +10,12 @@ import subprocess
 import tempfile
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from groundstation.services.fly.connection import TruthRecorder
+from groundstation.services.fly.corrections import Corrections
 from groundstation.services.mission.files import within_item_limit
 from groundstation.services.project.input_files import read_input_plan, read_input_site
 from groundstation.services.project.project_file import check_not_index
@@ -36,6 +37,7 @@ from missions.formats.encode import default_autopilot
 from missions.formats.options import ExportOptions
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.link import ChannelLink, open_link
+from missions.mavlink.ntrip import Caster
 from missions.mavlink.remote_id import NOBODY, RemoteId, RemoteIdSender
 from missions.mavlink.signing import Signer
 from missions.mission.build import missions_from_plan
@@ -391,6 +393,8 @@ class FlightRequest:
         At a link: signs what is sent, and lets nothing in that the vehicle did not sign; None: unsigned.
     identity
         What the operator says of itself to vehicles with remote identification.
+    caster, caster_password
+        At a link: where RTK corrections come from; None: from nowhere.
     """
 
     link: str = SIMULATED
@@ -407,6 +411,8 @@ class FlightRequest:
     log_folder: Path | None = None
     signer: Signer | None = None
     identity: RemoteId = NOBODY
+    caster: Caster | None = None
+    caster_password: str = ""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -622,17 +628,23 @@ class _Case:
             needs_rtk=request.needs_rtk,
             overrules=request.overrules,
         )
-        companions = (RemoteIdSender(request.identity, orders.home, time.time),)
-        run, outcome, log = fly_link(
-            orders,
-            request.link,
-            options,
-            request.log_folder,
-            self.show,
-            signer=request.signer,
-            companions=companions,
-            monitor=self.monitor,
-        )
+        companions: list[Companion] = [RemoteIdSender(request.identity, orders.home, time.time)]
+        with ExitStack() as stack:
+            if request.caster is not None:
+                corrections = Corrections(request.caster, request.caster_password, orders.home)
+                corrections.start()
+                stack.callback(corrections.close)
+                companions.append(corrections)
+            run, outcome, log = fly_link(
+                orders,
+                request.link,
+                options,
+                request.log_folder,
+                self.show,
+                signer=request.signer,
+                companions=companions,
+                monitor=self.monitor,
+            )
         found = run.state.autopilot or self.autopilot
         sortie = FlownSortie(orders.number, items_duration_s(orders, found), (), outcome.notes, log)
         return outcome, outcome.record, sortie

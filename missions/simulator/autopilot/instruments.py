@@ -35,6 +35,7 @@ from missions.mavlink.messages import (
     WindCov,
 )
 from missions.simulator.airframe.state import Pose
+from missions.simulator.autopilot.corrections import CorrectionsReceiver
 from missions.simulator.autopilot.guidance import DEG, Guidance, Place, WirePlace
 from missions.simulator.autopilot.modes import FlightModes
 from missions.simulator.autopilot.payload import GimbalControl
@@ -94,6 +95,7 @@ class Instruments:
     scheduler: Scheduler
     n_items: Callable[[], int]
     unix_start_s: float
+    corrections: CorrectionsReceiver = field(default_factory=CorrectionsReceiver)
     _place_at: tuple[Pose, WirePlace] | None = None
     _n_photos: int = 0
     _told: dict[int, Message] = field(default_factory=dict)
@@ -175,7 +177,7 @@ class Instruments:
         course_deg = math.degrees(math.atan2(vx, vy)) % 360.0
         return GpsRawInt(
             time_usec=self.time_boot_ms * 1000,
-            fix_type=fix.fix_type,
+            fix_type=self.corrections.fix_type(fix.fix_type, self.guidance.now_s),
             lat=place.lat_e7,
             lon=place.lon_e7,
             alt=round(place.altitude_amsl_m * 1000.0),

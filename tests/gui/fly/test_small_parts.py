@@ -52,7 +52,7 @@ def test_times_of_notes_never_have_sixty_seconds(application, time_s, words):
 def test_an_operators_number_is_proved_kept_without_its_secret_and_refused_where_it_is_wrong(application):
     from PySide6.QtWidgets import QApplication
 
-    from groundstation.gui.fly.fly_page import SettingsPage
+    from groundstation.gui.fly.flight_settings_page import SettingsPage
     from tests.gui.driving import type_into
 
     page = SettingsPage()
@@ -81,4 +81,27 @@ def test_an_operators_number_is_proved_kept_without_its_secret_and_refused_where
     other = SettingsPage()
     other.setValue(heard[2])
     assert other.operator.text() == "FIN87astrdge12k8"
+    page.close()
+
+
+def test_a_caster_is_kept_and_its_password_is_not(application, tmp_path, monkeypatch):
+    from groundstation.gui.fly.flight_settings_page import SettingsPage
+    from groundstation.services.fly.options import flight_settings_path
+    from groundstation.services.settings import write_preferences
+    from tests.gui.driving import type_into
+
+    monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path))
+    page = SettingsPage()
+    page.show()
+    kept, passwords = [], []
+    page.valueChanged.connect(kept.append)
+    page.passwordTyped.connect(passwords.append)
+    for line, text in ((page.corrections, "nowhere"), (page.corrections, "me@h:2101/VRS"), (page.password, "secret")):
+        type_into(line, text)
+        line.editingFinished.emit()
+    assert "expected USER@HOST:PORT/MOUNTPOINT" not in page.said()
+    assert [each.corrections for each in kept] == ["me@h:2101/VRS"]
+    assert passwords == ["secret"]
+    write_preferences(flight_settings_path(), kept[-1])
+    assert "secret" not in flight_settings_path().read_text()
     page.close()
