@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from datetime import UTC, datetime
 
 from groundstation.services.fly.flying import check_site
 from groundstation.services.plan.effects import EffectChoice
@@ -23,6 +24,10 @@ from planning.checks.case import Case
 from planning.insight.flight_profile import LowFlight
 from planning.plan import Plan
 from planning.site.records import Site, SiteModel
+from planning.site.zones.keep_out import at_time
+
+READY_S = 3600.0
+"""A sortie that is ready may wait for its start, and for batteries between flights."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -50,6 +55,7 @@ def prepare_sortie(
     known: Case | None = None,
     raised_m: float = 0.0,
     monitor: Monitor = QUIET,
+    now: datetime | None = None,
 ) -> LiveSortie:
     """A sortie of a plan, counted from 1, ready to be flown.
 
@@ -59,6 +65,8 @@ def prepare_sortie(
         The case of the same plan, where it was measured already.
     raised_m
         How much lower than planned the aircraft takes off.
+    now
+        Geo-zones count that apply from now on until an hour after the plan could be flown; None: the clock's time.
 
     Raises
     ------
@@ -67,6 +75,7 @@ def prepare_sortie(
     """
     monitor.report(say("preparing the flight"), 0, 2)
     check_site(plan, site_model)
+    site_model = at_time(site_model, now or datetime.now(UTC), plan.duration_s + READY_S)
     missions = missions_from_plan(plan, site_model.site.origin, site_model.site.home_enu_m)
     is_known = known is not None and known.plan is plan and known.site_model is site_model
     case = known if is_known and known is not None else Case.of(plan, site_model)

@@ -68,7 +68,7 @@ def _check_extent(low_enu_m: Sequence[float], high_enu_m: Sequence[float]) -> No
 def with_site(model: SiteModel, site: Site, obstacles: tuple[TriangleMesh, ...] | None = None) -> SiteModel:
     """Same building and geo-zones, and the same obstacle meshes unless others are given, with another site record."""
     meshes = model.obstacles if obstacles is None else obstacles
-    return SiteModel(site, model.building, meshes, site_sha256(site), model.zones, model.zones_at)
+    return replace(model, site=site, obstacles=meshes, sha256=site_sha256(site))
 
 
 def _rounded(point: Sequence[float]) -> Vec3:

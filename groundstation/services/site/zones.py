@@ -111,35 +111,44 @@ def remove_zones(model: SiteModel, name: str) -> SiteModel:
 def permit(model: SiteModel, zone_id: str, reference: str, file: str = "") -> SiteModel:
     """The site with the pilot's authorisation for a zone; an empty reference takes it back.
 
+    A zone that several files hold in the same way, as those of neighbouring map sheets do, is permitted in all.
+
     Parameters
     ----------
+    zone_id
+        Or "FILE/ZONE".
     file
-        In which the zone is, where several have one of that identifier.
+        In which the zone is, where several have another one of that identifier.
 
     Raises
     ------
     InputError
         No file of the site has such a zone, or several have.
     """
+    named = next((source.file for source in model.site.zones if zone_id.startswith(f"{source.file}/")), "")
+    if named and not file:
+        file, zone_id = named, zone_id.removeprefix(f"{named}/")
     of_zone = [
-        known.source
+        (known.source, zone)
         for known in known_files(model)
-        if known.content is not None
-        and file in ("", known.source.file)
-        and any(zone.id == zone_id for zone in known.content.zones)
+        if known.content is not None and file in ("", known.source.file)
+        for zone in known.content.zones
+        if zone.id == zone_id
     ]
-    if len(of_zone) != 1:
+    if not of_zone:
         near = ", ".join(f"'{each.local.zone.id}'" for each in near_zones(model)) or say("none")
-        if of_zone:
-            raise InputError.say("zone '{}' is in several files: {}", zone_id, ", ".join(s.file for s in of_zone))
         raise InputError.say("there is no zone '{}' in the site's files; those near it are: {}", zone_id, near)
-    before = of_zone[0]
-    permitted = {key: value for key, value in before.permitted.items() if key != zone_id}
-    if reference.strip():
-        permitted[zone_id] = reference.strip()
-    source = replace(before, permitted=permitted)
-    found = next(each for each in model.zones if each.source == before)
-    return _with_sources(model, source, before, replace(found, source=source))
+    if any(zone != of_zone[0][1] for _, zone in of_zone):
+        files = ", ".join(source.file for source, _ in of_zone)
+        raise InputError.say("zone '{}' differs between files ({}); name one as FILE/ZONE", zone_id, files)
+    for before, _ in of_zone:
+        permitted = {key: value for key, value in before.permitted.items() if key != zone_id}
+        if reference.strip():
+            permitted[zone_id] = reference.strip()
+        source = replace(before, permitted=permitted)
+        found = next(each for each in model.zones if each.source == before)
+        model = _with_sources(model, source, before, replace(found, source=source))
+    return model
 
 
 def write_zones(path: Path, model: SiteModel) -> SiteModel:

@@ -165,7 +165,7 @@ def without_terrain(model: SiteModel) -> SiteModel:
         if obstacle.id not in (SURFACE, SURFACE_UNKNOWN)
     ]
     site = replace(model.site, terrain=None, obstacles=tuple(obstacle for obstacle, _ in kept))
-    return SiteModel(site, model.building, tuple(mesh for _, mesh in kept), site_sha256(site))
+    return replace(model, site=site, obstacles=tuple(mesh for _, mesh in kept), sha256=site_sha256(site))
 
 
 def _area(site: Site) -> Area:
@@ -326,7 +326,8 @@ def _with_obstacles(
             meshes.append(mesh)
             files[file] = mesh
     site = replace(site, obstacles=tuple(obstacles))
-    return SiteModel(site, model.building, tuple(meshes)), files, (len(boxes), len(unknown_boxes))
+    attached = replace(model, site=site, obstacles=tuple(meshes), sha256="")
+    return attached, files, (len(boxes), len(unknown_boxes))
 
 
 def _is_modelled(model: SiteModel, tops_enu_m: Array, step_m: float) -> NDArray[np.bool_]:

@@ -98,6 +98,24 @@ def test_a_permission_is_taken_back_and_a_file_taken_away(place):
     assert no_fly_volumes(gone) == ()
 
 
+def test_a_zone_on_both_sides_of_a_sheet_s_edge_is_permitted_once_and_different_ones_by_their_file(place):
+    first, second = ed269_feature(ed269_volume(polygon(square(0.0, 0.0, 20.0)))), CONTENT
+    (place / "from" / "west.json").write_bytes(ed269(first))
+    (place / "from" / "east.json").write_bytes(second)
+    (place / "from" / "other.json").write_bytes(OTHER)
+    model = add_zones(site(), [place / "from" / "west.json", place / "from" / "east.json"], TODAY).model
+    assert [row.permitted for row in zone_rows(permit(model, "Z1", "4711")) if row.id == "Z1"] == ["4711", "4711"]
+    model = add_zones(model, [place / "from" / "other.json"], TODAY).model
+    with pytest.raises(InputError, match="differs between files"):
+        permit(model, "Z1", "4711")
+    one = permit(model, "other.json/Z1", "4711")
+    assert {source.file: dict(source.permitted) for source in one.site.zones} == {
+        "west.json": {},
+        "east.json": {},
+        "other.json": {"Z1": "4711"},
+    }
+
+
 def test_zones_follow_the_site_through_edits(place):
     model = move_home(added(place).model, (0.0, -35.0, 0.0))
     assert len(no_fly_volumes(model)) == 2

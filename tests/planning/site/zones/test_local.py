@@ -15,6 +15,8 @@ from planning.geo.enu import enu_from_geodetic
 from planning.geo.frames import Origin
 from planning.geo.geoid import undulation_m
 from planning.geo.height_field import HeightField
+from planning.geo.mesh import join
+from planning.geo.solids import Solids
 from planning.site.ground import Ground
 from planning.site.records import Airspace
 from planning.site.terrain import Surfaces
@@ -106,6 +108,18 @@ def test_a_square_lies_where_it_was_drawn_also_across_the_date_line(origin):
     area = area_of(Outline(ring), origin)
     assert area.symmetric_difference(shapely.box(10.0, -50.0, 70.0, 10.0)).area < 4 * 60.0 * 3.0 * AREA_TOLERANCE_M
     assert area.covers(shapely.box(10.0, -50.0, 70.0, 10.0))
+
+
+def test_a_zone_that_is_cut_at_the_date_line_or_at_the_edge_of_a_sheet_has_no_gap_there():
+    """RFC 7946, 3.1.9: polygons that cross the antimeridian are cut there into two."""
+    origin = Origin(-17.5, 180.0, 0.0)
+    west = ((179.999, -17.5005), (180.0, -17.5005), (180.0, -17.4995), (179.999, -17.4995))
+    east = ((-180.0, -17.5005), (-179.999, -17.5005), (-179.999, -17.4995), (-180.0, -17.4995))
+    (near,) = found(Volume(Outline(west)), Volume(Outline(east)), origin=origin).near
+    solids = Solids.of(join([prism.prism() for prism in prisms(near, AIRSPACE)]).corners_enu_m)
+    for x in np.linspace(-0.3, 0.3, 13):
+        way = np.array([[x, -200.0, 20.0]]), np.array([[x, 200.0, 20.0]])
+        assert solids.segment_distances_m(*way)[0] == 0.0
 
 
 @pytest.mark.parametrize("winding", [1, -1])
