@@ -62,6 +62,7 @@ def written() -> list[Input]:
     """Files that the program writes itself."""
     import_ = "import {0} --site site.json -o out/p.json"
     site = "site import {0} -o out/s.json --origin 22.3,114.2,60 --without-panels"
+    zones = "site zones site.json {0}"
     render = "render model --views data -o out/r --width 24"
     train = "train data -o out/m --preset smoke --iterations 2 --method 2dgs --settings quick.toml"
     model = ("data/", "model/", "quick.toml")
@@ -89,6 +90,11 @@ def written() -> list[Input]:
         _input("PLY", "binary", "b.ply", site.format("b.ply"), quick=True),
         _input("PLY text", "text", "b.ascii.ply", site.format("b.ascii.ply")),
         _input("GLB", "header", "b.glb", site.format("b.glb"), quick=True),
+        _input("zones of ED-269", "json", "z.ed269.json", zones.format("z.ed269.json"), *SITE, quick=True),
+        _input("zones of ED-318", "json", "z.ed318.json", zones.format("z.ed318.json"), *SITE),
+        _input("zones of KML", "text", "z.kml", zones.format("z.kml"), *SITE, quick=True),
+        _input("zones of OpenAir", "text", "z.openair", zones.format("z.openair"), *SITE, quick=True),
+        _input("zones of AIXM", "text", "z.aixm.xml", zones.format("z.aixm.xml"), *SITE),
         _input("CityJSON of ours", "json", "site.city.json", site.format("site.city.json")),
         _input("project", "json", "project/project.json", "project show project", "project/", quick=True),
         _input("project's site", "json", "project/site/site.json", "project show project", "project/"),
@@ -263,6 +269,7 @@ def _plans() -> None:
         ("csv", "csv"),
     ):
         _reflight(f"export plan.json --format {kind} -o m.{name}")
+    _zones()
     _reflight("simulate plan.json site.json -o flight.json --speedup 1000")
     _reflight("project new project --site site.json")
     _reflight("project add project plan.json")
@@ -273,6 +280,21 @@ def _plans() -> None:
     copies = Autosave(Path("left"), _Now(), lambda text: None)
     copies.keep(_changed(opened.document))
     assert Path("left/.autosave/autosave.json").is_file()
+
+
+def _zones() -> None:
+    from planning.site.bundled import ORIGIN
+    from tests.planning.site.zones import zone_files
+
+    ring = zone_files.square(0.0, 0.0, 100.0, ORIGIN)
+    for name, content in (
+        ("z.ed269.json", zone_files.ed269(zone_files.ed269_feature(zone_files.ed269_volume(zone_files.polygon(ring))))),
+        ("z.ed318.json", zone_files.ed318(zone_files.polygon(ring))),
+        ("z.kml", zone_files.kml(ring)),
+        ("z.openair", zone_files.openair(*zone_files.openair_ring(ring))),
+        ("z.aixm.xml", zone_files.aixm(zone_files.aixm_ring(ring))),
+    ):
+        Path(name).write_bytes(content)
 
 
 class _Now:

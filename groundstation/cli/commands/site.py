@@ -113,8 +113,8 @@ def _add_zones(actions: Any) -> None:
     command = actions.add_parser(
         "zones",
         help="add files of geo-zones to a site, and list those near it",
-        description="Files of authorities (ED-269, ED-318, GeoJSON, KML, OpenAir) are put beside the site file. Plans\n"
-        "keep out of zones that prohibit or restrict flights, unless you state what permits them.",
+        description="Files of authorities (ED-269, ED-318, GeoJSON, KML, AIXM, OpenAir) are put beside the site file.\n"
+        "Plans keep out of zones that prohibit or restrict flights, unless you state what permits them.",
         epilog=ZONES_EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )

@@ -92,7 +92,9 @@ class SiteTools(QWidget):
         mesh.clicked.connect(self._choose_mesh)
         layout.addWidget(mesh)
         self.zones_action = QAction(self.tr("Add zones..."), self)
-        self.zones_action.setToolTip(self.tr("Add geo-zones of your authority (ED-269, ED-318, GeoJSON, KML, OpenAir)"))
+        self.zones_action.setToolTip(
+            self.tr("Add geo-zones of your authority (ED-269, ED-318, GeoJSON, KML, AIXM, OpenAir)")
+        )
         self.zones_action.triggered.connect(self._choose_zones)
         self.zones_button = QPushButton(self.zones_action.text())
         self.zones_button.setToolTip(self.zones_action.toolTip())
@@ -193,7 +195,7 @@ class SiteTools(QWidget):
         self._context.start(label, lambda context: add_zones(model, paths, date.today(), context), added)
 
     def _choose_zones(self) -> None:
-        kinds = self.tr("Geo-zones (*.json *.geojson *.kml *.txt *.openair);;All files (*)")
+        kinds = self.tr("Geo-zones (*.json *.geojson *.kml *.xml *.txt *.openair);;All files (*)")
         self.add_zones(choose_files(self, self.tr("Geo-zones"), kinds, Path.home()))
 
     def _connect(self, scene: SceneView) -> None:

@@ -1,7 +1,6 @@
 """OpenAir: airspace in lines of text (WinPilot 1998; Naviter's extension 2.1 of 2025).
 
-An airspace begins at its `AC` line. Distances are nautical miles. Arcs become chords on the arc, and the area is
-widened by the sagitta, so that the true area lies inside it whichever side of the arc it is on.
+An airspace begins at its `AC` line. Distances are nautical miles.
 """
 
 from __future__ import annotations
@@ -14,6 +13,7 @@ from pathlib import Path
 
 from planning.base.files import check_lines
 from planning.base.messages import say
+from planning.site.zones.arcs import arc_corners
 from planning.site.zones.fields import quoted
 from planning.site.zones.heights import EVERYWHERE_BELOW, FOOT_M, NAUTICAL_MILE_M, REFERENCES
 from planning.site.zones.records import (
@@ -35,12 +35,6 @@ from planning.site.zones.times import moment
 
 MAX_LINES = 2_000_000
 """Of a file of the whole world."""
-
-ARC_TOLERANCE_M = 0.5
-"""Largest sagitta of the chords of an arc."""
-
-MAX_CHORDS = 720
-"""Of a whole turn: on the largest arcs the tolerance is wider instead, and states so."""
 
 MAX_RADIUS_NM = 2000.0
 
@@ -200,7 +194,7 @@ def _arc(airspace: _Airspace, command: str, rest: str) -> None:
     """Points on an arc: `DA radius, from, to` in degrees from north, or `DB` from one point to another."""
     from pyproj import Geod
 
-    centre, geod, spread_m = airspace.centre, Geod(ellps="WGS84"), 0.0
+    centre = airspace.centre
     ends: list[float] | None = None
     radii_m: tuple[float, float] = (0.0, 0.0)
     if centre is not None and command == "DA":
@@ -208,35 +202,15 @@ def _arc(airspace: _Airspace, command: str, rest: str) -> None:
         if len(numbers) == 3 and all(math.isfinite(each) for each in numbers) and 0.0 < numbers[0] <= MAX_RADIUS_NM:
             ends, radii_m = [numbers[1] % 360.0, numbers[2] % 360.0], (numbers[0] * NAUTICAL_MILE_M,) * 2
     elif centre is not None and len(points := _points(rest)) == 2:
-        found = [geod.inv(*centre, *point) for point in points]
+        found = [Geod(ellps="WGS84").inv(*centre, *point) for point in points]
         ends, radii_m = [each[0] % 360.0 for each in found], (found[0][2], found[1][2])
-        spread_m = abs(radii_m[0] - radii_m[1])
     if ends is None or centre is None or not 0.0 < max(radii_m) <= MAX_RADIUS_NM * NAUTICAL_MILE_M:
         airspace.questions.append(say("line '{}' cannot be read", quoted(f"{command} {rest}")))
         return
     turn = (ends[1] - ends[0]) % 360.0 if airspace.clockwise else -((ends[0] - ends[1]) % 360.0)
-    turn = turn or (360.0 if airspace.clockwise else -360.0)
-    n_chords = chords(max(radii_m), abs(turn))
-    shares = [number / n_chords for number in range(n_chords + 1)]
-    for share in shares:
-        radius_m = radii_m[0] + share * (radii_m[1] - radii_m[0])
-        lon, lat, _ = geod.fwd(*centre, ends[0] + share * turn, radius_m)
-        airspace.points.append((lon, lat))
-    # Where the ends are not equally far from the centre, nobody knows which radius holds between them.
-    sagitta = sagitta_m(max(radii_m), abs(turn) / n_chords)
-    airspace.tolerance_m = max(airspace.tolerance_m, sagitta + spread_m)
-
-
-def sagitta_m(radius_m: float, turn_deg: float) -> float:
-    """Largest distance between an arc and its chord, r (1 - cos(a / 2)): the accuracy that chords cost."""
-    return radius_m * 2.0 * math.sin(math.radians(turn_deg) / 4.0) ** 2
-
-
-def chords(radius_m: float, turn_deg: float) -> int:
-    """As many chords as an arc needs for `ARC_TOLERANCE_M`, at most `MAX_CHORDS` for a whole turn."""
-    widest_rad = 4.0 * math.asin(min(1.0, math.sqrt(ARC_TOLERANCE_M / (2.0 * radius_m))))
-    wanted = math.ceil(math.radians(turn_deg) / widest_rad)
-    return max(2, min(wanted, math.ceil(MAX_CHORDS * turn_deg / 360.0)))
+    corners, tolerance_m = arc_corners(centre, ends[0], turn or (360.0 if airspace.clockwise else -360.0), radii_m)
+    airspace.points += corners
+    airspace.tolerance_m = max(airspace.tolerance_m, tolerance_m)
 
 
 def _number(text: str) -> float:
@@ -261,7 +235,7 @@ def _zone(airspace: _Airspace, unnamed: str) -> Zone:
     return Zone(
         id=name,
         name=name,
-        restriction=_restriction(kinds, questions),
+        restriction=restriction(kinds, questions),
         written_type=" ".join(reversed(kinds)),
         volumes=tuple(volumes),
         periods=_periods(airspace.times, questions),
@@ -270,7 +244,7 @@ def _zone(airspace: _Airspace, unnamed: str) -> Zone:
     )
 
 
-def _restriction(kinds: list[str], questions: list[str]) -> Restriction:
+def restriction(kinds: list[str], questions: list[str]) -> Restriction:
     """What classes and types ask of a flight: the strictest of them."""
     if PROHIBITED & set(kinds):
         return Restriction.PROHIBITED

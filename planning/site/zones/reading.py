@@ -16,7 +16,7 @@ from planning.base.errors import InputError
 from planning.base.files import MIB, FileLimit, read_input_file
 from planning.base.json_file import parse_json
 from planning.base.messages import say
-from planning.site.zones import ed269, ed318, geojson, kml, openair
+from planning.site.zones import aixm, ed269, ed318, geojson, kml, openair
 from planning.site.zones.records import Zone, ZoneSet
 
 ZONES_FILE = FileLimit(
@@ -24,7 +24,7 @@ ZONES_FILE = FileLimit(
 )
 """Those of whole countries have under 30 MiB."""
 
-KNOWN = say("a file of geo-zones: ED-269 or ED-318 JSON, GeoJSON, KML or OpenAir")
+KNOWN = say("a file of geo-zones: ED-269 or ED-318 JSON, GeoJSON, KML, AIXM 5.1 or OpenAir")
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +48,7 @@ FORMATS = (
     ZoneFormat("ED-318", True, ed318.recognises, ed318.read),
     ZoneFormat("GeoJSON", True, geojson.recognises, geojson.read),
     ZoneFormat("KML", False, kml.recognises, kml.read),
+    ZoneFormat("AIXM 5.1", False, aixm.recognises, aixm.read),
     ZoneFormat("OpenAir", False, openair.recognises, openair.read),
 )
 """The first that recognises a file reads it."""
@@ -77,8 +78,6 @@ def zones_of(written: bytes, path: Path) -> ZoneSet:
             return replace(found, zones=_with_unique_ids(found.zones))
     if written.startswith(b"PK\x03\x04"):
         raise InputError.say("expected {}, found an archive; unpack it first", KNOWN, place=path)
-    if b"aixm" in written[:4000].lower():
-        raise InputError.say("AIXM is not read here; expected {}, which publishers offer beside it", KNOWN, place=path)
     raise InputError.say("expected {}, found something else", KNOWN, place=path)
 
 

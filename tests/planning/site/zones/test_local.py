@@ -20,6 +20,7 @@ from planning.geo.solids import Solids
 from planning.site.ground import Ground
 from planning.site.records import Airspace
 from planning.site.terrain import Surfaces
+from planning.site.zones.arcs import sagitta_m
 from planning.site.zones.local import (
     AREA_TOLERANCE_M,
     CIRCLE_TOLERANCE_M,
@@ -31,7 +32,6 @@ from planning.site.zones.local import (
     simple_parts,
     tangents,
 )
-from planning.site.zones.openair import sagitta_m
 from planning.site.zones.records import (
     FROM_GROUND,
     UNLIMITED,

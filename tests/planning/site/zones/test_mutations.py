@@ -2,6 +2,7 @@
 
 import copy
 import json
+import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 import pytest
@@ -16,6 +17,8 @@ from planning.site.zones.records import Restriction, ZoneFile
 from tests.planning.site.zones.zone_files import (
     AIRSPACE,
     ORIGIN,
+    aixm,
+    aixm_ring,
     ed269,
     ed269_feature,
     ed269_volume,
@@ -48,6 +51,7 @@ FILES = {
     ),
     "geojson": geojson(polygon(RING)),
     "kml": kml(RING),
+    "aixm": aixm(aixm_ring(RING)),
     "openair": openair(*openair_ring(RING)),
     "openair-arc": openair(f"V X={openair_ring(RING)[0][3:]}", "DA 0.2,0,359", "DC 0.3", "AA NONE/2027-01-01T00:00Z"),
 }
@@ -147,6 +151,25 @@ def test_no_line_of_openair_can_be_lost_or_spoilt_so_that_a_zone_is_clear(name, 
     junk = data.draw(st.text("ABCDEFGHIKLMNOPQRSTUVWXYZ0123456789:., ", min_size=1, max_size=12))
     lines[at] = f"{lines[at][:2]} {junk}" if is_place or data.draw(st.booleans()) else junk
     assert violates_or_asks("\n".join(lines).encode()), lines
+
+
+@pytest.mark.parametrize("name", ["kml", "aixm"])
+@given(data=st.data())
+def test_no_element_of_xml_can_be_lost_or_spoilt_so_that_a_zone_is_clear(name, data):
+    root = ElementTree.fromstring(FILES[name])
+    inside = [(parent, child) for parent in root.iter() for child in parent]
+    parent, child = data.draw(st.sampled_from(inside))
+    if data.draw(st.booleans()):
+        parent.remove(child)
+    elif data.draw(st.booleans()):
+        child.tag = child.tag + data.draw(st.sampled_from(["X", "_", "2"]))
+    elif "coordinates" not in child.tag and "posList" not in child.tag:
+        child.text = data.draw(st.sampled_from(["", "?", "NIL", "1e999", "-", "x" * 99]))
+    else:
+        words = child.text.split()
+        words[data.draw(st.integers(0, len(words) - 1))] = data.draw(st.sampled_from(["?", "nan", "1e999", "999", ""]))
+        child.text = " ".join(words)
+    assert violates_or_asks(ElementTree.tostring(root)), ElementTree.tostring(root)
 
 
 def test_a_restriction_is_lost_by_the_word_that_says_so_alone():

@@ -7,10 +7,12 @@ from pathlib import Path
 import pytest
 
 from planning.base.errors import InputError
-from planning.site.zones.openair import sagitta_m
+from planning.site.zones.arcs import sagitta_m
 from planning.site.zones.reading import zones_of
-from planning.site.zones.records import Circle, Clock, Daylight, HeightAbove, Outline, Restriction
+from planning.site.zones.records import Circle, Clock, Daylight, HeightAbove, Outline, Period, Restriction
 from tests.planning.site.zones.zone_files import (
+    aixm,
+    aixm_ring,
     ed269,
     ed269_feature,
     ed269_volume,
@@ -116,6 +118,66 @@ def test_openair_has_outlines_circles_arcs_heights_and_classes():
     assert min(lat for _, lat in backwards.volumes[0].area.ring) == pytest.approx(47.0 - 3704.0 / 111_180.0, abs=1e-4)
 
 
+def test_aixm_has_latitude_first_types_limits_validity_circles_and_arcs():
+    when = (
+        "<gml:validTime><gml:TimePeriod><gml:beginPosition>2026-01-01T00:00:00Z</gml:beginPosition>"
+        '<gml:endPosition indeterminatePosition="unknown"/></gml:TimePeriod></gml:validTime>'
+    )
+    upper = '<aixm:upperLimit uom="FL">65</aixm:upperLimit><aixm:upperLimitReference>STD</aixm:upperLimitReference>'
+    zone = only(aixm(aixm_ring(RING), kind="CTR", upper=upper, more=when))
+    assert (zone.id, zone.name, zone.restriction) == ("ZZ1", "School", Restriction.AUTHORISATION)
+    assert zone.volumes[0].area.ring == tuple((lon, lat) for lon, lat in RING)
+    assert zone.volumes[0].upper.above is HeightAbove.FLIGHT_LEVEL
+    assert zone.periods == (Period(datetime(2026, 1, 1, tzinfo=UTC)),)
+    assert not zone.questions
+    assert not zone.place_questions
+    middle = "<gml:pointProperty><gml:Point><gml:pos>47.0 8.0</gml:pos></gml:Point></gml:pointProperty>"
+    radius = '<gml:radius uom="[nmi_i]">2</gml:radius>'
+    circle = f'<gml:CircleByCenterPoint numArc="1">{middle}{radius}</gml:CircleByCenterPoint>'
+    danger = only(aixm(circle, kind="D"))
+    assert danger.volumes[0].area == Circle((8.0, 47.0), 3704.0)
+    assert danger.restriction is Restriction.CONDITIONAL
+    arc = (
+        f'<gml:ArcByCenterPoint numArc="1">{middle}<gml:radius uom="KM">2</gml:radius><gml:startAngle uom="deg">0'
+        '</gml:startAngle><gml:endAngle uom="deg">90</gml:endAngle></gml:ArcByCenterPoint>'
+    )
+    outline = only(aixm(arc + aixm_ring([[8.0, 47.0]]))).volumes[0].area
+    assert outline.tolerance_m > 0.0
+    assert min(lon for lon, _ in outline.ring) == pytest.approx(8.0, abs=1e-9)
+    assert min(lat for _, lat in outline.ring) == pytest.approx(47.0, abs=1e-5)
+    lon_first = aixm(aixm_ring([[lat, lon] for lon, lat in RING])).replace(
+        b"urn:ogc:def:crs:EPSG::4326", b"urn:ogc:def:crs:OGC:1.3:CRS84"
+    )
+    assert only(lon_first).volumes[0].area == zone.volumes[0].area
+
+
+def test_an_airspace_of_aixm_made_of_another_one_has_its_shape_or_asks():
+    member = aixm(aixm_ring(RING)).decode()
+    start, end = member.index("<m:hasMember>"), member.index("</m:AIXMBasicMessage>")
+    first = member[start:end].replace("<aixm:timeSlice>", "<gml:identifier>x-1</gml:identifier><aixm:timeSlice>", 1)
+    shape = first[first.index("<aixm:horizontalProjection>") : first.index("</aixm:AirspaceVolume>")]
+
+    def part(kind, name):
+        named = f'<aixm:dependency>{kind}</aixm:dependency><aixm:theAirspace xlink:href="urn:uuid:{name}"/>'
+        dependency = f"<aixm:AirspaceVolumeDependency>{named}</aixm:AirspaceVolumeDependency>"
+        return f"<aixm:contributorAirspace>{dependency}</aixm:contributorAirspace>"
+
+    def second(*made_of):
+        other = first.replace("<gml:identifier>x-1", "<gml:identifier>x-2").replace("ZZ1", "ZZ2")
+        return other.replace("400", "900").replace(shape, part(*made_of))
+
+    def zones(other):
+        return zones_of(f"{member[:start]}{first}{other}{member[end:]}".encode(), FILE).zones
+
+    one, whole = zones(second("FULL_GEOMETRY", "x-1"))
+    assert whole.volumes == one.volumes
+    _, flat = zones(second("HORZ_PROJECTION", "x-1"))
+    assert flat.volumes[0].area == one.volumes[0].area
+    assert flat.volumes[0].upper.written == "900 ft SFC"
+    for lost in ("x-9", "x-2"):
+        assert zones(second("FULL_GEOMETRY", lost))[1].place_questions
+
+
 def test_old_openair_files_in_other_encodings_and_ends_of_lines_are_read():
     content = openair(*openair_ring(RING)).replace(b"School", b"Schule M\xfcnchen").replace(b"\n", b"\r")
     assert only(content).name == "Schule München"
@@ -155,6 +217,12 @@ FEATURE = ed269_feature(ed269_volume(polygon(RING)))
         openair(*openair_ring(RING), "AA NONE"),
         openair(*openair_ring(RING), "DY 47:00:00N 008:00:00E"),
         openair("DC 5"),
+        aixm(aixm_ring(RING), more="<aixm:activation/>"),
+        aixm(aixm_ring(RING), kind="G-SOMETHING"),
+        aixm(aixm_ring(RING)).replace(b"<gml:curveMember>", b'<gml:curveMember xlink:href="#other"/><gml:curveMember>'),
+        aixm(aixm_ring(RING)).replace(b"EPSG::4326", b"EPSG::3857"),
+        aixm("<gml:ArcString/>"),
+        aixm(aixm_ring(RING)).replace(b"BASELINE", b"TEMPDELTA"),
     ],
 )
 def test_what_a_file_leaves_open_is_a_question(content):
@@ -179,7 +247,8 @@ def test_zones_of_one_name_have_identifiers_of_their_own():
         (b'{"features": [{"restriction": "PROHIBITED", "x": NaN}]}', "finite"),
         (b'{"features": ' + b"[" * 200 + b"]" * 200 + b"}", "nested"),
         (b"PK\x03\x04", "unpack"),
-        (b'<?xml version="1.0"?><message:AIXMBasicMessage xmlns:message="http://www.aixm.aero/">', "AIXM"),
+        (aixm(aixm_ring(RING))[:-90], "XML"),
+        (b'<?xml version="1.0"?><a xmlns="http://www.aixm.aero/schema/5.1"/>', "no zone"),
         (b"<kml><Placemark>", "XML"),
         (b'<!DOCTYPE kml [<!ENTITY a "b">]><kml><Document/></kml>', "document type"),
         (ed269(FEATURE)[:-40], "JSON"),

@@ -128,6 +128,34 @@ def openair_ring(ring: list[list[float]]) -> list[str]:
     return [f"DP {dms(place)}" for place in ring]
 
 
+def aixm(segments: str, kind: str = "P", lower: str = "", upper: str = "", more: str = "") -> bytes:
+    """An AIXM 5.1 message of one airspace whose outline is made of some segments."""
+    lower = lower or "<aixm:lowerLimit>GND</aixm:lowerLimit><aixm:lowerLimitReference>SFC</aixm:lowerLimitReference>"
+    upper = upper or (
+        '<aixm:upperLimit uom="FT">400</aixm:upperLimit><aixm:upperLimitReference>SFC</aixm:upperLimitReference>'
+    )
+    return (
+        '<?xml version="1.0"?><m:AIXMBasicMessage xmlns:m="http://www.aixm.aero/schema/5.1/message" '
+        'xmlns:aixm="http://www.aixm.aero/schema/5.1" xmlns:gml="http://www.opengis.net/gml/3.2" '
+        'xmlns:xlink="http://www.w3.org/1999/xlink"><m:hasMember><aixm:Airspace gml:id="A1"><aixm:timeSlice>'
+        "<aixm:AirspaceTimeSlice><aixm:interpretation>BASELINE</aixm:interpretation>"
+        f"<aixm:type>{kind}</aixm:type><aixm:designator>ZZ1</aixm:designator><aixm:name>School</aixm:name>{more}"
+        "<aixm:geometryComponent><aixm:AirspaceGeometryComponent><aixm:theAirspaceVolume><aixm:AirspaceVolume>"
+        f'{upper}{lower}<aixm:horizontalProjection><aixm:Surface srsName="urn:ogc:def:crs:EPSG::4326"><gml:patches>'
+        f"<gml:PolygonPatch><gml:exterior><gml:Ring><gml:curveMember><gml:Curve><gml:segments>{segments}"
+        "</gml:segments></gml:Curve></gml:curveMember></gml:Ring></gml:exterior></gml:PolygonPatch></gml:patches>"
+        "</aixm:Surface></aixm:horizontalProjection></aixm:AirspaceVolume></aixm:theAirspaceVolume>"
+        "</aixm:AirspaceGeometryComponent></aixm:geometryComponent></aixm:AirspaceTimeSlice></aixm:timeSlice>"
+        "</aixm:Airspace></m:hasMember></m:AIXMBasicMessage>"
+    ).encode()
+
+
+def aixm_ring(ring: list[list[float]]) -> str:
+    """A string of places, latitude first."""
+    places = " ".join(f"{lat!r} {lon!r}" for lon, lat in ring)
+    return f"<gml:GeodesicString><gml:posList>{places}</gml:posList></gml:GeodesicString>"
+
+
 AIRSPACE = Airspace((-100.0, -100.0, 3.0), (100.0, 100.0, 80.0), ground_z_m=0.0)
 
 
