@@ -111,6 +111,8 @@ class ApplicationContext(QObject):
         A job was queued or ended.
     milestonesChanged(Milestones)
         Something was done, or an edit took it back.
+    takeOffPlanned(datetime)
+        A time for the flight was chosen, with its zone.
     """
 
     documentChanged = Signal(object, object)  # noqa: N815  (Qt's own way of naming)
@@ -121,6 +123,7 @@ class ApplicationContext(QObject):
     messageWithdrawn = Signal(str)  # noqa: N815
     jobsChanged = Signal()  # noqa: N815
     milestonesChanged = Signal(object)  # noqa: N815
+    takeOffPlanned = Signal(object)  # noqa: N815
 
     def __init__(self, session: Session, runner: JobRunner, parent: QObject | None = None) -> None:
         super().__init__(parent)

@@ -14,7 +14,7 @@ from PySide6.QtWidgets import QWidget
 from groundstation.gui.widgets.theme import Colours, colours
 from groundstation.services.mission.sunlight import HEIGHTS, DayRow, Look
 
-PAD_PX, BAR_PX = 6.0, 20.0
+PAD_PX, BAR_PX, GAP_PX = 6.0, 16.0, 4.0
 
 NAMES_SHARE = 0.3
 """Of the width that names may take; longer ones lose their middle."""
@@ -72,14 +72,14 @@ class SunChart(QWidget):
     def _make_room(self) -> None:
         line = QFontMetricsF(self.font()).height()
         n = max(1, len(self._rows))
-        self.setMinimumHeight(round(n * (BAR_PX + PAD_PX) + line + 2.0 * PAD_PX))
+        self.setMinimumHeight(round(n * (BAR_PX + GAP_PX) + line + 2.0 * PAD_PX))
 
     def _box(self, row: int) -> QRectF:
         metrics = QFontMetricsF(self.font())
         right = PAD_PX + 0.5 * metrics.horizontalAdvance("24:00")
         names = max((metrics.horizontalAdvance(each.name) for each in self._rows), default=0.0)
         left = max(right, 2.0 * PAD_PX + min(names, NAMES_SHARE * self.width()))
-        top = PAD_PX + row * (BAR_PX + PAD_PX)
+        top = PAD_PX + row * (BAR_PX + GAP_PX)
         return QRectF(left, top, max(1.0, self.width() - left - right), BAR_PX)
 
     def mousePressEvent(self, event: QMouseEvent) -> None:  # noqa: N802

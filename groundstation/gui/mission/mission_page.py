@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
+from datetime import datetime
 from pathlib import Path
 
 from PySide6.QtCore import QDateTime, QEvent, QLocale, QObject, QSignalBlocker, Qt, QTimer, Signal
@@ -431,6 +433,7 @@ class MissionPage(QObject):
         context = self._context
         self.findings.checkRequested.connect(self.controller.check)
         self.findings.dayChanged.connect(self._day_changed)
+        context.takeOffPlanned.connect(self._plan_take_off)
         self.findings.placePicked.connect(self._go_to)
         self.lists.picked.connect(context.select)
         self.lists.activated.connect(context.jump_to)
@@ -512,6 +515,12 @@ class MissionPage(QObject):
                     duration_text(plan.duration_s).replace(" ", NO_BREAK_SPACE),
                 )
             )
+
+    def _plan_take_off(self, at: datetime) -> None:
+        box = self.findings.day_box()
+        box.setValue(replace(box.value(), at=at))
+        self.controller.day = box.value()
+        self._show_freshness()
 
     def _day_changed(self, day: FlightDay) -> None:
         self.controller.day = day

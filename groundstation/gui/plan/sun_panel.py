@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from datetime import date, timedelta
+from datetime import date, datetime, timedelta
 
 from PySide6.QtCore import QDate, QLocale, QObject, QTimer, Signal
 from PySide6.QtGui import QShowEvent
@@ -19,7 +19,9 @@ from groundstation.services.jobs.runner import Job, JobContext
 from groundstation.services.mission.sunlight import (
     SunReport,
     SunRequest,
+    clock_text,
     day_rows,
+    first_take_off,
     hour_marks,
     local_zone,
     moment_lines,
@@ -28,6 +30,7 @@ from groundstation.services.mission.sunlight import (
 )
 from groundstation.services.project.document import Document
 from groundstation.services.units import UnitSystem
+from planning.base.findings import Severity
 from planning.base.messages import say
 from planning.plan import Plan
 from planning.site.records import SiteModel
@@ -45,14 +48,18 @@ class SunPanel(QWidget):
         Another day was chosen.
     lookedAt()
         It came into sight.
+    takeOffChosen(datetime)
+        The flight is to begin then.
     """
 
     valueChanged = Signal(object)  # noqa: N815  (Qt's own way of naming)
+    takeOffChosen = Signal(object)  # noqa: N815
     lookedAt = Signal()  # noqa: N815
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._report: SunReport | None = None
+        self._second: float | None = None
         self._units = UnitSystem.METRIC
         self.day = QDateEdit(QDate.currentDate())
         calm(self.day)
@@ -70,6 +77,8 @@ class SunPanel(QWidget):
             button.clicked.connect(lambda _checked=False, days=days: self._turn(days))
         self.chart = SunChart()
         self.chart.empty = self.tr("Light and take-off times stand here, once there is a site.")
+        self.choose = QPushButton()
+        self.choose.setToolTip(self.tr("Check the plan for a take-off then, on the Mission tab"))
         self._legend, self._moment, self._words = QLabel(), QLabel(), QLabel()
         self._legend.setText(
             self.tr("Tall: in the sun, or a take-off that spoils no photo. Half: in part, or few. Low: shade, or many.")
@@ -84,6 +93,7 @@ class SunPanel(QWidget):
         words = QWidget()
         below = QVBoxLayout(words)
         below.setContentsMargins(0, 0, 0, 0)
+        below.addWidget(self.choose)
         below.addWidget(self._moment)
         below.addWidget(self._words)
         below.addStretch(1)
@@ -96,6 +106,7 @@ class SunPanel(QWidget):
         layout.addWidget(scrolled(words), 2)
         self.day.dateChanged.connect(lambda _day: self.valueChanged.emit(self.value()))
         self.chart.picked.connect(self._pick)
+        self.choose.clicked.connect(self._choose)
         self.set_report(None)
 
     def value(self) -> date:
@@ -114,6 +125,8 @@ class SunPanel(QWidget):
         self.chart.set_mark(None)
         self._legend.setVisible(report is not None)
         self._moment.setVisible(report is not None)
+        self._second = None if report is None else first_take_off(report)
+        self._show_choice()
         if report is None:
             self.chart.set_rows((), ())
             self._words.clear()
@@ -146,7 +159,20 @@ class SunPanel(QWidget):
         # To the minute: that is what is said.
         second = 60.0 * math.floor(share * self._report.day.track.length_s / 60.0)
         self.chart.set_mark(share)
+        self._second = second
+        self._show_choice()
         self._moment.setText("\n".join(translated(line, self._units) for line in moment_lines(self._report, second)))
+
+    def _show_choice(self) -> None:
+        found, second = self._report, self._second
+        is_flight = found is not None and found.times is not None and second is not None
+        self.choose.setVisible(is_flight)
+        if found is not None and second is not None:
+            self.choose.setText(self.tr("Plan take-off for {0}").format(clock_text(found.day.track, second)))
+
+    def _choose(self) -> None:
+        if self._report is not None and self._second is not None:
+            self.takeOffChosen.emit(self._report.day.track.time(self._second))
 
 
 class SunController(QObject):
@@ -171,6 +197,7 @@ class SunController(QObject):
         self._timer.timeout.connect(self.look)
         self.reportChanged.connect(panel.set_report)
         panel.lookedAt.connect(self.look)
+        panel.takeOffChosen.connect(self._plan_take_off)
         panel.valueChanged.connect(lambda _day: self._timer.start())
         context.documentChanged.connect(self._document_changed)
         context.jobsChanged.connect(self._forget_ended)
@@ -198,6 +225,11 @@ class SunController(QObject):
             self._report = report
             self.reportChanged.emit(report)
         self.look()
+
+    def _plan_take_off(self, at: datetime) -> None:
+        self._context.takeOffPlanned.emit(at)
+        text = self.tr("Take-off planned for {0}; the Mission tab checks the plan for it.")
+        self._context.say(Severity.OK, text.format(f"{at:%Y-%m-%d %H:%M}"))
 
     def _forget_ended(self) -> None:
         """Also a job that failed or was cancelled is over."""

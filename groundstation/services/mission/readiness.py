@@ -285,7 +285,7 @@ def _sun(case: Case, at: datetime | None, known: SunReport | None) -> Iterator[F
         return
     found = flown_from(report.sorties, day, start_s)
     spoiled = [*found.direct, *found.mirrored, *found.uneven]
-    better = _better_times(report, len(set(spoiled))) if spoiled or found.blinded_s else glue()
+    better, better_for_pilot = _better_times(report, len(set(spoiled)), found.blinded_s)
     total = len(plan.viewpoints)
     for code, ids, text in (
         (
@@ -314,7 +314,7 @@ def _sun(case: Case, at: datetime | None, known: SunReport | None) -> Iterator[F
             "take-off at {:%H:%M}: fly at another time, or with an observer who stands elsewhere",
             *(math.degrees(BLINDING_RAD), found.blinded_s, at),
         )
-        yield Finding(Severity.WARNING, "sun-pilot", glue(text, better), "", found.blinded_s, 0.0, "s")
+        yield Finding(Severity.WARNING, "sun-pilot", glue(text, better_for_pilot), "", found.blinded_s, 0.0, "s")
     if not found.landed_in_light:
         yield Finding(Severity.WARNING, "sun", say("the sun sets before the last sortie has landed"))
     if not spoiled and not found.blinded_s and found.landed_in_light:
@@ -327,18 +327,21 @@ MOST_TIMES = 4
 """Of take-offs that a finding names."""
 
 
-def _better_times(report: SunReport, n_now: int) -> Message:
-    """Take-offs of that day that spoil fewer photos, and how many; nothing where there are none."""
+def _better_times(report: SunReport, n_now: int, blinded_now_s: float) -> tuple[Message, Message]:
+    """Take-offs of that day with fewer photos spoiled, and with the pilot blinded for less; nothing where none are."""
     times = report.times
-    if times is None:
-        return glue()
-    starts = [each.start_s for each in times.sorties if each.start_s is not None]
-    n_best = sum(int(each.spoiled.photos[0]) for each in times.sorties if each.spoiled is not None)
-    if len(starts) < len(times.sorties) or n_best >= n_now:
-        return glue()
-    texts = [f"{report.day.track.time(start):%H:%M}" for start in starts]
-    more = ["..."] if len(texts) > MOST_TIMES else []
-    return say("; with take-off at {} it would be {}", ", ".join((*texts[:MOST_TIMES], *more)), n_best)
+    if times is None or any(each.spoiled is None for each in times.sorties):
+        return glue(), glue()
+    spoiled = [each.spoiled for each in times.sorties if each.spoiled is not None]
+    texts = [f"{report.day.track.time(each.start_s):%H:%M}" for each in times.sorties if each.start_s is not None]
+    starts = ", ".join((*texts[:MOST_TIMES], *(["..."] if len(texts) > MOST_TIMES else [])))
+    n_best = sum(float(each.photos[0]) for each in spoiled)
+    blinded_s = sum(float(each.blinded_s[0]) for each in spoiled)
+    photos = say("; with take-off at {} it would be {:.0f}", starts, n_best) if n_best < n_now else glue()
+    pilot = (
+        say("; with take-off at {} it would be {:.0f} s", starts, blinded_s) if blinded_s < blinded_now_s else glue()
+    )
+    return photos, pilot
 
 
 # Cold

@@ -189,10 +189,10 @@ def clock_text(track: SunTrack, seconds: float) -> str:
 
 
 def spans_text(track: SunTrack, spans: Spans) -> str:
-    """Spans as `06:57-17:43, 18:00-18:10`; a dash where there are none."""
+    """Spans as `06:57-17:43, 18:00-18:10`; never where there are none."""
     texts = [f"{clock_text(track, first)}-{clock_text(track, last)}" for first, last in spans]
     more = [f"... ({len(texts) - MOST_SPANS})"] if len(texts) > MOST_SPANS else []
-    return ", ".join((*texts[:MOST_SPANS], *more)) or "-"
+    return ", ".join((*texts[:MOST_SPANS], *more)) or say("never")
 
 
 def zone_text(track: SunTrack) -> str:
@@ -226,7 +226,7 @@ def facade_lines(report: SunReport) -> Iterator[Message]:
             up, down = say("facade '{}' (looks up)", facade.id), say("facade '{}' (looks down)", facade.id)
             name = up if facade.tilt_deg > 0.0 else down
         yield say(
-            "even light {}; in the sun {}; in part {}",
+            "even light {}; all of it in the sun {}; part of it {}",
             spans_text(track, facade.even(track.up)),
             spans_text(track, facade.lit),
             spans_text(track, facade.partly),
@@ -450,6 +450,13 @@ def day_rows(report: SunReport) -> tuple[DayRow, ...]:
         for times in sorted(report.times.sorties, key=lambda each: each.sortie.numbers):
             rows.append(DayRow(sortie_name(times), (*dark, *_start_stretches(times, report.times, length))))
     return tuple(rows)
+
+
+def first_take_off(report: SunReport) -> float | None:
+    """The first of the proposed starts; None where there is none."""
+    times = report.times
+    starts = [] if times is None else [each.start_s for each in times.sorties if each.start_s is not None]
+    return min(starts, default=None)
 
 
 def start_losses(sortie: SortieSun, flight: FlightTimes, starts_s: np.ndarray) -> np.ndarray:

@@ -115,6 +115,13 @@ def test_the_tab_looks_at_the_chosen_day_once_somebody_does(application, control
     turn_until_idle(application, controller)
     assert page.sun.value() == WINTER + timedelta(days=1)
     assert "on 2026-12-22" in page.sun.text()
+    proposed = page.sun.choose.text().removeprefix("Plan take-off for ")
+    assert f"sortie 1: take off at {proposed} " in page.sun.text()
+    click_on(controller.window, page.sun.choose)
+    day = controller.window.tab("mission").findings.day_box().value()
+    assert f"{day.at:%Y-%m-%d %H:%M}" == f"2026-12-22 {proposed}"
+    assert day == controller.window.tab("mission").controller.day
+    assert f"Take-off planned for 2026-12-22 {proposed}" in "".join(controller.window.messages.texts())
     other = wall(heading_deg=0.0)
     controller.context.session.open(Document(other), None)
     turn_until_idle(application, controller)
