@@ -1,6 +1,7 @@
 """The command line called in this process, and sites and plans made once for all of its tests."""
 
 import json
+import os
 import subprocess
 import sys
 from dataclasses import dataclass
@@ -37,6 +38,13 @@ class Done:
         assert "failed where it should not" not in lines[0]
         assert self.out == ""
         return lines[0]
+
+
+@pytest.fixture(autouse=True)
+def _own_settings(tmp_path_factory, monkeypatch):
+    """Flights by command are entered in a log book of the test's own."""
+    if "REFLIGHT_CONFIG_DIR" not in os.environ:
+        monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path_factory.getbasetemp() / "config"))
 
 
 @pytest.fixture

@@ -40,7 +40,9 @@ class SettingsPage(QWidget):
         self.operator.setToolTip(
             self.tr("For aircraft with remote ID. The secret part proves the checksum, and is neither sent nor kept")
         )
-        self.corrections, self.password = QLineEdit(), QLineEdit()
+        self.battery, self.corrections, self.password = QLineEdit(), QLineEdit(), QLineEdit()
+        self.battery.setMaxLength(40)
+        self.battery.setToolTip(self.tr("Its name: the log book counts its flights and cycles"))
         self.corrections.setPlaceholderText(EXAMPLE_CASTER)
         self.corrections.setToolTip(self.tr("NTRIP caster, from the next connection on: USER@HOST:PORT/MOUNTPOINT"))
         self.password.setEchoMode(QLineEdit.EchoMode.Password)
@@ -48,6 +50,7 @@ class SettingsPage(QWidget):
         self.serial.setToolTip(self.tr("Only where the aircraft's module does not know it"))
         self._said.setWordWrap(True)
         form = Form()
+        form.addRow(self.tr("Battery on board"), self.battery)
         form.addRow(self.tr("Operator number"), self.operator)
         form.addRow(self.tr("Serial number"), self.serial)
         form.addRow(self.tr("RTK corrections"), self.corrections)
@@ -65,6 +68,7 @@ class SettingsPage(QWidget):
         self.speaks.toggled.connect(self._edited)
         self.operator.editingFinished.connect(self._identity_typed)
         self.serial.editingFinished.connect(self._identity_typed)
+        self.battery.editingFinished.connect(self._battery_typed)
         self.corrections.editingFinished.connect(self._corrections_typed)
         self.password.editingFinished.connect(lambda: self.passwordTyped.emit(self.password.text()))
 
@@ -82,6 +86,7 @@ class SettingsPage(QWidget):
         self.operator.setText(value.operator)
         self.serial.setText(value.serial_number)
         self.corrections.setText(value.corrections)
+        self.battery.setText(value.battery)
 
     def set_voice(self, *, has_voice: bool) -> None:
         """Say whether this computer can speak, and what it lacks."""
@@ -119,6 +124,13 @@ class SettingsPage(QWidget):
         self._kept = kept
         self.operator.setText(kept.operator)
         self.valueChanged.emit(self.value())
+
+    def _battery_typed(self) -> None:
+        """Take the name of the battery that is on board now."""
+        typed = self.battery.text().strip()
+        if typed != self._kept.battery:
+            self._kept = replace(self._kept, battery=typed)
+            self.valueChanged.emit(self.value())
 
     def _corrections_typed(self) -> None:
         """Take the caster's address, or say what is wrong with it."""

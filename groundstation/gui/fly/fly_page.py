@@ -27,6 +27,7 @@ from groundstation.gui.fly.flight_settings_page import SettingsPage
 from groundstation.gui.fly.fly_controller import BEFORE_FLIGHT, ActiveFlight, FlyController
 from groundstation.gui.fly.joystick_controller import JoystickController
 from groundstation.gui.fly.live_pictures import LivePictures, PhotoStrip, ScrolledStrip
+from groundstation.gui.fly.log_book_dialog import LogBookDialog
 from groundstation.gui.fly.questions import FlightQuestions
 from groundstation.gui.fly.readouts_view import ReadoutsView, ReportView
 from groundstation.gui.fly.simulation_controller import SimulationPage
@@ -274,6 +275,9 @@ class FlyPage(QObject):
         self._voice = Voice(self)
         self._speaker = WarningSpeaker(self._voice, self)
         self.joystick = JoystickController(self)
+        self._book = QAction(self.tr("Log book ..."), self)
+        self._book.setToolTip(self.tr("Flights with aircraft, battery, times and findings; cycles of batteries"))
+        self._book.triggered.connect(lambda _checked=False: self.show_book())
         self._phase = QLabel()
         self._phase.setWordWrap(True)
         self._phase.setProperty("role", "heading")
@@ -310,7 +314,7 @@ class FlyPage(QObject):
 
     def actions(self) -> tuple[QAction, ...]:
         """For the tab's menu."""
-        return tuple(self.buttons.flight_actions())
+        return (*self.buttons.flight_actions(), self._book)
 
     def take_step(self, act: Act) -> None:
         """Connect, upload, or start, each as its own button does."""
@@ -433,6 +437,12 @@ class FlyPage(QObject):
         self.overlay.show(is_shown=is_connected, has_sides=not self.lists.isChecked())
 
     # What the user does
+
+    def show_book(self) -> LogBookDialog:
+        """Show the flights of this project, or of this user where there is none."""
+        dialog = LogBookDialog(self._context, self._shared_view.window())
+        dialog.open()
+        return dialog
 
     def _rest_found(self, found: TopUp) -> None:
         if self.questions.confirm_closing_flight(self._shared_view.window(), found):

@@ -39,6 +39,7 @@ from groundstation.services.fly.events import (
     WarningCleared,
     WarningRaised,
 )
+from groundstation.services.fly.log_book import book_path, enter, entry_of
 from groundstation.services.fly.onboard_logs import keep_logs
 from groundstation.services.fly.options import USUAL, FlightSettings
 from groundstation.services.fly.readouts import BEFORE_TAKE_OFF, allowed_requests, link_state, readouts
@@ -409,7 +410,7 @@ class LiveFlight:
         self._is_closing = False
         self._wire = LoggedLink(connection, folder, lambda text: publish(LogProblem(text)), clock, unix_clock)
         self._recordings = FlightRecordings(sortie.case, folder, flown)
-        self._folder = folder
+        self._folder, self._unix_clock = folder, unix_clock
         self._log: NewestLog | None = None
         self._corrections = corrections
         self._link = LinkState.OPENING
@@ -681,7 +682,28 @@ class LiveFlight:
         if record is None:
             self._publish(FlightEnded(run.orders.number, error, None, None, None))
         else:
-            self._publish(self._recordings.ended(run, record, error, self._wire.opened, self._wire.name))
+            ended = self._recordings.ended(run, record, error, self._wire.opened, self._wire.name)
+            self._publish(ended)
+            self._enter(run, ended)
+
+    def _enter(self, run: FlightRun, ended: FlightEnded) -> None:
+        """Enter a flight in the log book of this folder, and in that of all flights."""
+        settings = self._settings
+        entry = entry_of(
+            ended,
+            self._sortie.case.plan,
+            self._sortie.case.site_model.site,
+            run.orders.home,
+            self._unix_clock(),
+            battery=settings.battery,
+            operator=settings.operator,
+            is_simulated=self._connection.is_simulated or run.is_simulation,
+        )
+        try:
+            if entry is not None:
+                enter(entry, (book_path(self._folder), book_path()))
+        except GroundStationError as error:
+            self._publish(LogProblem(str(error)))
 
     def _keep_unfinished(self) -> None:
         """Keep what was flown of a sortie that is not over."""

@@ -16,6 +16,8 @@ from pathlib import Path
 
 from groundstation.services.fly.connection import TruthRecorder
 from groundstation.services.fly.corrections import Corrections
+from groundstation.services.fly.events import FlightEnded
+from groundstation.services.fly.log_book import book_path, enter, entry_of
 from groundstation.services.mission.files import within_item_limit
 from groundstation.services.project.input_files import read_input_plan, read_input_site
 from groundstation.services.project.project_file import check_not_index
@@ -646,8 +648,28 @@ class _Case:
                 monitor=self.monitor,
             )
         found = run.state.autopilot or self.autopilot
-        sortie = FlownSortie(orders.number, items_duration_s(orders, found), (), outcome.notes, log)
+        notes = (*outcome.notes, *self._entered(orders, run, outcome))
+        sortie = FlownSortie(orders.number, items_duration_s(orders, found), (), notes, log)
         return outcome, outcome.record, sortie
+
+    def _entered(self, orders: SortieOrders, run: FlightRun, outcome: RunOutcome) -> tuple[FlightEvent, ...]:
+        """Enter a flight over a link in this user's log book; a note where that cannot be done."""
+        ended = FlightEnded(orders.number, outcome.error, outcome.record, None, None)
+        entry = entry_of(
+            ended,
+            self.plan,
+            self.site_model.site,
+            orders.home,
+            time.time(),
+            operator=self.request.identity.operator,
+            is_simulated=run.is_simulation,
+        )
+        try:
+            if entry is not None:
+                enter(entry, (book_path(),))
+        except InputError as error:
+            return (FlightEvent(entry.duration_s, "log-book", str(error)),) if entry is not None else ()
+        return ()
 
 
 class _Pace:

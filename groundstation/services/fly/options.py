@@ -92,6 +92,8 @@ class FlightSettings:
         Do not start without RTK, and warn when it is lost.
     operator, serial_number
         For remote identification: public part of the operator's number, and the aircraft's serial number; empty: none.
+    battery
+        What the pilot calls the battery on board, for the log book; empty: nobody said.
     corrections
         Where RTK corrections come from, `USER@HOST:PORT/MOUNTPOINT`; empty: nowhere. A password is never kept.
     speaks
@@ -102,6 +104,7 @@ class FlightSettings:
     operator: str = ""
     serial_number: str = ""
     corrections: str = ""
+    battery: str = ""
     speaks: bool = True
 
     @property

@@ -91,6 +91,7 @@ def test_without_a_device_the_dialog_says_what_to_do_and_a_folder_helps(page, co
     dialog.close()
 
 
+@pytest.mark.slow
 def test_too_few_routes_are_said_and_nothing_can_be_sent(page, context, planned, idle, devices):  # noqa: F811
     (devices[0] / FLY_ROUTES / ID / f"{ID}.kmz").unlink()
     dialog = dialog_of(page, idle, context, planned)

@@ -229,6 +229,7 @@ def test_the_simulated_module_lists_what_it_lacks_and_ends_content():
     assert [m.error for m in flown.step(20.0) if isinstance(m, OpenDroneIdArmStatus)][-1] == "SELF_ID OP_ID SYS"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("is_sent", [True, False])
 def test_a_vehicle_that_demands_remote_id_flies_with_it_and_not_without(is_sent):
     model, plan = bundled("roof", 4)

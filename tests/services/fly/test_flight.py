@@ -21,6 +21,8 @@ from groundstation.services.fly.events import (
 )
 from groundstation.services.fly.flight import LiveFlight
 from groundstation.services.fly.flying import report_of_log
+from groundstation.services.fly.log_book import book_path, read_book
+from groundstation.services.fly.options import FlightSettings
 from groundstation.services.fly.sortie import prepare_sortie
 from groundstation.vehicle.duration import items_duration_s
 from groundstation.vehicle.preflight import Verdict
@@ -342,3 +344,16 @@ def test_fetching_the_log_can_be_stopped_and_begun_again(flight):
     assert "stopped" in stopped.text
     live.request(Request.LOG)
     assert follower.until(lambda event: isinstance(event, LogFetched)).is_checked
+
+
+@pytest.mark.slow
+def test_a_flight_is_entered_in_the_books_with_its_battery(flight, tmp_path):
+    live, follower = flight(settings=FlightSettings(battery="B3", operator="FIN87astrdge12k8"))
+    fly(live, follower)
+    follower.until_ended()
+    follower.until_may(Request.UPLOAD)
+    for path in (book_path(tmp_path / "flights"), book_path()):
+        (entry,) = read_book(path)
+        assert (entry.battery, entry.operator, entry.is_simulated, entry.sortie) == ("B3", "FIN87astrdge12k8", True, 1)
+        assert (entry.n_photos, entry.n_planned, entry.ended) == (6, 6, "")
+        assert 0.0 < entry.battery_used < 0.5

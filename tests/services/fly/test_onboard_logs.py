@@ -32,7 +32,7 @@ OWN, VEHICLE = Address(255, 190), Address(1, 1)
 ROUTE = Route(OWN, VEHICLE)
 
 
-@pytest.fixture(scope="module", params=[Autopilot.ARDUPILOT, slow(Autopilot.PX4)])
+@pytest.fixture(scope="module", params=[slow(Autopilot.ARDUPILOT), slow(Autopilot.PX4)])
 def flown(request):
     """A vehicle that stands again after a flight of four photos, what was recorded of it live, and its site."""
     model, plan = bundled("roof", 4)
