@@ -75,6 +75,7 @@ def compile_kernels() -> None:
     _count_coverage(panel_frames(panel_corners(model.site)))
     field = HeightField(0.0, 0.0, 1.0, np.zeros((2, 2)))
     field.leg_heights_m(np.ones((1, 3)), np.ones((1, 3)))
+    field.legs_keep(np.ones((1, 3)), np.ones((1, 3)), 1.0)
     field.heights_m(np.ones((1, 3)))
     field.spread_departures(np.ones((1, 3)), np.zeros((2, 2)), np.zeros((2, 2)), np.zeros((1, 1)))
     for module in (at_once, lower_bound, orienteering, sorties, speed_profile, tour):

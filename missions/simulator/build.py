@@ -39,7 +39,11 @@ from planning.geo.frames import Vec3
 from planning.motion.timing import motion_limits
 from planning.parameters import FlightRules
 from planning.plan import Plan, Sortie
+from planning.site.ground import Ground, ground_of
 from planning.site.records import SiteModel
+
+PAD_M = 2.0
+"""Around home it is as high as home: aircraft stand and land on their pad."""
 
 EFFECTS: tuple[Effect[FlightScene], ...] = (
     Wind(),
@@ -134,7 +138,22 @@ def make_airframe(
     if autopilot is not None and plan.aircraft.max_jerk_m_s3 is None:
         limits = replace(limits, jerk_m_s3=facts(autopilot).own_jerk_m_s3 or math.inf)
     pitches = math.radians(low), math.radians(high)
-    return Multirotor(limits, pitches, home, _parts(scene, decisions, seed)), decisions
+    terrain_z_m = _terrain_below(ground_of(site_model.site), home)
+    return Multirotor(limits, pitches, home, _parts(scene, decisions, seed), terrain_z_m=terrain_z_m), decisions
+
+
+def _terrain_below(ground: Ground, home_enu_m: Vec3) -> Callable[[float, float], float] | None:
+    """The ground as the airframe meets it: terrain where it is known, home's height around home and elsewhere."""
+    if ground.terrain is None:
+        return None
+
+    def height_m(x: float, y: float) -> float:
+        if math.hypot(x - home_enu_m[0], y - home_enu_m[1]) <= PAD_M:
+            return home_enu_m[2]
+        found = float(ground.heights_m(np.array([[x, y]]))[0])
+        return found if math.isfinite(found) else home_enu_m[2]
+
+    return height_m
 
 
 def _parts(scene: FlightScene, decisions: tuple[Decision, ...], seed: int) -> Parts:

@@ -3,7 +3,8 @@
 Between its four nodes a cell is z = z00 + a u + b v + k u v, with u and v from 0 to 1 across it. A straight leg crosses
 cell after cell; in each, its height above the surface is a polynomial of second degree in the way flown, so its least
 and greatest values are known in closed form, at an end of the stretch or at the vertex of the parabola. The result is
-that of the whole leg, not of samples. It costs as much as there are cells below the leg.
+that of the whole leg, not of samples. It costs as much as there are cells below the leg; whether a leg keeps a height
+is told from the highest nodes of blocks of cells, where it passes well above them.
 
 A cell with a node that is not known is not known, nor is anything beyond the grid. Nothing can be kept above what is
 not known: the least height there is minus infinity, the greatest plus infinity.
@@ -13,15 +14,19 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.base.jit import chunks, kernel, run_chunks
+from planning.base.jit import chunks, inline, kernel, run_chunks
 
 Array = NDArray[np.float64]
 
 LEGS_PER_CHUNK = 2048
+
+BLOCK = 16
+"""Cells on a side of the blocks whose highest points are kept: most legs pass above most of them."""
 
 
 @kernel
@@ -41,52 +46,107 @@ def heights_below(z: Array, x0: float, y0: float, step: float, xy: Array, result
 
 
 @kernel
+def _stretch_extremes(
+    z: Array, u0: float, v0: float, z0: float, way: Array, first_t: float, last_t: float
+) -> tuple[float, float]:
+    """Least and greatest height above the surface of (u0, v0, z0) + t way, u and v in cells, for t in a stretch."""
+    n_rows, n_columns = z.shape
+    du, dv, dz = way[0], way[1], way[2]
+    lowest, highest, t = np.inf, -np.inf, first_t
+    # Next grid lines ahead, counted in whole numbers, so that no error adds up.
+    u, v = u0 + t * du, v0 + t * dv
+    line_u = np.floor(u) + 1.0 if du > 0.0 else np.ceil(u) - 1.0
+    line_v = np.floor(v) + 1.0 if dv > 0.0 else np.ceil(v) - 1.0
+    while True:
+        t_u = (line_u - u0) / du if du != 0.0 else np.inf
+        t_v = (line_v - v0) / dv if dv != 0.0 else np.inf
+        until = max(min(t_u, t_v, last_t), t)
+        middle = 0.5 * (t + until)
+        column = min(max(int(np.floor(u0 + middle * du)), 0), n_columns - 2)
+        row = min(max(int(np.floor(v0 + middle * dv)), 0), n_rows - 2)
+        z00, z10 = z[row, column], z[row, column + 1]
+        z01, z11 = z[row + 1, column], z[row + 1, column + 1]
+        east, north, twist = z10 - z00, z01 - z00, z11 - z10 - z01 + z00
+        u, v = u0 + t * du - column, v0 + t * dv - row
+        # Height above the surface at t + s, s from 0: first + slope s + bend s^2.
+        first = z0 + t * dz - (z00 + east * u + north * v + twist * u * v)
+        slope = dz - (east * du + north * dv + twist * (u * dv + v * du))
+        bend = -twist * du * dv
+        s = until - t
+        last = first + s * (slope + bend * s)
+        if not first - last <= np.inf:  # a node is not known
+            return -np.inf, np.inf
+        lowest, highest = min(lowest, first, last), max(highest, first, last)
+        if bend != 0.0:
+            vertex = -0.5 * slope / bend
+            if 0.0 < vertex < s:
+                between = first + 0.5 * vertex * slope
+                lowest, highest = min(lowest, between), max(highest, between)
+        if until >= last_t:
+            return lowest, highest
+        if t_u <= until:
+            line_u += 1.0 if du > 0.0 else -1.0
+        if t_v <= until:
+            line_v += 1.0 if dv > 0.0 else -1.0
+        t = until
+
+
+@inline
+def _is_over(u0: float, v0: float, way: Array, n_rows: int, n_columns: int) -> bool:
+    """Whether both ends of a leg lie over the grid, and so all of it."""
+    last_u, last_v = u0 + way[0], v0 + way[1]
+    over_columns = 0.0 <= u0 <= n_columns - 1.0 and 0.0 <= last_u <= n_columns - 1.0
+    return bool(over_columns and 0.0 <= v0 <= n_rows - 1.0 and 0.0 <= last_v <= n_rows - 1.0)
+
+
+@kernel
 def _leg_extremes(z: Array, x0: float, y0: float, step: float, a: Array, b: Array, least: Array, most: Array) -> None:
     """Least and greatest height of legs from a to b, shape (n, 3), above the surface."""
-    n_rows, n_columns = z.shape
+    way = np.empty(3)
     for i in range(len(a)):
-        least[i], most[i] = -np.inf, np.inf
-        # In units of cells; a leg with both ends over the grid lies over it.
         u0, v0 = (a[i, 0] - x0) / step, (a[i, 1] - y0) / step
-        du, dv, dz = (b[i, 0] - x0) / step - u0, (b[i, 1] - y0) / step - v0, b[i, 2] - a[i, 2]
-        if not (
-            0.0 <= u0 <= n_columns - 1.0
-            and 0.0 <= v0 <= n_rows - 1.0
-            and 0.0 <= u0 + du <= n_columns - 1.0
-            and 0.0 <= v0 + dv <= n_rows - 1.0
-        ):
+        way[0], way[1], way[2] = (b[i, 0] - x0) / step - u0, (b[i, 1] - y0) / step - v0, b[i, 2] - a[i, 2]
+        least[i], most[i] = -np.inf, np.inf
+        if _is_over(u0, v0, way, z.shape[0], z.shape[1]):
+            least[i], most[i] = _stretch_extremes(z, u0, v0, a[i, 2], way, 0.0, 1.0)
+
+
+@kernel
+def _legs_keep(
+    z: Array,
+    tops: Array,
+    x0: float,
+    y0: float,
+    step: float,
+    a: Array,
+    b: Array,
+    height: float,
+    result: NDArray[np.bool_],
+) -> None:
+    """Whether legs keep a height above the surface: cell by cell only in blocks whose top comes too near."""
+    way = np.empty(3)
+    for i in range(len(a)):
+        u0, v0 = (a[i, 0] - x0) / step, (a[i, 1] - y0) / step
+        way[0], way[1], way[2] = (b[i, 0] - x0) / step - u0, (b[i, 1] - y0) / step - v0, b[i, 2] - a[i, 2]
+        result[i] = _is_over(u0, v0, way, z.shape[0], z.shape[1])
+        if not result[i]:
             continue
-        lowest, highest, known = np.inf, -np.inf, True
-        t = 0.0
-        # Next grid lines ahead, counted in whole numbers, so that no error adds up.
-        line_u = np.floor(u0) + 1.0 if du > 0.0 else np.ceil(u0) - 1.0
-        line_v = np.floor(v0) + 1.0 if dv > 0.0 else np.ceil(v0) - 1.0
+        du, dv, t = way[0], way[1], 0.0
+        line_u = np.floor(u0 / BLOCK) + 1.0 if du > 0.0 else np.ceil(u0 / BLOCK) - 1.0
+        line_v = np.floor(v0 / BLOCK) + 1.0 if dv > 0.0 else np.ceil(v0 / BLOCK) - 1.0
         while True:
-            t_u = (line_u - u0) / du if du != 0.0 else np.inf
-            t_v = (line_v - v0) / dv if dv != 0.0 else np.inf
-            until = min(t_u, t_v, 1.0)
+            t_u = (line_u * BLOCK - u0) / du if du != 0.0 else np.inf
+            t_v = (line_v * BLOCK - v0) / dv if dv != 0.0 else np.inf
+            until = max(min(t_u, t_v, 1.0), t)
             middle = 0.5 * (t + until)
-            column = min(max(int(np.floor(u0 + middle * du)), 0), n_columns - 2)
-            row = min(max(int(np.floor(v0 + middle * dv)), 0), n_rows - 2)
-            z00, z10 = z[row, column], z[row, column + 1]
-            z01, z11 = z[row + 1, column], z[row + 1, column + 1]
-            east, north, twist = z10 - z00, z01 - z00, z11 - z10 - z01 + z00
-            u, v = u0 + t * du - column, v0 + t * dv - row
-            # Height above the surface at the way t + s, s from 0: first + slope s + bend s^2.
-            first = a[i, 2] + t * dz - (z00 + east * u + north * v + twist * u * v)
-            slope = dz - (east * du + north * dv + twist * (u * dv + v * du))
-            bend = -twist * du * dv
-            way = until - t
-            last = first + way * (slope + bend * way)
-            if not first - last <= np.inf:  # a node is not known
-                known = False
-                break
-            lowest, highest = min(lowest, first, last), max(highest, first, last)
-            if bend != 0.0:
-                vertex = -0.5 * slope / bend
-                if 0.0 < vertex < way:
-                    between = first + 0.5 * vertex * slope
-                    lowest, highest = min(lowest, between), max(highest, between)
+            column = min(max(int(np.floor((u0 + middle * du) / BLOCK)), 0), tops.shape[1] - 1)
+            row = min(max(int(np.floor((v0 + middle * dv) / BLOCK)), 0), tops.shape[0] - 1)
+            lower = a[i, 2] + min(t * way[2], until * way[2])
+            if not lower - tops[row, column] >= height:
+                least, _ = _stretch_extremes(z, u0, v0, a[i, 2], way, t, until)
+                if not least >= height:
+                    result[i] = False
+                    break
             if until >= 1.0:
                 break
             if t_u <= until:
@@ -94,8 +154,6 @@ def _leg_extremes(z: Array, x0: float, y0: float, step: float, a: Array, b: Arra
             if t_v <= until:
                 line_v += 1.0 if dv > 0.0 else -1.0
             t = until
-        if known:
-            least[i], most[i] = lowest, highest
 
 
 @kernel
@@ -221,6 +279,18 @@ class HeightField:
         run_chunks(work, chunks(len(a), LEGS_PER_CHUNK))
         return least, most
 
+    def legs_keep(self, a_enu_m: Array, b_enu_m: Array, height_m: float) -> NDArray[np.bool_]:
+        """Whether `leg_heights_m` is at least a height; legs far above the surface are told block by block."""
+        a, b = (np.ascontiguousarray(ends, np.float64) for ends in (a_enu_m, b_enu_m))
+        result, tops = np.empty(len(a), np.bool_), _block_tops(self)
+        grid = self.west_m, self.south_m, self.step_m
+
+        def work(start: int, stop: int) -> None:
+            _legs_keep(self.z_m, tops, *grid, a[start:stop], b[start:stop], height_m, result[start:stop])
+
+        run_chunks(work, chunks(len(a), LEGS_PER_CHUNK))
+        return result
+
     def spread_departures(self, points_enu_m: Array, above_m: Array, below_m: Array, highest_m: Array) -> None:
         """Widen bounds so that the surfaces `z_m + above_m` and `z_m + below_m` enclose points of shape (n, 3).
 
@@ -249,3 +319,13 @@ class HeightField:
         last = np.ceil((np.asarray(high_xy_m[:2]) - [self.west_m, self.south_m]) / self.step_m).astype(np.int64)
         inside = self.z_m[max(first[1], 0) : last[1] + 1, max(first[0], 0) : last[0] + 1].ravel()
         return np.append(inside, np.nan) if (first < 0).any() or (last >= shape).any() else inside
+
+
+@lru_cache(maxsize=8)
+def _block_tops(field: HeightField) -> Array:
+    """Highest node of each block of cells; infinite where one is not known."""
+    cells = np.nan_to_num(field.cells_m(np.maximum), nan=np.inf)
+    rows, columns = (-(-n // BLOCK) for n in cells.shape)
+    padded = np.full((rows * BLOCK, columns * BLOCK), -np.inf)
+    padded[: cells.shape[0], : cells.shape[1]] = cells
+    return np.asarray(padded.reshape(rows, BLOCK, columns, BLOCK).max(axis=(1, 3)))

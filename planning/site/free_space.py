@@ -115,7 +115,7 @@ class FreeSpace:
         """Whether straight legs, ends of shape (n, 3), keep the least height above terrain; True above level ground."""
         if self.min_height_m is None or self.ground.terrain is None:
             return np.ones(len(a_enu_m), np.bool_)
-        return self.ground.least_m(a_enu_m, b_enu_m) >= self.min_height_m + margin_m
+        return self.ground.is_kept(a_enu_m, b_enu_m, self.min_height_m + margin_m)
 
     def _kept_distances(self, margin_m: float) -> tuple[tuple[Solids, float], ...]:
         kept: tuple[tuple[Solids, float], ...] = ((self.solids, self.min_distance_m + margin_m),)

@@ -23,9 +23,8 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-CELLS_PER_SECOND = 2e8
-LEGS_LOOKED_AT = 1_000_000
-"""For the stated cost: rate measured on one core, and legs that planning a facade of some hundred panels looks at."""
+LEGS_LOOKED_AT, LEG_S = 1_000_000, 1e-6
+"""For the stated cost: legs that planning a facade of some hundred panels looks at, and what the terrain adds to one."""
 
 
 class Relief:
@@ -50,8 +49,7 @@ def _departure(terrain: Terrain, airspace: Airspace) -> Assessment:
     found = surfaces(terrain)
     ends = airspace.min_enu_m, airspace.max_enu_m
     upper, lower = (field.part_m(*map(np.array, ends)) for field in (found.upper, found.lower))
-    width_m = max(high - low for low, high in zip(ends[0][:2], ends[1][:2], strict=True))
-    cost_s = LEGS_LOOKED_AT * (1.0 + width_m / terrain.step_m) / CELLS_PER_SECOND
+    cost_s = LEGS_LOOKED_AT * LEG_S
     if np.isnan(upper).any():
         height_m = ends[1][2] - airspace.ground_z_m
         return Assessment(height_m, say("the terrain has no heights for a part below the airspace"), cost_s)
@@ -107,6 +105,12 @@ class Ground:
         if self.terrain is None:
             return np.minimum(a_enu_m[:, 2], b_enu_m[:, 2]) - self.level_z_m
         return self.terrain.upper.leg_heights_m(a_enu_m, b_enu_m)[0]
+
+    def is_kept(self, a_enu_m: Array, b_enu_m: Array, height_m: float) -> NDArray[np.bool_]:
+        """Whether `least_m` is at least a height."""
+        if self.terrain is None:
+            return self.least_m(a_enu_m, b_enu_m) >= height_m
+        return self.terrain.upper.legs_keep(a_enu_m, b_enu_m, height_m)
 
     def greatest_m(self, a_enu_m: Array, b_enu_m: Array) -> Array:
         """Greatest height above the ground along legs, ends of shape (n, 3); infinity where it is not known."""

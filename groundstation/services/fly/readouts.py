@@ -74,10 +74,13 @@ def battery_left_s(remaining: float, reserve: float, endurance_s: float) -> floa
 def readouts(
     state: VehicleState, around: Surroundings, ground_z_m: float | None = None, left: ToGo = NOT_KNOWN
 ) -> Readouts:
-    """What the pilot reads at a glance; `ground_z_m` is the site's ground, None where nobody knows it."""
+    """What the pilot reads at a glance; `ground_z_m` is the site's level ground, None where nobody knows it."""
     height = above_ground = speed = facade = battery = left_s = wind = wind_from = None
     if state.motion is not None:
         motion = state.motion.value
+        if ground_z_m is not None and around.space.ground.terrain is not None:
+            below = float(around.space.ground.heights_m(np.array([motion.position_enu_m]))[0])
+            ground_z_m = below if math.isfinite(below) else None
         above_ground = None if ground_z_m is None else motion.position_enu_m[2] - ground_z_m
         height, speed = motion.height_above_home_m, math.hypot(*motion.velocity_enu_m_s)
         facade = float(around.space.solids.clearance_m(np.array([motion.position_enu_m]))[0])

@@ -8,6 +8,7 @@ there is nothing to add, and `estimate` and `truth` are one object.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 from missions.simulator.airframe.state import Battery, Fix, Parts, Pose, Target
 from missions.simulator.airframe.trajectory import State, plan_trajectory, resting
@@ -39,6 +40,8 @@ class Multirotor:
         With which it moves there, over the ground.
     ground_z_m
         Height of the level ground; None: it stands on it at first.
+    terrain_z_m
+        Height of the ground at a place, x and y; None: it is level.
     """
 
     def __init__(
@@ -51,9 +54,11 @@ class Multirotor:
         *,
         velocity_enu_m_s: Vec3 = NOWHERE,
         ground_z_m: float | None = None,
+        terrain_z_m: Callable[[float, float], float] | None = None,
     ) -> None:
         self._limits, self._gimbal_pitch_rad, self._parts = limits, gimbal_pitch_rad, parts
-        self._ground_z_m = home_enu_m[2] if ground_z_m is None else ground_z_m
+        level_z_m = home_enu_m[2] if ground_z_m is None else ground_z_m
+        self._ground_z_m = terrain_z_m or (lambda _x, _y: level_z_m)
         self._trajectory, self._leg_s = resting(home_enu_m), 0.0
         self._steered: tuple[Vec3, Vec3, bool] | None = None
         self._motion: State = (home_enu_m, velocity_enu_m_s, NOWHERE)
@@ -149,7 +154,8 @@ class Multirotor:
     @property
     def _stands(self) -> bool:
         """On the ground and at rest."""
-        return self._motion[0][2] <= self._ground_z_m and self._motion[1] == NOWHERE
+        x, y, z = self._motion[0]
+        return z <= self._ground_z_m(x, y) and self._motion[1] == NOWHERE
 
     def _fly(self, duration_s: float, target: Target) -> None:
         """Follow the trajectory to the target, planned anew where the target has changed."""
@@ -170,7 +176,7 @@ class Multirotor:
     def _goal(self, target: Target) -> Vec3:
         """Place of a target; none lies in the ground."""
         x, y, z = target.position_enu_m
-        return x, y, max(z, self._ground_z_m)
+        return x, y, max(z, self._ground_z_m(x, y))
 
     def _steer(self, target: Target) -> None:
         speeds = target.horizontal_m_s, target.ascent_m_s, target.descent_m_s
@@ -207,14 +213,15 @@ class Multirotor:
         """Move with an acceleration that stays, as far as the ground."""
         (x, y, z), (vx, vy, vz), _ = self._motion
         ax, ay, az = pull_m_s2
-        height_m = max(0.0, z - self._ground_z_m)
+        ground_z_m = self._ground_z_m(x, y)
+        height_m = max(0.0, z - ground_z_m)
         root = math.sqrt(max(0.0, vz * vz - 2.0 * az * height_m))
         # Drag brakes a fall that began faster than it can keep on, so that az may point up.
         ground_s = (vz + root) / -az if az < 0.0 else 2.0 * height_m / max(root - vz, TINY_M_S)
         t = min(duration_s, ground_s)
         place = x + t * (vx + 0.5 * ax * t), y + t * (vy + 0.5 * ay * t), z + t * (vz + 0.5 * az * t)
         if ground_s <= duration_s:
-            self._motion = (place[0], place[1], self._ground_z_m), NOWHERE, NOWHERE
+            self._motion = (place[0], place[1], ground_z_m), NOWHERE, NOWHERE
         else:
             self._motion = place, (vx + ax * t, vy + ay * t, vz + az * t), NOWHERE
 
@@ -271,7 +278,7 @@ class Multirotor:
         pitch_rad, roll_rad = (0.0, 0.0) if self._stands else _tilt(push, heading_rad)
         return Pose(
             self._time_s + ahead_s,
-            (x, y, max(z, self._ground_z_m)),
+            (x, y, max(z, self._ground_z_m(x, y))),
             velocity,
             heading_rad,
             pitch_rad,

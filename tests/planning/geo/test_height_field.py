@@ -79,6 +79,24 @@ def test_no_sample_of_a_leg_lies_lower_than_its_least_height_and_some_come_near(
     assert (above.max(axis=1) >= most - 0.1).all()
 
 
+@given(st.integers(0, 2**32 - 1), st.booleans())
+def test_legs_keep_a_height_exactly_where_their_least_height_is_as_much(seed, has_holes):
+    rng = np.random.default_rng(seed)
+    z = 8.0 * np.sin(np.arange(70) / 9.0)[:, None] * np.cos(np.arange(90) / 7.0) + rng.normal(0.0, 0.5, (70, 90))
+    if has_holes:
+        z[rng.random(z.shape) < 3e-4] = np.nan
+    field = HeightField(WEST, SOUTH, STEP, z)
+    a, b = drawn(seed, 200, field, (0.0, 40.0)), drawn(seed + 1, 200, field, (0.0, 40.0))
+    a[::7, 0], b[::7, 0] = WEST + 16 * STEP, WEST + 16 * STEP  # along the border of two blocks
+    b[::5, :2] = a[::5, :2]
+    a[::11, 0] -= 300.0  # beyond the grid
+    for height_m in (0.0, 5.0):
+        kept = field.legs_keep(a, b, height_m)
+        assert (kept == (field.leg_heights_m(a, b)[0] >= height_m)).all()
+        assert kept.any()
+        assert not kept.all()
+
+
 def test_where_nothing_is_known_nothing_is_kept():
     field = field_of(lambda x, y: 0.0 * x)
     field.z_m[4, 6] = np.nan

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Callable
 from dataclasses import replace
 
 import pytest
@@ -22,13 +23,19 @@ HOME: Vec3 = (1.0, 2.0, 5.0)
 TOP = Target((1.0, 2.0, 25.0), 8.0, 3.0, 1.5, 0.0, 1.0, 0.0)
 
 
-def aircraft(limits: MotionLimits = LIMITS, heading_rad: float = 0.0) -> Multirotor:
+def aircraft(
+    limits: MotionLimits = LIMITS,
+    heading_rad: float = 0.0,
+    terrain_z_m: Callable[[float, float], float] | None = None,
+) -> Multirotor:
     parts = Parts(
         gimbal=RateGimbal(limits.gimbal_rate_rad_s),
         pack=SteadyPack(5000.0, 15.4, 1500.0),
         receiver=ExactReceiver(Fix(6, 24, 0.01, 0.015)),
     )
-    return Multirotor(limits, (math.radians(-90.0), math.radians(20.0)), HOME, parts, heading_rad)
+    return Multirotor(
+        limits, (math.radians(-90.0), math.radians(20.0)), HOME, parts, heading_rad, terrain_z_m=terrain_z_m
+    )
 
 
 def flown_to(target: Target, limits: MotionLimits = LIMITS) -> Multirotor:
@@ -241,3 +248,17 @@ def test_an_hour_of_flight_takes_seconds() -> None:
     started = time.perf_counter()
     _, flown_s = fly(made, plan, plan.sorties[0], step_s=0.02)
     assert (time.perf_counter() - started) / flown_s * 3600.0 < 10.0
+
+
+@pytest.mark.parametrize(
+    ("east_m", "wanted_m", "stands_m"), [(80.0, -5.0, -5.0), (-80.0, 2.0, 8.0), (80.0, -20.0, -8.0)]
+)
+def test_over_terrain_it_flies_below_home_and_not_into_the_slope(
+    east_m: float, wanted_m: float, stands_m: float
+) -> None:
+    x, y, z = HOME
+    # The ground falls by a tenth to the east and rises to the west.
+    flown = aircraft(terrain_z_m=lambda at_x, _y: z - 0.1 * (at_x - x))
+    for place in ((x, y, z + 20.0), (x + east_m, y, z + 20.0), (x + east_m, y, z + wanted_m)):
+        flown.step(120.0, replace(TOP, position_enu_m=place))
+    assert flown.truth.position_enu_m[2] - z == pytest.approx(stands_m, abs=1e-6)
