@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 LEGS_LOOKED_AT, LEG_S = 1_000_000, 1e-6
-"""For the stated cost: legs that planning a facade of some hundred panels looks at, and what the terrain adds to one."""
+"""For the stated cost: legs that planning some hundred panels looks at, and what the terrain adds to one."""
 
 
 class Relief:
