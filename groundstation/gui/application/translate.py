@@ -242,6 +242,7 @@ WORDS = (
     QT_TRANSLATE_NOOP("Sentences", "deleted"),
     QT_TRANSLATE_NOOP("Sentences", "inside"),
     QT_TRANSLATE_NOOP("Sentences", "occlusion"),
+    QT_TRANSLATE_NOOP("Sentences", "terrain"),
     QT_TRANSLATE_NOOP("Sentences", "facade"),
     QT_TRANSLATE_NOOP("Sentences", "obstacle"),
     QT_TRANSLATE_NOOP("Sentences", "panel"),
