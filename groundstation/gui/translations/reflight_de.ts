@@ -222,6 +222,14 @@
         <translation>höchstens {0}</translation>
     </message>
     <message>
+        <source>Sun</source>
+        <translation>Sonne</translation>
+    </message>
+    <message>
+        <source>Tall, half, low: facades in the sun, in part, in shade; take-offs that spoil no, few, many photos</source>
+        <translation>Hoch, halb, niedrig: Fassaden in der Sonne, zum Teil, im Schatten; Starts, die keine, wenige, viele Fotos verderben</translation>
+    </message>
+    <message>
         <source>Planned for</source>
         <translation>Geplant für</translation>
     </message>
@@ -740,6 +748,10 @@ Bild in dieser Entfernung: {4} x {5}</translation>
         <translation>Zeit in der Luft</translation>
     </message>
     <message>
+        <source>Coarsest GSD</source>
+        <translation>Gröbste GSD</translation>
+    </message>
+    <message>
         <source>GSD</source>
         <translation>GSD</translation>
     </message>
@@ -778,10 +790,6 @@ Bild in dieser Entfernung: {4} x {5}</translation>
     <message>
         <source>Finest pixel</source>
         <translation>Feinstes Pixel</translation>
-    </message>
-    <message>
-        <source>Coarsest pixel</source>
-        <translation>Gröbstes Pixel</translation>
     </message>
     <message>
         <source>Finest pixel on the worst panel</source>
@@ -1285,6 +1293,25 @@ Blickrichtung: {2}</translation>
     <message>
         <source>Photos</source>
         <translation>Fotos</translation>
+    </message>
+</context>
+<context>
+    <name>FilesBox</name>
+    <message>
+        <source>Choose...</source>
+        <translation>Wählen...</translation>
+    </message>
+    <message>
+        <source>None</source>
+        <translation>Keine</translation>
+    </message>
+    <message>
+        <source>no file</source>
+        <translation>keine Datei</translation>
+    </message>
+    <message>
+        <source>Heights ({0});;All files (*)</source>
+        <translation>Höhen ({0});;Alle Dateien (*)</translation>
     </message>
 </context>
 <context>
@@ -1798,6 +1825,14 @@ Um trotzdem zu fliegen, {1} eintippen:</translation>
         <translation>Zeigt, was neben und unter der Ansicht steht; im Flug hat sie diesen Platz</translation>
     </message>
     <message>
+        <source>Log book ...</source>
+        <translation>Logbuch ...</translation>
+    </message>
+    <message>
+        <source>Flights with aircraft, battery, times and findings; cycles of batteries</source>
+        <translation>Flüge mit Luftfahrzeug, Akku, Zeiten und Befunden; Zyklen der Akkus</translation>
+    </message>
+    <message>
         <source>Sortie to be flown</source>
         <translation>Zu fliegender Einsatz</translation>
     </message>
@@ -2300,6 +2335,84 @@ Scheiben: {2}, je {3} × {4}</translation>
     </message>
 </context>
 <context>
+    <name>JoystickBox</name>
+    <message>
+        <source>Joystick</source>
+        <translation>Joystick</translation>
+    </message>
+    <message>
+        <source>Joysticks are read on Linux only.</source>
+        <translation>Joysticks werden nur unter Linux gelesen.</translation>
+    </message>
+    <message>
+        <source>A joystick is there. Click a line, then press the button; click again for none.</source>
+        <translation>Ein Joystick ist da. Eine Zeile anklicken, dann die Taste drücken; nochmals klicken für keine.</translation>
+    </message>
+    <message>
+        <source>Click a line, then press a button of the joystick. Return and Land are held, too.</source>
+        <translation>Eine Zeile anklicken, dann eine Taste des Joysticks drücken. Heimkehr und Landen werden auch hier gehalten.</translation>
+    </message>
+    <message>
+        <source>Pause</source>
+        <translation>Pause</translation>
+    </message>
+    <message>
+        <source>Resume</source>
+        <translation>Fortsetzen</translation>
+    </message>
+    <message>
+        <source>Return, held</source>
+        <translation>Heimkehr, gehalten</translation>
+    </message>
+    <message>
+        <source>Land, held</source>
+        <translation>Landen, gehalten</translation>
+    </message>
+    <message>
+        <source>3-D or map</source>
+        <translation>3D oder Karte</translation>
+    </message>
+    <message>
+        <source>Lists</source>
+        <translation>Listen</translation>
+    </message>
+    <message>
+        <source>Mute</source>
+        <translation>Stumm</translation>
+    </message>
+    <message>
+        <source>Press it ...</source>
+        <translation>Drücken ...</translation>
+    </message>
+    <message>
+        <source>none</source>
+        <translation>keine</translation>
+    </message>
+    <message>
+        <source>button {0}</source>
+        <translation>Taste {0}</translation>
+    </message>
+</context>
+<context>
+    <name>LayerList</name>
+    <message>
+        <source>Show or hide {0}</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Translucent to the left, opaque to the right</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Opacity of {0}</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Remove {0} from the map; the file stays</source>
+        <translation type="unfinished"></translation>
+    </message>
+</context>
+<context>
     <name>LayerNames</name>
     <message>
         <source>Picture</source>
@@ -2462,6 +2575,93 @@ Scheiben: {2}, je {3} × {4}</translation>
     </message>
 </context>
 <context>
+    <name>LogBookDialog</name>
+    <message>
+        <source>Log book</source>
+        <translation>Logbuch</translation>
+    </message>
+    <message>
+        <source>Flights of all projects</source>
+        <translation>Flüge aller Projekte</translation>
+    </message>
+    <message>
+        <source>Simulated, too</source>
+        <translation>Auch simulierte</translation>
+    </message>
+    <message>
+        <source>Flights</source>
+        <translation>Flüge</translation>
+    </message>
+    <message>
+        <source>Export as CSV ...</source>
+        <translation>Als CSV exportieren ...</translation>
+    </message>
+    <message>
+        <source>Close</source>
+        <translation>Schließen</translation>
+    </message>
+    <message>
+        <source>Written: {0}</source>
+        <translation type="unfinished">Geschrieben: {0}</translation>
+    </message>
+    <message>
+        <source>Battery {0}: flights: {1}, cycles: {2:.1f}</source>
+        <translation>Akku {0}: Flüge: {1}, Zyklen: {2:.1f}</translation>
+    </message>
+    <message>
+        <source>No flights yet; simulated ones: {0}</source>
+        <translation>Noch keine Flüge; simulierte: {0}</translation>
+    </message>
+    <message>
+        <source>Tables (*{0})</source>
+        <translation>Tabellen (*{0})</translation>
+    </message>
+    <message>
+        <source>Write the log book</source>
+        <translation>Logbuch schreiben</translation>
+    </message>
+    <message>
+        <source>Start</source>
+        <translation>Start</translation>
+    </message>
+    <message>
+        <source>Time</source>
+        <translation type="unfinished">Zeit</translation>
+    </message>
+    <message>
+        <source>Site</source>
+        <translation type="unfinished">Standort</translation>
+    </message>
+    <message>
+        <source>Aircraft</source>
+        <translation type="unfinished">Fluggerät</translation>
+    </message>
+    <message>
+        <source>Battery</source>
+        <translation type="unfinished">Akku</translation>
+    </message>
+    <message>
+        <source>Charge used</source>
+        <translation>Ladung verbraucht</translation>
+    </message>
+    <message>
+        <source>Photos</source>
+        <translation type="unfinished">Fotos</translation>
+    </message>
+    <message>
+        <source>Findings</source>
+        <translation type="unfinished">Befunde</translation>
+    </message>
+    <message>
+        <source>Ended</source>
+        <translation>Ende</translation>
+    </message>
+    <message>
+        <source>landed</source>
+        <translation type="unfinished">gelandet</translation>
+    </message>
+</context>
+<context>
     <name>LossTerms</name>
     <message>
         <source>colour</source>
@@ -2555,10 +2755,68 @@ Scheiben: {2}, je {3} × {4}</translation>
     </message>
 </context>
 <context>
+    <name>ManualWindow</name>
+    <message>
+        <source>Manual</source>
+        <translation>Handbuch</translation>
+    </message>
+    <message>
+        <source>Back</source>
+        <translation>Zurück</translation>
+    </message>
+    <message>
+        <source>Contents of the manual</source>
+        <translation>Inhalt des Handbuchs</translation>
+    </message>
+    <message>
+        <source>Page of the manual</source>
+        <translation>Seite des Handbuchs</translation>
+    </message>
+    <message>
+        <source>Search the manual</source>
+        <translation>Handbuch durchsuchen</translation>
+    </message>
+    <message>
+        <source>More</source>
+        <translation>Mehr</translation>
+    </message>
+    <message>
+        <source>Words</source>
+        <translation>Begriffe</translation>
+    </message>
+    <message>
+        <source>Nothing found.</source>
+        <translation>Nichts gefunden.</translation>
+    </message>
+</context>
+<context>
+    <name>MapLayers</name>
+    <message>
+        <source>Plan</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Site</source>
+        <translation type="unfinished">Standort</translation>
+    </message>
+    <message>
+        <source>Geo-zones</source>
+        <translation>Geozonen</translation>
+    </message>
+    <message>
+        <source>Online map</source>
+        <translation type="unfinished"></translation>
+    </message>
+</context>
+<context>
     <name>MapView</name>
     <message>
         <source>Map</source>
         <translation>Karte</translation>
+    </message>
+    <message>
+        <source>This place lies beyond the end of web maps (85.05 degrees).</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <source>This site lies beyond the end of web maps (85.05 degrees); use the 3-D view.</source>
@@ -2575,6 +2833,38 @@ Scheiben: {2}, je {3} × {4}</translation>
     <message>
         <source>The map &quot;{0}&quot; does not cover this place.</source>
         <translation>Die Karte „{0}“ enthält diesen Ort nicht.</translation>
+    </message>
+    <message>
+        <source>Find: {0}, UTM or MGRS</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Find a place by its coordinates</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Coordinates of a place (WGS 84), then Enter</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Layers</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Overlay ...</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Put GeoJSON, KML, KMZ or GeoTIFF on the map</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Online map ...</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>A server for map tiles; off until you agree</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <source>Nearer (+)</source>
@@ -2599,6 +2889,22 @@ Scheiben: {2}, je {3} × {4}</translation>
     <message>
         <source>Open a map file (MBTiles or PMTiles) to put under the site</source>
         <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>What is shown on the map, and how strongly; overlays and the online map</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Overlay for the map</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Overlays ({0})</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>{0}: not kept out of</source>
+        <translation>{0}: wird nicht gemieden</translation>
     </message>
     <message>
         <source>Offline maps (*.mbtiles *.pmtiles);;All files (*)</source>
@@ -2738,6 +3044,14 @@ Scheiben: {2}, je {3} × {4}</translation>
     <message>
         <source>&amp;Full screen</source>
         <translation>&amp;Vollbild</translation>
+    </message>
+    <message>
+        <source>&amp;Manual</source>
+        <translation>&amp;Handbuch</translation>
+    </message>
+    <message>
+        <source>&amp;Tour</source>
+        <translation>&amp;Rundgang</translation>
     </message>
     <message>
         <source>&amp;Shortcuts</source>
@@ -3106,6 +3420,14 @@ Scheiben: {2}, je {3} × {4}</translation>
 <context>
     <name>NextStepBar</name>
     <message>
+        <source>Manual: this tab</source>
+        <translation>Handbuch: dieser Reiter</translation>
+    </message>
+    <message>
+        <source>What the manual says of this tab</source>
+        <translation>Was das Handbuch über diesen Reiter sagt</translation>
+    </message>
+    <message>
         <source>What is done, and what comes next</source>
         <translation>Was erledigt ist und was als Nächstes kommt</translation>
     </message>
@@ -3160,6 +3482,41 @@ Größe: {1}; Dreiecke: {2}</translation>
     <message>
         <source>Change {0}</source>
         <translation>{0} ändern</translation>
+    </message>
+</context>
+<context>
+    <name>OnlineMapDialog</name>
+    <message>
+        <source>Online map</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>© who owns the data, and its licence</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Fetch tiles from this server</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Reflight asks this server for the tiles that the map shows, and for nothing else. The server learns which area you look at. Use a server whose terms allow this, and enter the words that it asks for: they stand on the map. Tiles are kept on this computer, for a week where the server does not say otherwise, and are shown without network.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Address of a tile</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Licence</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Deepest level</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Room for tiles, MB</source>
+        <translation type="unfinished"></translation>
     </message>
 </context>
 <context>
@@ -3458,10 +3815,6 @@ Blickrichtung: {3}</translation>
         <translation>Zahl der Aufnahmen</translation>
     </message>
     <message>
-        <source>Coverage</source>
-        <translation>Abdeckung</translation>
-    </message>
-    <message>
         <source>share of what can be covered, 0 to 1, with as few views as possible</source>
         <translation>Anteil dessen, was abgedeckt werden kann, 0 bis 1, mit möglichst wenigen Aufnahmen</translation>
     </message>
@@ -3514,10 +3867,6 @@ Blickrichtung: {3}</translation>
         <translation>eine Aufnahme zählt nur, wenn alle vier Ecken einer Scheibe im Bild sind, nicht nur ihre Mitte</translation>
     </message>
     <message>
-        <source>Wanted pixel</source>
-        <translation>Gewünschtes Pixel</translation>
-    </message>
-    <message>
         <source>each direction of view is wanted with pixels up to this size on the panel; those seen only more coarsely are counted and named</source>
         <translation>jede Blickrichtung ist mit Pixeln bis zu dieser Größe auf der Scheibe gewünscht; gröber gesehene werden gezählt und genannt</translation>
     </message>
@@ -3564,6 +3913,14 @@ Blickrichtung: {3}</translation>
     <message>
         <source>Weight sections by solid angle</source>
         <translation>Raumwinkel gewichten</translation>
+    </message>
+    <message>
+        <source>Target coverage</source>
+        <translation>Zielabdeckung</translation>
+    </message>
+    <message>
+        <source>Wanted GSD</source>
+        <translation>Gewünschte GSD</translation>
     </message>
     <message>
         <source>Aircraft at once</source>
@@ -4355,8 +4712,8 @@ Blickrichtung: {3}</translation>
         <translation>Ziel</translation>
     </message>
     <message>
-        <source>Coarsest pixel</source>
-        <translation>Gröbstes Pixel</translation>
+        <source>Coarsest GSD</source>
+        <translation>Gröbste GSD</translation>
     </message>
     <message>
         <source>Pixels of {0} need views within {1}, but the safety distance is {2}: allow coarser pixels, or come nearer.</source>
@@ -4479,6 +4836,10 @@ Blickrichtung: {3}</translation>
     <message>
         <source>What this plan is worth is not known, or it was changed since; plan it again.</source>
         <translation>Was dieser Plan wert ist, ist nicht bekannt, oder er wurde seitdem geändert; neu planen.</translation>
+    </message>
+    <message>
+        <source>Sun</source>
+        <translation>Sonne</translation>
     </message>
     <message>
         <source>Plan</source>
@@ -4780,6 +5141,14 @@ Blickrichtung: {3}</translation>
         <translation>Sensoren</translation>
     </message>
     <message>
+        <source>Remote ID</source>
+        <translation>Remote ID</translation>
+    </message>
+    <message>
+        <source>RTK corrections</source>
+        <translation>RTK-Korrekturen</translation>
+    </message>
+    <message>
         <source>Wind</source>
         <translation>Wind</translation>
     </message>
@@ -4889,6 +5258,10 @@ Blickrichtung: {3}</translation>
     <message>
         <source>airspace ceiling</source>
         <translation>Luftraum oben</translation>
+    </message>
+    <message>
+        <source>{0} min, {1} flown: {2} above take-off, {5} above the terrain, {3}, nearest photo {4}</source>
+        <translation>{0} min, {1} geflogen: {2} über dem Start, {5} über dem Gelände, {3}, nächstes Foto {4}</translation>
     </message>
     <message>
         <source>legal ceiling</source>
@@ -6003,7 +6376,7 @@ Damit weiterarbeiten?</translation>
     </message>
     <message>
         <source>Close</source>
-        <translation type="unfinished">Schließen</translation>
+        <translation>Schließen</translation>
     </message>
     <message>
         <source>Device</source>
@@ -6396,7 +6769,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>&apos;{0}&apos; cannot be read, it is &apos;{1}&apos;</source>
-        <translation>'{0}' ist nicht lesbar, dort steht '{1}'</translation>
+        <translation>&apos;{0}&apos; ist nicht lesbar, dort steht &apos;{1}&apos;</translation>
     </message>
     <message>
         <source>&apos;{0}&apos; is nothing that heights are above; expected ellipsoid, egm96, egm2008 or the code of a height system such as EPSG:7837</source>
@@ -6404,7 +6777,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>&apos;{0}&apos;, added on {1}</source>
-        <translation>'{0}', hinzugefügt am {1}</translation>
+        <translation>&apos;{0}&apos;, hinzugefügt am {1}</translation>
     </message>
     <message>
         <source>--into and --site are for IFC; expected a name ending in .ifc</source>
@@ -6467,10 +6840,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Ein Ordner mit Splats und Scheiben in Kacheln, auf der Erde verortet, wie CesiumJS sie zeigt.</translation>
     </message>
     <message>
-        <source>AIXM is not read here; expected {0}, which publishers offer beside it</source>
-        <translation>AIXM wird hier nicht gelesen; erwartet wird {0}, was Herausgeber daneben anbieten</translation>
-    </message>
-    <message>
         <source>ArduPilot, dataflash log</source>
         <translation>ArduPilot, Dataflash-Log</translation>
     </message>
@@ -6500,10 +6869,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>EGM96 stands in for &apos;{0}&apos;, which may be off by 1 m, in mountains by 2 m; home stands on the same terrain, so heights above take-off do not change</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>EGM96 stands in for EGM2008: both differ by less than 1 m at most places, in mountains by more; home stands on the same terrain, so heights above take-off do not change</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -6731,10 +7096,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>eine Datei mit Geozonen</translation>
     </message>
     <message>
-        <source>a file of geo-zones: ED-269 or ED-318 JSON, GeoJSON, KML or OpenAir</source>
-        <translation>eine Datei mit Geozonen: ED-269 oder ED-318 JSON, GeoJSON, KML oder OpenAir</translation>
-    </message>
-    <message>
         <source>a full battery</source>
         <translation>einem vollen Akku</translation>
     </message>
@@ -6744,11 +7105,11 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>a height is counted from &apos;{0}&apos;; expected AGL, AMSL or WGS84</source>
-        <translation>eine Höhe zählt ab '{0}'; erwartet wird AGL, AMSL oder WGS84</translation>
+        <translation>eine Höhe zählt ab &apos;{0}&apos;; erwartet wird AGL, AMSL oder WGS84</translation>
     </message>
     <message>
         <source>a height is in &apos;{0}&apos;; expected metres or feet</source>
-        <translation>eine Höhe steht in '{0}'; erwartet werden Meter oder Fuß</translation>
+        <translation>eine Höhe steht in &apos;{0}&apos;; erwartet werden Meter oder Fuß</translation>
     </message>
     <message>
         <source>a map in PMTiles format</source>
@@ -7137,10 +7498,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Fehler {0}</translation>
     </message>
     <message>
-        <source>even light {0}; in the sun {1}; in part {2}</source>
-        <translation>gleichmäßiges Licht {0}; in der Sonne {1}; zum Teil {2}</translation>
-    </message>
-    <message>
         <source>expected &apos;KEYWORD : value&apos; or a section, found &apos;{0}&apos;</source>
         <translation>erwartet: &apos;KEYWORD : Wert&apos; oder ein Abschnitt, gefunden: &apos;{0}&apos;</translation>
     </message>
@@ -7173,6 +7530,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>erwartet wird 2 bis {0}, angegeben {1}</translation>
     </message>
     <message>
+        <source>expected GeoJSON (features with points, lines or polygons), found something else; export it again</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>expected KML, found &apos;{0}&apos;; choose another file</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>expected PMTiles of version 3, found version {0}; convert the map with the program pmtiles</source>
         <translation type="unfinished"></translation>
     </message>
@@ -7186,7 +7551,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>expected ZONE=REFERENCE, got &apos;{0}&apos;</source>
-        <translation>erwartet wird ZONE=AKTENZEICHEN, angegeben ist '{0}'</translation>
+        <translation>erwartet wird ZONE=AKTENZEICHEN, angegeben ist &apos;{0}&apos;</translation>
     </message>
     <message>
         <source>expected a COLMAP model (cameras and images as .bin or .txt), found {0}; models are often in sparse/0</source>
@@ -7210,15 +7575,23 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>expected a day such as 2026-06-21, got &apos;{0}&apos;</source>
-        <translation>erwartet wurde ein Tag wie 2026-06-21, gefunden '{0}'</translation>
+        <translation>erwartet wurde ein Tag wie 2026-06-21, gefunden &apos;{0}&apos;</translation>
     </message>
     <message>
         <source>expected a day such as 2026-11-28, got &apos;{0}&apos;</source>
-        <translation>erwartet wird ein Tag wie 2026-11-28, angegeben ist '{0}'</translation>
+        <translation>erwartet wird ein Tag wie 2026-11-28, angegeben ist &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>expected a deepest level from 0 to {0}, found {1}</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <source>expected a file in the folder of the site, since it names meshes there</source>
         <translation>erwartet wird eine Datei im Ordner des Standorts, weil er dort Netze nennt</translation>
+    </message>
+    <message>
+        <source>expected a file of {0}; choose another one</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <source>expected a finite time and position</source>
@@ -7314,7 +7687,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>expected a time of day such as 08:30, got &apos;{0}&apos;</source>
-        <translation>erwartet wurde eine Uhrzeit wie 08:30, gefunden '{0}'</translation>
+        <translation>erwartet wurde eine Uhrzeit wie 08:30, gefunden &apos;{0}&apos;</translation>
     </message>
     <message>
         <source>expected a time such as 2026-06-21T10:30, got &apos;{0}&apos;</source>
@@ -7322,7 +7695,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>expected a time zone such as Europe/Berlin, got &apos;{0}&apos;</source>
-        <translation>erwartet wurde eine Zeitzone wie Europe/Berlin, gefunden '{0}'</translation>
+        <translation>erwartet wurde eine Zeitzone wie Europe/Berlin, gefunden &apos;{0}&apos;</translation>
     </message>
     <message>
         <source>expected a value, found none</source>
@@ -7345,8 +7718,16 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>erwartet wird eine ganze Zahl, gefunden &apos;{0}&apos;</translation>
     </message>
     <message>
+        <source>expected an address such as https://tile.example.org/{0}, found &apos;{1}&apos;</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>expected an earlier time than --until {0}, got {1}</source>
         <translation>erwartet wurde eine Zeit vor --until {0}, gefunden {1}</translation>
+    </message>
+    <message>
+        <source>expected an easting of 100000 to 900000 m and a northing of at most 10000000 m, found {0} and {1}</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <source>expected an index image for each photo; &apos;{0}&apos; has none</source>
@@ -7367,6 +7748,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>expected annotations in COCO&apos;s form, found {0}</source>
         <translation>erwartet werden Annotationen in der Form von COCO, gefunden {0}</translation>
+    </message>
+    <message>
+        <source>expected as many digits of easting as of northing, up to 5 each, found &apos;{0}&apos;</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <source>expected at least 2 x 2 and at most {0} nodes, got {1} x {2}</source>
@@ -7397,12 +7782,16 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>erwartet werden Spalten x0, y0, x1, y1 mit Zahlen, gefunden {0}</translation>
     </message>
     <message>
+        <source>expected coordinates as lon,lat in KML, found &apos;{0}&apos;</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>expected distinct point numbers, {0} occurs twice</source>
         <translation>erwartet: lauter verschiedene Punktnummern, {0} kommt zweimal vor</translation>
     </message>
     <message>
         <source>expected each file once, &apos;{0}&apos; occurs twice</source>
-        <translation>erwartet wird jede Datei einmal, '{0}' kommt zweimal vor</translation>
+        <translation>erwartet wird jede Datei einmal, &apos;{0}&apos; kommt zweimal vor</translation>
     </message>
     <message>
         <source>expected files of heights, or --remove, and not both</source>
@@ -7450,6 +7839,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>expected local heights within {0} m</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>expected longitudes and latitudes in degrees, found {0}, {1}; export it in WGS 84 (EPSG:4326)</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -7503,6 +7896,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>expected one of {0}, got &apos;{1}&apos;</source>
         <translation>erwartet wird eines von {0}, angegeben &apos;{1}&apos;</translation>
+    </message>
+    <message>
+        <source>expected one of {0}, or people per square kilometre, got &apos;{1}&apos;</source>
+        <translation>erwartet eines von {0}, oder Menschen je Quadratkilometer, erhalten '{1}'</translation>
     </message>
     <message>
         <source>expected panel numbers up to {0}, got {1}</source>
@@ -7605,6 +8002,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>erwartet wurde {0} von PyPI, Version 0.1.0, oder die Datei {1} daraus; gefunden: {2}</translation>
     </message>
     <message>
+        <source>expected {0} once each behind the server&apos;s name, found &apos;{1}&apos;</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>expected {0} or more photos, or 0, got {1}</source>
         <translation>erwartet werden {0} oder mehr Fotos, oder 0, angegeben {1}</translation>
     </message>
@@ -7650,27 +8051,47 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>facade &apos;{0}&apos;</source>
-        <translation>Fassade '{0}'</translation>
+        <translation>Fassade &apos;{0}&apos;</translation>
     </message>
     <message>
         <source>facade &apos;{0}&apos; (heading {1})</source>
-        <translation>Fassade '{0}' (Richtung {1})</translation>
+        <translation>Fassade &apos;{0}&apos; (Richtung {1})</translation>
     </message>
     <message>
         <source>facade &apos;{0}&apos; (looks down)</source>
-        <translation>Fassade '{0}' (blickt nach unten)</translation>
+        <translation>Fassade &apos;{0}&apos; (blickt nach unten)</translation>
     </message>
     <message>
         <source>facade &apos;{0}&apos; (looks up)</source>
-        <translation>Fassade '{0}' (blickt nach oben)</translation>
+        <translation>Fassade &apos;{0}&apos; (blickt nach oben)</translation>
     </message>
     <message>
         <source>facade {0}, of what can be covered</source>
         <translation>Fassade {0}, vom Erreichbaren</translation>
     </message>
     <message>
+        <source>fall from level flight</source>
+        <translation>Fall aus dem Horizontalflug</translation>
+    </message>
+    <message>
+        <source>fall without drag</source>
+        <translation>Fall ohne Luftwiderstand</translation>
+    </message>
+    <message>
+        <source>fastest climb</source>
+        <translation>schnellstes Steigen</translation>
+    </message>
+    <message>
         <source>fetching the log</source>
         <translation>Log holen</translation>
+    </message>
+    <message>
+        <source>fewer than {0} per square kilometre, {1} in the whole area</source>
+        <translation>weniger als {0} je Quadratkilometer, {1} im ganzen Gebiet</translation>
+    </message>
+    <message>
+        <source>final ground risk class</source>
+        <translation>endgültige Bodenrisikoklasse</translation>
     </message>
     <message>
         <source>find the panels in them</source>
@@ -7705,6 +8126,18 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>erste</translation>
     </message>
     <message>
+        <source>flight geography</source>
+        <translation>Fluggeographie</translation>
+    </message>
+    <message>
+        <source>flight geography up to {0} m above ground, contingency volume {1} m to each side and up to {2} m, ground-risk buffer {3} m beyond</source>
+        <translation>Fluggeographie bis {0} m über Grund, Notfallvolumen {1} m zu jeder Seite und bis {2} m, Bodenrisikopuffer {3} m darüber hinaus</translation>
+    </message>
+    <message>
+        <source>flight geography, to each side of the paths</source>
+        <translation>Fluggeographie, zu jeder Seite der Pfade</translation>
+    </message>
+    <message>
         <source>flight levels count as low as 930 hPa and -50 degrees bring them</source>
         <translation>Flugflächen zählen so tief, wie 930 hPa und -50 Grad sie bringen</translation>
     </message>
@@ -7733,8 +8166,32 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>geflogen</translation>
     </message>
     <message>
+        <source>flown before the pilot acts</source>
+        <translation>geflogen, bevor der Pilot handelt</translation>
+    </message>
+    <message>
         <source>fly it, first in simulation; or export it for your aircraft</source>
         <translation>fliegen, zuerst simuliert; oder für Ihr Fluggerät exportieren</translation>
+    </message>
+    <message>
+        <source>fly-aways</source>
+        <translation>Ausreißer</translation>
+    </message>
+    <message>
+        <source>formula</source>
+        <translation>Formel</translation>
+    </message>
+    <message>
+        <source>formulas and tables of both were taken from public implementations that agree, and give the distances that German authorities publish (STS-BOS 1.0, tables 1 and 2); compare them with the documents</source>
+        <translation>Formeln und Tabellen beider stammen aus öffentlichen Programmen, die übereinstimmen, und ergeben die Abstände, die deutsche Behörden veröffentlichen (STS-BOS 1.0, Tabellen 1 und 2); vergleichen Sie sie mit den Dokumenten</translation>
+    </message>
+    <message>
+        <source>full speed over the ground</source>
+        <translation>volle Geschwindigkeit über Grund</translation>
+    </message>
+    <message>
+        <source>full speed through the air</source>
+        <translation>volle Geschwindigkeit durch die Luft</translation>
     </message>
     <message>
         <source>fusing views: expected at least one rectified view, found none</source>
@@ -7757,11 +8214,35 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>mit Start um {2} spiegelt Glas die Sonne in {0} von {1} Fotos</translation>
     </message>
     <message>
+        <source>ground risk class: not known</source>
+        <translation>Bodenrisikoklasse: nicht bekannt</translation>
+    </message>
+    <message>
+        <source>ground risk class: {0} intrinsic, {1} final</source>
+        <translation>Bodenrisikoklasse: {0} intrinsisch, {1} endgültig</translation>
+    </message>
+    <message>
+        <source>ground-risk buffer</source>
+        <translation>Bodenrisikopuffer</translation>
+    </message>
+    <message>
+        <source>ground-risk buffer, 1:1</source>
+        <translation>Bodenrisikopuffer, 1:1</translation>
+    </message>
+    <message>
+        <source>ground-risk buffer, to each side</source>
+        <translation>Bodenrisikopuffer, zu jeder Seite</translation>
+    </message>
+    <message>
         <source>has changed since it was added on {0}; look at it, and add it again</source>
         <translation>hat sich geändert, seit sie am {0} hinzugefügt wurde; ansehen und erneut hinzufügen</translation>
     </message>
     <message>
         <source>has changed while it was read</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>has more than {0} points; cut out the part that is wanted, or simplify it</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -7845,8 +8326,16 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Höhen zählen ab {0}; ab {1} gezählt wären sie {2} m</translation>
     </message>
     <message>
+        <source>heights count from the lowest ground in the buffer, as if all of it lay as low</source>
+        <translation>Höhen zählen ab dem tiefsten Boden im Puffer, als läge er überall so tief</translation>
+    </message>
+    <message>
         <source>highest at {0} with {1} degrees</source>
         <translation>am höchsten um {0} mit {1} Grad</translation>
+    </message>
+    <message>
+        <source>highest point of paths and return, above ground</source>
+        <translation>höchster Punkt von Pfaden und Rückkehr, über Grund</translation>
     </message>
     <message>
         <source>holds a COLMAP model already ({0}); name an empty folder</source>
@@ -7898,7 +8387,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>home {0:m} lies inside the geo-zone &apos;{1}&apos; ({2}); move it outside, or state your authorisation (--permit)</source>
-        <translation>der Startplatz {0} liegt in der Geozone '{1}' ({2}); nach außen verlegen oder die Genehmigung angeben (--permit)</translation>
+        <translation>der Startplatz {0} liegt in der Geozone &apos;{1}&apos; ({2}); nach außen verlegen oder die Genehmigung angeben (--permit)</translation>
     </message>
     <message>
         <source>home {0:m} stands where the terrain has no heights; move home, or attach terrain that covers it</source>
@@ -7929,8 +8418,20 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>schon im Format &apos;{0}{1}&apos;, nichts zu tun</translation>
     </message>
     <message>
+        <source>in shade</source>
+        <translation>im Schatten</translation>
+    </message>
+    <message>
         <source>in the air</source>
         <translation>in der Luft</translation>
+    </message>
+    <message>
+        <source>in the sun</source>
+        <translation>in der Sonne</translation>
+    </message>
+    <message>
+        <source>in the sun in part</source>
+        <translation>zum Teil in der Sonne</translation>
     </message>
     <message>
         <source>in {0}°</source>
@@ -7955,6 +8456,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>instances of the file that are to be replaced stand in it in a way that is not understood</source>
         <translation>Instanzen der Datei, die zu ersetzen sind, stehen darin auf eine Weise, die nicht verstanden wird</translation>
+    </message>
+    <message>
+        <source>intrinsic ground risk class</source>
+        <translation>intrinsische Bodenrisikoklasse</translation>
     </message>
     <message>
         <source>invalid %(type)s value: %(value)r</source>
@@ -8017,8 +8522,24 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>ist nicht für --resume, das in einen Akku passt</translation>
     </message>
     <message>
+        <source>is stored in one piece; export it as a tiled GeoTIFF</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>issued {0}</source>
         <translation>herausgegeben {0}</translation>
+    </message>
+    <message>
+        <source>it answers with a page and no data: is the address right?</source>
+        <translation>er antwortet mit einer Seite und ohne Daten: stimmt die Adresse?</translation>
+    </message>
+    <message>
+        <source>it answers with status {0}</source>
+        <translation>er antwortet mit Status {0}</translation>
+    </message>
+    <message>
+        <source>it applies at some times only</source>
+        <translation>sie gilt nur zu manchen Zeiten</translation>
     </message>
     <message>
         <source>it applies at some times only, and no time is planned (--at)</source>
@@ -8029,8 +8550,20 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>es kann nicht</translation>
     </message>
     <message>
+        <source>it cannot be reached ({0})</source>
+        <translation>er ist nicht erreichbar ({0})</translation>
+    </message>
+    <message>
+        <source>it does not answer</source>
+        <translation>er antwortet nicht</translation>
+    </message>
+    <message>
         <source>it does not begin as one</source>
         <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>it does not know where the operator stands</source>
+        <translation>es weiß nicht, wo der Betreiber steht</translation>
     </message>
     <message>
         <source>it does not rise</source>
@@ -8039,6 +8572,26 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>it does not set, {0}</source>
         <translation>sie geht nicht unter, {0}</translation>
+    </message>
+    <message>
+        <source>it ended the stream</source>
+        <translation>er hat den Strom beendet</translation>
+    </message>
+    <message>
+        <source>it has no operator number: enter yours in the settings</source>
+        <translation>es hat keine Betreibernummer: tragen Sie Ihre in den Einstellungen ein</translation>
+    </message>
+    <message>
+        <source>it has no position of the aircraft yet</source>
+        <translation>es hat noch keine Position des Luftfahrzeugs</translation>
+    </message>
+    <message>
+        <source>it has not heard for seconds where the operator stands: the link to it is bad</source>
+        <translation>es hat seit Sekunden nicht gehört, wo der Betreiber steht: die Verbindung zu ihm ist schlecht</translation>
+    </message>
+    <message>
+        <source>it is connected and sends nothing that is RTCM</source>
+        <translation>er ist verbunden und sendet nichts, was RTCM ist</translation>
     </message>
     <message>
         <source>it is cut off</source>
@@ -8057,8 +8610,36 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>es kennt keine Dateiübertragung</translation>
     </message>
     <message>
+        <source>it knows no mountpoint of this name</source>
+        <translation>er kennt keinen Mountpoint dieses Namens</translation>
+    </message>
+    <message>
+        <source>it knows no mountpoint of this name; its list of them came instead</source>
+        <translation>er kennt keinen Mountpoint dieses Namens; stattdessen kam seine Liste</translation>
+    </message>
+    <message>
+        <source>it packs its data in a way that was not asked for</source>
+        <translation>er packt seine Daten auf eine Weise, die nicht verlangt war</translation>
+    </message>
+    <message>
+        <source>it refuses user and password</source>
+        <translation>er lehnt Benutzer und Passwort ab</translation>
+    </message>
+    <message>
+        <source>it says: {0}</source>
+        <translation>es sagt: {0}</translation>
+    </message>
+    <message>
         <source>it was not looked for</source>
         <translation>nicht untersucht</translation>
+    </message>
+    <message>
+        <source>it was not told what the flight is for</source>
+        <translation>ihm wurde nicht gesagt, wozu der Flug dient</translation>
+    </message>
+    <message>
+        <source>it would not land in the light</source>
+        <translation>er würde nicht bei Licht landen</translation>
     </message>
     <message>
         <source>its authority</source>
@@ -8077,6 +8658,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>seine Krümmung ist {0} Standardabweichungen groß, also Rauschen</translation>
     </message>
     <message>
+        <source>its data is not in chunks as it says</source>
+        <translation>seine Daten sind nicht in Stücken, wie er sagt</translation>
+    </message>
+    <message>
         <source>its description is not as it was written ({0})</source>
         <translation>seine Beschreibung ist nicht, wie sie geschrieben wurde ({0})</translation>
     </message>
@@ -8093,12 +8678,16 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>sein Kopf endet nicht innerhalb von {0} Bytes; die Datei ist beschädigt</translation>
     </message>
     <message>
+        <source>its headers have no end</source>
+        <translation>seine Kopfzeilen haben kein Ende</translation>
+    </message>
+    <message>
         <source>its heights are in the unit &apos;{0}&apos;, which is not known here; say it with --height-unit</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
         <source>its lower limit &apos;{0}&apos; lies above the upper one &apos;{1}&apos;</source>
-        <translation>ihre Untergrenze '{0}' liegt über der Obergrenze '{1}'</translation>
+        <translation>ihre Untergrenze &apos;{0}&apos; liegt über der Obergrenze &apos;{1}&apos;</translation>
     </message>
     <message>
         <source>its nearest zone is {0} km away; is this the file for this place?</source>
@@ -8117,12 +8706,20 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>ihr Umriss reicht um die Erde, darum zählt sie als hier gelegen</translation>
     </message>
     <message>
+        <source>its places are in several systems: {0}</source>
+        <translation>ihre Orte stehen in mehreren Bezugssystemen: {0}</translation>
+    </message>
+    <message>
         <source>its points have the property &apos;{0}&apos; twice</source>
         <translation>seine Punkte haben die Eigenschaft &apos;{0}&apos; zweimal</translation>
     </message>
     <message>
         <source>its points have {0} properties; expected 1 to {1}</source>
         <translation>seine Punkte haben {0} Eigenschaften; erwartet werden 1 bis {1}</translation>
+    </message>
+    <message>
+        <source>its shape is that of another airspace, which is not in the file (&apos;{0}&apos;)</source>
+        <translation>ihre Form ist die eines anderen Luftraums, der nicht in der Datei steht ('{0}')</translation>
     </message>
     <message>
         <source>its values are depths ({0}); expected heights</source>
@@ -8145,6 +8742,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Schlüssel gespeichert; einem Fluggerät mit &apos;signing give URL&apos; geben, über ein Kabel</translation>
     </message>
     <message>
+        <source>largest dimension</source>
+        <translation>größte Abmessung</translation>
+    </message>
+    <message>
         <source>lay a grid of panels on a facade, or find panels in photos</source>
         <translation>ein Raster von Scheiben auf eine Fassade legen, oder Scheiben in Fotos suchen</translation>
     </message>
@@ -8162,11 +8763,11 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>line &apos;{0}&apos; belongs to no airspace</source>
-        <translation>Zeile '{0}' gehört zu keinem Luftraum</translation>
+        <translation>Zeile &apos;{0}&apos; gehört zu keinem Luftraum</translation>
     </message>
     <message>
         <source>line &apos;{0}&apos; cannot be read</source>
-        <translation>Zeile '{0}' ist nicht lesbar</translation>
+        <translation>Zeile &apos;{0}&apos; ist nicht lesbar</translation>
     </message>
     <message>
         <source>line 1: expected a column &apos;global_id&apos; or &apos;name&apos;, found {0}</source>
@@ -8221,6 +8822,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Logs werden nur am Boden geholt, von einem Fahrzeug, das zu hören und nicht scharf ist</translation>
     </message>
     <message>
+        <source>longest fall with drag</source>
+        <translation>längster Fall mit Luftwiderstand</translation>
+    </message>
+    <message>
         <source>look at it, pane by pane</source>
         <translation>es ansehen, Scheibe für Scheibe</translation>
     </message>
@@ -8267,6 +8872,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>make the data set that a model learns from</source>
         <translation>den Datensatz erstellen, von dem ein Modell lernt</translation>
+    </message>
+    <message>
+        <source>map error</source>
+        <translation>Kartenfehler</translation>
     </message>
     <message>
         <source>matching photos needs pycolmap, which is not installed; install it with: pip install &apos;reflight-groundstation[colmap]&apos;</source>
@@ -8325,6 +8934,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>mehr als {0} und höchstens {1}</translation>
     </message>
     <message>
+        <source>more, where it still climbs or the wind carries it</source>
+        <translation>mehr, wo es noch steigt oder der Wind es trägt</translation>
+    </message>
+    <message>
         <source>moving the swarm</source>
         <translation>der Schwarm bewegt sich</translation>
     </message>
@@ -8355,6 +8968,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>network for panes</source>
         <translation>neuronales Netz für Scheiben</translation>
+    </message>
+    <message>
+        <source>never</source>
+        <translation>nie</translation>
     </message>
     <message>
         <source>never inspected</source>
@@ -8397,8 +9014,12 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>kein Flug kann mehr als {0} abdecken, das sind also {1} % des Möglichen</translation>
     </message>
     <message>
+        <source>no flights yet; simulated ones: {0} (--simulated)</source>
+        <translation>noch keine Flüge; simulierte: {0} (--simulated)</translation>
+    </message>
+    <message>
         <source>no geo-zones are known here; add files of your authority: &apos;site zones SITE FILE&apos;</source>
-        <translation>hier sind keine Geozonen bekannt; Dateien der Behörde hinzufügen: 'site zones SITE FILE'</translation>
+        <translation>hier sind keine Geozonen bekannt; Dateien der Behörde hinzufügen: &apos;site zones SITE FILE&apos;</translation>
     </message>
     <message>
         <source>no ground was seen: it is taken to be where the lowest points are</source>
@@ -8481,12 +9102,24 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>niemand hat gesagt, wo der Standort ist, oder wie groß: machen Sie sein Grobmodell noch einmal mit --origin und mit einer Strecke oder Passpunkten, oder setzen Sie seinen Ursprung im Reiter Standort, sobald seine Größe bekannt ist</translation>
     </message>
     <message>
+        <source>nobody who is not involved (controlled ground area)</source>
+        <translation>niemand Unbeteiligtes (kontrollierter Bodenbereich)</translation>
+    </message>
+    <message>
         <source>none</source>
-        <translation type="unfinished"></translation>
+        <translation>keine</translation>
     </message>
     <message>
         <source>none begins so</source>
         <translation>keine beginnt so</translation>
+    </message>
+    <message>
+        <source>none from {0} yet</source>
+        <translation>noch keine von {0}</translation>
+    </message>
+    <message>
+        <source>none from {0}: {1}</source>
+        <translation>keine von {0}: {1}</translation>
     </message>
     <message>
         <source>none of its {0} photos says where the camera looked; name the plan that was flown as well (--plan)</source>
@@ -8517,12 +9150,24 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>keines von {0} Fotos hat ein Pixel, das ganz auf einer Scheibe liegt; größere Fotos nehmen (--width) oder näher herangehen</translation>
     </message>
     <message>
+        <source>not KML, or damaged ({0}); export it again</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>not a GeoTIFF that can be shown ({0}); export it again</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>not a map in PMTiles format, or damaged ({0}); choose another file, or export the map again</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
         <source>not allowed with argument %s</source>
         <translation>nicht zusammen mit Argument %s erlaubt</translation>
+    </message>
+    <message>
+        <source>not assessed: {0}</source>
+        <translation>nicht bewertet: {0}</translation>
     </message>
     <message>
         <source>not kept out of</source>
@@ -8539,6 +9184,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>not sent, the aircraft would refuse it: {0}</source>
         <translation>nicht gesendet, das Luftfahrzeug würde es ablehnen: {0}</translation>
+    </message>
+    <message>
+        <source>not stated how many: keep everybody out who is not involved</source>
+        <translation>nicht angegeben, wie viele: halten Sie alle Unbeteiligten fern</translation>
     </message>
     <message>
         <source>not supported; expected an instance without fixed edges</source>
@@ -8625,12 +9274,24 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>der Scheiben oder des Glases</translation>
     </message>
     <message>
+        <source>of the aircraft in the plan</source>
+        <translation>des Fluggeräts im Plan</translation>
+    </message>
+    <message>
+        <source>of the plan</source>
+        <translation>des Plans</translation>
+    </message>
+    <message>
         <source>of the points</source>
         <translation>der Punkte</translation>
     </message>
     <message>
         <source>of what can be covered</source>
         <translation>vom Erreichbaren</translation>
+    </message>
+    <message>
+        <source>of {0} it is not known how large, heavy and fast it is; state {1}, or &apos;body&apos; in a profile of your own</source>
+        <translation>von {0} ist nicht bekannt, wie groß, schwer und schnell es ist; geben Sie {1} an, oder 'body' in einem eigenen Profil</translation>
     </message>
     <message>
         <source>off</source>
@@ -8659,6 +9320,18 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>opened no link at {0} within {1} s</source>
         <translation>öffnete innerhalb von {1} s keinen Link unter {0}</translation>
+    </message>
+    <message>
+        <source>operator number &apos;{0}&apos;: expected 3 capitals for the state, 13 small letters and digits, and perhaps a hyphen and 3 more, such as FIN87astrdge12k8-xyz</source>
+        <translation>Betreibernummer '{0}': erwartet wurden 3 Großbuchstaben für den Staat, 13 kleine Buchstaben und Ziffern und vielleicht ein Bindestrich mit 3 weiteren, etwa FIN87astrdge12k8-xyz</translation>
+    </message>
+    <message>
+        <source>operator number &apos;{0}&apos;: its checksum is wrong; compare it with your registration, letter by letter</source>
+        <translation>Betreibernummer '{0}': ihre Prüfsumme ist falsch; vergleichen Sie sie Zeichen für Zeichen mit Ihrer Registrierung</translation>
+    </message>
+    <message>
+        <source>operator number: expected 1 to {0} letters and digits, got {1}</source>
+        <translation>Betreibernummer: erwartet wurden 1 bis {0} Buchstaben und Ziffern, es sind {1}</translation>
     </message>
     <message>
         <source>optimum</source>
@@ -8705,16 +9378,28 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Teile des Logs sind beschädigt und wurden übersprungen</translation>
     </message>
     <message>
+        <source>parts that are cut off or cut out count all the same</source>
+        <translation>Teile, die ab- oder ausgeschnitten werden, zählen trotzdem</translation>
+    </message>
+    <message>
         <source>passphrase: </source>
         <translation>Passphrase: </translation>
     </message>
     <message>
+        <source>password of the caster: </source>
+        <translation>Passwort des Casters: </translation>
+    </message>
+    <message>
+        <source>people below: {0}</source>
+        <translation>Menschen darunter: {0}</translation>
+    </message>
+    <message>
         <source>permissions of the old state of &apos;{0}&apos; have ended, state them again: {1}</source>
-        <translation>Genehmigungen für den alten Stand von '{0}' sind beendet, erneut angeben: {1}</translation>
+        <translation>Genehmigungen für den alten Stand von &apos;{0}&apos; sind beendet, erneut angeben: {1}</translation>
     </message>
     <message>
         <source>permitted by &apos;{0}&apos;</source>
-        <translation>genehmigt durch '{0}'</translation>
+        <translation>genehmigt durch &apos;{0}&apos;</translation>
     </message>
     <message>
         <source>photo &apos;{0}&apos; is in {1} already; keep one of them</source>
@@ -8789,6 +9474,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>geplant in {0} s ({1})</translation>
     </message>
     <message>
+        <source>plans keep out of it</source>
+        <translation>Pläne meiden sie</translation>
+    </message>
+    <message>
+        <source>plans need not keep out of it</source>
+        <translation>Pläne brauchen sie nicht zu meiden</translation>
+    </message>
+    <message>
         <source>plans:   {0}</source>
         <translation>Pläne:    {0}</translation>
     </message>
@@ -8805,6 +9498,18 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Position</translation>
     </message>
     <message>
+        <source>position hold error</source>
+        <translation>Fehler beim Halten der Position</translation>
+    </message>
+    <message>
+        <source>profile &apos;{0}&apos;</source>
+        <translation>Profil '{0}'</translation>
+    </message>
+    <message>
+        <source>profile: {0}</source>
+        <translation>Profil: {0}</translation>
+    </message>
+    <message>
         <source>project: {0}</source>
         <translation>Projekt: {0}</translation>
     </message>
@@ -8813,8 +9518,20 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>px Parallaxe</translation>
     </message>
     <message>
+        <source>question: {0}</source>
+        <translation>Frage: {0}</translation>
+    </message>
+    <message>
         <source>reachability</source>
         <translation>Erreichbarkeit</translation>
+    </message>
+    <message>
+        <source>reaches beyond the end of web maps (85 degrees); cut out the part that is wanted</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>reaction</source>
+        <translation>Reaktion</translation>
     </message>
     <message>
         <source>read back and compared, files: {0}; take the device out by the system&apos;s eject before you pull it</source>
@@ -8867,6 +9584,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>refined poses{0}</source>
         <translation>verfeinerte Posen{0}</translation>
+    </message>
+    <message>
+        <source>remote ID is demanded and switched off: set DID_ENABLE to 1</source>
+        <translation>Remote ID ist verlangt und ausgeschaltet: setzen Sie DID_ENABLE auf 1</translation>
+    </message>
+    <message>
+        <source>remote ID: {0}</source>
+        <translation>Remote ID: {0}</translation>
     </message>
     <message>
         <source>rendered in</source>
@@ -8985,6 +9710,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>die Mission zum Fluggerät schicken</translation>
     </message>
     <message>
+        <source>serial number &apos;{0}&apos;: expected at most {1} letters and digits</source>
+        <translation>Seriennummer '{0}': erwartet wurden höchstens {1} Buchstaben und Ziffern</translation>
+    </message>
+    <message>
         <source>setting</source>
         <translation>Einstellung</translation>
     </message>
@@ -9005,16 +9734,16 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>zeigt andere Scheiben als die gelernten; Fotos desselben Standorts nennen</translation>
     </message>
     <message>
+        <source>simulated fly-aways: {0} of {1} ended inside; smallest distance to the border {2} m</source>
+        <translation>simulierte Ausreißer: {0} von {1} endeten innerhalb; kleinster Abstand zum Rand {2} m</translation>
+    </message>
+    <message>
         <source>simulated {0}</source>
         <translation>simuliertes {0}</translation>
     </message>
     <message>
         <source>simulation, {0} times as fast</source>
         <translation>Simulation, {0}-mal so schnell</translation>
-    </message>
-    <message>
-        <source>site &apos;{0}&apos; with terrain from {1} m to {2} m in its own frame, known on {3} % of the area</source>
-        <translation type="unfinished"></translation>
     </message>
     <message>
         <source>site &apos;{0}&apos; without terrain</source>
@@ -9039,6 +9768,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>size</source>
         <translation>Größe</translation>
+    </message>
+    <message>
+        <source>sized for calm air: any wind carries a falling aircraft beyond the buffer</source>
+        <translation>für Windstille bemessen: jeder Wind trägt ein fallendes Fluggerät über den Puffer hinaus</translation>
+    </message>
+    <message>
+        <source>sized for {0} m/s; where a mode limits it to the plan&apos;s {1} m/s, state that as full speed</source>
+        <translation>für {0} m/s bemessen; wo ein Modus auf die {1} m/s des Plans begrenzt, geben Sie diese als volle Geschwindigkeit an</translation>
     </message>
     <message>
         <source>smallest clearance</source>
@@ -9073,6 +9810,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>unbeschädigt</translation>
     </message>
     <message>
+        <source>source</source>
+        <translation>Quelle</translation>
+    </message>
+    <message>
         <source>speed</source>
         <translation>Tempo</translation>
     </message>
@@ -9105,6 +9846,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Zustand</translation>
     </message>
     <message>
+        <source>state how many people are below; without that there is no ground risk class</source>
+        <translation>geben Sie an, wie viele Menschen darunter sind; ohne das gibt es keine Bodenrisikoklasse</translation>
+    </message>
+    <message>
+        <source>stated by the pilot</source>
+        <translation>Angabe des Piloten</translation>
+    </message>
+    <message>
         <source>steps</source>
         <translation>Schritte</translation>
     </message>
@@ -9117,8 +9866,20 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>stoppen, wenn die Kurve flach ist, oder das Ende abwarten</translation>
     </message>
     <message>
+        <source>strongest that the aircraft may fly in</source>
+        <translation>stärkster, in dem das Fluggerät fliegen darf</translation>
+    </message>
+    <message>
+        <source>sum of this program, see the guide</source>
+        <translation>Rechnung dieses Programms, siehe Anleitung</translation>
+    </message>
+    <message>
         <source>sun</source>
         <translation>Sonne</translation>
+    </message>
+    <message>
+        <source>sun at heading {0}, elevation {1} degrees</source>
+        <translation>Sonne in Richtung {0}, Höhe {1} Grad</translation>
     </message>
     <message>
         <source>sun in panes</source>
@@ -9130,11 +9891,19 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>sun over &apos;{0}&apos; on {1} ({2})</source>
-        <translation>Sonne über '{0}' am {1} ({2})</translation>
+        <translation>Sonne über &apos;{0}&apos; am {1} ({2})</translation>
     </message>
     <message>
         <source>sun over the pilot</source>
         <translation>Sonne über dem Piloten</translation>
+    </message>
+    <message>
+        <source>symbol</source>
+        <translation>Zeichen</translation>
+    </message>
+    <message>
+        <source>tactical mitigations and safety objectives (OSO)</source>
+        <translation>taktische Minderungen und Sicherheitsziele (OSO)</translation>
     </message>
     <message>
         <source>take off at {0} (as good: {1})</source>
@@ -9143,6 +9912,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>take-off</source>
         <translation>Start</translation>
+    </message>
+    <message>
+        <source>take-off mass</source>
+        <translation>Startmasse</translation>
     </message>
     <message>
         <source>takeOffRefPoint {0},{1} is not on the globe and is not used</source>
@@ -9169,6 +9942,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>terrain from {0} m to {1} m in the site&apos;s own frame, known on {2} % of the area</source>
+        <translation>Gelände von {0} m bis {1} m im eigenen System des Standorts, bekannt auf {2} % der Fläche</translation>
+    </message>
+    <message>
+        <source>the AIXM file {0}; expected airspaces alone</source>
+        <translation>die AIXM-Datei {0}; erwartet werden nur Lufträume</translation>
+    </message>
+    <message>
         <source>the KML file {0}; expected areas alone</source>
         <translation>die KML-Datei {0}; erwartet werden nur Flächen</translation>
     </message>
@@ -9181,12 +9962,24 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>das ULog ist unlesbar beschädigt; noch einmal vom Fluggerät kopieren</translation>
     </message>
     <message>
+        <source>the address holds a password, a space or a letter that addresses do not have</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>the aircraft did not fly while this log was written; take the log of the flight</source>
         <translation>das Fluggerät flog nicht, während dieses Log geschrieben wurde; das Log des Fluges nehmen</translation>
     </message>
     <message>
         <source>the aircraft flies at {0} m/s, which is all that DJI&apos;s format takes, and not at the plan&apos;s {1} m/s: the flight takes longer than planned; plan with the lower speed</source>
         <translation>das Fluggerät fliegt mit {0} m/s, mehr lässt DJIs Format nicht zu, und nicht mit den {1} m/s des Plans: der Flug dauert länger als geplant; mit der kleineren Geschwindigkeit planen</translation>
+    </message>
+    <message>
+        <source>the aircraft is larger or faster than SORA&apos;s table goes; ask the authority</source>
+        <translation>das Fluggerät ist größer oder schneller, als die Tabelle von SORA reicht; fragen Sie die Behörde</translation>
+    </message>
+    <message>
+        <source>the aircraft&apos;s serial number is missing: enter it in the settings, or set it in the module</source>
+        <translation>die Seriennummer des Luftfahrzeugs fehlt: tragen Sie sie in den Einstellungen ein oder setzen Sie sie im Modul</translation>
     </message>
     <message>
         <source>the airspace is {0} m by {1} m, as far as the photos were taken: what stands behind their cameras is not known; widen it where you have looked</source>
@@ -9278,11 +10071,15 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>the file says &apos;{0}&apos; of &apos;{1}&apos;, which is not known here</source>
-        <translation>die Datei sagt '{0}' zu '{1}', was hier nicht bekannt ist</translation>
+        <translation>die Datei sagt &apos;{0}&apos; zu &apos;{1}&apos;, was hier nicht bekannt ist</translation>
     </message>
     <message>
         <source>the file says where this is, but not what it means; until you say, it counts as prohibited</source>
         <translation>die Datei sagt, wo das ist, aber nicht, was es bedeutet; bis Sie es sagen, gilt es als verboten</translation>
+    </message>
+    <message>
+        <source>the flight geography reaches {0} m above ground; above {1} m other rules hold</source>
+        <translation>die Fluggeographie reicht {0} m über Grund; über {1} m gelten andere Regeln</translation>
     </message>
     <message>
         <source>the flight is {0} km from the site &apos;{1}&apos;; expected at most {2} km; is it the right log, and the right site?</source>
@@ -9305,6 +10102,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>the ground falls away as far as the buffer is widened; limit speed or wind</source>
+        <translation>der Boden fällt ab, so weit der Puffer auch wird; begrenzen Sie Geschwindigkeit oder Wind</translation>
+    </message>
+    <message>
         <source>the ground falls by {0} degrees; heights count from the building&apos;s foot</source>
         <translation>der Boden fällt um {0} Grad; Höhen zählen vom Fuß des Gebäudes</translation>
     </message>
@@ -9314,7 +10115,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>the height &apos;{0}&apos; cannot be read</source>
-        <translation>die Höhe '{0}' ist nicht lesbar</translation>
+        <translation>die Höhe &apos;{0}&apos; ist nicht lesbar</translation>
     </message>
     <message>
         <source>the heights are damaged (expected {0} nodes, found {1}); attach the terrain again</source>
@@ -9329,8 +10130,20 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>der Bildname bei Byte {0} hat kein Ende; die Datei ist beschädigt</translation>
     </message>
     <message>
+        <source>the last is {0} s old, from {1}</source>
+        <translation>die letzte ist {0} s alt, von {1}</translation>
+    </message>
+    <message>
+        <source>the latitude is {0} degrees; expected -90 to 90{1}</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>the lens moves pixels by up to {0} px</source>
         <translation>das Objektiv verschiebt Pixel um bis zu {0} px</translation>
+    </message>
+    <message>
+        <source>the licence is missing; enter the words that the map&apos;s owner asks for, such as © OpenStreetMap contributors</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <source>the link to the simulated vehicle is closed</source>
@@ -9377,11 +10190,43 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>die Logs auf dem Fahrzeug sind leer</translation>
     </message>
     <message>
+        <source>the longitude is {0} degrees; expected -180 to 180</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>the lower bound</source>
         <translation>die untere Schranke</translation>
     </message>
     <message>
         <source>the map is compressed with {0}; expected gzip, Zstandard or none; convert it with the program pmtiles</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>the map server {0} cannot be reached ({1})</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>the map server {0} does not answer</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>the map server {0} does not let Reflight in (answer {1}); look at its terms of use</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>the map server {0} is busy or broken (answer {1})</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>the map server {0} sends elsewhere; enter the address that it sends to</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>the map server {0} sent more than {1} MiB for a tile</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>the map server {0} sent something else than a map tile ({1}); look at the address</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -9405,6 +10250,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>das Modell, das ein Flug bringt, in ungesehenen Ansichten von &apos;{0}&apos;</translation>
     </message>
     <message>
+        <source>the module has been silent for {0} s; it may not let the aircraft arm</source>
+        <translation>das Modul schweigt seit {0} s; vielleicht lässt es das Luftfahrzeug nicht scharf werden</translation>
+    </message>
+    <message>
+        <source>the module is content</source>
+        <translation>das Modul ist zufrieden</translation>
+    </message>
+    <message>
         <source>the name does not say where the tile lies; expected one such as N22E114.hgt</source>
         <translation type="unfinished"></translation>
     </message>
@@ -9419,6 +10272,18 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the network sees no glass on {0} % of {1} panels, and {2} % of its glass lies outside them</source>
         <translation>das Netz sieht auf {0} % von {1} Scheiben kein Glas, und {2} % seines Glases liegen außerhalb davon</translation>
+    </message>
+    <message>
+        <source>the northing {0} m does not lie in band {1}</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>the online map is off</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>the operator number has the right form; with its secret part its checksum can be proved</source>
+        <translation>die Betreibernummer hat die richtige Form; mit ihrem geheimen Teil lässt sich ihre Prüfsumme beweisen</translation>
     </message>
     <message>
         <source>the optimum</source>
@@ -9469,8 +10334,16 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>das Bild ist nicht zu schreiben</translation>
     </message>
     <message>
+        <source>the picture does not say where it lies; export it as GeoTIFF with a reference system</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>the picture is distorted, and splats are rendered without distortion; make it straight with `prepare`</source>
         <translation>das Bild ist verzeichnet, und Splats werden ohne Verzeichnung gerendert; mit `prepare` entzerren</translation>
+    </message>
+    <message>
+        <source>the plan has no sorties, so there is nothing that could fall; plan a flight first</source>
+        <translation>der Plan hat keine Flüge, also kann nichts abstürzen; planen Sie zuerst einen Flug</translation>
     </message>
     <message>
         <source>the plan is NOT ready to fly: the brief lists why</source>
@@ -9503,6 +10376,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the reader of IFC files crashed on this one (status {0}), so something in it goes in circles or beyond all bounds; open and export it again in a BIM program</source>
         <translation>der Leser von IFC-Dateien stürzte bei dieser ab (Status {0}), etwas darin geht also im Kreis oder über alle Grenzen; sie in einem BIM-Programm öffnen und neu exportieren</translation>
+    </message>
+    <message>
+        <source>the remote ID module is silent: look at its power, its wiring and DID_MAVPORT</source>
+        <translation>das Remote-ID-Modul schweigt: prüfen Sie Strom, Verkabelung und DID_MAVPORT</translation>
     </message>
     <message>
         <source>the return height is none that DJI&apos;s remote controllers take: expected {0} to {1} m above take-off, got {2} m</source>
@@ -9538,7 +10415,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>the site has no file of geo-zones &apos;{0}&apos;; it has: {1}</source>
-        <translation>der Standort hat keine Datei mit Geozonen '{0}'; er hat: {1}</translation>
+        <translation>der Standort hat keine Datei mit Geozonen &apos;{0}&apos;; er hat: {1}</translation>
     </message>
     <message>
         <source>the site has no geo-zones, so which apply here is not looked at</source>
@@ -9641,8 +10518,16 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>the terrain has no heights for a part below it, so its heights are not known</source>
+        <translation>das Gelände hat für einen Teil darunter keine Höhen, darum sind ihre Höhen nicht bekannt</translation>
+    </message>
+    <message>
         <source>the terrain has no heights for a part below the airspace</source>
         <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>the terrain has no heights for a part of the buffer: what lies lower there is not counted</source>
+        <translation>das Gelände hat für einen Teil des Puffers keine Höhen: was dort tiefer liegt, zählt nicht</translation>
     </message>
     <message>
         <source>the terrain of the site is not used, as you asked, though {0}; heights count from level ground</source>
@@ -9693,6 +10578,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>das Fenster umspannt {0} Grad des Zylinders</translation>
     </message>
     <message>
+        <source>the zone is {0}; UTM has zones from 1 to 60</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>there are no logs on the vehicle</source>
         <translation>auf dem Fahrzeug sind keine Logs</translation>
     </message>
@@ -9706,7 +10595,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>there are two lines &apos;{0}&apos;</source>
-        <translation>es gibt zwei Zeilen '{0}'</translation>
+        <translation>es gibt zwei Zeilen &apos;{0}&apos;</translation>
     </message>
     <message>
         <source>there is another file of that name beside the site; rename one</source>
@@ -9717,16 +10606,28 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>&apos;{0}&apos; gibt es nicht; bekannt sind: {1}</translation>
     </message>
     <message>
+        <source>there is no KML in it; choose another file</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>there is no folder or device &apos;{0}&apos;; connected: {1}</source>
         <translation>es gibt keinen Ordner und kein Gerät &apos;{0}&apos;; angeschlossen: {1}</translation>
     </message>
     <message>
         <source>there is no log &apos;{0}&apos; on the vehicle; the newest are: {1}</source>
-        <translation>auf dem Fahrzeug gibt es kein Log '{0}'; die neuesten sind: {1}</translation>
+        <translation>auf dem Fahrzeug gibt es kein Log &apos;{0}&apos;; die neuesten sind: {1}</translation>
     </message>
     <message>
         <source>there is no point {0}</source>
         <translation>es gibt keinen Punkt {0}</translation>
+    </message>
+    <message>
+        <source>there is no square {0} in band {1} of zone {2}</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>there is no square {0} in zone {1}</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <source>there is no such file or folder</source>
@@ -9742,11 +10643,15 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>there is no zone &apos;{0}&apos; in the site&apos;s files; those near it are: {1}</source>
-        <translation>in den Dateien des Standorts gibt es keine Zone '{0}'; nahe liegen: {1}</translation>
+        <translation>in den Dateien des Standorts gibt es keine Zone &apos;{0}&apos;; nahe liegen: {1}</translation>
     </message>
     <message>
         <source>there is no zone in this {0} file</source>
         <translation>in dieser {0}-Datei ist keine Zone</translation>
+    </message>
+    <message>
+        <source>there is nothing in it that has a place: no points, lines or areas; choose another file</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <source>there is one photo</source>
@@ -9763,6 +10668,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>this looks like the card of a camera (it has a folder DCIM); DJI Pilot 2 reads the card in the remote controller</source>
         <translation>das sieht nach der Karte einer Kamera aus (sie hat einen Ordner DCIM); DJI Pilot 2 liest die Karte in der Fernsteuerung</translation>
+    </message>
+    <message>
+        <source>this place is {0} km from the site; move the site&apos;s zero there first</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <source>this source begins on {0} only</source>
@@ -9789,6 +10698,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>zu wenige Punkte sind in mehreren Fotos zu sehen</translation>
     </message>
     <message>
+        <source>top of the contingency volume</source>
+        <translation>Oberkante des Notfallvolumens</translation>
+    </message>
+    <message>
+        <source>top of the flight geography</source>
+        <translation>Oberkante der Fluggeographie</translation>
+    </message>
+    <message>
         <source>train a model</source>
         <translation>ein Modell trainieren</translation>
     </message>
@@ -9803,6 +10720,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>two facades at a right angle, whose glass sees glass</source>
         <translation>zwei Fassaden im rechten Winkel, deren Glas Glas sieht</translation>
+    </message>
+    <message>
+        <source>uninvolved people inside: {0}</source>
+        <translation>Unbeteiligte darin: {0}</translation>
     </message>
     <message>
         <source>unpacking</source>
@@ -9829,6 +10750,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>wird hochgeladen</translation>
     </message>
     <message>
+        <source>value</source>
+        <translation type="unfinished">Wert</translation>
+    </message>
+    <message>
         <source>viewpoints: {0}</source>
         <translation>Aufnahmepunkte: {0}</translation>
     </message>
@@ -9845,8 +10770,20 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>zurückgehaltene Ansichten haben damit {0} dB, mit Splats allein {1} dB</translation>
     </message>
     <message>
+        <source>way to brake</source>
+        <translation>Bremsweg</translation>
+    </message>
+    <message>
         <source>waypoints: {0}</source>
         <translation>Wegpunkte: {0}</translation>
+    </message>
+    <message>
+        <source>what answers there is no NTRIP caster</source>
+        <translation>was dort antwortet, ist kein NTRIP-Caster</translation>
+    </message>
+    <message>
+        <source>what changes it for a time ({0} entries) is not read</source>
+        <translation>was sie zeitweise ändert ({0} Einträge), wird nicht gelesen</translation>
     </message>
     <message>
         <source>what is read back is not what was written (it differs from byte {0} on); the card may be broken: use another one</source>
@@ -9861,8 +10798,24 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>was ersetzt werden soll, kann nicht zuerst hierher kopiert werden ({0}); nichts wurde gesendet</translation>
     </message>
     <message>
+        <source>what it is</source>
+        <translation>was es ist</translation>
+    </message>
+    <message>
         <source>what only single photos show</source>
         <translation>was nur einzelne Fotos zeigen</translation>
+    </message>
+    <message>
+        <source>when it is active is not read: it counts all the time</source>
+        <translation>wann sie aktiv ist, wird nicht gelesen: sie zählt immer</translation>
+    </message>
+    <message>
+        <source>wind, from any side</source>
+        <translation>Wind, von jeder Seite</translation>
+    </message>
+    <message>
+        <source>with take-off then, the sun or its mirror image is in {0} of {1} photos, {2} show uneven light, the pilot is blinded for {3} s</source>
+        <translation>mit Start dann ist die Sonne oder ihr Spiegelbild in {0} von {1} Fotos, {2} zeigen ungleichmäßiges Licht, der Pilot ist {3} s lang geblendet</translation>
     </message>
     <message>
         <source>with this flight: {0}</source>
@@ -9883,6 +10836,22 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>written</source>
         <translation>geschrieben</translation>
+    </message>
+    <message>
+        <source>zone &apos;{0}&apos; differs between files ({1}); name one as FILE/ZONE</source>
+        <translation>Zone '{0}' ist in den Dateien verschieden ({1}); eine als DATEI/ZONE nennen</translation>
+    </message>
+    <message>
+        <source>zones: {0}</source>
+        <translation>Zonen: {0}</translation>
+    </message>
+    <message>
+        <source>{0}</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>{0}  {1} min  {2}, {3}, photos: {4} of {5}</source>
+        <translation>{0}  {1} min  {2}, {3}, Fotos: {4} von {5}</translation>
     </message>
     <message>
         <source>{0} % of the error is where one photo contradicts the others</source>
@@ -9933,6 +10902,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>{0} Bytes des Logs sind keine Datensätze und wurden übersprungen</translation>
     </message>
     <message>
+        <source>{0} bytes/s, messages {1}</source>
+        <translation>{0} Bytes/s, Nachrichten {1}</translation>
+    </message>
+    <message>
         <source>{0} is left out: the format {1} has no use for it</source>
         <translation>{0} entfällt: das Format {1} kann damit nichts anfangen</translation>
     </message>
@@ -9943,6 +10916,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>{0} lines of the log make no sense and were skipped</source>
         <translation>{0} Zeilen des Logs ergeben keinen Sinn und wurden übersprungen</translation>
+    </message>
+    <message>
+        <source>{0} may fly in wind of up to {1} m/s, but {2} m/s are stated; wait for less, or take another aircraft</source>
+        <translation>{0} darf in Wind bis {1} m/s fliegen, angegeben sind aber {2} m/s; warten Sie auf weniger, oder nehmen Sie ein anderes Fluggerät</translation>
     </message>
     <message>
         <source>{0} more values were left out</source>
@@ -10043,6 +11020,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>{0}; another battery would bring {1} dB more</source>
         <translation>{0}; ein weiterer Akku brächte {1} dB mehr</translation>
+    </message>
+    <message>
+        <source>{0}; export it again</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <source>{0}; the sun or its mirror image is in {1} of {2} photos, {3} show uneven light, the pilot is blinded for {4} s</source>
@@ -11593,6 +12574,34 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>feinstes Pixel auf einer Scheibe, beim gröbsten Foto</translation>
     </message>
     <message>
+        <source>    {0}</source>
+        <translation>    {0}</translation>
+    </message>
+    <message>
+        <source> (remote ID: {0})</source>
+        <translation> (Remote ID: {0})</translation>
+    </message>
+    <message>
+        <source>&apos;O&apos; is east in German and west in French; write E or W</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>&apos;{0}&apos; has 60 or more minutes or seconds</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>&apos;{0}&apos; has decimals before its last part</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>&apos;{0}&apos; is no band of UTM; bands are C to X without I and O</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>&apos;{0}&apos; is no place; expected latitude and longitude (22.3372, 114.2636, or 22°20&apos;14&quot; N 114°15&apos;49&quot; E), UTM (50Q 218155 2472500) or MGRS (50Q KK 18155 72500)</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>, {0} dB on facades of {1}</source>
         <translation>, {0} dB auf Fassaden ({1})</translation>
     </message>
@@ -11601,8 +12610,476 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>, {0} dB ({1})</translation>
     </message>
     <message>
+        <source>1:1 is not enough: it can fall {0} m far, the buffer is {1} m</source>
+        <translation>1:1 reicht nicht: es kann {0} m weit fallen, der Puffer hat {1} m</translation>
+    </message>
+    <message>
+        <source>; is the longitude written first?</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>; their base stands {0} km away</source>
+        <translation>; ihre Basis steht {0} km entfernt</translation>
+    </message>
+    <message>
+        <source>; where their base stands is not known</source>
+        <translation>; wo ihre Basis steht, ist nicht bekannt</translation>
+    </message>
+    <message>
+        <source>; with take-off at {0} it would be {1} s</source>
+        <translation>; mit Start um {0} wären es {1} s</translation>
+    </message>
+    <message>
+        <source>A filled draft: the operator checks every number before it is used. It is no permission.</source>
+        <translation>Ein ausgefüllter Entwurf: der Betreiber prüft jede Zahl vor der Verwendung. Er ist keine Genehmigung.</translation>
+    </message>
+    <message>
+        <source>A flight with one battery, from take-off to landing.</source>
+        <translation>Ein Flug mit einem Akku, vom Start bis zur Landung.</translation>
+    </message>
+    <message>
+        <source>A part of the hemisphere of directions before a panel. A photo covers the section that it is taken from; glass looks different from each.</source>
+        <translation>Ein Teil der Halbkugel von Richtungen vor einer Scheibe. Ein Foto deckt den Sektor ab, aus dem es aufgenommen ist; aus jedem sieht Glas anders aus.</translation>
+    </message>
+    <message>
+        <source>A place in the air with heading and gimbal pitch, from where one photo is taken.</source>
+        <translation>Ein Ort in der Luft mit Richtung und Gimbalneigung, von dem aus ein Foto aufgenommen wird.</translation>
+    </message>
+    <message>
+        <source>A place where the aircraft may land instead of home when it returns.</source>
+        <translation>Ein Ort, an dem das Fluggerät bei der Rückkehr statt am Startplatz landen darf.</translation>
+    </message>
+    <message>
+        <source>A small blurred ellipse in space. A model is made of many, and of the light that panes mirror.</source>
+        <translation>Eine kleine unscharfe Ellipse im Raum. Ein Modell besteht aus vielen, und aus dem Licht, das Scheiben spiegeln.</translation>
+    </message>
+    <message>
+        <source>Above ellipsoid</source>
+        <translation type="unfinished">Über Ellipsoid</translation>
+    </message>
+    <message>
+        <source>Above sea level</source>
+        <translation type="unfinished">Über Meer</translation>
+    </message>
+    <message>
+        <source>Above take-off</source>
+        <translation type="unfinished">Über Start</translation>
+    </message>
+    <message>
+        <source>Address</source>
+        <translation type="unfinished">Adresse</translation>
+    </message>
+    <message>
+        <source>Aircraft at once</source>
+        <translation type="unfinished">Fluggeräte zugleich</translation>
+    </message>
+    <message>
+        <source>Airspace</source>
+        <translation type="unfinished">Luftraum</translation>
+    </message>
+    <message>
+        <source>Airspace around the building</source>
+        <translation type="unfinished">Luftraum um das Gebäude</translation>
+    </message>
+    <message>
+        <source>Autopilot</source>
+        <translation type="unfinished">Autopilot</translation>
+    </message>
+    <message>
+        <source>Batteries</source>
+        <translation type="unfinished">Akkus</translation>
+    </message>
+    <message>
+        <source>Battery reserve</source>
+        <translation type="unfinished">Akkureserve</translation>
+    </message>
+    <message>
+        <source>By how much unseen views of the model must get better, in decibels, for one battery more to be planned.</source>
+        <translation>Um wie viel Dezibel nicht gesehene Ansichten des Modells besser werden müssen, damit ein Akku mehr geplant wird.</translation>
+    </message>
+    <message>
+        <source>Clearance</source>
+        <translation type="unfinished">Abstand</translation>
+    </message>
+    <message>
+        <source>Coarsest GSD</source>
+        <translation>Gröbste GSD</translation>
+    </message>
+    <message>
+        <source>Corrections by which GNSS knows its place to centimetres instead of metres.</source>
+        <translation>Korrekturen, mit denen GNSS seinen Ort auf Zentimeter statt auf Meter kennt.</translation>
+    </message>
+    <message>
+        <source>Count whole panels only</source>
+        <translation type="unfinished">Nur ganze Scheiben</translation>
+    </message>
+    <message>
+        <source>Coverage</source>
+        <translation type="unfinished">Abdeckung</translation>
+    </message>
+    <message>
+        <source>Data set</source>
+        <translation type="unfinished">Datensatz</translation>
+    </message>
+    <message>
+        <source>EGM96 stands in for EGM2008: both differ by 0.5 m in the mean, at few places by several metres; home stands on the same terrain, so heights above take-off do not change</source>
+        <translation>EGM96 steht für EGM2008: beide unterscheiden sich im Mittel um 0.5 m, an wenigen Orten um mehrere Meter; der Startplatz steht auf demselben Gelände, Höhen über dem Start ändern sich also nicht</translation>
+    </message>
+    <message>
+        <source>Effects</source>
+        <translation type="unfinished">Effekte</translation>
+    </message>
+    <message>
+        <source>Equal panels in rows and columns, laid into a rectangle on a wall.</source>
+        <translation>Gleiche Scheiben in Reihen und Spalten, in ein Rechteck auf einer Wand gelegt.</translation>
+    </message>
+    <message>
+        <source>GNSS</source>
+        <translation>GNSS</translation>
+    </message>
+    <message>
+        <source>GNSS error</source>
+        <translation>GNSS-Fehler</translation>
+    </message>
+    <message>
+        <source>GSD</source>
+        <translation>GSD</translation>
+    </message>
+    <message>
+        <source>Ground risk by SORA 2.5: {0}</source>
+        <translation>Bodenrisiko nach SORA 2.5: {0}</translation>
+    </message>
+    <message>
+        <source>Ground sampling distance: how much of the facade one pixel shows. 2.7 mm shows a scratch, 20 mm a frame.</source>
+        <translation>Ground Sampling Distance: wie viel der Fassade ein Pixel zeigt. 2.7 mm zeigen einen Kratzer, 20 mm einen Rahmen.</translation>
+    </message>
+    <message>
+        <source>Height above the WGS 84 ellipsoid, as GNSS measures it. It is no height above the sea.</source>
+        <translation>Höhe über dem Ellipsoid WGS 84, wie GNSS sie misst. Sie ist keine Höhe über dem Meer.</translation>
+    </message>
+    <message>
+        <source>Heights are</source>
+        <translation type="unfinished">Höhen sind</translation>
+    </message>
+    <message>
+        <source>How many times faster than real time a simulated vehicle flies.</source>
+        <translation>Wie viel schneller als in Wirklichkeit ein simuliertes Fluggerät fliegt.</translation>
+    </message>
+    <message>
+        <source>How viewpoints are chosen. The optimised one takes the viewpoint that adds most, again and again, and proves how far from the best it can be; the others are there to compare with.</source>
+        <translation>Wie Aufnahmepunkte gewählt werden. Das optimierte Verfahren nimmt immer wieder den Punkt, der am meisten bringt, und beweist, wie weit es höchstens vom besten entfernt ist; die anderen sind zum Vergleich da.</translation>
+    </message>
+    <message>
         <source>LPIPS unavailable: get its weights by &apos;score weights&apos;, or name them (--lpips)</source>
         <translation>LPIPS nicht verfügbar: Gewichte mit „score weights“ holen oder nennen (--lpips)</translation>
+    </message>
+    <message>
+        <source>Layer</source>
+        <translation type="unfinished">Ebene</translation>
+    </message>
+    <message>
+        <source>Link</source>
+        <translation type="unfinished">Verbindung</translation>
+    </message>
+    <message>
+        <source>M1(A) medium and M1(B) count the same people; state one of them</source>
+        <translation>M1(A) medium und M1(B) zählen dieselben Menschen; geben Sie eines davon an</translation>
+    </message>
+    <message>
+        <source>M1(A) needs buildings that hold the aircraft off: glass roofs and facades may not</source>
+        <translation>M1(A) braucht Gebäude, die das Fluggerät abhalten: Glasdächer und Glasfassaden tun das vielleicht nicht</translation>
+    </message>
+    <message>
+        <source>Method</source>
+        <translation type="unfinished">Verfahren</translation>
+    </message>
+    <message>
+        <source>Not covered</source>
+        <translation type="unfinished">Lücken</translation>
+    </message>
+    <message>
+        <source>Nothing of the flight comes nearer than this to panels, building and obstacles.</source>
+        <translation>Näher kommt der Flug Scheiben, Gebäude und Hindernissen nirgends.</translation>
+    </message>
+    <message>
+        <source>Own poses</source>
+        <translation type="unfinished">Eigene Posen</translation>
+    </message>
+    <message>
+        <source>Panel grid</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Photos with their poses, and the panels of the site: what a model learns from.</source>
+        <translation>Fotos mit ihren Posen und die Scheiben des Standorts: wovon ein Modell lernt.</translation>
+    </message>
+    <message>
+        <source>Place on earth</source>
+        <translation type="unfinished">Lage auf der Erde</translation>
+    </message>
+    <message>
+        <source>Pose</source>
+        <translation>Pose</translation>
+    </message>
+    <message>
+        <source>Precision</source>
+        <translation type="unfinished">Genauigkeit</translation>
+    </message>
+    <message>
+        <source>Quality</source>
+        <translation type="unfinished">Güte</translation>
+    </message>
+    <message>
+        <source>RTK</source>
+        <translation>RTK</translation>
+    </message>
+    <message>
+        <source>Rally point</source>
+        <translation type="unfinished">Rally-Punkt</translation>
+    </message>
+    <message>
+        <source>Refine poses</source>
+        <translation type="unfinished">Posen verfeinern</translation>
+    </message>
+    <message>
+        <source>Safety distance</source>
+        <translation type="unfinished">Mindestabstand</translation>
+    </message>
+    <message>
+        <source>Section</source>
+        <translation type="unfinished">Schnitt</translation>
+    </message>
+    <message>
+        <source>Section step</source>
+        <translation type="unfinished">Sektorweite</translation>
+    </message>
+    <message>
+        <source>Single precision counts sections several times as fast, and errs on borders of sections alone.</source>
+        <translation>Einfache Genauigkeit zählt Sektoren um ein Mehrfaches schneller und irrt nur an Grenzen von Sektoren.</translation>
+    </message>
+    <message>
+        <source>Site origin</source>
+        <translation>Nullpunkt des Standorts</translation>
+    </message>
+    <message>
+        <source>Sortie</source>
+        <translation type="unfinished">Einsatz</translation>
+    </message>
+    <message>
+        <source>Speed-up</source>
+        <translation type="unfinished">Zeitraffer</translation>
+    </message>
+    <message>
+        <source>Splat</source>
+        <translation>Splat</translation>
+    </message>
+    <message>
+        <source>Target coverage</source>
+        <translation>Zielabdeckung</translation>
+    </message>
+    <message>
+        <source>The box in which the aircraft must stay; only the climb above home may be below it.</source>
+        <translation>Der Kasten, in dem das Fluggerät bleiben muss; nur der Aufstieg über dem Startplatz darf darunter liegen.</translation>
+    </message>
+    <message>
+        <source>The computer that flies the aircraft: ArduPilot or PX4. They land, return and count battery differently.</source>
+        <translation>Der Rechner, der das Fluggerät fliegt: ArduPilot oder PX4. Sie landen, kehren zurück und zählen den Akku verschieden.</translation>
+    </message>
+    <message>
+        <source>The connection to the vehicle. A signed link takes no orders from others.</source>
+        <translation>Die Verbindung zum Fluggerät. Eine signierte nimmt von anderen keine Befehle an.</translation>
+    </message>
+    <message>
+        <source>The longest that the search may take. It ends sooner where nothing can be won any more.</source>
+        <translation>So lange darf die Suche höchstens dauern. Sie endet früher, wenn nichts mehr zu gewinnen ist.</translation>
+    </message>
+    <message>
+        <source>The place on earth from which the site counts metres east, north and up.</source>
+        <translation>Der Ort auf der Erde, von dem aus der Standort Meter nach Osten, Norden und oben zählt.</translation>
+    </message>
+    <message>
+        <source>The share of sections that photos show, of those that any flight could show at this site.</source>
+        <translation>Der Anteil der Sektoren, die Fotos zeigen, an denen, die irgendein Flug an diesem Standort zeigen könnte.</translation>
+    </message>
+    <message>
+        <source>The share of the charge with which the aircraft has to be back.</source>
+        <translation>Der Anteil der Ladung, mit dem das Fluggerät zurück sein muss.</translation>
+    </message>
+    <message>
+        <source>Time to plan</source>
+        <translation type="unfinished">Planungszeit</translation>
+    </message>
+    <message>
+        <source>Viewpoint</source>
+        <translation type="unfinished">Aufnahmepunkt</translation>
+    </message>
+    <message>
+        <source>Viewpoints</source>
+        <translation type="unfinished">Punkte</translation>
+    </message>
+    <message>
+        <source>Views</source>
+        <translation type="unfinished">Aufnahmen</translation>
+    </message>
+    <message>
+        <source>Views are chosen for</source>
+        <translation type="unfinished">Ansichten gewählt für</translation>
+    </message>
+    <message>
+        <source>Wanted GSD</source>
+        <translation>Gewünschte GSD</translation>
+    </message>
+    <message>
+        <source>Weight sections by solid angle</source>
+        <translation type="unfinished">Raumwinkel gewichten</translation>
+    </message>
+    <message>
+        <source>What is simulated because this scene calls for it; each says how large it is, why, and what it costs.</source>
+        <translation>Was simuliert wird, weil diese Szene es verlangt; jeder sagt, wie groß er ist, warum, und was er kostet.</translation>
+    </message>
+    <message>
+        <source>Where a photo was taken, and in which direction the camera looked.</source>
+        <translation>Wo ein Foto aufgenommen wurde, und in welche Richtung die Kamera sah.</translation>
+    </message>
+    <message>
+        <source>Worth</source>
+        <translation>Wert</translation>
+    </message>
+    <message>
+        <source>Worth another battery</source>
+        <translation type="unfinished">Wert für weiteren Akku</translation>
+    </message>
+    <message>
+        <source>a GeoTIFF</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>a draft: check every number before you use it</source>
+        <translation>ein Entwurf: prüfen Sie jede Zahl, bevor Sie sie verwenden</translation>
+    </message>
+    <message>
+        <source>a file of geo-zones: ED-269 or ED-318 JSON, GeoJSON, KML, AIXM 5.1 or OpenAir</source>
+        <translation>eine Datei mit Geozonen: ED-269 oder ED-318 JSON, GeoJSON, KML, AIXM 5.1 oder OpenAir</translation>
+    </message>
+    <message>
+        <source>a log book</source>
+        <translation>ein Logbuch</translation>
+    </message>
+    <message>
+        <source>a map tile</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>a part of its outline is a &apos;{0}&apos;, which is not read</source>
+        <translation>ein Teil ihres Umrisses ist '{0}', was nicht gelesen wird</translation>
+    </message>
+    <message>
+        <source>a part of its outline stands elsewhere (&apos;{0}&apos;)</source>
+        <translation>ein Teil ihres Umrisses steht anderswo ('{0}')</translation>
+    </message>
+    <message>
+        <source>a straight return home may leave the paths; set hover or land for lost links, or take the hull</source>
+        <translation>eine gerade Rückkehr kann die Pfade verlassen; stellen Sie für Verbindungsverlust Schweben oder Landen ein, oder nehmen Sie die Hülle</translation>
+    </message>
+    <message>
+        <source>adjacent area, from the contingency volume on</source>
+        <translation>angrenzendes Gebiet, ab dem Notfallvolumen</translation>
+    </message>
+    <message>
+        <source>air risk class (ARC) and SAIL</source>
+        <translation>Luftrisikoklasse (ARC) und SAIL</translation>
+    </message>
+    <message>
+        <source>all photos</source>
+        <translation>alle Fotos</translation>
+    </message>
+    <message>
+        <source>an assembly of people</source>
+        <translation>eine Menschenansammlung</translation>
+    </message>
+    <message>
+        <source>an overlay of shapes</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>another window writes it for too long; the flight is not in it</source>
+        <translation>ein anderes Fenster schreibt es zu lange; der Flug steht nicht darin</translation>
+    </message>
+    <message>
+        <source>as far as it falls</source>
+        <translation>so weit es fällt</translation>
+    </message>
+    <message>
+        <source>assumed: {0}</source>
+        <translation>angenommen: {0}</translation>
+    </message>
+    <message>
+        <source>authority: {0}</source>
+        <translation>Behörde: {0}</translation>
+    </message>
+    <message>
+        <source>battery {0}: flights: {1}, cycles: {2}</source>
+        <translation>Akku {0}: Flüge: {1}, Zyklen: {2}</translation>
+    </message>
+    <message>
+        <source>beyond the specific category with these people below; fly elsewhere, or keep people out</source>
+        <translation>jenseits der speziellen Kategorie mit diesen Menschen darunter; fliegen Sie anderswo, oder halten Sie Menschen fern</translation>
+    </message>
+    <message>
+        <source>braking tilt</source>
+        <translation>Neigung beim Bremsen</translation>
+    </message>
+    <message>
+        <source>climbed before the pilot acts</source>
+        <translation>gestiegen, bevor der Pilot handelt</translation>
+    </message>
+    <message>
+        <source>climbed by what momentum is left</source>
+        <translation>gestiegen durch den verbliebenen Schwung</translation>
+    </message>
+    <message>
+        <source>containment, and people in the adjacent area</source>
+        <translation>Containment und Menschen im angrenzenden Gebiet</translation>
+    </message>
+    <message>
+        <source>contingency volume</source>
+        <translation>Notfallvolumen</translation>
+    </message>
+    <message>
+        <source>contingency volume, to each side</source>
+        <translation>Notfallvolumen, zu jeder Seite</translation>
+    </message>
+    <message>
+        <source>corrections: a password is asked for, and not kept; leave it out of the address</source>
+        <translation>Korrekturen: ein Passwort wird gefragt und nicht behalten; lassen Sie es aus der Adresse weg</translation>
+    </message>
+    <message>
+        <source>corrections: expected USER@HOST:PORT/MOUNTPOINT, such as me@rtk.example.org:2101/VRS, got &apos;{0}&apos;</source>
+        <translation>Korrekturen: erwartet wurde USER@HOST:PORT/MOUNTPOINT, etwa me@rtk.example.org:2101/VRS, es ist '{0}'</translation>
+    </message>
+    <message>
+        <source>cut out the part that is wanted</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>downwind, full speed</source>
+        <translation>mit dem Wind, volle Geschwindigkeit</translation>
+    </message>
+    <message>
+        <source>drag area when it falls, at most</source>
+        <translation>Widerstandsfläche im Fall, höchstens</translation>
+    </message>
+    <message>
+        <source>drag over the square of the speed, at most</source>
+        <translation>Widerstand je Quadrat der Geschwindigkeit, höchstens</translation>
+    </message>
+    <message>
+        <source>error of the height</source>
+        <translation>Höhenfehler</translation>
+    </message>
+    <message>
+        <source>even light {0}; all of it in the sun {1}; part of it {2}</source>
+        <translation>gleichmäßiges Licht {0}; ganz in der Sonne {1}; zum Teil {2}</translation>
     </message>
     <message>
         <source>it covers nothing; take it closer or drop it</source>
@@ -11611,6 +13088,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>sections seen only with pixels larger than {0} mm: {1} of {2} covered</source>
         <translation>Sektoren, nur mit Pixeln über {0} mm gesehen: {1} von {2} abgedeckten</translation>
+    </message>
+    <message>
+        <source>site &apos;{0}&apos;</source>
+        <translation>Standort '{0}'</translation>
     </message>
     <message>
         <source>the panes mirror something that the site lacks: {0} x {1} m, {2} m high, {3} m from home at bearing {4}; the flight keeps clear of what is seen of it, but look before you fly, and enter it into the site</source>
@@ -11794,7 +13275,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>what airspace &apos;{0}&apos; means for unmanned aircraft is national law: ask what holds here</source>
-        <translation>was Luftraum '{0}' für unbemannte Luftfahrzeuge bedeutet, ist Landesrecht: fragen, was hier gilt</translation>
+        <translation>was Luftraum &apos;{0}&apos; für unbemannte Luftfahrzeuge bedeutet, ist Landesrecht: fragen, was hier gilt</translation>
     </message>
     <message>
         <source>what is missing cannot be shown</source>
@@ -11806,7 +13287,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>what {0} elements &apos;{1}&apos; show is not read; look at them yourself</source>
-        <translation>was {0} Elemente '{1}' zeigen, wird nicht gelesen; selbst ansehen</translation>
+        <translation>was {0} Elemente &apos;{1}&apos; zeigen, wird nicht gelesen; selbst ansehen</translation>
     </message>
     <message>
         <source>when it applies cannot be read</source>
@@ -11814,7 +13295,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>when it is active, &apos;{0}&apos;, is decided elsewhere: ask for NOTAMs</source>
-        <translation>wann sie aktiv ist, '{0}', wird anderswo entschieden: nach NOTAMs fragen</translation>
+        <translation>wann sie aktiv ist, &apos;{0}&apos;, wird anderswo entschieden: nach NOTAMs fragen</translation>
     </message>
     <message>
         <source>where home stands the files have no heights: no flight can be planned until home is moved</source>
@@ -11845,12 +13326,8 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>schlechteste</translation>
     </message>
     <message>
-        <source>zone &apos;{0}&apos; is in several files: {1}</source>
-        <translation>Zone '{0}' steht in mehreren Dateien: {1}</translation>
-    </message>
-    <message>
         <source>zone &apos;{0}&apos;: expected the reference of the authorisation, got an empty text</source>
-        <translation>Zone '{0}': erwartet wird das Aktenzeichen der Genehmigung, angegeben ist ein leerer Text</translation>
+        <translation>Zone &apos;{0}&apos;: erwartet wird das Aktenzeichen der Genehmigung, angegeben ist ein leerer Text</translation>
     </message>
     <message>
         <source>{0}  {1}: {2} of {3} added ({4})</source>
@@ -11926,7 +13403,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>{0} geo-zones that apply at some times only count as if they always did (the first is &apos;{1}&apos;): no time is planned (--at)</source>
-        <translation>{0} Geozonen, die nur zu manchen Zeiten gelten, zählen, als gälten sie immer (die erste ist '{1}'): es ist keine Zeit geplant (--at)</translation>
+        <translation>{0} Geozonen, die nur zu manchen Zeiten gelten, zählen, als gälten sie immer (die erste ist &apos;{1}&apos;): es ist keine Zeit geplant (--at)</translation>
     </message>
     <message>
         <source>{0} goes with --panel-grid, which is missing</source>
@@ -12207,10 +13684,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>{0} x {1} Pixel, aber sein Foto hat {2} x {3}</translation>
     </message>
     <message>
-        <source>{0} zones</source>
-        <translation>{0} Zonen</translation>
-    </message>
-    <message>
         <source>{0} zones in {1}, {2} of them within {3} m of the airspace; SHA-256 {4}</source>
         <translation>{0} Zonen in {1}, {2} davon bis {3} m vom Luftraum; SHA-256 {4}</translation>
     </message>
@@ -12248,7 +13721,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>{0}: the path runs inside, by the authorisation &apos;{1}&apos;</source>
-        <translation>{0}: der Weg führt hindurch, mit der Genehmigung '{1}'</translation>
+        <translation>{0}: der Weg führt hindurch, mit der Genehmigung &apos;{1}&apos;</translation>
     </message>
     <message>
         <source>{0}: the path stays out of it, {1} m away</source>
@@ -17639,6 +19112,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Fehler</translation>
     </message>
     <message>
+        <source>terrain</source>
+        <translation>Gelände</translation>
+    </message>
+    <message>
         <source>focal length and sensor size</source>
         <translation>Brennweite und Sensorgröße</translation>
     </message>
@@ -17674,8 +19151,72 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Start nur mit RTK</translation>
     </message>
     <message>
+        <source>Warnings are spoken</source>
+        <translation>Warnungen werden gesprochen</translation>
+    </message>
+    <message>
+        <source>For aircraft with remote ID. The secret part proves the checksum, and is neither sent nor kept</source>
+        <translation>Für Luftfahrzeuge mit Remote ID. Der geheime Teil beweist die Prüfsumme und wird weder gesendet noch behalten</translation>
+    </message>
+    <message>
+        <source>Its name: the log book counts its flights and cycles</source>
+        <translation>Sein Name: das Logbuch zählt seine Flüge und Zyklen</translation>
+    </message>
+    <message>
+        <source>NTRIP caster, from the next connection on: USER@HOST:PORT/MOUNTPOINT</source>
+        <translation>NTRIP-Caster, ab der nächsten Verbindung: USER@HOST:PORT/MOUNTPOINT</translation>
+    </message>
+    <message>
+        <source>Kept until the program ends, and never written down</source>
+        <translation>Behalten, bis das Programm endet, und nie aufgeschrieben</translation>
+    </message>
+    <message>
+        <source>Only where the aircraft&apos;s module does not know it</source>
+        <translation>Nur wo das Modul des Luftfahrzeugs sie nicht kennt</translation>
+    </message>
+    <message>
+        <source>Battery on board</source>
+        <translation>Akku an Bord</translation>
+    </message>
+    <message>
+        <source>Operator number</source>
+        <translation>Betreibernummer</translation>
+    </message>
+    <message>
+        <source>Serial number</source>
+        <translation>Seriennummer</translation>
+    </message>
+    <message>
+        <source>RTK corrections</source>
+        <translation>RTK-Korrekturen</translation>
+    </message>
+    <message>
+        <source>Their password</source>
+        <translation>Ihr Passwort</translation>
+    </message>
+    <message>
         <source>Start waits for RTK, and a warning comes when it is lost in flight.</source>
         <translation>Der Start wartet auf RTK, und geht es im Flug verloren, kommt eine Warnung.</translation>
+    </message>
+    <message>
+        <source>Each as it comes, and again while it holds.</source>
+        <translation>Jede, wenn sie kommt, und wieder, solange sie gilt.</translation>
+    </message>
+    <message>
+        <source>This computer has no speech program: install speech-dispatcher or espeak-ng.</source>
+        <translation>Dieser Rechner hat kein Sprachprogramm: speech-dispatcher oder espeak-ng installieren.</translation>
+    </message>
+    <message>
+        <source>Operator number: its checksum is right.</source>
+        <translation>Betreibernummer: ihre Prüfsumme stimmt.</translation>
+    </message>
+    <message>
+        <source>The form is right. With the secret part the checksum can be proved.</source>
+        <translation>Die Form stimmt. Mit dem geheimen Teil lässt sich die Prüfsumme beweisen.</translation>
+    </message>
+    <message>
+        <source>No number of an EASA state: nothing about it can be proved.</source>
+        <translation>Keine Nummer eines EASA-Staats: an ihr lässt sich nichts beweisen.</translation>
     </message>
 </context>
 <context>
@@ -17784,6 +19325,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Verschieben</translation>
     </message>
     <message>
+        <source>Pick no place</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>Camera preview</source>
         <translation>Kameravorschau</translation>
     </message>
@@ -17810,6 +19355,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>Delete the line, or the panel</source>
         <translation>Linie oder Scheibe löschen</translation>
+    </message>
+    <message>
+        <source>Tour</source>
+        <translation>Rundgang</translation>
+    </message>
+    <message>
+        <source>Leave the tour</source>
+        <translation>Den Rundgang verlassen</translation>
     </message>
     <message>
         <source>Photo strip of a flight</source>
@@ -18130,6 +19683,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Beispiel</translation>
     </message>
     <message>
+        <source>Terrain...</source>
+        <translation>Gelände...</translation>
+    </message>
+    <message>
+        <source>Open a site first: terrain belongs to its place.</source>
+        <translation>Öffnen Sie zuerst einen Standort: Gelände gehört zu seinem Ort.</translation>
+    </message>
+    <message>
         <source>Open site...</source>
         <translation>Standort öffnen...</translation>
     </message>
@@ -18160,6 +19721,14 @@ Größe: {3}; Dreiecke: {4}</translation>
     <message>
         <source>Add an obstacle from a mesh file in the site&apos;s coordinates (a crane, a tree)</source>
         <translation>Hindernis aus einer Netzdatei in Koordinaten des Standorts hinzufügen (Kran, Baum)</translation>
+    </message>
+    <message>
+        <source>Add zones...</source>
+        <translation>Zonen hinzufügen...</translation>
+    </message>
+    <message>
+        <source>Add geo-zones of your authority (ED-269, ED-318, GeoJSON, KML, AIXM, OpenAir)</source>
+        <translation>Geozonen Ihrer Behörde hinzufügen (ED-269, ED-318, GeoJSON, KML, AIXM, OpenAir)</translation>
     </message>
     <message>
         <source>Equal panels in a rectangle on a wall</source>
@@ -18202,6 +19771,14 @@ Größe: {3}; Dreiecke: {4}</translation>
         <translation>Quader zeichnen: zwei Ecken am Boden, dann die Höhe</translation>
     </message>
     <message>
+        <source>Zero on map</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Click on the map where the site&apos;s zero lies</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>Airspace</source>
         <translation>Luftraum</translation>
     </message>
@@ -18216,6 +19793,34 @@ Größe: {3}; Dreiecke: {4}</translation>
     <message>
         <source>Read {0}</source>
         <translation>{0} lesen</translation>
+    </message>
+    <message>
+        <source>Add zones of {0}</source>
+        <translation>Zonen aus {0} hinzufügen</translation>
+    </message>
+    <message>
+        <source>Geo-zones (*.json *.geojson *.kml *.xml *.txt *.openair);;All files (*)</source>
+        <translation>Geozonen (*.json *.geojson *.kml *.xml *.txt *.openair);;Alle Dateien (*)</translation>
+    </message>
+    <message>
+        <source>Geo-zones</source>
+        <translation>Geozonen</translation>
+    </message>
+    <message>
+        <source>Click where the aircraft takes off and lands. Esc cancels.</source>
+        <translation type="unfinished">Klicken, wo das Fluggerät startet und landet. Esc bricht ab.</translation>
+    </message>
+    <message>
+        <source>Click where the aircraft may land when it returns. Esc cancels.</source>
+        <translation type="unfinished">Anklicken, wo das Fluggerät bei der Rückkehr landen darf. Esc bricht ab.</translation>
+    </message>
+    <message>
+        <source>Click where the site&apos;s zero lies: all of the site moves there. Esc cancels.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Set origin</source>
+        <translation type="unfinished">Nullpunkt setzen</translation>
     </message>
     <message>
         <source>Draw no-fly zone</source>
@@ -18298,6 +19903,14 @@ Größe: {3}; Dreiecke: {4}</translation>
     <message>
         <source>Home</source>
         <translation>Startplatz</translation>
+    </message>
+    <message>
+        <source>Geo-zones</source>
+        <translation>Geozonen</translation>
+    </message>
+    <message>
+        <source>near: {0}</source>
+        <translation>nahe: {0}</translation>
     </message>
     <message>
         <source>Rally points</source>
@@ -18463,6 +20076,67 @@ Größe: {3}; Dreiecke: {4}</translation>
     </message>
 </context>
 <context>
+    <name>SunChart</name>
+    <message>
+        <source>The day of the site</source>
+        <translation>Der Tag am Standort</translation>
+    </message>
+</context>
+<context>
+    <name>SunController</name>
+    <message>
+        <source>Look at the sun</source>
+        <translation>Sonne ansehen</translation>
+    </message>
+    <message>
+        <source>Take-off planned for {0}; the Mission tab checks the plan for it.</source>
+        <translation>Start für {0} geplant; der Reiter Mission prüft den Plan dafür.</translation>
+    </message>
+</context>
+<context>
+    <name>SunPanel</name>
+    <message>
+        <source>Day of the flight</source>
+        <translation>Tag des Fluges</translation>
+    </message>
+    <message>
+        <source>By this computer&apos;s time zone, as all times here</source>
+        <translation>In der Zeitzone dieses Computers, wie alle Zeiten hier</translation>
+    </message>
+    <message>
+        <source>The day before</source>
+        <translation>Der Tag davor</translation>
+    </message>
+    <message>
+        <source>The next day</source>
+        <translation>Der nächste Tag</translation>
+    </message>
+    <message>
+        <source>Light and take-off times stand here, once there is a site.</source>
+        <translation>Licht und Startzeiten stehen hier, sobald es einen Standort gibt.</translation>
+    </message>
+    <message>
+        <source>Check the plan for a take-off then, on the Mission tab</source>
+        <translation>Den Plan im Reiter Mission für einen Start zu dieser Zeit prüfen</translation>
+    </message>
+    <message>
+        <source>Tall: in the sun, or a take-off that spoils no photo. Half: in part, or few. Low: shade, or many.</source>
+        <translation>Hoch: in der Sonne, oder ein Start, der kein Foto verdirbt. Halb: zum Teil, oder wenige. Niedrig: Schatten, oder viele.</translation>
+    </message>
+    <message>
+        <source>Day</source>
+        <translation>Tag</translation>
+    </message>
+    <message>
+        <source>Click a time to see what it means.</source>
+        <translation>Klicken Sie auf eine Zeit, um zu sehen, was sie bedeutet.</translation>
+    </message>
+    <message>
+        <source>Plan take-off for {0}</source>
+        <translation>Start für {0} planen</translation>
+    </message>
+</context>
+<context>
     <name>Tabs</name>
     <message>
         <source>Fly</source>
@@ -18530,26 +20204,140 @@ Größe: {3}; Dreiecke: {4}</translation>
     </message>
 </context>
 <context>
+    <name>Terms</name>
+    <message>
+        <source>More in the manual</source>
+        <translation>Mehr im Handbuch</translation>
+    </message>
+</context>
+<context>
+    <name>TerrainDialog</name>
+    <message>
+        <source>Terrain</source>
+        <translation>Gelände</translation>
+    </message>
+    <message>
+        <source>Attach terrain</source>
+        <translation>Gelände hinzufügen</translation>
+    </message>
+    <message>
+        <source>Take terrain off</source>
+        <translation>Gelände entfernen</translation>
+    </message>
+    <message>
+        <source>Close</source>
+        <translation>Schließen</translation>
+    </message>
+    <message>
+        <source>Heights above the ground count from the terrain, home is put on it, and where it has no heights nothing is planned. Trees and neighbours of a surface become obstacles.</source>
+        <translation>Höhen über Grund zählen vom Gelände, der Startplatz wird darauf gesetzt, und wo es keine Höhen hat, wird nichts geplant. Bäume und Nachbarn einer Oberfläche werden Hindernisse.</translation>
+    </message>
+    <message>
+        <source>Reading heights ...</source>
+        <translation>Höhen werden gelesen ...</translation>
+    </message>
+    <message>
+        <source>The site was changed meanwhile: attach the terrain again.</source>
+        <translation>Der Standort wurde inzwischen geändert: fügen Sie das Gelände noch einmal hinzu.</translation>
+    </message>
+    <message>
+        <source>The ground is level again.</source>
+        <translation>Der Boden ist wieder eben.</translation>
+    </message>
+</context>
+<context>
     <name>TerrainForm</name>
     <message>
         <source>Accuracy</source>
-        <translation type="unfinished">Genauigkeit</translation>
+        <translation>Genauigkeit</translation>
     </message>
     <message>
         <source>Unit of heights</source>
-        <translation type="unfinished"></translation>
+        <translation>Einheit der Höhen</translation>
     </message>
     <message>
         <source>Step of the grid</source>
-        <translation type="unfinished"></translation>
+        <translation>Schritt des Gitters</translation>
     </message>
     <message>
         <source>Obstacles taller than</source>
-        <translation type="unfinished"></translation>
+        <translation>Hindernisse höher als</translation>
     </message>
     <message>
         <source>Heights are above</source>
-        <translation type="unfinished"></translation>
+        <translation>Höhen zählen ab</translation>
+    </message>
+    <message>
+        <source>Heights of the ground</source>
+        <translation>Höhen des Bodens</translation>
+    </message>
+    <message>
+        <source>Heights with trees</source>
+        <translation>Höhen mit Bäumen</translation>
+    </message>
+    <message>
+        <source>As the files say</source>
+        <translation>Wie die Dateien sagen</translation>
+    </message>
+    <message>
+        <source>Sea level, EGM96</source>
+        <translation>Meeresspiegel, EGM96</translation>
+    </message>
+    <message>
+        <source>Sea level, EGM2008</source>
+        <translation>Meeresspiegel, EGM2008</translation>
+    </message>
+    <message>
+        <source>The ellipsoid</source>
+        <translation>Das Ellipsoid</translation>
+    </message>
+    <message>
+        <source>A national height system</source>
+        <translation>Ein nationales Höhensystem</translation>
+    </message>
+    <message>
+        <source>metres</source>
+        <translation>Meter</translation>
+    </message>
+    <message>
+        <source>feet</source>
+        <translation>Fuß</translation>
+    </message>
+    <message>
+        <source>US survey feet</source>
+        <translation>US-Vermessungsfuß</translation>
+    </message>
+    <message>
+        <source>As fine as the files</source>
+        <translation>So fein wie die Dateien</translation>
+    </message>
+    <message>
+        <source>As known of the files</source>
+        <translation>Wie von den Dateien bekannt</translation>
+    </message>
+    <message>
+        <source>How far the ground may lie off the files&apos; heights; kept on top of them</source>
+        <translation>Wie weit der Boden von den Höhen der Dateien abweichen darf; kommt zu ihnen hinzu</translation>
+    </message>
+    <message>
+        <source>Shift the terrain up or down to home</source>
+        <translation>Gelände in der Höhe auf den Startplatz schieben</translation>
+    </message>
+    <message>
+        <source>Ground</source>
+        <translation>Boden</translation>
+    </message>
+    <message>
+        <source>Surface with trees</source>
+        <translation>Oberfläche mit Bäumen</translation>
+    </message>
+    <message>
+        <source>Code of the system</source>
+        <translation>Kennung des Systems</translation>
+    </message>
+    <message>
+        <source>Coordinate system</source>
+        <translation>Koordinatensystem</translation>
     </message>
 </context>
 <context>
@@ -18723,6 +20511,73 @@ Größe: {3}; Dreiecke: {4}</translation>
     <message>
         <source> x </source>
         <translation> x </translation>
+    </message>
+</context>
+<context>
+    <name>Tour</name>
+    <message>
+        <source>Back</source>
+        <translation>Zurück</translation>
+    </message>
+    <message>
+        <source>Leave</source>
+        <translation>Verlassen</translation>
+    </message>
+    <message>
+        <source>Finish</source>
+        <translation>Fertig</translation>
+    </message>
+    <message>
+        <source>Next</source>
+        <translation>Weiter</translation>
+    </message>
+    <message>
+        <source>Where to begin</source>
+        <translation>Wo es beginnt</translation>
+    </message>
+    <message>
+        <source>The sample project has every step done: look around in it, nothing can break.</source>
+        <translation>Im Beispielprojekt ist jeder Schritt getan: Sehen Sie sich um, es kann nichts kaputtgehen.</translation>
+    </message>
+    <message>
+        <source>Seven steps</source>
+        <translation>Sieben Schritte</translation>
+    </message>
+    <message>
+        <source>They stand in the order of the work. A tick says that a step is done.</source>
+        <translation>Sie stehen in der Reihenfolge der Arbeit. Ein Haken sagt, dass ein Schritt erledigt ist.</translation>
+    </message>
+    <message>
+        <source>What comes next</source>
+        <translation>Was als Nächstes kommt</translation>
+    </message>
+    <message>
+        <source>This line says what is done and what comes next. The blue button leads there.</source>
+        <translation>Diese Zeile sagt, was erledigt ist und was als Nächstes kommt. Der blaue Knopf führt dorthin.</translation>
+    </message>
+    <message>
+        <source>The view</source>
+        <translation>Die Ansicht</translation>
+    </message>
+    <message>
+        <source>The site in 3-D, on the map, or as a camera will see it. Drag to turn, wheel to zoom.</source>
+        <translation>Der Standort in 3-D, auf der Karte, oder wie eine Kamera ihn sehen wird. Ziehen dreht, das Rad zoomt.</translation>
+    </message>
+    <message>
+        <source>Help</source>
+        <translation>Hilfe</translation>
+    </message>
+    <message>
+        <source>The manual&apos;s page of this tab. A “?” beside a word says what it means.</source>
+        <translation>Die Seite des Handbuchs zu diesem Reiter. Ein „?“ neben einem Wort sagt, was es bedeutet.</translation>
+    </message>
+    <message>
+        <source>Messages</source>
+        <translation>Meldungen</translation>
+    </message>
+    <message>
+        <source>What holds now, and all that was told. What runs stands beside it, with its time.</source>
+        <translation>Was jetzt gilt, und alles, was gemeldet wurde. Daneben steht, was läuft, mit seiner Zeit.</translation>
     </message>
 </context>
 <context>
@@ -18979,6 +20834,21 @@ Größe: {3}; Dreiecke: {4}</translation>
     </message>
 </context>
 <context>
+    <name>WarningSpeaker</name>
+    <message>
+        <source>Danger</source>
+        <translation>Gefahr</translation>
+    </message>
+    <message>
+        <source>Warning</source>
+        <translation>Warnung</translation>
+    </message>
+    <message>
+        <source>{0}: {1}</source>
+        <translation>{0}: {1}</translation>
+    </message>
+</context>
+<context>
     <name>WarningsView</name>
     <message>
         <source>No warnings.</source>
@@ -19160,6 +21030,60 @@ Größe: {3}; Dreiecke: {4}</translation>
     <message>
         <source>“{0}”</source>
         <translation>„{0}“</translation>
+    </message>
+</context>
+<context>
+    <name>ZoneFilePage</name>
+    <message>
+        <source>Remove this file</source>
+        <translation>Diese Datei entfernen</translation>
+    </message>
+    <message>
+        <source>File of geo-zones</source>
+        <translation>Datei mit Geozonen</translation>
+    </message>
+    <message>
+        <source>Zones: {0}, near the site: {1}</source>
+        <translation>Zonen: {0}, nahe am Standort: {1}</translation>
+    </message>
+    <message>
+        <source>Remove {0}</source>
+        <translation>{0} entfernen</translation>
+    </message>
+</context>
+<context>
+    <name>ZonePage</name>
+    <message>
+        <source>number and date, or who answered when</source>
+        <translation>Aktenzeichen und Datum, oder wer wann geantwortet hat</translation>
+    </message>
+    <message>
+        <source>Geo-zone</source>
+        <translation>Geozone</translation>
+    </message>
+    <message>
+        <source>Authorisation</source>
+        <translation>Genehmigung</translation>
+    </message>
+    <message>
+        <source>With an authorisation plans may enter this zone. It holds for this state of the file.</source>
+        <translation>Mit einer Genehmigung dürfen Pläne in diese Zone führen. Sie gilt für diesen Stand der Datei.</translation>
+    </message>
+    <message>
+        <source>Source</source>
+        <translation>Quelle</translation>
+    </message>
+    <message>
+        <source>{0} from the airspace</source>
+        <translation>{0} vom Luftraum</translation>
+    </message>
+    <message>
+        <source>It reaches over the airspace.</source>
+        <translation>Sie reicht über den Luftraum.</translation>
+    </message>
+    <message>
+        <source>Authorisation for {0}</source>
+        <translation>Genehmigung für {0}</translation>
     </message>
 </context>
 <context>
