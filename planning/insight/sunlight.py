@@ -232,13 +232,18 @@ class PaneTilts:
         """Minutes by which the most tilted pane shifts its glare: twice its tilt, at the sun's 15 degrees an hour."""
         most = float(np.linalg.norm(scene.tilts_rad, axis=1).max(initial=0.0))
         reason = say("panes are tilted by up to {:.2f} degrees", math.degrees(most))
-        return Assessment(math.degrees(2.0 * most) * 4.0, reason, 0.0)
+        return Assessment(shift_minutes(most), reason, 0.0)
+
+
+def shift_minutes(tilt_rad: float) -> float:
+    """How much a tilt shifts a pane's glare in time: a mirror turns by twice that, the sun by 15 degrees an hour."""
+    return math.degrees(2.0 * tilt_rad) * 4.0
 
 
 PROBE_S, PROBES = 600.0, 64
 """Between looks for shadows, and panes looked at, before it is decided whether there are any."""
 
-PAIR_S, RAY_S = 4e-6, 2e-7
+PAIR_S, RAY_S = 1e-6, 2e-7
 """Of one core, for a view and a pane, and for a ray (measured on 2 cores)."""
 
 

@@ -103,13 +103,27 @@ def site_sha256(site: Site) -> str:
 def is_planned_on(planned_sha256: str, model: SiteModel) -> bool:
     """Whether a plan was made for a site, by the checksum that the plan states; True where one of them states none.
 
-    Rally points that were marked since change no plan, nor do geo-zones that were added: checks measure them anew.
+    Rally points that were marked since change no plan, nor do geo-zones that were added or tilts of panes that were
+    measured: checks look at them anew.
     """
     if not (planned_sha256 and model.sha256) or planned_sha256 == model.sha256:
         return True
     site = model.site
-    without = [replace(site, rally_points=()), replace(site, zones=()), replace(site, rally_points=(), zones=())]
+    bare = (replace(site, rally_points=()), replace(site, zones=()), replace(site, rally_points=(), zones=()))
+    without = (*bare, *(_without_tilts(each) for each in (site, *bare)))
     return any(each != site and planned_sha256 == site_sha256(each) for each in without)
+
+
+def _without_tilts(site: Site) -> Site:
+    if all(panel.tilt_deg is None for panel in site.panels):
+        return site
+    return replace(
+        site,
+        facades=tuple(
+            replace(facade, panels=tuple(replace(panel, tilt_deg=None) for panel in facade.panels))
+            for facade in site.facades
+        ),
+    )
 
 
 def write_site(path: Path, site: Site) -> str:

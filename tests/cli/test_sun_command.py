@@ -92,3 +92,17 @@ def test_wrong_days_are_refused_in_one_line(reflight, pane, arguments, text):
 
 def test_more_files_than_two_are_refused(reflight, pane):
     assert "got 3 files" in reflight("sun", *[pane / "site.json"] * 3).error
+
+
+def test_tilts_of_a_table_count(reflight, pane, tmp_path):
+    panel = json.loads((pane / "site.json").read_text())["facades"][0]["panels"][0]["id"]
+    (tmp_path / "tilts.csv").write_text(f"panel,right_deg,up_deg\n{panel},0,1.5\n")
+    out = tmp_path / "tilted.site.json"
+    done = reflight("site", "tilts", pane / "site.json", tmp_path / "tilts.csv", "-o", out)
+    assert "1 of 1 panes have measured tilts, up to 1.50 degrees" in done.out
+    found = reflight("sun", pane / "plan.json", out, "--day", "2026-12-21", "--utc-offset", 8).out
+    assert "measured tilts of panes: on - panes are tilted by up to 1.50 degrees (12 min" in found
+    codes = {f["code"]: f for f in reflight("check", pane / "plan.json", out, "--json").json["findings"]}
+    assert codes["site"]["severity"] == "ok"
+    neither = reflight("site", "tilts", pane / "site.json", "-o", tmp_path / "x.site.json")
+    assert "expected a table of tilts, or --remove, and not both" in neither.error

@@ -1,4 +1,7 @@
-"""`site import`: a building model to a site file; `site terrain`: its ground; `site zones`: geo-zones about it."""
+"""`site import`: a building model to a site file; `site terrain`: its ground; `site zones`: geo-zones about it.
+
+`site tilts`: how far its panes lean.
+"""
 
 from __future__ import annotations
 
@@ -70,6 +73,7 @@ def add_parser(subparsers: Any) -> None:
     add_flight(command)
     _add_terrain(actions)
     _add_zones(actions)
+    _add_tilts(actions)
 
 
 def _add_terrain(actions: Any) -> None:
@@ -133,6 +137,42 @@ def _add_zones(actions: Any) -> None:
     add("--remove", action="append", default=[], metavar="FILE", help="take a file of zones from the site")
     add_time(command)
     add("--json", action="store_true", help="print one JSON object instead of text")
+
+
+def _add_tilts(actions: Any) -> None:
+    command = actions.add_parser(
+        "tilts",
+        help="take measured tilts of panes over from a table",
+        description="Panes lean from the planes of their corners, and mirror the sun elsewhere then. The table is CSV\n"
+        "with the columns panel,right_deg,up_deg: how far a pane's normal leans to the right, seen from outside, and\n"
+        "upwards. 'sun' and the checks of the sun take them into account.",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    command.set_defaults(run=run_tilts)
+    add = command.add_argument
+    add("site", type=Path, metavar="SITE", help="site file")
+    add("table", type=Path, nargs="?", metavar="TABLE", help="the table, .csv")
+    add("-o", "--out", type=json_file, required=True, metavar="SITE", help="site file to write; meshes go beside it")
+    add("--remove", action="store_true", help="take all tilts off the site")
+
+
+def run_tilts(options: argparse.Namespace) -> int:
+    """Write a site with tilts; returns the exit status."""
+    from groundstation.services.project.input_files import read_input_site
+    from groundstation.services.project.project_file import check_not_index
+    from groundstation.services.site.tilts import read_tilts, tilts_text, write_tilted
+    from planning.base.json_file import check_output
+
+    check_not_index(options.out)
+    check_output(options.out, [options.site, *([options.table] if options.table else [])])
+    if options.remove == (options.table is not None):
+        raise InputError.say("expected a table of tilts, or --remove, and not both")
+    model = read_input_site(options.site)
+    tilts = None if options.table is None else read_tilts(options.table)
+    tilted = write_tilted(model, options.site, tilts, options.out)
+    tell("site '{}'", tilted.site.name, place=options.out)
+    show(tilts_text(tilted))
+    return 0
 
 
 def run_zones(options: argparse.Namespace) -> int:
