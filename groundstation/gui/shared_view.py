@@ -23,6 +23,7 @@ from planning.plan import Plan
 from planning.site.records import SiteModel
 
 if TYPE_CHECKING:
+    from groundstation.gui.camera_preview.plan_player import PlanPlayer
     from groundstation.gui.camera_preview.preview import CameraPreview
     from groundstation.gui.map.map_view import MapView
     from groundstation.gui.view3d.scene_view import SceneView
@@ -93,6 +94,8 @@ class SharedView(QWidget):
         layout.setSpacing(2)
         layout.addLayout(self._bar)
         layout.addWidget(self._pages, 1)
+        self._player: PlanPlayer | None = None
+        self._layout = layout
         self._pages.installEventFilter(self)
         context.documentChanged.connect(self._document_changed)
         context.selectionChanged.connect(self._show_selection)
@@ -132,6 +135,7 @@ class SharedView(QWidget):
             case SharedViewPage.CAMERA:
                 self._pages.setCurrentWidget(self.camera_page())
         self._update_pages()
+        self._show_player()
         self.pageShown.emit(page)
 
     def room(self) -> QRect:
@@ -144,6 +148,7 @@ class SharedView(QWidget):
         for view in (self._scene, self._map):
             if view is not None:
                 view.set_insets(insets)
+        self._show_player()
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
         """Tell of another size of the pages."""
@@ -228,6 +233,7 @@ class SharedView(QWidget):
         document = self._context.document
         scene.set_site(document.site)
         scene.set_plan(_plan_of(document), _locked_in(document))
+        self._add_player(scene)
         self._show_selection(self._context.selection)
         if self.page() is SharedViewPage.SCENE:
             self._pages.setCurrentWidget(scene)
@@ -236,6 +242,27 @@ class SharedView(QWidget):
         for callback in waiting:
             callback(scene)
         self.sceneReady.emit(scene)
+
+    def player(self) -> PlanPlayer | None:
+        """The bar that flies the plan; None before the 3-D view is ready."""
+        return self._player
+
+    def _add_player(self, scene: SceneView) -> None:
+        from groundstation.gui.camera_preview.plan_player import PlanPlayer
+
+        self._player = PlanPlayer()
+        self._layout.addWidget(self._player)
+        self._player.poseChanged.connect(scene.set_flown)
+        self._player.set_plan(_plan_of(self._context.document))
+        self._show_player()
+
+    def _show_player(self) -> None:
+        """The bar is there where the 3-D view shows a plan, and no flight lies over it."""
+        if self._player is not None:
+            is_wanted = self._player.duration_s > 0.0 and self._insets.isNull()
+            self._player.setVisible(is_wanted and self.page() is SharedViewPage.SCENE)
+            if not self._player.isVisibleTo(self):
+                self._player.play.setChecked(False)
 
     def close_views(self) -> None:
         """Free what the views hold; call before the window goes away."""
@@ -255,6 +282,9 @@ class SharedView(QWidget):
                 self._has_shown_plan = self._has_shown_plan and is_same_building
             if _plan_of(before) is not plan:
                 scene.set_plan(plan, _locked_in(after))
+                if self._player is not None:
+                    self._player.set_plan(plan)
+                    self._show_player()
             self._bring_in_first_plan(scene, after)
         self._update_pages()
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from planning.coverage.positions import picture_corners
 from planning.coverage.sections import PanelFrames
+from planning.geo.frames import camera_axes
 from planning.geo.mesh import TriangleMesh
 from planning.plan import Camera, ViewpointArrays
 
@@ -71,6 +72,25 @@ def frusta(views: ViewpointArrays, camera: Camera, length_m: float) -> Shape:
     return points.reshape(-1, 3), repeated(FRUSTUM_LINES, len(points), 5)
 
 
+def sight_lines(views: ViewpointArrays, length_m: float) -> Shape:
+    """A line per viewpoint along its line of sight."""
+    ahead, _, _ = camera_axes(views.heading_rad, views.pitch_rad)
+    n = len(views.positions_enu_m)
+    points = np.concatenate([views.positions_enu_m, views.positions_enu_m + length_m * ahead])
+    return points, np.stack([np.arange(n), np.arange(n, 2 * n)], axis=1)
+
+
+def shadow(mesh: TriangleMesh, towards_sun: Array, ground_z_m: float, low: Array, high: Array) -> Shape:
+    """The shadow of a mesh on level ground, as triangles, brought into the rectangle from `low` to `high`, shape (2,).
+
+    Triangles overlap, so that it can only be drawn opaque.
+    """
+    vertices = mesh.vertices_enu_m
+    height = np.maximum(vertices[:, 2] - ground_z_m, 0.0)
+    places = vertices[:, :2] - height[:, None] * (towards_sun[:2] / towards_sun[2])
+    return np.c_[np.clip(places, low, high), np.full(len(places), ground_z_m)], mesh.triangles
+
+
 def triangle_normals(mesh: TriangleMesh) -> Array:
     """Unit normals of a mesh's triangles, shape (t, 3); zero for triangles without area."""
     a, b, c = (mesh.vertices_enu_m[mesh.triangles[:, i]] for i in range(3))
@@ -125,7 +145,9 @@ class Layer(StrEnum):
     NO_FLY = "no-fly"
     AIRSPACE = "airspace"
     HOME = "home"
+    SHADOWS = "shadows"
     VIEWPOINTS = "viewpoints"
+    FRUSTA = "frusta"
     ROUTES = "routes"
     HEMISPHERES = "hemispheres"
     LABELS = "labels"

@@ -43,8 +43,23 @@ class SceneTexts(QObject):
             labels.extend(self._sortie_labels(plan))
         return [label for label in labels if label.layer not in hidden]
 
-    def name(self, item: Item) -> str:
-        """What an item is called beside the pointer."""
+    def name(self, item: Item, plan: PlanScene | None = None, n_views: int | None = None) -> str:
+        """What an item is called beside the pointer, and where it stands in the plan.
+
+        Parameters
+        ----------
+        n_views
+            Of a panel: how many of the plan's views cover it.
+        """
+        if item.kind is ItemKind.PANEL and n_views is not None:
+            return self.tr("Panel {0}: in {1} views").format(item.id, n_views)
+        if item.kind is ItemKind.VIEWPOINT and plan is not None and item.id in plan.viewpoint_index:
+            number = int(plan.sortie[plan.viewpoint_index[item.id]])
+            if number >= 0:
+                ids = plan.plan.sorties[number].viewpoint_ids
+                return self.tr("Viewpoint {0}: photo {1} of {2} of sortie {3}").format(
+                    item.id, ids.index(item.id) + 1, len(ids), number + 1
+                )
         match item.kind:
             case ItemKind.BUILDING:
                 return self.tr("Building")

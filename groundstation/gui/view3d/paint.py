@@ -57,6 +57,17 @@ def shaded(colours: Bytes, normals: Array) -> Bytes:
     return result
 
 
+SKY, SKY_SHARE = "#8ab4dc", 0.6
+"""What the background goes over into upwards, and how much of it: the horizon stays as pale as the scene."""
+
+
+def sky_colour(scene: str, is_dark: bool) -> str:
+    """Colour of the sky above a scene of this background, `#rrggbb`; a dark one stays dark."""
+    share = 0.12 if is_dark else SKY_SHARE
+    mixed = (1.0 - share) * rgba(scene)[:3].astype(np.float64) + share * rgba(SKY)[:3]
+    return "#" + "".join(f"{round(value):02x}" for value in mixed)
+
+
 class ValueKind(StrEnum):
     """What a value on panels or routes means, which decides the direction of its scale."""
 

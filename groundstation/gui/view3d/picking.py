@@ -123,7 +123,9 @@ class PickIndex:
         return self._panels[triangle // 2] if item is None else item
 
 
-def nearest_viewpoint(plan: PlanScene, view: Pinhole, x_px: float, y_px: float, depth_m: float) -> Hit | None:
+def nearest_viewpoint(
+    plan: PlanScene, view: Pinhole, x_px: float, y_px: float, depth_m: float, without: frozenset[int] = frozenset()
+) -> Hit | None:
     """The viewpoint whose dot lies nearest to a pixel, no deeper than the surface there and within `VIEWPOINT_PX`."""
     positions = plan.views.positions_enu_m
     if len(positions) == 0:
@@ -131,7 +133,8 @@ def nearest_viewpoint(plan: PlanScene, view: Pinhole, x_px: float, y_px: float, 
     pixels, depths = view.project(positions)
     distance_px = np.hypot(pixels[:, 0] - x_px, pixels[:, 1] - y_px)
     away_m = np.linalg.norm(positions - view.eye_enu_m, axis=1)
-    distance_px = np.where((depths > 0.0) & (away_m <= depth_m), distance_px, np.inf)
+    is_shown = ~np.isin(plan.sortie, list(without))
+    distance_px = np.where((depths > 0.0) & (away_m <= depth_m) & is_shown, distance_px, np.inf)
     i = int(np.argmin(distance_px))
     if not distance_px[i] <= VIEWPOINT_PX:
         return None
@@ -139,12 +142,14 @@ def nearest_viewpoint(plan: PlanScene, view: Pinhole, x_px: float, y_px: float, 
     return Hit(item, positions[i], np.zeros(3), float(away_m[i]))
 
 
-def nearest_leg(plan: PlanScene, view: Pinhole, x_px: float, y_px: float, depth_m: float) -> Hit | None:
+def nearest_leg(
+    plan: PlanScene, view: Pinhole, x_px: float, y_px: float, depth_m: float, without: frozenset[int] = frozenset()
+) -> Hit | None:
     """The leg of a route that passes a pixel within `ROUTE_PX`, no deeper than the surface there."""
     best: tuple[float, Hit] | None = None
     deepest = depth_m * float(view.ray(x_px, y_px) @ view.forward)
     for number, path in enumerate(plan.paths, start=1):
-        if len(path) < 2:
+        if len(path) < 2 or number - 1 in without:
             continue
         pixels, depths = view.project(path)
         a, b = pixels[:-1], pixels[1:]
@@ -172,19 +177,26 @@ def pick(
     x_px: float,
     y_px: float,
     hidden: frozenset[Layer] = frozenset(),
+    without: frozenset[int] = frozenset(),
 ) -> Hit | None:
-    """What lies under a pixel: viewpoints before routes before surfaces, as far as no surface hides them."""
+    """What lies under a pixel: viewpoints before routes before surfaces, as far as no surface hides them.
+
+    Parameters
+    ----------
+    without
+        Sorties, counted from 0, that are not shown.
+    """
     surface = None if index is None else index.surface(view.eye_enu_m, view.ray(x_px, y_px), hidden)
     # A no-fly volume is transparent and hides nothing.
     hides = surface is not None and surface.item.kind is not ItemKind.NO_FLY
     depth_m = surface.depth_m + 0.5 if surface is not None and hides else np.inf
     if plan is not None:
         if Layer.VIEWPOINTS not in hidden:
-            viewpoint = nearest_viewpoint(plan, view, x_px, y_px, depth_m)
+            viewpoint = nearest_viewpoint(plan, view, x_px, y_px, depth_m, without)
             if viewpoint is not None:
                 return viewpoint
         if Layer.ROUTES not in hidden:
-            leg = nearest_leg(plan, view, x_px, y_px, depth_m)
+            leg = nearest_leg(plan, view, x_px, y_px, depth_m, without)
             if leg is not None:
                 return leg
     return surface

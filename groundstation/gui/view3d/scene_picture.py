@@ -19,6 +19,7 @@ from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from groundstation.gui.view3d.canvas import Canvas, image_array
 from groundstation.gui.view3d.drawables import (
+    ON_TOP,
     Drawable,
     Layer,
     Shape,
@@ -33,17 +34,20 @@ from groundstation.gui.view3d.hemispheres import CoveragePainter
 from groundstation.gui.view3d.navigator import Navigator
 from groundstation.gui.view3d.orbit import Orbit, Pinhole, facing, photo_pinhole
 from groundstation.gui.view3d.overlay import Overlay, SceneTexts
-from groundstation.gui.view3d.paint import ColourScale, flat, shaded
+from groundstation.gui.view3d.paint import ColourScale, flat, shaded, sky_colour
 from groundstation.gui.view3d.picking import Hit, PickIndex, footprint, pick
 from groundstation.gui.view3d.site_scene import (
     FRUSTUM_M,
     PlanScene,
     SiteScene,
-    facade_colours,
+    glass_colours,
     landing_pad,
     panels_drawable,
+    plan_frusta,
     plan_scene,
     site_scene,
+    sortie_colours,
+    views_that_cover,
 )
 from groundstation.gui.widgets.theme import colours
 from groundstation.services.project.document import Item, ItemKind
@@ -201,13 +205,40 @@ def with_surroundings(points_enu_m: Array) -> Array:
     return box_edges(centre - half, centre + half)[0]
 
 
-SELECTED_PX, HOVERED_PX, FOOTPRINT_PX = 4.0, 2.0, 3.0
+SELECTED_PX, HOVERED_PX, FOOTPRINT_PX = 4.0, 3.0, 3.0
+
+FADED = 0.16
+"""How strongly is drawn what is not looked at while something is."""
+
+FLOWN_FRUSTUM_M = 5.0
+"""Length of the pyramid of the camera that flies the plan."""
 
 ASIDE_DEG, ABOVE_DEG = 28.0, 22.0
 """Standard view: from the right and from above, so that depth can be seen."""
 
 WELL_SEEN = 0.5
 """Cosine to its front up to which a thing is looked at from where the view stands: turning takes bearings away."""
+
+
+SITE_LAYERS = (
+    Layer.GROUND,
+    Layer.SHADOWS,
+    Layer.BUILDING,
+    Layer.OBSTACLES,
+    Layer.NO_FLY,
+    Layer.AIRSPACE,
+    Layer.HOME,
+)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FlownPose:
+    """Where the aircraft is, shape (3,), and its camera looks, while a sortie, counted from 0, is flown on screen."""
+
+    sortie: int
+    position_enu_m: Array
+    heading_rad: float
+    pitch_rad: float
 
 
 class StandardView(Enum):
@@ -241,7 +272,11 @@ class ScenePicture(QWidget):
         self._panel_values: tuple[ColourScale, Array] | None = None
         self._selection: tuple[Item, ...] = ()
         self._hover: Item | None = None
-        self._hidden: frozenset[Layer] = frozenset()
+        self._hidden: frozenset[Layer] = frozenset({Layer.FRUSTA})
+        self._opacities: dict[Layer, float] = {}
+        self._sorties: dict[int, tuple[bool, float]] = {}
+        self._n_sorties = 0
+        self._flown: FlownPose | None = None
         self._units = UnitSystem.METRIC
         self._canvas = Canvas(self)
         self._coverage = CoveragePainter(self._canvas)
@@ -279,6 +314,7 @@ class ScenePicture(QWidget):
         """Draw a plan, or none; `locked` names the viewpoints that are kept as they are. Values of its routes go."""
         self._locked, self._route_values = locked, None
         self._plan = None if plan is None else plan_scene(plan, colours(), locked)
+        self._sorties, self._flown = {}, None
         self._draw_plan()
 
     def set_route_values(self, scale: ColourScale | None, values: Sequence[Array] = ()) -> None:
@@ -318,17 +354,56 @@ class ScenePicture(QWidget):
         self._selection = tuple(items)
         self._draw_marks()
         self._paint_domes()
+        self._focus()
 
     def set_hover(self, item: Item | None) -> None:
         """Mark what is pointed at, here or elsewhere."""
         if item != self._hover:
             self._hover = item
             self._canvas.draw("hover", self._marks((item,) if item is not None else (), HOVERED_PX))
+            self._focus()
+
+    def views_of_panel(self, panel_id: str) -> NDArray[np.int64]:
+        """Numbers of the plan's viewpoints that cover a section of a panel, whatever stands between."""
+        if self._site is None or self._plan is None or panel_id not in self._site.panel_index:
+            return np.zeros(0, np.int64)
+        return views_that_cover(self._plan, self._site.frames, self._site.panel_index[panel_id])
+
+    def set_sortie(self, number: int, is_visible: bool, opacity: float = 1.0) -> None:
+        """Show or hide a sortie, counted from 1, with its viewpoints, or draw it fainter."""
+        self._sorties[number - 1] = is_visible, opacity
+        self._show_plan_layers()
+        self._focus()
+
+    def sortie_state(self, number: int) -> tuple[bool, float]:
+        """Whether a sortie, counted from 1, is shown, and how strongly."""
+        return self._sorties.get(number - 1, (True, 1.0))
+
+    def set_layer_opacity(self, layer: Layer, opacity: float) -> None:
+        """Draw a layer so strongly, 0 to 1; those of the plan are drawn by sortie."""
+        self._opacities[layer] = opacity
+        self._canvas.set_opacity(layer, opacity)
+
+    def layer_opacity(self, layer: Layer) -> float:
+        """How strongly a layer is drawn."""
+        return self._opacities.get(layer, 1.0)
+
+    def set_flown(self, pose: FlownPose | None) -> None:
+        """Show the aircraft and its camera as they fly a sortie of the plan; None for nowhere."""
+        self._stir()
+        had, self._flown = self._flown, pose
+        self._canvas.draw("flown", self._flown_drawables())
+        if (None if had is None else had.sortie) != (None if pose is None else pose.sortie):
+            self._focus()
 
     def set_layer_visible(self, layer: Layer, is_visible: bool) -> None:
         """Show or hide a layer; what is hidden cannot be picked."""
         self._hidden = self._hidden - {layer} if is_visible else self._hidden | {layer}
         self._canvas.set_shown(layer, is_visible)
+        if layer in (Layer.VIEWPOINTS, Layer.ROUTES):
+            self._show_plan_layers()
+        elif layer is Layer.FRUSTA:
+            self._focus()
         self._show_labels()
 
     def is_layer_visible(self, layer: Layer) -> bool:
@@ -430,7 +505,8 @@ class ScenePicture(QWidget):
 
     def pick_at(self, x_px: float, y_px: float) -> Hit | None:
         """What lies under a pixel of the view."""
-        return pick(self._pick_index(), self._plan, self._navigator.pinhole(), x_px, y_px, self._hidden)
+        without = frozenset(number for number, (is_shown, _) in self._sorties.items() if not is_shown)
+        return pick(self._pick_index(), self._plan, self._navigator.pinhole(), x_px, y_px, self._hidden, without)
 
     def photo_border(self, views: ViewpointArrays, number: int, camera: Camera) -> list[Array]:
         """Where the border of a photo falls on the site, polylines of shape (k, 3).
@@ -462,7 +538,8 @@ class ScenePicture(QWidget):
 
     def _dress(self) -> None:
         """Take over the theme's colours."""
-        self._canvas.set_background_colour(colours().scene)
+        look = colours()
+        self._canvas.set_background_colour(look.scene, sky_colour(look.scene, look.is_dark))
         if self._site is not None:
             self._site = site_scene(self._site.model, colours())
             self._draw_site()
@@ -476,7 +553,7 @@ class ScenePicture(QWidget):
 
     def _draw_site(self) -> None:
         site = self._site
-        for layer in (Layer.GROUND, Layer.BUILDING, Layer.OBSTACLES, Layer.NO_FLY, Layer.AIRSPACE, Layer.HOME):
+        for layer in SITE_LAYERS:
             self._canvas.draw(layer, () if site is None else site.drawables[layer])
         self._canvas.draw(
             Layer.PANELS, () if site is None else [panels_drawable(site.frames, self._panel_colours(site))]
@@ -488,8 +565,15 @@ class ScenePicture(QWidget):
 
     def _draw_plan(self) -> None:
         plan = self._plan
-        for layer in (Layer.VIEWPOINTS, Layer.ROUTES):
-            self._canvas.draw(layer, () if plan is None else plan.drawables[layer])
+        n_sorties = 0 if plan is None else len(plan.paths)
+        for number in range(-1, max(n_sorties, self._n_sorties)):
+            routes = plan.routes[number] if plan is not None and 0 <= number < n_sorties else ()
+            self._canvas.draw((Layer.ROUTES, number), routes)
+            self._canvas.draw((Layer.VIEWPOINTS, number), () if plan is None else plan.marks.get(number, ()))
+        self._n_sorties = n_sorties
+        self._canvas.draw("flown", self._flown_drawables())
+        self._show_plan_layers()
+        self._focus()
         self._draw_marks()
         self._show_labels()
         self._show_legend()
@@ -499,7 +583,7 @@ class ScenePicture(QWidget):
             scale, values = self._panel_values
             return scale.colours(values)
         covered = self._coverage.panel_colours(colours())
-        return facade_colours(site.facade) if covered is None else covered
+        return glass_colours(site.frames, site.facade) if covered is None else covered
 
     def _paint_panels(self) -> None:
         if self._site is not None and len(self._site.frames):
@@ -536,8 +620,77 @@ class ScenePicture(QWidget):
         points, cells = joined([polyline(piece) for piece in pieces])
         return (Drawable(points, cells, flat(colours().accent, len(cells)), width_px=FOOTPRINT_PX),)
 
+    def _show_plan_layers(self) -> None:
+        """Show and hide sorties as their own state and that of their layers say."""
+        for number in range(-1, self._n_sorties):
+            is_shown, _ = self._sorties.get(number, (True, 1.0))
+            for layer in (Layer.ROUTES, Layer.VIEWPOINTS):
+                self._canvas.set_shown((layer, number), is_shown and layer not in self._hidden)
+
+    def _stir(self) -> None:
+        """Draw fast until nothing has changed for a while."""
+        self._canvas.set_smooth(False)
+        self._navigator.wait_for_rest()
+
+    def _focus(self) -> None:
+        """Draw what is looked at in full, with its pyramids, and the rest of the plan faintly."""
+        self._stir()
+        plan = self._plan
+        if plan is None:
+            self._canvas.draw(Layer.FRUSTA, ())
+            return
+        sorties, views = self._in_focus(plan)
+        for number in range(-1, self._n_sorties):
+            _, opacity = self._sorties.get(number, (True, 1.0))
+            strength = opacity if sorties is None or number in sorties else FADED * opacity
+            for layer in (Layer.ROUTES, Layer.VIEWPOINTS):
+                self._canvas.set_opacity((layer, number), strength)
+        if Layer.FRUSTA not in self._hidden:
+            views = np.arange(len(plan.sortie))
+        shown = [number for number in range(-1, self._n_sorties) if self._sorties.get(number, (True, 1.0))[0]]
+        views = views[np.isin(plan.sortie[views], shown)] if Layer.VIEWPOINTS not in self._hidden else views[:0]
+        self._canvas.draw(Layer.FRUSTA, plan_frusta(plan, views, colours()))
+        # Pyramids of what is looked at are there also where those of all are not asked for.
+        self._canvas.set_shown(Layer.FRUSTA, True)
+
+    def _in_focus(self, plan: PlanScene) -> tuple[set[int] | None, NDArray[np.int64]]:
+        """Sorties that are drawn in full, None for all, and viewpoints with pyramids."""
+        nothing = np.zeros(0, np.int64)
+        for item in (*((self._hover,) if self._hover is not None else ()), *self._selection):
+            if item.kind is ItemKind.PANEL:
+                return set(), self.views_of_panel(item.id)
+            if item.kind is ItemKind.SORTIE and item.id.isdecimal():
+                number = int(item.id) - 1
+                return {number}, np.flatnonzero(plan.sortie == number)
+        if self._flown is not None:
+            return {self._flown.sortie}, nothing
+        for item in self._selection:
+            if item.kind is ItemKind.LEG:
+                of_leg = item.id.partition("/")[0]
+                return ({int(of_leg) - 1} if of_leg.isdecimal() else None), nothing
+            if item.kind is ItemKind.VIEWPOINT and item.id in plan.viewpoint_index:
+                return {int(plan.sortie[plan.viewpoint_index[item.id]])}, nothing
+        return None, nothing
+
+    def _flown_drawables(self) -> tuple[Drawable, ...]:
+        """The aircraft that flies the plan: a dot, and the pyramid of its camera."""
+        plan, pose = self._plan, self._flown
+        if plan is None or pose is None:
+            return ()
+        view = ViewpointArrays(pose.position_enu_m[None], np.array([pose.heading_rad]), np.array([pose.pitch_rad]))
+        colour = sortie_colours(np.array([pose.sortie]), colours())
+        points, cells = frusta(view, plan.plan.camera, FLOWN_FRUSTUM_M)
+        return (
+            Drawable(points, cells, flat(colours().text, len(cells)), width_px=3.0, depth_shift=ON_TOP),
+            Drawable(pose.position_enu_m[None], np.array([[0]]), flat(colours().text, 1), 16.0, depth_shift=ON_TOP),
+            Drawable(pose.position_enu_m[None], np.array([[0]]), colour, 10.0, depth_shift=ON_TOP - 1.0),
+        )
+
     def _draw_marks(self) -> None:
-        self._canvas.draw("selection", self._marks(self._selection, SELECTED_PX))
+        # A sortie is told by the others, which are faint: a mark would hide its colour.
+        is_alone = self._plan is None or len(self._plan.paths) < 2
+        marked = [item for item in self._selection if is_alone or item.kind is not ItemKind.SORTIE]
+        self._canvas.draw("selection", self._marks(marked, SELECTED_PX))
         self._canvas.draw("footprint", self._footprint())
         self._canvas.draw("hover", self._marks((self._hover,) if self._hover is not None else (), HOVERED_PX))
 
@@ -581,11 +734,13 @@ class ScenePicture(QWidget):
         return orbit.zoomed(orbit.distance_m / (start_m + 0.9 * hit.depth_m))
 
     def _follow_orbit(self) -> None:
+        self._canvas.set_smooth(False)
         view = self._navigator.pinhole()
         self._canvas.look_through(view)
         self._overlay.set_view(view, self._navigator.orbit.distance_m)
 
     def _come_to_rest(self) -> None:
+        self._canvas.set_smooth(True)
         self._paint_domes()
         self._make_index()
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from PySide6.QtCore import QObject, QPointF, Qt, QTimer, Signal
-from PySide6.QtGui import QKeyEvent
-from PySide6.QtWidgets import QWidget
+from PySide6.QtCore import QMargins, QObject, QPointF, Qt, QTimer, Signal
+from PySide6.QtGui import QKeyEvent, QResizeEvent
+from PySide6.QtWidgets import QToolButton, QWidget
 
 from groundstation.gui.view3d.drawables import ON_TOP, Drawable, Layer, joined, polyline
 from groundstation.gui.view3d.navigator import Drag, Gestures
@@ -15,7 +15,9 @@ from groundstation.gui.view3d.overlay import Tip
 from groundstation.gui.view3d.paint import flat
 from groundstation.gui.view3d.scene_picture import ScenePicture, StandardView
 from groundstation.gui.view3d.tools import Hint, Key, Pointer, Preview, Tool, ViewpointTool
-from groundstation.gui.widgets.theme import Colours, colours
+from groundstation.gui.widgets.layer_list import LayerPanel, LayerRow
+from groundstation.gui.widgets.theme import SORTIES, Colours, colours
+from groundstation.services.project.document import Item, ItemKind
 from groundstation.services.units import UnitSystem, length_unit
 
 # Lets the user work with one tool at a time: feeds it pointers and keys, draws its preview, tells its results.
@@ -217,6 +219,13 @@ def preview_drawables(preview: Preview, look: Colours) -> tuple[Drawable, ...]:
     return tuple(parts)
 
 
+EDGE_PX, BELOW_PANEL_PX = 8, 60
+"""Of the list of layers: from the edges, and above the scale."""
+
+UNFADED = frozenset({Layer.ROUTES, Layer.VIEWPOINTS, Layer.FRUSTA, Layer.LABELS})
+"""Layers without an opacity of their own: those of the plan have it by sortie."""
+
+
 __all__ = ["SceneView", "StandardView"]
 
 
@@ -246,6 +255,16 @@ class SceneView(ScenePicture):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._drag: Drag | None = None
+        self._tip_text = ""
+        self._insets = QMargins()
+        self._panel = LayerPanel(self.tr("Layers"), self)
+        self._panel.list.changed.connect(self._layer_edited)
+        self._panel.hide()
+        self._layers_button = QToolButton(self)
+        self._layers_button.setText(self.tr("Layers"))
+        self._layers_button.setToolTip(self.tr("What is shown in the view, and how strongly, sortie by sortie"))
+        self._layers_button.setCheckable(True)
+        self._layers_button.toggled.connect(self._show_panel)
         self._gestures = Gestures(self._canvas)
         self._tools = ToolDriver(self._pointer, self)
         gestures, tools = self._gestures, self._tools
@@ -264,6 +283,94 @@ class SceneView(ScenePicture):
         tools.moved.connect(self.toolMoved)
         tools.finished.connect(self.toolFinished)
         tools.ended.connect(self.toolEnded)
+
+    # Layers
+
+    def layer_panel(self) -> LayerPanel:
+        """The list of layers; hidden until "Layers" is pressed."""
+        return self._panel
+
+    def set_insets(self, insets: QMargins) -> None:
+        """Keep marks and buttons away from the edges, where something else lies over them."""
+        super().set_insets(insets)
+        self._insets = insets
+        self._place_panel()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
+        """Keep the list of layers in its corner."""
+        super().resizeEvent(event)
+        self._place_panel()
+
+    def _show_panel(self, is_shown: bool) -> None:
+        self._panel.setVisible(is_shown)
+        if is_shown:
+            self._show_rows()
+
+    def _place_panel(self) -> None:
+        left, top = EDGE_PX + self._insets.left(), EDGE_PX + self._insets.top()
+        self._layers_button.adjustSize()
+        self._layers_button.move(left, top)
+        self._layers_button.raise_()
+        top += self._layers_button.height() + 4
+        room = self.height() - top - self._insets.bottom() - BELOW_PANEL_PX
+        self._panel.setGeometry(left, top, self._panel.width(), max(60, min(self._panel.wanted_px(), room)))
+        self._panel.raise_()
+
+    def _show_rows(self) -> None:
+        """List what there is: sorties first, then what stands on the site."""
+        rows = []
+        for number in range(1, (0 if self._plan is None else len(self._plan.paths)) + 1):
+            is_shown, opacity = self.sortie_state(number)
+            colour = SORTIES[(number - 1) % len(SORTIES)]
+            rows.append(LayerRow(f"{number}", self.tr("Sortie {0}").format(number), is_shown, opacity, colour))
+        for layer, title in self._layer_titles().items():
+            is_shown, can_fade = self.is_layer_visible(layer), layer not in UNFADED
+            rows.append(LayerRow(layer.value, title, is_shown, self.layer_opacity(layer), can_fade=can_fade))
+        self._panel.setValue(rows)
+        self._place_panel()
+
+    def _layer_titles(self) -> dict[Layer, str]:
+        titles: dict[Layer, str] = {}
+        if self._plan is not None:
+            titles |= {
+                Layer.ROUTES: self.tr("Routes"),
+                Layer.VIEWPOINTS: self.tr("Viewpoints"),
+                Layer.FRUSTA: self.tr("Pyramids of all views"),
+            }
+        if self._site is not None:
+            model = self._site.model
+            titles |= {Layer.PANELS: self.tr("Panels"), Layer.BUILDING: self.tr("Building")}
+            if model.obstacles:
+                titles[Layer.OBSTACLES] = self.tr("Obstacles")
+            if model.site.airspace.no_fly:
+                titles[Layer.NO_FLY] = self.tr("No-fly zones")
+            titles |= {
+                Layer.AIRSPACE: self.tr("Airspace"),
+                Layer.HOME: self.tr("Home"),
+                Layer.SHADOWS: self.tr("Shadows"),
+                Layer.GROUND: self.tr("Ground"),
+                Layer.LABELS: self.tr("Names"),
+            }
+        return titles
+
+    def _layer_edited(self, key: str, is_visible: bool, opacity: float) -> None:
+        if key.isdecimal():
+            self.set_sortie(int(key), is_visible, opacity)
+        else:
+            self.set_layer_visible(Layer(key), is_visible)
+            self.set_layer_opacity(Layer(key), opacity)
+
+    def _draw_site(self) -> None:
+        super()._draw_site()
+        self._list_anew()
+
+    def _draw_plan(self) -> None:
+        super()._draw_plan()
+        self._list_anew()
+
+    def _list_anew(self) -> None:
+        if self._layers_button.isChecked():
+            self._show_rows()
 
     def set_units(self, units: UnitSystem) -> None:
         """Units of lengths on screen."""
@@ -323,10 +430,16 @@ class SceneView(ScenePicture):
             return
         hit = self.pick_at(place.x(), place.y())
         item = None if hit is None else hit.item
-        self._overlay.set_tip(None if item is None else Tip(self._texts.name(item), place.x(), place.y()))
         if item != self._hover:
             self.set_hover(item)
+            self._tip_text = "" if item is None else self._tip_of(item)
             self.hovered.emit(item)
+        self._overlay.set_tip(None if item is None else Tip(self._tip_text, place.x(), place.y()))
+
+    def _tip_of(self, item: Item) -> str:
+        is_counted = item.kind is ItemKind.PANEL and self._plan is not None
+        n_views = len(self.views_of_panel(item.id)) if is_counted else None
+        return self._texts.name(item, self._plan, n_views)
 
     def _pointer_left(self) -> None:
         self._overlay.set_tip(None)

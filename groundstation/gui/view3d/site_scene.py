@@ -16,12 +16,14 @@ from groundstation.gui.view3d.drawables import (
     frusta,
     polyline,
     quads,
+    shadow,
     shown_panels,
+    sight_lines,
     triangle_normals,
 )
-from groundstation.gui.view3d.paint import ColourScale, flat, rgba, shaded
+from groundstation.gui.view3d.paint import SUN, ColourScale, flat, rgba, shaded
 from groundstation.gui.widgets.theme import FACADES, SORTIES, Colours
-from planning.coverage.sections import PanelFrames, panel_frames
+from planning.coverage.sections import NOT_SEEN, PanelFrames, SectionGrid, panel_frames, sections_seen
 from planning.geo.frames import Vec3
 from planning.geo.height_field import HeightField
 from planning.geo.mesh import TriangleMesh, box_mesh
@@ -37,8 +39,11 @@ Array = NDArray[np.float64]
 Bytes = NDArray[np.uint8]
 
 FRUSTUM_M = 1.5
-ARROW_M = 1.6
+ARROW_M = 1.8
 """Lengths of a viewpoint's pyramid and of arrowheads, metres: about the size of the aircraft."""
+
+SIGHT_M = 1.2
+"""Length of the line that shows where a viewpoint looks."""
 
 
 TERRAIN_CELLS = 150
@@ -60,6 +65,10 @@ class PlanScene:
         Number of each viewpoint's sortie, shape (n,); -1 where it is in none.
     paths
         Polyline of each sortie, shape (k, 3).
+    routes
+        By sortie.
+    marks
+        Viewpoints by number of their sortie, -1 for those in none.
     """
 
     plan: Plan
@@ -67,7 +76,8 @@ class PlanScene:
     sortie: NDArray[np.int64]
     paths: tuple[Array, ...]
     viewpoint_index: dict[str, int]
-    drawables: dict[Layer, tuple[Drawable, ...]]
+    routes: tuple[tuple[Drawable, ...], ...]
+    marks: dict[int, tuple[Drawable, ...]]
 
 
 def plan_scene(
@@ -89,12 +99,43 @@ def plan_scene(
     paths = tuple(np.array(sortie.path_enu_m, np.float64).reshape(-1, 3) for sortie in plan.sorties)
     number = {found: i for i, sortie in enumerate(plan.sorties) for found in sortie.viewpoint_ids}
     sortie = np.array([number.get(viewpoint.id, -1) for viewpoint in plan.viewpoints], np.int64)
-    drawables = {
-        Layer.VIEWPOINTS: _viewpoints(plan, views, sortie, look, locked),
-        Layer.ROUTES: _routes(paths, values, look),
+    is_locked = np.array([viewpoint.id in locked for viewpoint in plan.viewpoints], bool)
+    marks = {
+        int(number): _marks(views, np.flatnonzero(sortie == number), sortie, is_locked, look)
+        for number in np.unique(sortie)
     }
+    routes = tuple(_route(number, path, values, look) for number, path in enumerate(paths))
     index = {viewpoint.id: i for i, viewpoint in enumerate(plan.viewpoints)}
-    return PlanScene(plan, views, sortie, paths, index, drawables)
+    return PlanScene(plan, views, sortie, paths, index, routes, marks)
+
+
+def views_of(plan: PlanScene, numbers: NDArray[np.int64]) -> ViewpointArrays:
+    """Some of a plan's viewpoints."""
+    return ViewpointArrays(*(part[numbers] for part in plan.views))
+
+
+def plan_frusta(plan: PlanScene, numbers: NDArray[np.int64], look: Colours) -> tuple[Drawable, ...]:
+    """Pyramids of some viewpoints."""
+    if len(numbers) == 0:
+        return ()
+    points, cells = frusta(views_of(plan, numbers), plan.plan.camera, FRUSTUM_M)
+    colours = np.repeat(sortie_colours(plan.sortie[numbers], look), len(cells) // len(numbers), axis=0)
+    return (Drawable(points, cells, colours, width_px=1.5),)
+
+
+def views_that_cover(plan: PlanScene, frames: PanelFrames, panel: int) -> NDArray[np.int64]:
+    """Numbers of the viewpoints that cover a section of a panel, whatever stands between."""
+    one = PanelFrames(
+        frames.centroids[[panel]],
+        frames.normals[[panel]],
+        frames.tangents[[panel]],
+        frames.bitangents[[panel]],
+        frames.corners[[panel]],
+    )
+    rules = plan.plan.constraints
+    grid = SectionGrid(rules.section_step_deg)
+    seen = sections_seen(plan.views, one, plan.plan.camera, grid, rules.whole_panel, rules.max_distance_m)
+    return np.flatnonzero(seen[:, 0] != NOT_SEEN)
 
 
 def sortie_colours(sortie: NDArray[np.int64], look: Colours) -> Bytes:
@@ -103,49 +144,51 @@ def sortie_colours(sortie: NDArray[np.int64], look: Colours) -> Bytes:
     return np.asarray(table[np.where(sortie < 0, len(SORTIES), sortie % len(SORTIES))])
 
 
-def _viewpoints(
-    plan: Plan, views: ViewpointArrays, sortie: NDArray[np.int64], look: Colours, locked: frozenset[str]
+def _marks(
+    views: ViewpointArrays,
+    numbers: NDArray[np.int64],
+    sortie: NDArray[np.int64],
+    is_locked: NDArray[np.bool_],
+    look: Colours,
 ) -> tuple[Drawable, ...]:
-    n = len(plan.viewpoints)
-    if n == 0:
-        return ()
-    colours = sortie_colours(sortie, look)
-    points, cells = frusta(views, plan.camera, FRUSTUM_M)
-    dots = np.arange(n)[:, None]
+    """A dot for each of some viewpoints, and a short line to where it looks."""
+    own = ViewpointArrays(*(part[numbers] for part in views))
+    colours = sortie_colours(sortie[numbers], look)
+    dots = np.arange(len(numbers))[:, None]
     parts = [
-        Drawable(points, cells, np.repeat(colours, len(cells) // n, axis=0)),
-        Drawable(views.positions_enu_m, dots, colours, width_px=4.0),
+        Drawable(*sight_lines(own, SIGHT_M), colours, width_px=1.5),
+        Drawable(own.positions_enu_m, dots, colours, width_px=5.0),
     ]
-    held = np.flatnonzero([viewpoint.id in locked for viewpoint in plan.viewpoints])
+    held = np.flatnonzero(is_locked[numbers])
     if len(held):
-        parts.append(Drawable(views.positions_enu_m, held[:, None], flat(look.text, len(held)), width_px=9.0))
+        parts.append(Drawable(own.positions_enu_m, held[:, None], flat(look.text, len(held)), width_px=9.0))
     return tuple(parts)
 
 
-def _routes(
-    paths: tuple[Array, ...], values: tuple[ColourScale, tuple[Array, ...]] | None, look: Colours
+def _route(
+    number: int, path: Array, values: tuple[ColourScale, tuple[Array, ...]] | None, look: Colours
 ) -> tuple[Drawable, ...]:
+    """The path of a sortie with arrowheads, in its colour or by values."""
+    points, cells = polyline(path)
+    if len(cells) == 0:
+        return ()
     parts = []
-    for number, path in enumerate(paths):
-        points, cells = polyline(path)
-        if len(cells) == 0:
-            continue
-        colours = flat(SORTIES[number % len(SORTIES)], len(cells))
-        heads, triangles = arrows(path, ARROW_M)
-        head_colours = flat(SORTIES[number % len(SORTIES)], len(triangles))
-        if values is not None:
-            scale, by_sortie = values
-            if by_sortie[number].shape != (len(path),):
-                raise ValueError(f"sortie {number + 1}: expected {len(path)} values, got {by_sortie[number].shape}")
-            # The worse end decides a leg's colour: a leg is as near to something as its nearest end.
-            legs = np.fmin(by_sortie[number][:-1], by_sortie[number][1:])
-            colours = scale.colours(legs)
-            # Some colours of a scale are as dark or as bright as the background.
-            casing = flat(look.text, len(cells))
-            parts.append(Drawable(points, cells, casing, width_px=5.0, depth_shift=CASING_SHIFT))
-        parts.append(Drawable(points, cells, colours, width_px=2.5))
-        if len(triangles):
-            parts.append(Drawable(heads, triangles, head_colours))
+    colours = flat(SORTIES[number % len(SORTIES)], len(cells))
+    heads, triangles = arrows(path, ARROW_M)
+    head_colours = flat(SORTIES[number % len(SORTIES)], len(triangles))
+    if values is not None:
+        scale, by_sortie = values
+        if by_sortie[number].shape != (len(path),):
+            raise ValueError(f"sortie {number + 1}: expected {len(path)} values, got {by_sortie[number].shape}")
+        # The worse end decides a leg's colour: a leg is as near to something as its nearest end.
+        legs = np.fmin(by_sortie[number][:-1], by_sortie[number][1:])
+        colours = scale.colours(legs)
+        # Some colours of a scale are as dark or as bright as the background.
+        casing = flat(look.text, len(cells))
+        parts.append(Drawable(points, cells, casing, width_px=5.0, depth_shift=CASING_SHIFT))
+    parts.append(Drawable(points, cells, colours, width_px=2.5))
+    if len(triangles):
+        parts.append(Drawable(heads, triangles, head_colours))
     return tuple(parts)
 
 
@@ -170,6 +213,17 @@ BUILDING, OBSTACLE, NO_FLY, HOME, RALLY = "#aeb6bf", "#c98f5a", "#d64545", "#1d7
 points."""
 
 GROUND_LIGHT, GROUND_DARK = "#dfe6d8", "#2e3630"
+SHADOW_LIGHT, SHADOW_DARK = "#c6cec0", "#262c28"
+
+SHADOW_NEARER = 5e-4
+"""Part of its distance by which a shadow comes before the ground that it lies on: 5 cm at 100 m."""
+
+MAX_SHADOW_TRIANGLES = 50_000
+"""Of a mesh that casts one: a second drawing of more costs a processor in place of a graphics card too much."""
+
+GLASS_DARKER, GLASS_LIGHTER = 0.88, 1.1
+"""Brightness of panes at the foot and at the top of a facade, which mirror ground and sky."""
+
 PANEL_EDGE = "#23415a"
 
 LANDING_LABEL_M = 1.5
@@ -224,6 +278,7 @@ def site_scene(model: SiteModel, look: Colours) -> SiteScene:
         Layer.NO_FLY: tuple(_prism(zone.prism()) for zone in site.airspace.no_fly),
         Layer.AIRSPACE: (_airspace(model, look),),
         Layer.HOME: _home(model),
+        Layer.SHADOWS: _shadows(model, look),
     }
     panel_index = {panel.id: i for i, panel in enumerate(site.panels)}
     return SiteScene(model, frames, facade, panel_index, drawables, _labels(model))
@@ -233,6 +288,19 @@ def facade_colours(facade: NDArray[np.int64]) -> NDArray[np.uint8]:
     """Colours of panels by the number of their facade, shape (m, 4)."""
     table = np.concatenate([flat(colour, 1) for colour in FACADES])
     return np.asarray(table[facade % len(FACADES)])
+
+
+def glass_colours(frames: PanelFrames, facade: NDArray[np.int64]) -> NDArray[np.uint8]:
+    """Colours of panes by facade, brighter upwards as glass is that mirrors the sky, shape (m, 4)."""
+    colours = facade_colours(facade)
+    if not len(frames):
+        return colours
+    heights = frames.centroids[:, 2]
+    share = (heights - heights.min()) / max(float(np.ptp(heights)), 1e-9)
+    brightness = GLASS_DARKER + (GLASS_LIGHTER - GLASS_DARKER) * share
+    result = colours.copy()
+    result[:, :3] = np.clip(np.rint(colours[:, :3] * brightness[:, None]), 0.0, 255.0).astype(np.uint8)
+    return result
 
 
 def panels_drawable(frames: PanelFrames, colours: NDArray[np.uint8]) -> Drawable:
@@ -277,6 +345,22 @@ def _terrain(terrain: HeightField, look: Colours) -> Drawable:
     surface = TriangleMesh(np.nan_to_num(points) - [0.0, 0.0, 0.1], triangles)
     colours = flat(GROUND_DARK if look.is_dark else GROUND_LIGHT, len(triangles))
     return Drawable(surface.vertices_enu_m, triangles, shaded(colours, triangle_normals(surface)))
+
+
+def _shadows(model: SiteModel, look: Colours) -> tuple[Drawable, ...]:
+    """Shadows of what stands on level ground, in the light that faces are shaded by: they show where things stand."""
+    airspace = model.site.airspace
+    if drawn_terrain(model.site) is not None:
+        return ()
+    low, high = np.array(airspace.min_enu_m[:2]), np.array(airspace.max_enu_m[:2])
+    parts = []
+    for mesh in (model.building, *model.obstacles):
+        n = len(mesh.triangles)
+        if 0 < n <= MAX_SHADOW_TRIANGLES:
+            points, cells = shadow(mesh, SUN, airspace.ground_z_m - 0.1, low, high)
+            colour = SHADOW_DARK if look.is_dark else SHADOW_LIGHT
+            parts.append(Drawable(points, cells, flat(colour, n), nearer=SHADOW_NEARER))
+    return tuple(parts)
 
 
 def _airspace(model: SiteModel, look: Colours) -> Drawable:

@@ -22,6 +22,9 @@ from PySide6.QtWidgets import (
 
 SWATCH_PX = 12
 SLIDER_PX = 84
+LEAST_PX = 150
+"""Height of the list at least; what is longer is scrolled."""
+
 FAINTEST = 0.1
 """Least opacity: what is fainter is hidden by its check box."""
 
@@ -121,18 +124,21 @@ class LayerList(QWidget):
             slider.setFixedWidth(SLIDER_PX)
             slider.setToolTip(self.tr("Translucent to the left, opaque to the right"))
             slider.setAccessibleName(self.tr("Opacity of {0}").format(row.title))
-            slider.setVisible(row.can_fade)
             box.toggled.connect(lambda checked, key=row.key: self._edited(key, is_visible=checked))
             slider.valueChanged.connect(lambda value, key=row.key: self._edited(key, opacity=value / 100.0))
             self._boxes[row.key] = box, slider
             self._grid.addWidget(box, number, 0)
             self._grid.addWidget(slider, number, 1)
+            # Qt shows them by itself only later, and until then the list has no size.
+            box.show()
+            slider.setVisible(row.can_fade)
             if row.can_remove:
                 remove = QToolButton()
                 remove.setText("×")
                 remove.setToolTip(self.tr("Remove {0} from the map; the file stays").format(row.title))
                 remove.clicked.connect(lambda _checked=False, key=row.key: self.removed.emit(key))
                 self._grid.addWidget(remove, number, 2)
+                remove.show()
 
     def _edited(self, key: str, *, is_visible: bool | None = None, opacity: float | None = None) -> None:
         rows = []
@@ -175,6 +181,7 @@ class LayerPanel(QFrame):
         self._layout = QVBoxLayout(self)
         self._layout.setContentsMargins(8, 6, 8, 6)
         self._layout.setSpacing(4)
+        title.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
         self._layout.addWidget(title)
         self._layout.addWidget(area, 1)
         self.setFixedWidth(280)
@@ -186,5 +193,11 @@ class LayerPanel(QFrame):
     def setValue(self, rows: Sequence[LayerRow]) -> None:  # noqa: N802
         """Show layers, as high as they need, and no higher than the view lets them be."""
         self.list.setValue(rows)
-        self._area.setMinimumHeight(min(self.list.sizeHint().height() + 4, 150))
-        self._area.setMaximumHeight(self.list.sizeHint().height() + 4)
+        height = self.list.sizeHint().height() + 4
+        self._area.setMinimumHeight(min(height, LEAST_PX))
+        self._area.setMaximumHeight(height)
+
+    def wanted_px(self) -> int:
+        """Height at which the whole list is seen."""
+        least, most = self._area.minimumHeight(), self._area.maximumHeight()
+        return self.sizeHint().height() - min(max(self._area.sizeHint().height(), least), most) + most
