@@ -330,7 +330,8 @@ class BriefDialog(QDialog):
         translated_findings = tuple(translated_finding(finding, self._units) for finding in found.findings)
         self._sun = checked.sun
         sun_lines = tuple(translated(line, self._units) for line in found.sun)
-        self._brief = replace(found, findings=translated_findings, sun=sun_lines)
+        zones = tuple(translated_finding(finding, self._units) for finding in found.zones)
+        self._brief = replace(found, findings=translated_findings, sun=sun_lines, zones=zones)
         self._page, self._paper = QTextBrowser(), ChoiceBox()
         # Paper is white in every theme.
         self._page.setStyleSheet("QTextBrowser { background: #ffffff; color: #000000; }")

@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
-from PySide6.QtCore import QObject, Signal
+from PySide6.QtCore import QObject, QTimer, Signal
 
 from groundstation.gui.application.context import ApplicationContext
 from groundstation.services.jobs.runner import JobContext
 from groundstation.services.mission.compare import MissionComparison, compare_with_plan
 from groundstation.services.mission.files import bare_site, missions_as_plan, plan_of_missions, read_mission_files
-from groundstation.services.mission.readiness import UNKNOWN_DAY, Preflight, preflight
+from groundstation.services.mission.readiness import UNKNOWN_DAY, FlightDay, Preflight, preflight
 from groundstation.services.plan.places import item_of_place
-from groundstation.services.project.document import PlanEntry
+from groundstation.services.plan.planning import PLANNED_WITHIN_S
+from groundstation.services.project.document import Document, PlanEntry
 from groundstation.services.site.sources import with_new_site
 from planning.base.findings import Finding, Severity
 from planning.plan import Plan
 from planning.site.records import SiteModel
+from planning.site.zones.keep_out import at_time
 
 MAX_SHOWN_FINDINGS = 5
 """Findings of one import that are said one by one; the check lists all."""
@@ -41,7 +44,29 @@ class MissionController(QObject):
         super().__init__(parent)
         self._context = context
         self._check_id = 0
-        self.day = UNKNOWN_DAY
+        self._day = UNKNOWN_DAY
+        context.documentChanged.connect(self._document_changed)
+
+    @property
+    def day(self) -> FlightDay:
+        """What is known of the day of the flight."""
+        return self._day
+
+    def set_day(self, day: FlightDay) -> None:
+        """The flight is on this day: plans and checks keep out of the geo-zones that apply then."""
+        self._day = day
+        self._show_zones_of_day()
+
+    def _document_changed(self, _before: Document, _after: Document) -> None:
+        # Listeners of this very change come first.
+        QTimer.singleShot(0, self, self._show_zones_of_day)
+
+    def _show_zones_of_day(self) -> None:
+        document = self._context.document
+        if document.site is not None and document.site.site.zones:
+            timed = at_time(document.site, self._day.at, PLANNED_WITHIN_S)
+            if timed.zones_at != document.site.zones_at:
+                self._context.amend(replace(document, site=timed))
 
     @property
     def plan(self) -> Plan | None:

@@ -523,7 +523,7 @@ class MissionPage(QObject):
         self._show_freshness()
 
     def _day_changed(self, day: FlightDay) -> None:
-        self.controller.day = day
+        self.controller.set_day(day)
         self._show_freshness()
         self._check_soon.start()
 

@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator
 
 from groundstation.services.project.document import Document, Item, ItemKind, exists
+from planning.site.zones.keep_out import near_zones
 
 _NAMED = {
     "home": ItemKind.HOME,
@@ -34,7 +35,19 @@ def item_of_place(place: str, document: Document) -> Item | None:
     document has is taken, so that a place inside a mission file still leads to its sortie. Viewpoints, sorties and legs
     are those of the current plan.
     """
-    return next((item for item in _meanings(place.strip()) if exists(document, item)), None)
+    known = next((item for item in _meanings(place.strip()) if exists(document, item)), None)
+    return _zone_of_place(place.strip(), document) if known is None else known
+
+
+def _zone_of_place(place: str, document: Document) -> Item | None:
+    """The geo-zone of this identifier, or the file of zones of this name."""
+    if document.site is None:
+        return None
+    if any(source.file == place for source in document.site.site.zones):
+        return Item(ItemKind.ZONE_FILE, place)
+    return next(
+        (Item(ItemKind.ZONE, near.key) for near in near_zones(document.site) if near.local.zone.id == place), None
+    )
 
 
 def _meanings(place: str) -> Iterator[Item]:

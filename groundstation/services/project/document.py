@@ -136,6 +136,13 @@ class Document:
         return first_free(lambda number: f"plan-{number}", used_ids)
 
 
+def has_content_of(one: SiteModel | None, other: SiteModel | None) -> bool:
+    """Whether two sites are the same in all that files hold, by being the same objects: one may have another time."""
+    if one is None or other is None or one is other:
+        return one is other
+    return one.site is other.site and one.building is other.building and one.obstacles is other.obstacles
+
+
 def exists(document: Document, item: Item) -> bool:
     """Whether a document has the thing that an item names."""
     model, entry = document.site, document.current

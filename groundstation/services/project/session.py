@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Generic, TypeVar
 
-from groundstation.services.project.document import Document
+from groundstation.services.project.document import Document, has_content_of
 from groundstation.services.project.folder import OpenedProject, open_project
 from groundstation.services.project.lock import ProjectLock, lock_project
 from groundstation.services.project.recovery import Autosave, lock_unsaved_folder, remove_unsaved_folder
@@ -137,7 +137,7 @@ class Session:
         """Take over what is no step of its own: the plan that is looked at, the wishes in a form."""
         before, was_saved = self.document, self.is_saved
         self._history.amend(document)
-        if was_saved and document.site is before.site and document.plans == before.plans:
+        if was_saved and has_content_of(document.site, before.site) and document.plans == before.plans:
             self._saved = document
         self._publish(before)
 

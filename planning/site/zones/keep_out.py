@@ -135,7 +135,7 @@ def at_time(model: SiteModel, at: datetime | None, duration_s: float) -> SiteMod
         Of the whole flight, pauses included.
     """
     if at is None or not model.site.zones:
-        return model
+        return model if model.zones_at is None else replace(model, zones_at=None)
     return replace(model, zones_at=TimeWindow(at - AROUND, at + timedelta(seconds=duration_s) + AROUND))
 
 

@@ -1,7 +1,9 @@
 """Geo-zones in the real window: added by the Site tab's button, seen on the map and in the tree, authorised, undone."""
 
+from datetime import UTC, datetime
+
 import pytest
-from PySide6.QtCore import QPoint, Qt
+from PySide6.QtCore import QDateTime, QPoint, Qt
 from PySide6.QtTest import QTest
 
 from groundstation.gui.shared_view import SharedViewPage
@@ -111,3 +113,28 @@ def test_a_home_in_a_zone_is_told_by_the_site_s_check(hands, tmp_path):
     shown = hands.tab.detail.findings._list.item(0).text()
     assert "“Authorisation”" in shown
     assert "--" not in shown
+
+
+@pytest.mark.slow
+def test_the_planned_time_decides_which_zones_the_next_plan_keeps_out_of(hands, tmp_path):
+    night = [{"permanent": "NO", "schedule": [{"day": ["ANY"], "startTime": "20:00Z", "endTime": "23:59Z"}]}]
+    volume = ed269_volume(polygon(square(0.0, 0.0, 90.0, ORIGIN)))
+    path = tmp_path / "night.json"
+    path.write_bytes(ed269(ed269_feature(volume, applicability=night)))
+    add(hands, path)
+    assert len(no_fly_volumes(hands.context.document.site)) == 1
+    hands.window.show_tab("mission")
+    day = hands.window.tab("mission").findings.day_box()
+    click_on(hands.window, day.has_time, QPoint(8, day.has_time.height() // 2))
+    for at, n_kept in ((datetime(2026, 11, 28, 12, tzinfo=UTC), 0), (datetime(2026, 11, 28, 19, tzinfo=UTC), 1)):
+        day.when.setDateTime(QDateTime.fromSecsSinceEpoch(round(at.timestamp())))
+        hands.until(lambda n=n_kept: len(no_fly_volumes(hands.context.document.site)) == n)
+    day.when.setDateTime(QDateTime.fromSecsSinceEpoch(round(datetime(2026, 11, 28, 12, tzinfo=UTC).timestamp())))
+    hands.undo()
+    hands.context.session.redo()
+    hands.until(lambda: len(no_fly_volumes(hands.context.document.site)) == 0)
+    assert hands.site.zones
+    click_on(hands.window, day.has_time, QPoint(8, day.has_time.height() // 2))
+    hands.until(lambda: len(no_fly_volumes(hands.context.document.site)) == 1)
+    hands.window.show_tab("site")
+    hands.idle()

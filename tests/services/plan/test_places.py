@@ -9,6 +9,7 @@ from groundstation.services.project.document import Document, Item, ItemKind, Pl
 from planning.checks import check_plan
 from tests.missions.plans import example_plan
 from tests.planning.plan_cases import kiosk
+from tests.planning.site.zones.zone_files import ed269, ed269_feature, ed269_volume, polygon, square, with_zones
 
 
 @pytest.fixture(scope="module")
@@ -71,3 +72,11 @@ def test_every_place_that_the_checks_name_leads_somewhere(document):
     places = {finding.place for finding in findings if finding.place}
     assert len(places) > 5
     assert all(item_of_place(place, document) is not None for place in places), places
+
+
+def test_places_of_geo_zones_lead_to_the_zone_and_to_its_file():
+    model = with_zones(ed269(ed269_feature(ed269_volume(polygon(square(0.0, 0.0, 50.0))), identifier="CTR 7")))
+    document = Document(site=model)
+    assert item_of_place("CTR 7", document) == Item(ItemKind.ZONE, "zones.json/CTR 7")
+    assert item_of_place("zones.json", document) == Item(ItemKind.ZONE_FILE, "zones.json")
+    assert item_of_place("CTR 8", document) is None
