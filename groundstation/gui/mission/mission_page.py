@@ -519,7 +519,7 @@ class MissionPage(QObject):
     def _plan_take_off(self, at: datetime) -> None:
         box = self.findings.day_box()
         box.setValue(replace(box.value(), at=at))
-        self.controller.day = box.value()
+        self.controller.set_day(box.value())
         self._show_freshness()
 
     def _day_changed(self, day: FlightDay) -> None:
