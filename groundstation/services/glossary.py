@@ -32,7 +32,7 @@ class Term:
 
 TERMS = (
     Term(
-        say("Section"),
+        say("Hemisphere section"),
         say(
             "A part of the hemisphere of directions before a panel. A photo covers the section that it is taken from; "
             "glass looks different from each."
@@ -116,7 +116,6 @@ TERMS = (
         say("Facade grid"),
         say("Equal panels in rows and columns, laid into a rectangle on a wall."),
         "guide/site.md",
-        (say("Panel grid"),),
     ),
     Term(
         say("Airspace"),

@@ -7,9 +7,11 @@ import sys
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
+from PySide6.QtCore import Qt, QTimer
 
-from tests.gui.driving import TurnGaps, clicked
+from tests.gui.driving import clicked
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -22,13 +24,31 @@ USABLE_S = 2.0
 """From the command to a window whose start page can be pressed."""
 
 
+class OwnGaps:
+    """Time between turns of the event loop: by the clock, and as the window's own thread worked in it.
+
+    On a machine that others use the clock tells of them; it counts only where there is a core for each who wants one.
+    """
+
+    def __init__(self):
+        self.ticks = []
+        self._timer = QTimer()
+        self._timer.setTimerType(Qt.TimerType.PreciseTimer)
+        self._timer.timeout.connect(lambda: self.ticks.append((time.perf_counter(), time.thread_time())))
+        self._timer.start(2)
+
+    def longest_ms(self):
+        clock, own = 1e3 * np.diff(np.array(self.ticks[:-1]), axis=0).max(axis=0)
+        is_shared = os.getloadavg()[0] > os.cpu_count()
+        return round(float(own if is_shared else max(clock, own)), 1)
+
+
 class Mouse:
     """Clicks what leads on, and counts."""
 
     def __init__(self, pilot):
-        self.pilot, self.n_clicks, self.gaps = pilot, 0, TurnGaps()
+        self.pilot, self.n_clicks, self.gaps = pilot, 0, OwnGaps()
         self.longest_ms: dict[str, float] = {}
-        self.gaps.start()
 
     def press(self, text):
         self.pilot.press(text)
@@ -36,10 +56,10 @@ class Mouse:
 
     def look(self, name):
         """Note the longest gap since the last look; taking a picture is no part of the way."""
-        self.pilot.until(lambda: len(self.gaps._ticks) > ENOUGH_TICKS, f"{name}: the window rests")
-        self.longest_ms[name] = round(self.gaps.longest_ms(), 1)
+        self.pilot.until(lambda: len(self.gaps.ticks) > ENOUGH_TICKS, f"{name}: the window rests")
+        self.longest_ms[name] = self.gaps.longest_ms()
         self.pilot.see(name)
-        self.gaps.start()
+        self.gaps.ticks.clear()
 
 
 @pytest.mark.slow

@@ -118,6 +118,24 @@ def test_the_program_runs_from_the_wheel_alone(installed):
     assert str(ROOT) not in found
 
 
+def test_the_wheel_has_the_manual_and_the_sample_project(installed):
+    """The pages of docs, and the archive that the start page opens."""
+    code = (
+        "from pathlib import Path\n"
+        "from groundstation.services.manual import chapters, manual_folder, page_part\n"
+        "from groundstation.services.project.sample import unpack_sample\n"
+        "folder = manual_folder()\n"
+        "pages = [name for chapter in chapters(folder) for name, _ in chapter.pages]\n"
+        "print(folder, len(pages), page_part(folder / 'start.md')[0].splitlines()[0])\n"
+        "print((folder / 'pictures' / 'window.png').is_file(), unpack_sample(Path('sample')).is_dir())\n"
+    )
+    said = installed.run_python("-c", code).stdout
+    n_pages = sum(1 for path in (ROOT / "docs").rglob("*.md") if "_build" not in path.parts)
+    assert str(installed.program.parents[1]) in said
+    assert f" {n_pages - 1} # Start here" in said
+    assert "True True" in said
+
+
 def test_morning_a_real_building_is_planned_checked_exported_and_flown(installed, shared_data):
     day = installed.folder
     model = shared_data / "bim" / "curtain_wall_small.ifc"

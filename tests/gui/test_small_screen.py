@@ -116,7 +116,10 @@ def cut_short(window):
     """Buttons that are too narrow for their words."""
     found = []
     for button in controls(window):
-        if isinstance(button, (QPushButton, QToolButton)) and text_of(button):
+        style = button.toolButtonStyle() if isinstance(button, QToolButton) else None
+        # Those that show a sign alone say the word by their tool tip.
+        is_sign = style == Qt.ToolButtonStyle.ToolButtonIconOnly and not button.icon().isNull() and button.toolTip()
+        if isinstance(button, (QPushButton, QToolButton)) and text_of(button) and not is_sign:
             lines = text_of(button).replace("&", "").splitlines()
             needed = max(button.fontMetrics().horizontalAdvance(line) for line in lines)
             if needed > button.width():

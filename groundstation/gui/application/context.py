@@ -87,6 +87,24 @@ class Message:
 
 
 @dataclass(frozen=True, slots=True)
+class Ongoing:
+    """Work that is no job, such as a training in its own process: the job bar shows it while no job runs.
+
+    Parameters
+    ----------
+    share
+        Of the whole that is done; None where that is not known.
+    remaining_s
+        Until its end; None where nothing says it.
+    """
+
+    text: str
+    share: float | None
+    elapsed_s: float
+    remaining_s: float | None
+
+
+@dataclass(frozen=True, slots=True)
 class _Waiting:
     """What happens in the window when a job ends."""
 
@@ -109,6 +127,8 @@ class ApplicationContext(QObject):
         Something was told; what was said about a topic holds no more.
     jobsChanged()
         A job was queued or ended.
+    ongoingChanged(Ongoing or None)
+        Work that is no job went on, or is over.
     milestonesChanged(Milestones)
         Something was done, or an edit took it back.
     takeOffPlanned(datetime)
@@ -122,6 +142,7 @@ class ApplicationContext(QObject):
     messageShown = Signal(object)  # noqa: N815
     messageWithdrawn = Signal(str)  # noqa: N815
     jobsChanged = Signal()  # noqa: N815
+    ongoingChanged = Signal(object)  # noqa: N815
     milestonesChanged = Signal(object)  # noqa: N815
     takeOffPlanned = Signal(object)  # noqa: N815
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from PySide6.QtCore import QObject, Signal
 
-from groundstation.gui.application.context import ApplicationContext
+from groundstation.gui.application.context import ApplicationContext, Ongoing
 from groundstation.services.jobs.channel import ProcessEnded
 from groundstation.services.jobs.runner import JobContext
 from groundstation.services.reconstruct.choices import Forecast, Machine, TrainChoice, forecast, this_machine
@@ -295,6 +295,7 @@ class ReconstructController(FolderController):
         context.count_as_busy(lambda: self.is_busy)
         self.stateChanged.connect(lambda: context.note(is_training=self.is_busy))
         self.dataSetChanged.connect(self._tell_data_set)
+        self.progressed.connect(self._tell_progress)
 
     @classmethod
     def of(cls, context: ApplicationContext) -> ReconstructController:
@@ -448,6 +449,21 @@ class ReconstructController(FolderController):
         self.placeChanged.emit()
         self.stateChanged.emit()
         self.progressed.emit()
+
+    def _tell_progress(self) -> None:
+        """Let every tab show how far the training is."""
+        stepped, stage = self.training.stepped, self.training.stage
+        if not self.is_busy:
+            self._context.ongoingChanged.emit(None)
+        elif stepped is not None:
+            done, seconds = stepped.progress, stepped.seconds
+            remaining_s = seconds * (1.0 - done) / done if done > 0.02 else None
+            text = self.tr("Training: {0} steps").format(stepped.step)
+            self._context.ongoingChanged.emit(Ongoing(text, done, seconds, remaining_s))
+        elif stage is not None:
+            share = stage.done / stage.total if stage.total > 0 else None
+            text = self.tr("Training: {0}").format(self._context.localized(stage.stage))
+            self._context.ongoingChanged.emit(Ongoing(text, share, 0.0, None))
 
     def _tell_data_set(self) -> None:
         if self.card is not None:

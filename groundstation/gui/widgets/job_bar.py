@@ -1,4 +1,4 @@
-"""The job bar: what runs, how far it is, how long it will take, and a button to cancel; what waits behind it."""
+"""The job bar: what runs, how far it is, one time, and a button to cancel; what waits behind it."""
 
 from __future__ import annotations
 
@@ -14,9 +14,10 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from groundstation.gui.application.context import ApplicationContext, Message
+from groundstation.gui.application.context import ApplicationContext, Message, Ongoing
 from groundstation.gui.widgets.scrolling import ShortText, severity_words
 from groundstation.services.jobs.runner import JobProgress
+from groundstation.services.units import minutes_text
 
 SHOW_AFTER_MS = 150
 """Shorter jobs come and go without the bar flashing up."""
@@ -28,6 +29,8 @@ class JobBar(QWidget):
     def __init__(self, context: ApplicationContext, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._context = context
+        self._ongoing: Ongoing | None = None
+        self._event: JobProgress | None = None
         self._label, self._bar, self._left = ShortText(), QProgressBar(), QLabel()
         self._queue = QToolButton()
         self._queue.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
@@ -48,6 +51,7 @@ class JobBar(QWidget):
         self._delay.timeout.connect(self._show_now)
         context.jobsChanged.connect(self._update)
         context.bridge.progressed.connect(self._show_progress)
+        context.ongoingChanged.connect(self._ongoing_changed)
         self._show_contents(False)
 
     def cancel_running(self) -> None:
@@ -62,18 +66,62 @@ class JobBar(QWidget):
         if not jobs:
             self._delay.stop()
             self._show_contents(False)
+            self._show_ongoing()
             return
-        self._label.setText(jobs[0].name)
+        self._queue.setText(self.tr("{0} waiting").format(len(jobs) - 1))
+        if self._shows_job:
+            self._queue.setVisible(len(jobs) > 1)
+            self._show_job()
+        elif not self._delay.isActive():
+            self._delay.start()
+
+    @property
+    def _shows_job(self) -> bool:
+        """Whether a job stands in the bar, which alone can be cancelled there."""
+        return not self._cancel.isHidden()
+
+    def _show_job(self) -> None:
+        """Show the job that runs, as far as it has told of itself."""
+        job, event = self._context.jobs()[0], self._event
+        if event is not None and event.job_id == job.id:
+            self._show_event(event)
+            return
+        self._label.setText(job.name)
         self._bar.setRange(0, 0)
         self._left.clear()
-        self._queue.setText(self.tr("{0} waiting").format(len(jobs) - 1))
-        if not self._delay.isActive() and self.isHidden():
-            self._delay.start()
+
+    def _ongoing_changed(self, ongoing: Ongoing | None) -> None:
+        """Keep what goes on beside the jobs, and show it while there are none."""
+        was_shown, self._ongoing = self._ongoing is not None, ongoing
+        if not self._shows_job:
+            if was_shown and ongoing is None:
+                self._show_contents(False)
+            self._show_ongoing()
+
+    def _show_ongoing(self) -> None:
+        ongoing = self._ongoing
+        if ongoing is None:
+            return
+        self._label.setText(ongoing.text)
+        self._bar.setRange(0, 1000 if ongoing.share is not None else 0)
+        self._bar.setValue(round(1000 * (ongoing.share or 0.0)))
+        self._say_time(ongoing.elapsed_s, ongoing.remaining_s, self.tr("{0} left"))
+        for widget in (self._label, self._bar, self._left):
+            widget.setVisible(True)
+        self._cancel.setVisible(False)
+        self.setVisible(True)
+
+    def _say_time(self, elapsed_s: float, remaining_s: float | None, left: str) -> None:
+        """One time: how long it will take, or, where nobody knows that, how long it has taken."""
+        if remaining_s is None:
+            self._left.setText(self.tr("{0} so far").format(minutes_text(elapsed_s)))
         else:
-            self._queue.setVisible(len(jobs) > 1)
+            self._left.setText(left.format(minutes_text(remaining_s)))
 
     def _show_now(self) -> None:
-        self._show_contents(bool(self._context.jobs()))
+        if self._context.jobs():
+            self._show_job()
+            self._show_contents(True)
 
     def _show_contents(self, visible: bool) -> None:
         for widget in (self._label, self._bar, self._left, self._cancel):
@@ -85,15 +133,17 @@ class JobBar(QWidget):
         jobs = self._context.jobs()
         if not jobs or jobs[0].id != event.job_id or jobs[0].cancel_requested:
             return
+        self._event = event
+        if self._shows_job:
+            self._show_event(event)
+
+    def _show_event(self, event: JobProgress) -> None:
         self._label.setText(f"{event.name}: {self._context.localized(event.stage)}")
         self._bar.setRange(0, 1000 if event.total > 0 else 0)
         if event.total > 0:
             self._bar.setValue(int(1000 * min(1.0, event.done / event.total)))
         # How long the whole takes, nobody knows; of a step it can be estimated.
-        if event.remaining_s is None:
-            self._left.setText(self.tr("{0:.0f} s so far").format(event.elapsed_s))
-        else:
-            self._left.setText(self.tr("this step: {0:.0f} s left").format(event.remaining_s))
+        self._say_time(event.elapsed_s, event.remaining_s, self.tr("this step: {0} left"))
 
     def _list_queue(self) -> None:
         menu = self._queue.menu()

@@ -22,6 +22,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from groundstation.gui.widgets.terms import label_of
 from planning.base.findings import Severity
 
 # A text in few lines that pushes nothing away, and what severities are called.
@@ -279,7 +280,7 @@ class ButtonGrid(WrappingRow):
 
 def labelled(title: str, box: QWidget) -> QWidget:
     """A box and its title beside it, as one thing of a row that wraps."""
-    pair, label = QWidget(), QLabel(title)
+    pair, label = QWidget(), label_of(title, box)
     label.setBuddy(box)
     row = QHBoxLayout(pair)
     row.setContentsMargins(0, 0, 0, 0)

@@ -8,6 +8,7 @@ from PySide6.QtCore import QCoreApplication, Qt, Signal
 from PySide6.QtWidgets import QGridLayout, QLabel, QLineEdit, QPushButton, QVBoxLayout, QWidget
 
 from groundstation.gui.widgets.inputs import LengthBox
+from groundstation.gui.widgets.terms import label_of
 from groundstation.services.units import UnitSystem
 from planning.geo.frames import Vec3
 from planning.geo.mesh import MAX_COORDINATE_M
@@ -162,7 +163,7 @@ class FormColumn(QWidget):
     def add(self, *widgets: QWidget, title: str = "") -> None:
         """Put widgets below what is there, under a title of their own where one is given."""
         if title:
-            label = QLabel(title)
+            label = label_of(title, widgets[0]) if widgets else QLabel(title)
             label.setProperty("role", "heading")
             self._layout.addWidget(label)
         for widget in widgets:

@@ -211,8 +211,9 @@ class MainWindow(QMainWindow):
                 self._make_soon.start()
 
     def _leave_start(self, before: Document, after: Document) -> None:
-        """Show a site that was opened from the start page."""
-        if after.site is not None and before.site is not after.site and self.shown_tab() in ("", "start"):
+        """Show a site that was opened from the start page; a window that has made room for another stays as it is."""
+        is_new = after.site is not None and before.site is not after.site
+        if is_new and self.shown_tab() in ("", "start") and not self._bar.signalsBlocked():
             self.show_tab("site")
 
     def _show_steps(self, *_changed: object) -> None:

@@ -34,6 +34,7 @@ from PySide6.QtWidgets import (
 )
 
 from groundstation.gui.application.context import ApplicationContext, Message
+from groundstation.gui.widgets.icons import set_icon
 from groundstation.gui.widgets.scrolling import ShortText, severity_words
 from groundstation.gui.widgets.theme import colours
 from groundstation.services.project.document import Document
@@ -73,6 +74,8 @@ class MessageArea(QWidget):
         self._severity, self._text = QLabel(), ShortText()
         self._all, self._jump = QToolButton(), QToolButton()
         self._all.setCheckable(True)
+        self._all.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
+        set_icon(self._all, "messages")
         self._all.setToolTip(self.tr("All messages: what holds now, and what was told before"))
         self._jump.setText(self.tr("Show place"))
         self._jump.setVisible(False)

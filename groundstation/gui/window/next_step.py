@@ -40,14 +40,14 @@ class NextStepBar(QWidget):
         self.button.setProperty("primary", True)
         set_icon(self.button, "next")
         layout = QHBoxLayout(self)
-        layout.setContentsMargins(8, 2, 6, 2)
+        layout.setContentsMargins(8, 0, 6, 0)
         # First, where it stays: one step after the other is taken by pressing at the same place.
         layout.addWidget(self.button)
         layout.addWidget(self._tick)
         layout.addWidget(self._text, 1)
         layout.addWidget(self.help)
         # Without a button, too: nothing below moves.
-        self.setMinimumHeight(TOUCH_PX + 4)
+        self.setMinimumHeight(TOUCH_PX)
         self.button.clicked.connect(self._pressed)
 
     def set_guidance(self, found: Guidance, done: str, following: str, label: str) -> None:

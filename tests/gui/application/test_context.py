@@ -141,6 +141,28 @@ def test_the_job_bar_shows_progress_queue_and_time_and_cancels(application, cont
     assert bar.isHidden()
 
 
+def test_work_that_is_no_job_has_the_bar_while_no_job_runs(application, context):
+    from groundstation.gui.application.context import Ongoing
+    from groundstation.gui.widgets.job_bar import JobBar
+
+    bar, gate = JobBar(context), Gate()
+    context.ongoingChanged.emit(Ongoing("Training: 40 steps", 0.25, 60.0, 180.0))
+    assert not bar.isHidden()
+    assert bar._cancel.isHidden()
+    assert (bar._label.text(), bar._left.text(), bar._bar.value()) == ("Training: 40 steps", "3:00 left", 250)
+    context.start("first", gate)
+    wait(application, lambda: bar._label.text().startswith("first"))
+    assert not bar._cancel.isHidden()
+    context.ongoingChanged.emit(Ongoing("Training: 50 steps", None, 75.0, None))
+    assert bar._label.text().startswith("first")
+    gate.open.set()
+    wait(application, lambda: not context.jobs())
+    assert (bar._label.text(), bar._left.text()) == ("Training: 50 steps", "1:15 so far")
+    assert not bar.isHidden()
+    context.ongoingChanged.emit(None)
+    assert bar.isHidden()
+
+
 def test_a_short_job_does_not_make_the_bar_flash(application, context):
     from groundstation.gui.widgets.job_bar import JobBar
 
