@@ -17,8 +17,8 @@ ROOT = Path(__file__).resolve().parents[2]
 
 MOST_CLICKS, MOST_S, LONGEST_GAP_MS = 25, 300.0, 100.0
 
-ENOUGH_TICKS = 60
-"""Turns of the event loop in which a gap would be seen."""
+READ_S = 1.0
+"""For which a new user reads before he presses the next button, at the least."""
 
 USABLE_S = 2.0
 """From the command to a window whose start page can be pressed."""
@@ -56,7 +56,8 @@ class Mouse:
 
     def look(self, name):
         """Note the longest gap since the last look; taking a picture is no part of the way."""
-        self.pilot.until(lambda: len(self.gaps.ticks) > ENOUGH_TICKS, f"{name}: the window rests")
+        read_until = time.perf_counter() + READ_S
+        self.pilot.until(lambda: time.perf_counter() > read_until, f"{name}: it is read")
         self.longest_ms[name] = self.gaps.longest_ms()
         self.pilot.see(name)
         self.gaps.ticks.clear()

@@ -194,10 +194,10 @@ def _style_sheet(found: Colours) -> str:
     QTabBar QToolButton {{ min-height: 0px; padding: 0px; }}
     QTabBar QToolButton:focus {{ padding: 0px; }}
     QTabBar::scroller {{ width: {2 * (TOUCH_PX - 8)}px; }}
-    QTabBar::tab {{ min-height: {TOUCH_PX - 8}px; padding: 2px 12px; background: {found.window}; color: {found.text};
+    QTabBar::tab {{ min-height: {TOUCH_PX - 8}px; padding: 3px 12px; background: {found.window}; color: {found.text};
         border: none; border-bottom: 3px solid transparent; }}
     QTabBar::tab:selected {{ border-bottom: 3px solid {found.accent}; font-weight: bold; }}
-    QTabBar::tab:selected:focus {{ border: 2px solid {found.accent}; border-bottom-width: 3px; padding: 0px 10px; }}
+    QTabBar::tab:selected:focus {{ border: 2px solid {found.accent}; border-bottom-width: 3px; padding: 1px 10px; }}
     QTabBar::tab:disabled {{ color: {found.muted}; }}
     QHeaderView::section {{ min-height: {TOUCH_PX - 12}px; padding: 2px 6px; border: none;
         border-right: 1px solid {found.line}; border-bottom: 1px solid {found.line}; background: {found.window}; }}
