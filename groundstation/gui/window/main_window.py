@@ -213,7 +213,12 @@ class MainWindow(QMainWindow):
     def _leave_start(self, before: Document, after: Document) -> None:
         """Show a site that was opened from the start page; a window that has made room for another stays as it is."""
         is_new = after.site is not None and before.site is not after.site
-        if is_new and self.shown_tab() in ("", "start") and not self._bar.signalsBlocked():
+        if is_new and self.shown_tab() in ("", "start"):
+            # In a turn of its own: the views have the site to take in now.
+            QTimer.singleShot(0, self, self._show_site)
+
+    def _show_site(self) -> None:
+        if self.shown_tab() in ("", "start") and not self._bar.signalsBlocked():
             self.show_tab("site")
 
     def _show_steps(self, *_changed: object) -> None:

@@ -38,6 +38,7 @@ from groundstation.services.project.sample import sample_folder, unpack_sample
 from groundstation.services.project.session import LockedProject, ProjectSession, Session
 from groundstation.services.project.steps import Act, FoundFiles, steps_in_folder
 from groundstation.services.settings import Settings, settings_at_start, settings_path, write_settings
+from planning.aircraft.catalogue import profiles
 from planning.base.errors import GroundStationError, InputError
 from planning.base.findings import Severity
 from planning.request import PlanRequest
@@ -163,7 +164,12 @@ class ProjectController(QObject):
 
     def _scene_is_ready(self) -> None:
         self._garbage.freeze()
-        threading.Thread(target=self._worker.start, name="start-worker", daemon=True).start()
+        threading.Thread(target=self._make_ready, name="make-ready", daemon=True).start()
+
+    def _make_ready(self) -> None:
+        """On another thread: start the process that plans, and read what plug-ins there are; both take a while."""
+        self._worker.start()
+        profiles()
 
     def _after_first_paint(self) -> None:
         for problem in self._settings_problems:
