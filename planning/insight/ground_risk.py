@@ -399,14 +399,27 @@ def assess_ground_risk(
         band=band,
         intrinsic_class=intrinsic,
         final_class=final,
-        findings=tuple(_findings(request, plan, value, band, column, intrinsic, final, is_known)),
+        findings=(
+            *_findings(request, plan, value, band, column, intrinsic, final, is_known),
+            *_zone_findings(site, contingency, buffer),
+        ),
     )
+
+
+def known_body(plan: Plan) -> Body | None:
+    """What the plan's profile says of the aircraft's body; None where it has no profile, or that says nothing."""
+    profile = profiles().get(plan.profile)
+    return None if profile is None else profile.body
+
+
+def usual_wind_m_s(plan: Plan) -> float:
+    """The plan's wind; the strongest that the aircraft may fly in where the plan expects none."""
+    return plan.rules.wind_m_s or plan.aircraft.max_wind_m_s
 
 
 def _body(plan: Plan, request: GroundRiskRequest) -> Body:
     """The aircraft's body, with what was stated put over what its profile says."""
-    profile = profiles().get(plan.profile)
-    known = None if profile is None else profile.body
+    known = known_body(plan)
     stated = {
         say("largest dimension"): request.dimension_m,
         say("take-off mass"): request.mass_kg,
@@ -440,7 +453,7 @@ def _wind(plan: Plan, request: GroundRiskRequest) -> float:
     most_m_s = plan.aircraft.max_wind_m_s
     wind_m_s = request.wind_m_s
     if wind_m_s is None:
-        wind_m_s = plan.rules.wind_m_s or most_m_s
+        wind_m_s = usual_wind_m_s(plan)
     if wind_m_s > most_m_s:
         raise InfeasibleError.say(
             "{} may fly in wind of up to {:g} m/s, but {:g} m/s are stated; wait for less, or take another aircraft",
@@ -672,6 +685,20 @@ def _findings(
             slow_m_s,
         )
         yield found(Severity.NOTE, "sora-speed", text)
+
+
+def _zone_findings(site: Site, contingency: Polygon, buffer: Polygon) -> Iterator[Finding]:
+    """No-fly zones of the site that the volumes reach into."""
+    import shapely
+
+    for zone in site.airspace.no_fly:
+        area = shapely.polygons(zone.polygon_enu_m)
+        if shapely.intersects(area, contingency):
+            text = say("the contingency volume reaches into the no-fly zone '{}'", zone.id)
+            yield Finding(Severity.WARNING, "sora-no-fly", text, zone.id)
+        elif shapely.intersects(area, buffer):
+            text = say("the ground-risk buffer reaches into the no-fly zone '{}'", zone.id)
+            yield Finding(Severity.NOTE, "sora-no-fly", text, zone.id)
 
 
 def source_texts(risk: GroundRisk) -> tuple[str, ...]:

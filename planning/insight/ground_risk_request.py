@@ -102,6 +102,7 @@ class GroundRiskRequest:
         row="more",
         offered=(0.01, 40.0),
         step=0.1,
+        decimals=2,
     )
     mass_kg: float | None = parameter(
         None,
@@ -115,6 +116,7 @@ class GroundRiskRequest:
         row="more",
         offered=(0.01, 1000.0),
         step=0.1,
+        decimals=2,
     )
     gnss_error_m: float = parameter(
         3.0,

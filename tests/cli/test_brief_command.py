@@ -45,3 +45,12 @@ def test_a_plan_that_may_not_fly_is_told(reflight, pane, tmp_path):
     done = reflight("brief", tmp_path / "far.json", pane / "site.json", "-o", tmp_path / "brief.html")
     assert done.status == 0
     assert "NOT ready to fly" in done.err
+
+
+def test_ground_risk_stands_in_the_brief_where_something_of_it_is_stated(reflight, pane, tmp_path):
+    out = tmp_path / "brief.html"
+    stated = ("--population", "controlled", "--wind", "5", "--speed", "5")
+    assert reflight("brief", pane / "plan.json", pane / "site.json", "-o", out, *stated).status == 0
+    assert "none: controlled ground area" in out.read_text("utf-8")
+    wrong = reflight("brief", pane / "plan.json", pane / "site.json", "-o", tmp_path / "x.html", "--population", "few")
+    assert "--population: expected one of" in wrong.error

@@ -10,6 +10,7 @@ from groundstation.services.model.export import ModelExport
 from missions.formats.options import ExportOptions
 from missions.simulator.conditions import Conditions
 from planning.base.parameters import declared
+from planning.insight.ground_risk_request import GroundRiskRequest
 from planning.parameters import PlanParameters
 from reconstruction.training.parameters import TrainRequest
 
@@ -25,7 +26,14 @@ from PySide6.QtCore import QT_TRANSLATE_NOOP
 TEXTS = (
 '''
 
-RECORDS: tuple[type[Any], ...] = (PlanParameters, Conditions, ExportOptions, ModelExport, TrainRequest)
+RECORDS: tuple[type[Any], ...] = (
+    PlanParameters,
+    Conditions,
+    ExportOptions,
+    ModelExport,
+    TrainRequest,
+    GroundRiskRequest,
+)
 """Records whose parameters have rows in forms."""
 
 LINE = 120

@@ -8,8 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from groundstation.cli.console import print_json, run_job, tell
-from groundstation.cli.options import add_day, flight_day
+from groundstation.cli.options import add_day, add_parameter, flight_day, in_words_of_options, typed_values
 from planning.base.messages import say
+from planning.base.parameters import declared, with_values
+from planning.insight.ground_risk_request import GroundRiskRequest
 
 SUFFIXES = (".html", ".htm")
 
@@ -31,6 +33,9 @@ def add_parser(subparsers: Any) -> None:
     )
     parser.add_argument("--paper", choices=("a4", "letter"), help="paper size (default: by the units)")
     add_day(parser)
+    risk = parser.add_argument_group("ground risk (SORA 2.5), in the brief where any of these is given")
+    for name in ("population", "wind_m_s", "reaction_s", "speed_m_s"):
+        add_parameter(risk, declared(GroundRiskRequest)[name])
     parser.add_argument("--json", action="store_true", help="print one JSON object instead of text")
 
 
@@ -57,6 +62,10 @@ def run(options: argparse.Namespace) -> int:
                 place=options.out,
             )
         )
+    typed, risk = typed_values(options, GroundRiskRequest), None
+    if typed:
+        with in_words_of_options(GroundRiskRequest):
+            risk = with_values(GroundRiskRequest(), typed)
     check_output(options.out, [options.plan, options.site])
     plan, site_model = read_input_plan(options.plan), read_input_site(options.site)
     units, day = UnitSystem(options.units), flight_day(options)
@@ -69,7 +78,9 @@ def run(options: argparse.Namespace) -> int:
             replace(each, message=localized(each.message, words, units), place=localized(each.place, words, units))
             for each in found.findings
         )
-        brief = flight_brief(site_model, plan, findings, today, options.plan.name, day=day, sun=found.sun)
+        brief = flight_brief(
+            site_model, plan, findings, today, options.plan.name, day=day, sun=found.sun, ground_risk=risk
+        )
 
         def localize(text: str) -> str:
             return localized(text, words, units)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,7 @@ from PySide6.QtGui import QBrush, QColor, QImage, QPainter, QPainterPath, QPen, 
 
 from groundstation.gui.map.viewport import Viewport
 from groundstation.gui.widgets.theme import FACADES, SORTIES, Colours
-from groundstation.services.map.shapes import Area, PlanShapes, SiteShapes, ZoneArea, round_length
+from groundstation.services.map.shapes import PlanShapes, SiteShapes, ZoneArea, round_length
 from groundstation.services.map.tile_source import TileSetInfo
 from groundstation.services.map.web_mercator import TILE_POINTS, Tile
 from groundstation.services.units import UnitSystem, distance_unit, length_unit
@@ -102,18 +102,18 @@ def paint_site(painter: QPainter, viewport: Viewport, shapes: SiteShapes, found:
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
     painter.setBrush(Qt.BrushStyle.NoBrush)
     painter.setPen(QPen(QColor(found.muted), 1.5, Qt.PenStyle.DashLine))
-    painter.drawPath(_path(shapes.airspace, viewport))
+    painter.drawPath(_path(shapes.airspace.rings, viewport))
     for number, area in enumerate(shapes.solids):
         colour = BUILDING if number == 0 and area.item.id == "" else OBSTACLE
         painter.setPen(QPen(colour.darker(160), 1.5))
         painter.setBrush(colour)
-        painter.drawPath(_path(area, viewport))
+        painter.drawPath(_path(area.rings, viewport))
     for zone in shapes.no_fly:
         red = QColor(found.error)
         painter.setPen(QPen(red, 2))
         fill = QColor(red)
         fill.setAlpha(45)
-        path = _path(zone, viewport)
+        path = _path(zone.rings, viewport)
         painter.setBrush(fill)
         painter.drawPath(path)
         painter.fillPath(path, QBrush(red, Qt.BrushStyle.BDiagPattern))
@@ -144,7 +144,7 @@ def paint_zones(painter: QPainter, viewport: Viewport, zones: tuple[ZoneArea, ..
     """Geo-zones, the largest below: hatched where flights keep out, an outline where they need not."""
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
     for zone in reversed(zones):
-        colour, path = zone_colour(zone.restriction, found), _path(zone, viewport)
+        colour, path = zone_colour(zone.restriction, found), _path(zone.rings, viewport)
         fill = QColor(colour)
         fill.setAlpha(38 if zone.is_kept else 12)
         painter.setBrush(fill)
@@ -154,6 +154,19 @@ def paint_zones(painter: QPainter, viewport: Viewport, zones: tuple[ZoneArea, ..
             pattern = QColor(colour)
             pattern.setAlpha(110)
             painter.fillPath(path, QBrush(pattern, Qt.BrushStyle.FDiagPattern))
+
+
+def paint_volumes(
+    painter: QPainter, viewport: Viewport, volumes: Sequence[tuple[QColor, tuple[NDArray[np.float64], ...]]]
+) -> None:
+    """Areas one over the other, each with its colour and rings in world coordinates (even-odd rule)."""
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    for colour, rings in volumes:
+        fill = QColor(colour)
+        fill.setAlpha(60)
+        painter.setPen(QPen(colour, 2))
+        painter.setBrush(fill)
+        painter.drawPath(_path(rings, viewport))
 
 
 def paint_legend(painter: QPainter, viewport: Viewport, rows: list[tuple[QColor, bool, str]], found: Colours) -> None:
@@ -304,9 +317,9 @@ def _paper(found: Colours) -> QColor:
     return paper
 
 
-def _path(area: Area, viewport: Viewport) -> QPainterPath:
+def _path(rings: Sequence[NDArray[np.float64]], viewport: Viewport) -> QPainterPath:
     path = QPainterPath()
-    for ring in area.rings:
+    for ring in rings:
         path.addPolygon(_polygon(viewport.screen(ring)))
         path.closeSubpath()
     return path

@@ -7,7 +7,7 @@ rests it is painted sharp again.
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -30,6 +30,7 @@ from groundstation.gui.map.map_paint import (
     paint_scale_bar,
     paint_site,
     paint_text_box,
+    paint_volumes,
     paint_zones,
     zone_colour,
 )
@@ -253,6 +254,7 @@ class MapView(MapCanvas):
         self._plan: Plan | None = None
         self._site: SiteShapes | None = None
         self._plan_shapes: PlanShapes | None = None
+        self._volumes: tuple[tuple[QColor, tuple[NDArray[np.float64], ...]], ...] = ()
         self._selection: Item | None = None
         self._hover: Item | None = None
         self._pointer: QPointF | None = None
@@ -306,6 +308,17 @@ class MapView(MapCanvas):
         if plan is not self._plan:
             self._plan = plan
             self._draw_plan_anew()
+
+    def set_volumes(self, volumes: Sequence[tuple[QColor, tuple[NDArray[np.float64], ...]]]) -> None:
+        """Show areas below site and plan, such as those of ground risk: colour and rings in world coordinates."""
+        self._volumes = tuple(volumes)
+        self._draw_anew()
+
+    def look_at_volumes(self) -> None:
+        """Bring all areas that are shown into view."""
+        rings = [ring for _colour, rings in self._volumes for ring in rings]
+        if rings:
+            self.set_viewport(self._viewport.fitted(np.concatenate(rings), MARGIN_PX))
 
     def set_selection(self, item: Item | None) -> None:
         """Mark a thing."""
@@ -699,6 +712,7 @@ class MapView(MapCanvas):
         self.layers.paint_overlays(painter, viewport, found)
         if site is None or not site.is_on_map:
             return
+        paint_volumes(painter, viewport, self._volumes)
         of_site, of_plan = self.layers.state(SITE), self.layers.state(PLAN)
         of_zones = self.layers.state(ZONES)
         if of_zones.is_visible:

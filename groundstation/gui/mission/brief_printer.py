@@ -48,6 +48,7 @@ from groundstation.services.units import UnitSystem
 from planning.base.errors import InputError
 from planning.base.findings import Severity
 from planning.base.messages import say
+from planning.insight.ground_risk_request import GroundRiskRequest
 from planning.plan import Plan
 from planning.site.records import SiteModel
 
@@ -103,6 +104,16 @@ WORDS = (
     QT_TRANSLATE_NOOP("Brief", "Smallest distance to building and obstacles"),
     QT_TRANSLATE_NOOP("Brief", "planned for {0}, the aircraft may fly below {1}"),
     QT_TRANSLATE_NOOP("Brief", "Wind"),
+    QT_TRANSLATE_NOOP("Brief", "Ground risk (SORA 2.5, a draft)"),
+    QT_TRANSLATE_NOOP("Brief", "Uninvolved people inside the buffer"),
+    QT_TRANSLATE_NOOP(
+        "Brief", "contingency volume {0} to each side, up to {1} above ground; ground-risk buffer {2} beyond"
+    ),
+    QT_TRANSLATE_NOOP("Brief", "{0}; class {1}"),
+    QT_TRANSLATE_NOOP("Brief", "not stated how many: keep everybody out"),
+    QT_TRANSLATE_NOOP("Brief", "none: controlled ground area"),
+    QT_TRANSLATE_NOOP("Brief", "an assembly of people"),
+    QT_TRANSLATE_NOOP("Brief", "fewer than {0} per square kilometre"),
     QT_TRANSLATE_NOOP("Brief", "Position (WGS 84)"),
     QT_TRANSLATE_NOOP("Brief", "Height above sea level (EGM96)"),
     QT_TRANSLATE_NOOP("Brief", "Height above the ellipsoid (WGS 84)"),
@@ -312,6 +323,7 @@ class BriefDialog(QDialog):
         tiles: Path | None,
         folder: Path,
         parent: QWidget | None = None,
+        ground_risk: GroundRiskRequest | None = None,
     ) -> None:
         super().__init__(parent)
         self._is_closed = False
@@ -326,7 +338,9 @@ class BriefDialog(QDialog):
         entry = context.document.current
         today = QLocale().toString(QDate.currentDate(), QLocale.FormatType.LongFormat)
         title = entry.title if entry is not None and entry.plan is plan else ""
-        found = flight_brief(site_model, plan, checked.findings, today, title, day=checked.day, sun=checked.sun)
+        found = flight_brief(
+            site_model, plan, checked.findings, today, title, day=checked.day, sun=checked.sun, ground_risk=ground_risk
+        )
         translated_findings = tuple(translated_finding(finding, self._units) for finding in found.findings)
         self._sun = checked.sun
         sun_lines = tuple(translated(line, self._units) for line in found.sun)

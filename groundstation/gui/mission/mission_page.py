@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QDateTime, QEvent, QLocale, QObject, QSignalBlocker, Qt, QTimer, Signal
 from PySide6.QtGui import QAction, QKeySequence
@@ -48,6 +49,11 @@ from groundstation.services.project.document import Document, Item
 from groundstation.services.project.steps import Act
 from groundstation.services.units import UnitSystem
 from planning.base.findings import Finding, Severity
+from planning.insight.ground_risk_request import GroundRiskRequest
+
+if TYPE_CHECKING:
+    from groundstation.gui.mission.sora_dialog import SoraDialog
+    from groundstation.services.mission.sora import SoraDraft
 
 # The pre-flight findings of a plan: a verdict, how fresh it is, how many of each severity, and the list.
 
@@ -268,6 +274,7 @@ class MissionPage(QObject):
         self._drawn: Document | None = None
         self._preflight: Preflight | None = None
         self._folder: Path | None = None
+        self._ground_risk: GroundRiskRequest | None = None
         self.controller = MissionController(context, self)
         self.findings, self.lists, self.sorties = FindingsView(), MissionLists(), SortieTable()
         self._title, self._summary = QLabel(), QLabel()
@@ -336,6 +343,23 @@ class MissionPage(QObject):
         dialog.open()
         return dialog
 
+    def assess_ground_risk(self) -> SoraDialog | None:
+        """Ask what is known of flight and people, and show the ground risk; None where there is no plan."""
+        document, plan = self._context.document, self.controller.plan
+        if plan is None or document.site is None or document.current is None:
+            return None
+        from groundstation.gui.mission.sora_dialog import SoraDialog
+
+        name, window = document.current.title, self._shared_view.window()
+        dialog = SoraDialog(self._context, plan, document.site, name, self._ground_risk, window)
+        dialog.drafted.connect(self._note_ground_risk)
+        dialog.open()
+        return dialog
+
+    def _note_ground_risk(self, draft: SoraDraft) -> None:
+        """What was stated counts for the brief, too."""
+        self._ground_risk = draft.risk.request
+
     def print_brief(self) -> None:
         """Show the flight brief of the current plan, to be printed or saved as PDF."""
         if self._preflight is None:
@@ -343,7 +367,8 @@ class MissionPage(QObject):
         from groundstation.gui.mission.brief_printer import BriefDialog
 
         folder = self._export_folder()
-        BriefDialog(self._context, self._preflight, self._tiles(), folder, self._shared_view.window()).open()
+        window = self._shared_view.window()
+        BriefDialog(self._context, self._preflight, self._tiles(), folder, window, self._ground_risk).open()
 
     def _tiles(self) -> Path | None:
         """The map file that the shared view shows; a map that was never looked at has none."""
@@ -401,6 +426,12 @@ class MissionPage(QObject):
                 self._choose_compare,
             ),
             (self.tr("Flight brief ..."), "Ctrl+R", self.tr("To print or save as PDF"), self.print_brief),
+            (
+                self.tr("SORA ..."),
+                "Ctrl+Shift+R",
+                self.tr("Ground risk: volumes, buffer and class, as a draft with formulas and sources"),
+                self.assess_ground_risk,
+            ),
             (self.tr("Check"), "Ctrl+K", self.tr("Measure every pre-flight rule again"), self.controller.check),
         ):
             action = QAction(text, self)
@@ -408,7 +439,7 @@ class MissionPage(QObject):
             action.setToolTip(tip)
             action.triggered.connect(lambda _checked=False, slot=slot: slot())
             actions.append(action)
-        self._export, self._send, self._import, self._compare, self._brief, self._check = actions
+        self._export, self._send, self._import, self._compare, self._brief, self._sora, self._check = actions
         self._actions = tuple(actions)
 
     def _make_left(self) -> QWidget:
@@ -420,7 +451,7 @@ class MissionPage(QObject):
             label.setWordWrap(True)
             layout.addWidget(label)
         layout.addWidget(self.sorties, 1)
-        for action in (self._export, self._send, self._import, self._compare, self._brief):
+        for action in (self._export, self._send, self._import, self._compare, self._brief, self._sora):
             button = QPushButton(action.text())
             button.setToolTip(action.toolTip())
             button.clicked.connect(action.trigger)
@@ -482,7 +513,7 @@ class MissionPage(QObject):
             if is_checking:
                 self.findings.set_checking()
         self.findings.set_can_check(self.controller.can_check and not is_checking)
-        for action in (self._export, self._send, self._compare):
+        for action in (self._export, self._send, self._compare, self._sora):
             action.setEnabled(plan is not None)
         self._check.setEnabled(self.controller.can_check and not is_checking)
         self._brief.setEnabled(plan is not None and self._is_fresh())

@@ -17,6 +17,8 @@ from planning.base.errors import GroundStationError
 from planning.base.findings import Finding, Severity
 from planning.base.messages import say
 from planning.insight.flight_profile import LowFlight, highest_above_ground_m, low_flight, lowest_flight
+from planning.insight.ground_risk import GroundRisk, assess_ground_risk
+from planning.insight.ground_risk_request import GroundRiskRequest
 from planning.plan import FlightWorth, Plan
 from planning.site.ground import ground_of, height_at
 from planning.site.records import Site, SiteModel
@@ -95,6 +97,8 @@ class FlightBrief:
         Of what is covered, by pixels up to `wanted_gsd_mm`; None where the plan does not say.
     coarsest_gsd_mm
         Pixel of the sharpest view of the section that is seen most coarsely.
+    ground_risk
+        Volumes and class by SORA; None where the pilot stated nothing for it.
     worth
         What a model of the photos is expected to be like; None where the plan does not say.
     sun
@@ -131,6 +135,7 @@ class FlightBrief:
     findings: tuple[Finding, ...]
     sun: tuple[str, ...] = ()
     zones: tuple[Finding, ...] = ()
+    ground_risk: GroundRisk | None = None
 
     @property
     def readiness(self) -> Readiness:
@@ -152,6 +157,7 @@ def flight_brief(
     options: ExportOptions | None = None,
     day: FlightDay = UNKNOWN_DAY,
     sun: SunReport | None = None,
+    ground_risk: GroundRiskRequest | None = None,
 ) -> FlightBrief:
     """The brief of a plan on its site.
 
@@ -163,12 +169,21 @@ def flight_brief(
         Those of the export, for the return height and what happens without a radio link.
     day, sun
         For which the findings hold, and what the sun does on it.
+    ground_risk
+        What the pilot stated for the ground risk; None leaves it out.
     """
     options = options or ExportOptions(site=site_model)
     site = site_model.site
     rows = waypoint_rows(plan, site.origin)
     clearances = {found.place: found.value for found in findings if found.code == "leg-distance"}
     height_m, objections = return_height(plan, site_model, options)
+    risk = None
+    if ground_risk is not None:
+        try:
+            risk = assess_ground_risk(plan, site, ground_risk, height_m)
+        except GroundStationError as error:
+            text = say("the ground risk cannot be assessed: {}", error)
+            objections = (*objections, Finding(Severity.WARNING, "ground-risk", text))
     stated, bound = plan.coverage, plan.coverage.reachable_upper_bound
     return FlightBrief(
         site=site.name,
@@ -201,6 +216,7 @@ def flight_brief(
         findings=by_severity(found for found in (*findings, *objections) if found.severity is not Severity.OK),
         sun=() if sun is None else tuple(flight_lines(sun)),
         zones=tuple(found for found in findings if found.code in ("zone", "zone-question", "zones-file")),
+        ground_risk=risk,
     )
 
 

@@ -34,6 +34,7 @@ from missions.formats.encode import TakeoffCheck
 from missions.mission.export_choices import LinkLoss
 from planning.base.findings import Severity
 from planning.insight.flight_profile import LOW_M
+from planning.insight.ground_risk import GroundRisk
 from planning.plan import Plan
 from planning.site.ground import ground_of
 from planning.site.records import SiteModel
@@ -398,7 +399,30 @@ def _overview(brief: FlightBrief, units: UnitSystem, tr: Translate) -> Iterable[
     )
     yield tr("Smallest distance to building and obstacles"), kept
     wind = tr("planned for {0}, the aircraft may fly below {1}")
+    if brief.ground_risk is not None:
+        yield tr("Ground risk (SORA 2.5, a draft)"), _ground_risk(brief.ground_risk, units, tr)
+        yield tr("Uninvolved people inside the buffer"), _people(brief.ground_risk, tr)
     yield tr("Wind"), wind.format(speed.text(brief.wind_m_s), speed.text(brief.max_wind_m_s))
+
+
+def _ground_risk(risk: GroundRisk, units: UnitSystem, tr: Translate) -> str:
+    length = length_unit(units)
+    sizes = tr("contingency volume {0} to each side, up to {1} above ground; ground-risk buffer {2} beyond").format(
+        length.text(risk.value_of("S_CV")), length.text(risk.contingency_top_m), length.text(risk.value_of("S_GRB"))
+    )
+    if risk.final_class is None:
+        return sizes
+    return tr("{0}; class {1}").format(sizes, risk.final_class)
+
+
+def _people(risk: GroundRisk, tr: Translate) -> str:
+    if risk.band is None:
+        return tr("not stated how many: keep everybody out")
+    if risk.band.word == "controlled":
+        return tr("none: controlled ground area")
+    if math.isinf(risk.band.below_per_km2):
+        return tr("an assembly of people")
+    return tr("fewer than {0} per square kilometre").format(f"{risk.band.below_per_km2:g}")
 
 
 def _heights(brief: FlightBrief, units: UnitSystem, tr: Translate) -> str:

@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from groundstation.services.map.web_mercator import world_from_geodetic
 from groundstation.services.mission.brief import return_height
 from missions.formats.options import ExportOptions
 from missions.simulator.fly_away import FlyAways, simulate_fly_aways
@@ -320,6 +321,16 @@ def area_rings(area: Any, origin: Origin, ground_z_m: float) -> Iterator[list[Fl
             lat, lon, _ = geodetic_from_enu(origin, np.c_[points, np.full(len(points), ground_z_m)])
             found.append(np.c_[lon, lat])
         yield found
+
+
+def volume_shapes(draft: SoraDraft) -> list[tuple[str, tuple[Floats, ...]]]:
+    """Colour and rings of each volume for a map, in its world coordinates, the widest first."""
+    found = []
+    for name, area, _top in volumes_of(draft.risk):
+        parts = area_rings(area, draft.origin, draft.risk.ground_z_m)
+        rings = tuple(world_from_geodetic(ring[:, 1], ring[:, 0]) for part in parts for ring in part)
+        found.append((COLOURS[name], rings))
+    return found
 
 
 def sora_geojson(draft: SoraDraft, words: Words = str) -> dict[str, Any]:

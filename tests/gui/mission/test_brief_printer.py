@@ -19,6 +19,7 @@ from missions.mission.export_choices import LinkLoss
 from planning.base.errors import InputError
 from planning.base.findings import Finding, Severity
 from planning.insight.flight_profile import LowFlight
+from planning.insight.ground_risk_request import GroundRiskRequest
 from planning.plan import BatteryWorth, FlightWorth
 from tests.missions.plans import HONG_KONG, example_plan
 from tests.planning.plan_cases import kiosk
@@ -122,7 +123,10 @@ def test_every_word_of_the_page_is_there_for_the_translators(application):
     near = replace(full, low=LowFlight(6.0, 12.0, 100.0))
     sharp = replace(full, sharp_share=0.8, wanted_gsd_mm=5.0, coarsest_gsd_mm=9.0)
     worth = replace(full, worth=FlightWorth((BatteryWorth(1, 11.0, 40, 31.0),), None, 0.7))
-    for brief in (full, empty, bare, warned, near, sharp, worth, sunny, replace(full, sorties=sorties)):
+    stated = [GroundRiskRequest(population=each) for each in (None, "controlled", "city", "assembly")]
+    known = replace(plan, profile="m3e")
+    risky = [flight_brief(MODEL, known, (), "today", ground_risk=each) for each in stated]
+    for brief in (full, empty, bare, warned, near, sharp, worth, sunny, *risky, replace(full, sorties=sorties)):
         brief_html(brief, UNITS, dict.fromkeys(pictures, "x"), translate)
     assert said <= set(WORDS)
     assert set(WORDS) - said == {"Page {0} of {1}"}

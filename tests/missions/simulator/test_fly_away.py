@@ -40,7 +40,7 @@ def assert_holds(paths, request, n, seed):
 
 @pytest.mark.parametrize("request_", REQUESTS[1:3])
 def test_fly_aways_stay_inside_and_a_buffer_of_seven_tenths_does_not_hold_them(request_):
-    assert_holds((ROUND,), request_, 240, 1)
+    assert_holds((ROUND,), request_, 120, 1)
 
 
 @pytest.mark.slow

@@ -29,6 +29,7 @@ from missions.mission.model import altitude_amsl_m
 from planning.base.findings import Finding, Severity
 from planning.geo.frames import Origin
 from planning.insight.flight_profile import low_flight, lowest_flight
+from planning.insight.ground_risk_request import GroundRiskRequest
 from planning.routing.rally import CLEARANCE_M, clear_height_z_m
 from planning.site.free_space import unchecked_space
 from planning.site.ground import Ground, ground_of
@@ -160,6 +161,27 @@ def test_what_is_known_of_the_day_stands_on_the_page(plan):
     unknown = page_text(brief_html(flight_brief(MODEL, plan, (), "today"), METRIC, {}))
     assert "Planned for" not in unknown
     assert "Temperature" not in unknown
+
+
+def test_the_buffer_and_who_may_be_inside_stand_on_the_page_where_the_pilot_stated_it(plan):
+    def text(**stated):
+        request = GroundRiskRequest(speed_m_s=5.0, wind_m_s=4.0, **stated)
+        known = replace(plan, profile="m3e")
+        return page_text(brief_html(flight_brief(MODEL, known, (), "today", ground_risk=request), METRIC, {}))
+
+    controlled = text(population="controlled")
+    assert "contingency volume 23.2 m to each side" in controlled
+    assert "ground-risk buffer" in controlled
+    assert "; class 1" in controlled
+    assert "Uninvolved people inside the buffer none: controlled ground area" in controlled
+    assert "fewer than 500 per square kilometre" in text(population="sparsely")
+    assert "not stated how many: keep everybody out" in text()
+    assert "an assembly of people" in text(population="assembly")
+    nobody = replace(plan, profile="")
+    refused = flight_brief(MODEL, nobody, (), "today", ground_risk=GroundRiskRequest())
+    assert refused.ground_risk is None
+    assert "cannot be assessed" in next(each.message for each in refused.findings if each.code == "ground-risk")
+    assert "Ground risk" not in page_text(brief_html(flight_brief(MODEL, plan, (), "today"), METRIC, {}))
 
 
 def test_the_sun_of_the_day_stands_on_the_page_in_words_and_as_a_bar(plan):

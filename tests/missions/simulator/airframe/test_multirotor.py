@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from missions.simulator.airframe.multirotor import GRAVITY_M_S2, Multirotor
 from missions.simulator.airframe.state import Airframe, ExactReceiver, Fix, Parts, RateGimbal, SteadyPack, Target
 from missions.simulator.build import make_airframe
+from missions.simulator.fly_away import SteadyAir
 from planning.geo.frames import Vec3
 from planning.motion.timing import MotionLimits, rest_to_rest_s
 from tests.missions.simulator.flying import bundled, fly, planned
@@ -202,6 +203,36 @@ def test_without_motors_it_falls_and_then_stands() -> None:
     assert flown.truth.position_enu_m == HOME
     assert flown.truth.velocity_enu_m_s == (0.0, 0.0, 0.0)
     assert flown.battery.current_a == 0.0
+
+
+def test_a_fall_with_drag_takes_as_long_as_the_closed_form_says_and_drifts_with_the_wind() -> None:
+    """Straight down from rest z(t) = ln cosh(t sqrt(g k)) / k; level, the body comes to fly with the air."""
+    k, height_m, wind = 0.05, 80.0, (6.0, 0.0, 0.0)
+    for air in (None, SteadyAir(wind)):
+        parts = replace(aircraft()._parts, fall_drag_per_m=k, air=air)
+        falls = Multirotor(LIMITS, (0.0, 0.0), (0.0, 0.0, height_m), parts, ground_z_m=0.0)
+        off = replace(TOP, motors_on=False)
+        ground_s = math.acosh(math.exp(k * height_m)) / math.sqrt(GRAVITY_M_S2 * k)
+        falls.step(ground_s - 0.05, off)
+        x, _, z = falls.truth.position_enu_m
+        if air is None:
+            fallen_m = math.log(math.cosh((ground_s - 0.05) * math.sqrt(GRAVITY_M_S2 * k))) / k
+            assert z == pytest.approx(height_m - fallen_m, abs=0.01)
+            assert x == 0.0
+        else:
+            assert 0.7 * 6.0 < falls.truth.velocity_enu_m_s[0] < 6.0
+        falls.step(10.0, off)
+        assert falls.truth.position_enu_m[2] == 0.0
+        assert falls.truth.velocity_enu_m_s == (0.0, 0.0, 0.0)
+
+
+def test_it_begins_with_a_velocity_and_falls_on_from_it() -> None:
+    thrown = Multirotor(
+        LIMITS, (0.0, 0.0), (0.0, 0.0, 20.0), aircraft()._parts, velocity_enu_m_s=(5.0, 0.0, 2.0), ground_z_m=0.0
+    )
+    thrown.step(60.0, replace(TOP, motors_on=False))
+    fall_s = (2.0 + math.sqrt(4.0 + 2.0 * GRAVITY_M_S2 * 20.0)) / GRAVITY_M_S2
+    assert thrown.truth.position_enu_m == pytest.approx((5.0 * fall_s, 0.0, 0.0))
 
 
 def test_it_lands_on_the_ground_and_not_in_it() -> None:

@@ -1,0 +1,322 @@
+"""SORA: the pilot states what is known, sees volumes, numbers and what was simulated, and saves the draft."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from PySide6.QtCore import QTimer, Signal
+from PySide6.QtGui import QColor
+from PySide6.QtWidgets import (
+    QDialog,
+    QHBoxLayout,
+    QLabel,
+    QPushButton,
+    QScrollArea,
+    QSplitter,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from groundstation.gui.application.context import ApplicationContext
+from groundstation.gui.map.map_view import MapView
+from groundstation.gui.widgets.findings_list import FindingsList
+from groundstation.gui.widgets.inputs import ChoiceBox, Form
+from groundstation.gui.widgets.job_bar import DialogFoot
+from groundstation.gui.widgets.parameter_form import ParameterRow, add_rows, rows_of
+from groundstation.gui.widgets.questions import Questions
+from groundstation.gui.widgets.table_view import Column, RowModel, table_of
+from groundstation.services.jobs.runner import JobContext
+from groundstation.services.mission.sora import (
+    SoraDraft,
+    buffer_text,
+    class_text,
+    simulated_text,
+    sora_draft,
+    table_rows,
+    table_titles,
+    volume_shapes,
+    write_sora,
+)
+from planning.base.errors import GroundStationError
+from planning.base.findings import Severity
+from planning.base.messages import say
+from planning.base.parameters import declared
+from planning.insight.ground_risk import known_body, usual_wind_m_s
+from planning.insight.ground_risk_request import GroundRiskRequest
+from planning.plan import Plan
+from planning.site.records import SiteModel
+
+FORM_WIDTH_PX = 380
+
+REST_MS = 300
+
+KNOWN = declared(GroundRiskRequest)
+
+
+class GroundRiskForm(QWidget):
+    """`value()`, `setValue()` and `valueChanged` of what a pilot states; boxes begin with what is known already.
+
+    What is left as it is known counts as not stated, so that its source stays the aircraft or the plan.
+    """
+
+    valueChanged = Signal()  # noqa: N815  (Qt's own way of naming)
+
+    def __init__(self, plan: Plan, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._rows = rows_of(KNOWN)
+        self._known: dict[str, Any] = {}
+        self._take_known(plan)
+        first = {name: row for name, row in self._rows.items() if KNOWN[name].parameter.row == "first"}
+        more = {name: row for name, row in self._rows.items() if name not in first}
+        self._more, self._further = QToolButton(), QWidget()
+        self._more.setText(self.tr("More settings"))
+        self._more.setCheckable(True)
+        form, further = Form(), Form(self._further)
+        add_rows(form, first)
+        add_rows(further, more)
+        further.setContentsMargins(0, 0, 0, 0)
+        layout = QVBoxLayout(self)
+        layout.addLayout(form)
+        layout.addWidget(self._more)
+        layout.addWidget(self._further)
+        layout.addStretch(1)
+        self._further.hide()
+        self._more.toggled.connect(self._further.setVisible)
+        for row in self._rows.values():
+            row.valueChanged.connect(self.valueChanged)
+
+    def row(self, name: str) -> ParameterRow:
+        """The row of a parameter."""
+        return self._rows[name]
+
+    def value(self) -> GroundRiskRequest:
+        """What the pilot states.
+
+        Raises
+        ------
+        ValueError
+            Two mitigations exclude each other.
+        """
+        values: dict[str, Any] = {name: row.value() for name, row in self._rows.items()}
+        values |= {name: None for name, known in self._known.items() if values[name] == known}
+        return GroundRiskRequest(**values)
+
+    def setValue(self, request: GroundRiskRequest) -> None:  # noqa: N802
+        """Show another request; what it leaves open stays as it is known."""
+        for name, row in self._rows.items():
+            row.setValue(getattr(request, name))
+
+    def _take_known(self, plan: Plan) -> None:
+        """Put into the boxes what aircraft and plan say; a box of what nobody knows begins at its lowest value."""
+        body = known_body(plan)
+        known = {"wind_m_s": usual_wind_m_s(plan)}
+        if body is not None:
+            known |= {
+                "dimension_m": body.characteristic_dimension_m,
+                "mass_kg": body.max_takeoff_mass_kg,
+                "speed_m_s": body.full_speed_m_s,
+                "tilt_deg": body.braking_tilt_deg,
+            }
+        for name, value in known.items():
+            self._rows[name].setValue(value)
+        for name, row in self._rows.items():
+            if KNOWN[name].default is None and not isinstance(row.widget, ChoiceBox):
+                self._known[name] = row.value()
+
+
+class SoraDialog(QDialog):
+    """Ground risk of one plan on one site.
+
+    Signals
+    -------
+    drafted(SoraDraft)
+        A draft of what is stated now was made.
+    """
+
+    drafted = Signal(object)
+
+    def __init__(
+        self,
+        context: ApplicationContext,
+        plan: Plan,
+        site_model: SiteModel,
+        name: str,
+        request: GroundRiskRequest | None = None,
+        parent: QWidget | None = None,
+    ) -> None:
+        super().__init__(parent)
+        self.setWindowTitle(self.tr("Ground risk (SORA 2.5)"))
+        self._context, self._plan, self._site_model, self._name = context, plan, site_model, name
+        self._draft: SoraDraft | None = None
+        self._asked, self._is_writing = 0, False
+        self.form, self.map = GroundRiskForm(plan), MapView()
+        if request is not None:
+            self.form.setValue(request)
+        self._state, self._findings = QLabel(), FindingsList()
+        self._state.setWordWrap(True)
+        self._findings.set_units(context.units)
+        titles = table_titles(context.localized)
+        columns = [Column(title, _cell(number)) for number, title in enumerate(titles)]
+        self._rows: RowModel[tuple[str, ...]] = RowModel(columns, self)
+        self._table = table_of(self._rows, self.tr("Numbers with formula and source"))
+        self._save = QPushButton(self.tr("Save draft ..."))
+        self._save.setToolTip(self.tr("Table, KML and GeoJSON into a folder"))
+        self._save.setProperty("primary", True)
+        self._lay_out()
+        self.map.set_units(context.units)
+        self.map.set_site(site_model)
+        self.map.set_plan(plan)
+        self._assess_soon = QTimer(self, interval=REST_MS, singleShot=True)
+        self._assess_soon.timeout.connect(self._assess)
+        self.form.valueChanged.connect(self._edited)
+        self._save.clicked.connect(self._choose_folder)
+        self.finished.connect(self._let_go)
+        self._assess()
+
+    def draft(self) -> SoraDraft | None:
+        """The draft of what is stated now; None while it is being made."""
+        return self._draft
+
+    def state_text(self) -> str:
+        """What is said of it."""
+        return self._state.text()
+
+    def table_texts(self) -> list[tuple[str, ...]]:
+        """Rows of the table."""
+        return list(self._rows.rows())
+
+    def _lay_out(self) -> None:
+        scroll = QScrollArea()
+        scroll.setWidget(self.form)
+        scroll.setWidgetResizable(True)
+        scroll.setFrameShape(QScrollArea.Shape.NoFrame)
+        scroll.setFixedWidth(FORM_WIDTH_PX)
+        close = QPushButton(self.tr("Close"))
+        close.clicked.connect(self.reject)
+        below = QSplitter()
+        below.addWidget(self._table)
+        below.addWidget(self._findings)
+        below.setSizes([560, 200])
+        right, columns, foot = QVBoxLayout(), QHBoxLayout(), QHBoxLayout()
+        right.addWidget(self._state)
+        right.addWidget(self.map, 3)
+        right.addWidget(below, 2)
+        columns.addWidget(scroll)
+        columns.addLayout(right, 1)
+        foot.addStretch(1)
+        foot.addWidget(close)
+        foot.addWidget(self._save)
+        layout = QVBoxLayout(self)
+        layout.addLayout(columns, 1)
+        layout.addWidget(DialogFoot(self._context))
+        layout.addLayout(foot)
+        self.resize(1180, 760)
+
+    def _edited(self) -> None:
+        self._forget()
+        self._assess_soon.start()
+
+    def _forget(self) -> int:
+        """Answers to what was stated before are not shown any more; the number of the new question."""
+        self._asked += 1
+        self._draft = None
+        self._save.setEnabled(False)
+        return self._asked
+
+    def _assess(self) -> None:
+        number = self._forget()
+        try:
+            request = self.form.value()
+        except ValueError as error:
+            self._refuse(str(error))
+            return
+        plan, site_model, name = self._plan, self._site_model, self._name
+        self._say("heading", self.tr("Assessing, and letting aircraft fly away ..."))
+
+        def work(context: JobContext) -> SoraDraft | str:
+            try:
+                return sora_draft(plan, site_model, request, name, monitor=context)
+            except GroundStationError as error:
+                return str(error)
+
+        def done(result: SoraDraft | str) -> None:
+            if number != self._asked:
+                return
+            if isinstance(result, str):
+                self._refuse(result)
+            else:
+                self._show(result)
+
+        self._context.start(self.tr("Ground risk"), work, done, self._failed)
+
+    def _show(self, draft: SoraDraft) -> None:
+        self._draft = draft
+        risk = draft.risk
+        people = say("uninvolved people inside: {}", risk.people_allowed)
+        lines = buffer_text(risk), class_text(risk), people, simulated_text(draft.fly_aways)
+        texts = [self._context.localized(line) for line in lines]
+        texts.append(self.tr("A draft: check every number before you use it."))
+        worst = {found.severity for found in draft.findings}
+        role = "error" if Severity.ERROR in worst else "warning" if Severity.WARNING in worst else "ok"
+        self._say(role, "\n".join(text[:1].upper() + text[1:] for text in texts))
+        self._rows.set_rows(list(table_rows(risk, self._context.localized)))
+        for column, width in enumerate((60, 220, 80, 160)):
+            self._table.setColumnWidth(column, width)
+        self._findings.set_findings(draft.findings)
+        self.map.set_volumes([(QColor(colour), rings) for colour, rings in volume_shapes(draft)])
+        self.map.look_at_volumes()
+        self._save.setEnabled(True)
+        self.drafted.emit(draft)
+
+    def _refuse(self, reason: str) -> None:
+        self._rows.set_rows(())
+        self._findings.set_findings(())
+        self.map.set_volumes([])
+        self._say("error", self.tr("Not assessed: {0}").format(self._context.localized(reason)))
+
+    def _failed(self, error: BaseException) -> None:
+        self._is_writing = False
+        self._refuse(str(error))
+
+    def _choose_folder(self) -> None:
+        project = self._context.session.folder
+        folder = Questions().folder(self, self.tr("Save the draft into this folder"), project or Path.home())
+        if folder is not None:
+            self.save(folder)
+
+    def save(self, folder: Path) -> None:
+        """Write the files of the draft into a folder."""
+        draft, words = self._draft, self._context.localized
+        if draft is None:
+            return
+
+        def work(_context: JobContext) -> tuple[Path, ...]:
+            return write_sora(draft, folder, words)
+
+        def done(paths: tuple[Path, ...]) -> None:
+            self._is_writing = False
+            names = ", ".join(path.name for path in paths)
+            self._context.say(Severity.OK, self.tr("Draft saved in {0}: {1}").format(folder, names))
+
+        self._is_writing = True
+        self._context.start(self.tr("Save draft"), work, done, self._failed)
+
+    def _say(self, role: str, text: str) -> None:
+        self._state.setProperty("role", role)
+        self._state.style().polish(self._state)
+        self._state.setText(text)
+
+    def _let_go(self) -> None:
+        """Closed: nothing more is shown."""
+        self._asked += 1
+        self._assess_soon.stop()
+        self.map.close_view()
+        self.deleteLater()
+
+
+def _cell(number: int) -> Callable[[tuple[str, ...]], str]:
+    """What stands in a column of a row."""
+    return lambda row: row[number]
