@@ -76,6 +76,9 @@ def written() -> list[Input]:
         _input("plan briefed", "json", "plan.json", "brief plan.json site.json -o out/b.html", *FLYING),
         _input("site briefed", "json", "site.json", "brief plan.json site.json -o out/b.html", *FLYING),
         _input("KMZ", "zip", "m.kmz", import_.format("m.kmz"), *SITE, quick=True),
+        _input("KMZ sent", "zip", "m.kmz", "send m.kmz --to card", "card/"),
+        _input("plan sent", "json", "plan.json", "send plan.json --to card --site site.json", "card/", *FLYING),
+        _input("log book", "json", "booked/flights/log-book.json", "logbook --project booked", "booked/"),
         _input("QGC plan", "json", "m.plan", import_.format("m.plan"), *SITE, quick=True),
         _input("waypoints", "text", "m.waypoints", import_.format("m.waypoints"), *SITE, quick=True),
         _input("KML", "text", "m.kml", import_.format("m.kml"), *SITE, quick=True),
@@ -270,6 +273,7 @@ def _plans() -> None:
     ):
         _reflight(f"export plan.json --format {kind} -o m.{name}")
     _zones()
+    _card_and_book()
     _reflight("simulate plan.json site.json -o flight.json --speedup 1000")
     _reflight("project new project --site site.json")
     _reflight("project add project plan.json")
@@ -280,6 +284,16 @@ def _plans() -> None:
     copies = Autosave(Path("left"), _Now(), lambda text: None)
     copies.keep(_changed(opened.document))
     assert Path("left/.autosave/autosave.json").is_file()
+
+
+def _card_and_book() -> None:
+    from groundstation.services.fly.log_book import BookEntry, book_path, enter
+
+    route = Path("card/DJI/com.dji.industry.pilot")
+    route.mkdir(parents=True)
+    (route / "kept").write_bytes(b"x")
+    entry = BookEntry(1.8e9, 1.8e9 + 600.0, "office", 22.3, 114.2, "DJI M3E", "ArduPilot", 1, "B1", 0.4, 6, 6, 10.2)
+    enter(entry, [book_path(Path("booked/flights"))])
 
 
 def _zones() -> None:

@@ -33,7 +33,7 @@ def bundled(name: str, n_views: int = 10, settle_s: float = 2.0, profile_id: str
     for i, panel in enumerate(facade.panels[:: max(1, len(facade.panels) // n_views)][:n_views]):
         corners = np.array(panel.corners_enu_m)
         normal = np.cross(corners[2] - corners[0], corners[3] - corners[1])
-        x, y, z = corners.mean(axis=0) + GLASS_M * normal / np.linalg.norm(normal)
+        x, y, z = (corners.mean(axis=0) + GLASS_M * normal / np.linalg.norm(normal)).tolist()
         heading_deg = math.degrees(math.atan2(-normal[0], -normal[1]))
         views.append(Viewpoint(f"v{i:04d}", (x, y, max(z, 5.0)), heading_deg, (-25.0, 15.0)[i % 2]))
     top = (home[0], home[1], 40.0)
