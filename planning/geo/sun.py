@@ -40,8 +40,9 @@ RADIUS_RAD = math.radians(16.0 / 60.0)
 RISE_DEG = -50.0 / 60.0
 """Elevation of the disc's middle, without refraction, at which its upper edge is on a level horizon (almanacs)."""
 
-MOST_RAD_S = math.radians(360.2) / DAY_S
-"""Of the hour angle, which grows by 360.09 degrees a day at most; refraction slows what is seen near the horizon."""
+MOST_RAD_S = math.radians(363.0) / DAY_S
+"""Of the hour angle, which grows by 360.09 degrees a day at most, and what refraction adds: 0.7 % below the horizon,
+where it fades; above, it slows."""
 
 TABLE_S = 30.0
 """Between the places that searches know; a straight line between two is off by 0.0001 degrees at most."""
@@ -128,11 +129,13 @@ def refraction_rad(elevation_rad: ArrayLike) -> Array:
     """How far air at 1010 hPa and 10 degrees Celsius lifts what stands at an elevation, shape as given, radians.
 
     G. Saemundsson (1986), Meeus Eq. 16.4, within 0.1 minutes of arc of tables. Below -1 degree, where nothing is seen,
-    it stays as it is there, so that nothing jumps.
+    it fades evenly to the nadir, so that nothing jumps.
     """
-    h = np.maximum(np.degrees(np.asarray(elevation_rad, np.float64)), -1.0)
+    true = np.degrees(np.asarray(elevation_rad, np.float64))
+    h = np.maximum(true, -1.0)
     minutes = 1.02 / np.tan(np.radians(h + 10.3 / (h + 5.11)))
-    return np.radians(np.maximum(minutes, 0.0) / 60.0)
+    fading = np.clip((90.0 + true) / 89.0, 0.0, 1.0)
+    return np.asarray(np.radians(fading * np.maximum(minutes, 0.0) / 60.0))
 
 
 def lifted(directions_enu: Array) -> Array:

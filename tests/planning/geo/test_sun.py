@@ -122,7 +122,7 @@ def test_refraction_is_that_of_tables_and_never_turns_the_order_of_two_suns():
     assert np.isfinite(lifts).all()
     assert (lifts >= 0.0).all()
     assert (np.diff(elevations + lifts) > 0.0).all()
-    assert (np.diff(lifts) <= 1e-12).all()
+    assert (np.diff(lifts[elevations > np.radians(-1.0)]) <= 1e-12).all()
 
 
 @pytest.mark.parametrize("up", [1.0, -1.0])
