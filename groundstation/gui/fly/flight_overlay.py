@@ -21,6 +21,9 @@ EDGE_PX = 6
 SIDE_PX = 210
 """Width of attitude and camera picture."""
 
+LARGE_SIDE_PX = 440
+"""Of the camera picture once it was clicked."""
+
 ATTITUDE_PX = 180
 MAX_SHOWN = 3
 """Warnings; the rest are counted."""
@@ -128,9 +131,11 @@ class FlightOverlay(QObject):
         self.banner, self.camera = WarningBanner(shared_view), LiveCamera(shared_view)
         self._view: LiveView | None = None
         self._is_shown = self._has_sides = self._is_stale = False
+        self._is_large = False
         self._n_drawn = 0
         for widget in self._parts():
             widget.hide()
+        self.camera.sizeToggled.connect(self.toggle_camera)
         shared_view.resized.connect(self._place)
         shared_view.pageShown.connect(lambda _page: self._place())
 
@@ -142,6 +147,16 @@ class FlightOverlay(QObject):
     def set_sortie(self, sortie: LiveSortie | None) -> None:
         """The sortie whose site the camera sees."""
         self.camera.set_sortie(sortie)
+
+    def set_video(self, url: str) -> None:
+        """The stream that the camera sends; empty for none."""
+        self.camera.set_video(url)
+        self._place()
+
+    def toggle_camera(self) -> None:
+        """Make the camera's picture large, or small again."""
+        self._is_large = not self._is_large
+        self._place()
 
     def set_view(self, view: LiveView | None) -> None:
         """The flight as it stands; drawn with the next `draw`."""
@@ -169,8 +184,11 @@ class FlightOverlay(QObject):
             self.attitude.set_angles(attitude, pointing, is_old=view is not None and view.link is LinkState.LOST)
             if self.banner.set_view(view):
                 self._place()
-        if self._n_drawn % 2 == 0 and self._view is not None and self.camera.isVisible():
-            self.camera.look(self._view.state)
+        if self.camera.isVisible():
+            self.camera.show_video()
+            is_due = self._n_drawn % 2 == 0 and self._view is not None and not self.camera.shows_video()
+            if is_due and self._view is not None:
+                self.camera.look(self._view.state)
 
     def close_view(self) -> None:
         """Free what the camera's picture holds."""
@@ -191,10 +209,11 @@ class FlightOverlay(QObject):
         x = room.right() - EDGE_PX - side
         upper = min(ATTITUDE_PX, room.height() // 2)
         self._put(self.attitude, QRect(x, room.top() + EDGE_PX, side, upper), has_sides)
-        lower = self.camera.height_for(side)
-        free = room.height() - upper - lower - 3 * EDGE_PX
-        y = room.bottom() - EDGE_PX - lower
-        self._put(self.camera, QRect(x, y, side, lower), has_sides and free >= 0 and self.camera.has_site())
+        free = room.height() - upper - 3 * EDGE_PX
+        wide = min(LARGE_SIDE_PX, room.width() // 2) if self._is_large else side
+        lower = self.camera.height_for(wide)
+        at = QRect(room.right() - EDGE_PX - wide, room.bottom() - EDGE_PX - lower, wide, lower)
+        self._put(self.camera, at, has_sides and lower <= free and self.camera.has_site())
         taken_left = left + EDGE_PX if has_sides else 0
         taken_right = side + EDGE_PX if has_sides else 0
         width = room.width() - taken_left - taken_right - 2 * EDGE_PX

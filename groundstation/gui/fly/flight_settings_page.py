@@ -12,10 +12,13 @@ from groundstation.gui.fly.joystick_controller import JoystickBox
 from groundstation.gui.widgets.inputs import Form
 from groundstation.gui.widgets.tab_order import set_enabled
 from groundstation.services.fly.options import FlightSettings
+from groundstation.services.fly.video import video_url
 from groundstation.services.units import UnitSystem
 from missions.mavlink.ntrip import EXAMPLE_CASTER, caster_of
 from missions.mavlink.remote_id import EXAMPLE, operator_number, serial_number
 from planning.base.errors import InputError
+
+VIDEO_EXAMPLE = "rtsp://192.168.144.25:8554/main.264"
 
 
 class SettingsPage(QWidget):
@@ -55,6 +58,10 @@ class SettingsPage(QWidget):
         form.addRow(self.tr("Serial number"), self.serial)
         form.addRow(self.tr("RTK corrections"), self.corrections)
         form.addRow(self.tr("Their password"), self.password)
+        self.video, self._video_said = QLineEdit(), _muted("")
+        self.video.setPlaceholderText(VIDEO_EXAMPLE)
+        self.video.setToolTip(self.tr("The camera's stream, by RTSP, or as an MPEG transport stream by UDP"))
+        form.addRow(self.tr("Video"), self.video)
         layout = QVBoxLayout(self)
         layout.addWidget(self.needs_rtk)
         layout.addWidget(_muted(self.tr("Start waits for RTK, and a warning comes when it is lost in flight.")))
@@ -62,6 +69,7 @@ class SettingsPage(QWidget):
         layout.addWidget(self._voice_text)
         layout.addLayout(form)
         layout.addWidget(self._said)
+        layout.addWidget(self._video_said)
         layout.addWidget(self.joystick)
         layout.addStretch(1)
         self.needs_rtk.toggled.connect(self._edited)
@@ -71,6 +79,7 @@ class SettingsPage(QWidget):
         self.battery.editingFinished.connect(self._battery_typed)
         self.corrections.editingFinished.connect(self._corrections_typed)
         self.password.editingFinished.connect(lambda: self.passwordTyped.emit(self.password.text()))
+        self.video.editingFinished.connect(self._video_typed)
 
     def value(self) -> FlightSettings:
         """What was chosen."""
@@ -87,6 +96,7 @@ class SettingsPage(QWidget):
         self.serial.setText(value.serial_number)
         self.corrections.setText(value.corrections)
         self.battery.setText(value.battery)
+        self.video.setText(value.video)
 
     def set_voice(self, *, has_voice: bool) -> None:
         """Say whether this computer can speak, and what it lacks."""
@@ -100,6 +110,22 @@ class SettingsPage(QWidget):
     def said(self) -> str:
         """What is said of the numbers that were typed."""
         return self._said.text()
+
+    def video_said(self) -> str:
+        """What is wrong with the address of the video; empty for nothing."""
+        return self._video_said.text()
+
+    def _video_typed(self) -> None:
+        """Take the address of the video, or say what is wrong with it."""
+        try:
+            url = video_url(self.video.text())
+        except InputError as error:
+            self._video_said.setText(translated(str(error), UnitSystem.METRIC))
+            return
+        self._video_said.setText("")
+        if url != self._kept.video:
+            self._kept = replace(self._kept, video=url)
+            self.valueChanged.emit(self.value())
 
     def _identity_typed(self) -> None:
         """Take the operator's and the aircraft's numbers, or say what is wrong with them."""

@@ -481,6 +481,7 @@ class FlyPage(QObject):
             self.buttons.held(_HELD_BY[action]).let_go()
 
     def _take_settings(self, settings: FlightSettings) -> None:
+        self.overlay.set_video(settings.video)
         self._speaker.set_muted(is_muted=not settings.speaks)
         self.overlay.banner.set_muted(is_muted=not settings.speaks, has_voice=self._voice.is_there())
 

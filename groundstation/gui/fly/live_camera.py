@@ -1,14 +1,15 @@
-"""What the camera sees now: the site drawn from the pose that the vehicle reports, beside the view of the flight."""
+"""What the camera sees now: its video, or the site drawn from the pose that the vehicle reports."""
 
 from __future__ import annotations
 
 import math
 
 import numpy as np
-from PySide6.QtCore import QRect, Qt
-from PySide6.QtGui import QResizeEvent
+from PySide6.QtCore import QRect, Qt, QTimer, Signal
+from PySide6.QtGui import QHideEvent, QImage, QMouseEvent, QPixmap, QResizeEvent
 from PySide6.QtWidgets import QFrame, QLabel, QWidget
 
+from groundstation.gui.application.translate import translated
 from groundstation.gui.camera_preview.preview import (
     BACKDROP,
     SKY_DARK,
@@ -23,12 +24,20 @@ from groundstation.gui.view3d.orbit import photo_pinhole
 from groundstation.gui.view3d.site_scene import site_scene
 from groundstation.gui.widgets.theme import colours
 from groundstation.services.fly.sortie import LiveSortie
+from groundstation.services.fly.video import VideoStream
+from groundstation.services.units import UnitSystem
 from groundstation.vehicle.state import VehicleState
 from planning.coverage.sections import panel_frames
 from planning.plan import Camera
 from planning.site.records import panel_corners
 
 CAPTION_PX = 24
+VIDEO_MS = 90
+"""Between pictures of the video, a little less than that in which they come."""
+
+VIDEO_PX = 480
+"""Width in which pictures of the video come: that of the large picture."""
+
 MOVED_M, TURNED_RAD = 0.05, math.radians(0.2)
 """A pose that differs by less is drawn as it was: 5 cm at 10 m are a pixel here."""
 
@@ -36,7 +45,15 @@ Pose = tuple[float, float, float, float, float]
 
 
 class LiveCamera(QFrame):
-    """A small picture of the site through the camera of the vehicle."""
+    """A small picture: the camera's video where it comes, else the site through the camera. A click makes it large.
+
+    Signals
+    -------
+    sizeToggled()
+        It wants to be large, or small again.
+    """
+
+    sizeToggled = Signal()  # noqa: N815  (Qt's own way of naming)
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -47,6 +64,15 @@ class LiveCamera(QFrame):
         self._canvas: Canvas | None = None
         self._drawn: LiveSortie | None = None
         self._pose: Pose | None = None
+        self._stream: VideoStream | None = None
+        self._url = ""
+        self._n_shown = 0
+        self._timer = QTimer(self, interval=VIDEO_MS)
+        self._timer.timeout.connect(self.show_video)
+        self._film = QLabel(self)
+        self._film.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        self._film.setStyleSheet("background: black;")
+        self._film.hide()
         self._caption = QLabel(self.tr("Camera, drawn"), self)
         self._caption.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self._caption.setToolTip(
@@ -59,9 +85,58 @@ class LiveCamera(QFrame):
             self._sortie, self._pose = sortie, None
             self._camera = None if sortie is None else sortie.case.plan.camera
 
+    def set_video(self, url: str) -> None:
+        """Show a stream from now on; empty for none."""
+        if url != self._url:
+            self._stop_video()
+            self._url = url
+
     def has_site(self) -> bool:
         """Whether there is something to see."""
-        return self._sortie is not None
+        return self._sortie is not None or bool(self._url)
+
+    def shows_video(self) -> bool:
+        """Whether a picture of the camera itself is shown."""
+        return not self._film.isHidden()
+
+    def caption(self) -> str:
+        """What is said to be seen."""
+        return self._caption.text()
+
+    def show_video(self) -> None:
+        """Show the latest picture of the stream, or why there is none; the stream is opened when it is first seen."""
+        if not self._url:
+            self._say_video(None, self.tr("Camera, drawn"))
+            return
+        if self._stream is None:
+            self._stream = VideoStream(self._url, VIDEO_PX)
+            self._timer.start()
+        found, problem = self._stream.latest(), self._stream.problem()
+        if found is None:
+            self._say_video(None, self.tr("Drawn: no video") if problem else self.tr("Drawn: video awaited"), problem)
+        elif found.number != self._n_shown or self._film.isHidden():
+            self._n_shown = found.number
+            rows = np.ascontiguousarray(found.picture)
+            image = QImage(rows.data, rows.shape[1], rows.shape[0], 3 * rows.shape[1], QImage.Format.Format_RGB888)
+            size, ratio = self._film.size(), Qt.AspectRatioMode.KeepAspectRatio
+            self._film.setPixmap(QPixmap.fromImage(image).scaled(size, ratio))
+            self._say_video(image, self.tr("Camera, video"))
+
+    def _say_video(self, image: QImage | None, caption: str, problem: str = "") -> None:
+        self._film.setVisible(image is not None)
+        if image is not None:
+            self._film.raise_()
+        if self._caption.text() != caption:
+            self._caption.setText(caption)
+        self._caption.setToolTip(translated(problem, UnitSystem.METRIC) if problem else "")
+
+    def _stop_video(self) -> None:
+        self._timer.stop()
+        if self._stream is not None:
+            self._stream.close()
+            self._stream = None
+        self._n_shown = 0
+        self._film.hide()
 
     def height_for(self, width_px: int) -> int:
         """Height of a picture of this width, in the aspect ratio of the camera, and its caption."""
@@ -81,15 +156,27 @@ class LiveCamera(QFrame):
         pose = (*state.motion.value.position_enu_m, pointing.heading_rad, pointing.pitch_rad)
         if self._is_same(pose):
             return
-        self._pose = pose
         canvas = self._made()
+        self._pose = pose
         eye = np.array(pose[:3])
         canvas.look_through(photo_pinhole(eye, pose[3], pose[4], self._camera, float(canvas.width())))
 
     def close_view(self) -> None:
-        """Free the OpenGL context; call before the widget goes away."""
+        """Free the OpenGL context, end the video; call before the widget goes away."""
+        self._stop_video()
+        self._url = ""
         if self._canvas is not None:
             self._canvas.close()
+
+    def hideEvent(self, event: QHideEvent) -> None:  # noqa: N802
+        """What nobody sees is not decoded."""
+        self._stop_video()
+        super().hideEvent(event)
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:  # noqa: N802
+        """Become large, or small again."""
+        self.sizeToggled.emit()
+        event.accept()
 
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
         """The picture above, its caption below."""
@@ -98,6 +185,8 @@ class LiveCamera(QFrame):
 
     def _lay_out(self) -> None:
         picture = QRect(1, 1, self.width() - 2, max(1, self.height() - CAPTION_PX - 1))
+        self._film.setGeometry(picture)
+        self._pose = None
         if self._canvas is not None:
             self._canvas.setGeometry(picture)
         self._caption.setGeometry(0, self.height() - CAPTION_PX, self.width(), CAPTION_PX)
@@ -117,6 +206,7 @@ class LiveCamera(QFrame):
             self._canvas.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
             self._lay_out()
             self._canvas.show()
+            self._canvas.stackUnder(self._film)
         if self._drawn is not self._sortie and self._sortie is not None:
             self._drawn = self._sortie
             canvas, model = self._canvas, self._sortie.case.site_model

@@ -98,6 +98,8 @@ class FlightSettings:
         Where RTK corrections come from, `USER@HOST:PORT/MOUNTPOINT`; empty: nowhere. A password is never kept.
     speaks
         Warnings are spoken, where the computer can.
+    video
+        Address of the camera's stream, as `services.fly.video.video_url` takes it; empty: none.
     """
 
     needs_rtk: bool = False
@@ -106,6 +108,7 @@ class FlightSettings:
     corrections: str = ""
     battery: str = ""
     speaks: bool = True
+    video: str = ""
 
     @property
     def identity(self) -> RemoteId:

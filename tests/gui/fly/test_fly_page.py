@@ -819,6 +819,7 @@ def test_the_vehicles_own_log_is_fetched_by_its_button_and_the_report_is_made_fr
     turn_until(application, page.report.log.isEnabled)
     turn_until_idle(application, controller)
     live = page.controller.active.ended
+    application.processEvents()
     click_on(controller.window, page.report.log)
     turn_until(application, lambda: "vehicle's log: " in page.notes.texts())
     assert "proved by its checksum" in page.notes.texts()

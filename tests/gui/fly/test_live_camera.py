@@ -1,0 +1,88 @@
+"""The camera's picture beside the view: its video where it comes, else the site as it is drawn."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
+
+from groundstation.gui.fly.flight_settings_page import SettingsPage
+from groundstation.gui.fly.live_camera import MOVED_M, LiveCamera
+from groundstation.gui.view3d.canvas import image_array
+from groundstation.services.fly.options import FlightSettings
+from groundstation.vehicle.state import Angles, Motion, Timed, VehicleState
+from tests.gui.driving import turn_until, type_into
+from tests.services.fly.test_video import film, is_film, sent_by_udp
+from tests.services.live_cases import sortie
+
+
+@pytest.fixture
+def camera(application):
+    camera = LiveCamera()
+    camera.resize(240, camera.height_for(240))
+    camera.show()
+    yield camera
+    camera.close_view()
+    camera.close()
+
+
+def looking(place, pitch_rad=-0.3):
+    return VehicleState(
+        motion=Timed(Motion(place, (0.0, 0.0, 0.0), 10.0), 0.0), camera=Timed(Angles(0.0, pitch_rad, 0.0), 0.0)
+    )
+
+
+def test_the_site_is_drawn_from_the_pose_that_the_vehicle_reports(application, camera):
+    camera.set_sortie(sortie())
+    x, y, z = sortie().case.plan.viewpoints[0].position_enu_m
+    camera.look(VehicleState())
+    assert camera.pose() is None
+    camera.look(looking((x, y, z)))
+    application.processEvents()
+    first = camera._canvas.picture()
+    assert len(np.unique(first.reshape(-1, 3), axis=0)) > 3
+    camera.look(looking((x + 0.5 * MOVED_M, y, z)))
+    assert camera.pose()[0] == x, "nothing that could be seen"
+    camera.look(looking((x + 1.0, y, z), math.radians(20.0)))
+    application.processEvents()
+    assert camera.pose()[0] == x + 1.0
+    assert (camera._canvas.picture() != first).any()
+    assert camera.caption() == "Camera, drawn"
+    heard = []
+    camera.sizeToggled.connect(lambda: heard.append(True))
+    QTest.mouseClick(camera, Qt.MouseButton.LeftButton)
+    assert heard == [True]
+
+
+@pytest.mark.slow
+def test_the_video_takes_the_place_of_the_drawing_and_gives_it_back(application, camera, tmp_path):
+    camera.set_sortie(sortie())
+    with sent_by_udp(film(tmp_path / "film.ts", "mp4v", 100)) as url:
+        camera.set_video(url)
+        camera.show_video()
+        assert camera.caption() == "Drawn: video awaited"
+        turn_until(application, camera.shows_video)
+        assert camera.caption() == "Camera, video"
+        turn_until(application, lambda: is_film(image_array(camera._film.pixmap().toImage())))
+    turn_until(application, lambda: not camera.shows_video())
+    assert camera.caption() == "Drawn: no video"
+    camera.set_video("")
+    camera.show_video()
+    assert camera.caption() == "Camera, drawn"
+
+
+def test_the_address_of_the_video_is_taken_or_what_is_wrong_is_said(application):
+    page, heard = SettingsPage(), []
+    page.valueChanged.connect(heard.append)
+    page.setValue(FlightSettings())
+    for typed, words in (("file:///etc/passwd", "expected rtsp://HOST:PORT/PATH"), ("rtsp://a:b@c/", "password")):
+        type_into(page.video, typed)
+        page.video.editingFinished.emit()
+        assert words in page.video_said()
+    assert heard == []
+    type_into(page.video, "udp://0.0.0.0:5600")
+    page.video.editingFinished.emit()
+    assert page.video_said() == ""
+    assert heard == [replace(FlightSettings(), video="udp://0.0.0.0:5600")]
