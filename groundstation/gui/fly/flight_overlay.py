@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QMargins, QObject, QRect, QSignalBlocker, QSize, Qt, Signal
+from PySide6.QtCore import QMargins, QObject, QRect, QSignalBlocker, Qt, Signal
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QPushButton, QSizePolicy, QVBoxLayout, QWidget
 
 from groundstation.gui.application.translate import translated
@@ -51,16 +51,14 @@ class WarningBanner(QFrame):
         self.mute.setToolTip(self.tr("Warnings are shown, and not spoken"))
         self.mute.toggled.connect(self.muteToggled)
         self.mute.hide()
-        texts = QVBoxLayout()
+        texts = self._texts = QVBoxLayout()
         texts.setSpacing(2)
         for label in (*self._labels, self._more):
             label.setWordWrap(True)
             label.setMargin(5)
-            policy = QSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
-            policy.setHeightForWidth(True)
-            label.setSizePolicy(policy)
+            label.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
             texts.addWidget(label)
-        row = QHBoxLayout(self)
+        row = self._row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
         row.setSpacing(4)
         row.addLayout(texts, 1)
@@ -92,6 +90,14 @@ class WarningBanner(QFrame):
         self._more.setVisible(n_more > 0)
         self._more.setText(self.tr("{0} more in the list").format(n_more) if n_more > 0 else "")
         return before != [(label.isHidden(), label.text()) for label in (*self._labels, self._more)]
+
+    def height_for(self, width_px: int) -> int:
+        """Height that the shown lines need; a layout that is not seen yet would answer for the lines before."""
+        beside = 0 if self.mute.isHidden() else self.mute.sizeHint().width() + self._row.spacing()
+        shown = [label for label in (*self._labels, self._more) if not label.isHidden()]
+        lines = sum(label.heightForWidth(max(1, width_px - beside)) for label in shown)
+        lines += self._texts.spacing() * max(0, len(shown) - 1)
+        return max(lines, 0 if self.mute.isHidden() else self.mute.sizeHint().height())
 
     def is_empty(self) -> bool:
         """Whether nothing is wrong."""
@@ -211,14 +217,16 @@ class FlightOverlay(QObject):
         self._put(self.attitude, QRect(x, room.top() + EDGE_PX, side, upper), has_sides)
         free = room.height() - upper - 3 * EDGE_PX
         wide = min(LARGE_SIDE_PX, room.width() // 2) if self._is_large else side
+        while wide > side and self.camera.height_for(wide) > free:
+            wide -= 10
         lower = self.camera.height_for(wide)
         at = QRect(room.right() - EDGE_PX - wide, room.bottom() - EDGE_PX - lower, wide, lower)
         self._put(self.camera, at, has_sides and lower <= free and self.camera.has_site())
         taken_left = left + EDGE_PX if has_sides else 0
         taken_right = side + EDGE_PX if has_sides else 0
         width = room.width() - taken_left - taken_right - 2 * EDGE_PX
-        hint = QSize(width, max(1, self.banner.heightForWidth(width)))
-        at = QRect(room.left() + taken_left + EDGE_PX, room.top() + EDGE_PX, hint.width(), hint.height())
+        lines = self.banner.height_for(width)
+        at = QRect(room.left() + taken_left + EDGE_PX, room.top() + EDGE_PX, width, lines)
         self._put(self.banner, at, is_over and not self.banner.is_empty())
         top = 0 if not has_sides or self.banner.isHidden() else at.height() + EDGE_PX
         self._shared_view.set_insets(QMargins(taken_left, top, taken_right, 0))

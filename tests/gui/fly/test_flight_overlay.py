@@ -149,7 +149,7 @@ def test_warnings_stand_until_they_are_over_the_worst_and_newest_first(applicati
     assert lines[1].startswith("DANGER (0:51)")
     assert lines[3] == "1 more in the list"
     assert not banner.set_view(view_of(found)), "nothing is different"
-    wide, narrow = banner.heightForWidth(700), banner.heightForWidth(200)
+    wide, narrow = banner.height_for(700), banner.height_for(200)
     assert 4 * banner.fontMetrics().height() < wide < narrow, "all lines have room"
     banner.set_view(view_of())
     assert banner.is_empty()

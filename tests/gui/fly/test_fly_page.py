@@ -21,8 +21,10 @@ from groundstation.services.settings import Language
 from groundstation.services.units import UnitSystem
 from groundstation.vehicle.preflight import Remedy
 from groundstation.vehicle.sortie.run_records import Phase
+from groundstation.vehicle.watch import FlightWarning
 from missions.mavlink.autopilots import Autopilot
 from planning.base.findings import Severity
+from planning.base.messages import say
 from planning.plan import viewpoint_arrays
 from planning.revision.top_up import TopUpRequest, top_up
 from tests.gui.driving import (
@@ -844,6 +846,13 @@ def test_in_flight_the_view_has_the_room_of_the_lists_and_a_joystick_returns_by_
     turn_until(application, lambda: page.overlay.camera.pose() is not None)
     assert "to the facade, min 10.0 m" in page.overlay.figures.text()
     assert page.overlay.attitude.text().startswith("heading ")
+    warned = FlightWarning("wind", Severity.ERROR, say("the wind is {:.1f} m/s", 9.0), 0.0, 9.0, 8.0, "m/s")
+    page.overlay.set_view(replace(page.controller.active.view, warnings=(warned,)))
+    page.overlay.draw()
+    banner = page.overlay.banner
+    assert banner.isVisible()
+    assert banner.height() >= banner.fontMetrics().height()
+    assert shared_view.childAt(banner.geometry().center()).parentWidget() is banner, "nothing lies over it"
     page.lists.click()
     application.processEvents()
     assert page.bottom.isVisible()
