@@ -18,7 +18,7 @@ LOADED = (
     "planning.planner", "planning.site.importing.importer", "planning.geo.mesh", "missions.formats.registry",
     "missions.flight.logs.read", "groundstation.services.project.folder", "groundstation.services.plan.planning",
     "groundstation.services.reconstruct.training", "groundstation.services.model.export", "cv2", "trimesh",
-    "scipy.sparse",
+    "scipy.sparse", "rasterio", "planning.site.importing.attach_terrain",
     "reconstruction.training.model.saved", "reconstruction.records.book", "reconstruction.metrics.lpips",
     "groundstation.services.project.recovery",
 )  # fmt: skip

@@ -63,6 +63,7 @@ def written() -> list[Input]:
     import_ = "import {0} --site site.json -o out/p.json"
     site = "site import {0} -o out/s.json --origin 22.3,114.2,60 --without-panels"
     zones = "site zones site.json {0}"
+    terrain = "site terrain site.json {0} --vertical ellipsoid -o out/s.json"
     render = "render model --views data -o out/r --width 24"
     train = "train data -o out/m --preset smoke --iterations 2 --method 2dgs --settings quick.toml"
     model = ("data/", "model/", "quick.toml")
@@ -98,6 +99,10 @@ def written() -> list[Input]:
         _input("zones of KML", "text", "z.kml", zones.format("z.kml"), *SITE, quick=True),
         _input("zones of OpenAir", "text", "z.openair", zones.format("z.openair"), *SITE, quick=True),
         _input("zones of AIXM", "text", "z.aixm.xml", zones.format("z.aixm.xml"), *SITE),
+        _input("heights as GeoTIFF", "binary", "t.tif", terrain.format("t.tif"), *SITE, quick=True),
+        _input("surface as GeoTIFF", "header", "dsm.tif", terrain.format("t.tif --surface dsm.tif"), *SITE, "t.tif"),
+        _input("heights of SRTM", "binary", "N22E114.hgt", terrain.format("N22E114.hgt"), *SITE),
+        _input("site on terrain", "json", "hill.json", "check plan.json hill.json", *FLYING, quick=True),
         _input("CityJSON of ours", "json", "site.city.json", site.format("site.city.json")),
         _input("project", "json", "project/project.json", "project show project", "project/", quick=True),
         _input("project's site", "json", "project/site/site.json", "project show project", "project/"),
@@ -274,6 +279,7 @@ def _plans() -> None:
         _reflight(f"export plan.json --format {kind} -o m.{name}")
     _zones()
     _card_and_book()
+    _heights()
     _reflight("simulate plan.json site.json -o flight.json --speedup 1000")
     _reflight("project new project --site site.json")
     _reflight("project add project plan.json")
@@ -294,6 +300,18 @@ def _card_and_book() -> None:
     (route / "kept").write_bytes(b"x")
     entry = BookEntry(1.8e9, 1.8e9 + 600.0, "office", 22.3, 114.2, "DJI M3E", "ArduPilot", 1, "B1", 0.4, 6, 6, 10.2)
     enter(entry, [book_path(Path("booked/flights"))])
+
+
+def _heights() -> None:
+    from planning.site.bundled import ORIGIN
+    from tests.planning.site.importing.height_files import transform_at, write_heights, write_hgt
+
+    place = {"origin": ORIGIN, "crs": "EPSG:32650", "transform": transform_at(ORIGIN, "EPSG:32650"), "size": (200, 200)}
+    packed = {"compress": "deflate", "tiled": True, "blockxsize": 64, "blockysize": 64}
+    write_heights(Path("t.tif"), lambda x, y: 0.05 * (x + y), **place, **packed)
+    write_heights(Path("dsm.tif"), lambda x, y: 0.05 * (x + y) + 9.0 * (x > 40.0), **place)
+    write_hgt(Path(), "N22E114", lambda x, y: 0.05 * (x + y), origin=ORIGIN)
+    _reflight("site terrain site.json t.tif --vertical ellipsoid --resolution 5 -o hill.json")
 
 
 def _zones() -> None:
