@@ -317,6 +317,12 @@ class ProfileChart(QWidget):
         ):
             pen = pg.mkPen(colour, width=1.5, style=style)
             self._height.plot(x, (ground.height_m + above_m) * factor, pen=pen, connect="finite")
+        known = np.flatnonzero(np.isfinite(ground.height_m))
+        if len(known):
+            name = pg.TextItem(self.tr("terrain"), color=found.muted, anchor=(0.5, 0.0))
+            at = known[len(known) // 8]
+            name.setPos(float(x[at]), float(ground.height_m[at]) * factor)
+            self._height.addItem(name, ignoreBounds=True)
 
     def _draw_limits(self, shown_m: tuple[float, float]) -> None:
         limits, found = self._limits, colours()

@@ -22,9 +22,11 @@ from planning.plan import read_plan, write_plan
 from planning.request import PlanRequest
 from planning.site.bundled import SCENES, write_scene
 from planning.site.file import read_site
+from planning.site.ground import ground_of
 from planning.site.importing.importer import import_site, write_imported_site
 from planning.site.importing.options import ImportOptions
 from planning.site.records import Obstacle
+from tests.planning.site.test_terrain import hill_site, slope
 from tests.services.project_cases import SITES, document, documents, edited, is_same, plan, small_disk
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -482,3 +484,18 @@ def test_a_project_that_another_process_saves_all_the_time_is_read_whole(tmp_pat
     finally:
         saver.kill()
         saver.communicate()
+
+
+def test_terrain_and_its_obstacles_come_back_with_the_project(tmp_path):
+    model = hill_site(slope)
+    mesh = box_mesh(np.array([10.0, 20.0, 0.0]), np.array([14.0, 24.0, 12.0]))
+    site = replace(model.site, obstacles=(*model.site.obstacles, Obstacle("surface", mesh="hill.surface.ply")))
+    model = replace(model, site=site, obstacles=(*model.obstacles, mesh))
+    create_project(tmp_path / "hill", Document(model))
+    found = open_project(tmp_path / "hill").document.site
+    assert found.site.terrain == model.site.terrain
+    assert found.obstacles[-1].vertices_enu_m.tolist() == mesh.vertices_enu_m.tolist()
+    assert ground_of(found.site).terrain is not None
+    written = files_of(tmp_path / "hill")
+    save_project(tmp_path / "hill", open_project(tmp_path / "hill").document)
+    assert written["site/site.json"] == files_of(tmp_path / "hill")["site/site.json"]
