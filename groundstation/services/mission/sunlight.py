@@ -221,7 +221,7 @@ def facade_lines(report: SunReport) -> Iterator[Message]:
     """Light on each facade."""
     track = report.day.track
     for facade in report.day.facades:
-        name = say("facade '{}' (heading {:.0f})", facade.id, wrap_heading_deg(facade.heading_deg))
+        name = say("facade '{}' (heading {})", facade.id, round(wrap_heading_deg(facade.heading_deg)))
         if abs(facade.tilt_deg) > STEEP_DEG:
             up, down = say("facade '{}' (looks up)", facade.id), say("facade '{}' (looks down)", facade.id)
             name = up if facade.tilt_deg > 0.0 else down
@@ -291,7 +291,7 @@ def moment_lines(report: SunReport, seconds: float) -> Iterator[Message]:
     track, at = report.day.track, report.day.track.time(seconds)
     heading_deg, elevation_deg = sun_place_deg(track.lat_deg, track.lon_deg, at)
     clock = clock_text(track, seconds)
-    yield say("sun at heading {:.0f}, elevation {:.1f} degrees", heading_deg, elevation_deg, place=clock)
+    yield say("sun at heading {}, elevation {:.1f} degrees", round(heading_deg), elevation_deg, place=clock)
     if not is_within(track.up, seconds):
         return
     for facade in report.day.facades:
