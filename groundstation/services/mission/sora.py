@@ -23,8 +23,9 @@ from groundstation.services.map.web_mercator import world_from_geodetic
 from groundstation.services.mission.brief import return_height
 from missions.formats.options import ExportOptions
 from missions.simulator.fly_away import FlyAways, simulate_fly_aways
+from planning.base.errors import InputError
 from planning.base.files import make_folder
-from planning.base.findings import Finding
+from planning.base.findings import Finding, Severity
 from planning.base.json_file import check_output, plain_values, write_atomically
 from planning.base.messages import Message, say
 from planning.base.progress import QUIET, Monitor
@@ -39,6 +40,7 @@ from planning.insight.ground_risk import (
 )
 from planning.insight.ground_risk_request import GroundRiskRequest
 from planning.plan import Plan
+from planning.site.file import is_planned_on
 from planning.site.records import SiteModel
 
 Floats = NDArray[np.float64]
@@ -55,17 +57,13 @@ ENDINGS = (".md", ".html", ".csv", ".kml", ".geojson")
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SoraDraft:
-    """An assessment, and the fly-aways that were simulated against it."""
+    """An assessment, the fly-aways that were simulated against it, and what the operator has to decide or check."""
 
     risk: GroundRisk
     fly_aways: FlyAways
     origin: Origin
     name: str
-
-    @property
-    def findings(self) -> tuple[Finding, ...]:
-        """What the operator has to decide or check."""
-        return self.risk.findings
+    findings: tuple[Finding, ...]
 
 
 def sora_draft(
@@ -86,15 +84,33 @@ def sora_draft(
 
     Raises
     ------
-    InfeasibleError, InputError
+    InfeasibleError
         As `assess_ground_risk`.
+    InputError
+        As there, or the plan was made for another site.
     """
+    changed = _site_findings(plan, site_model)
     height_m = None
     if request.geography == "hull":
         height_m, _objections = return_height(plan, site_model, options or ExportOptions(site=site_model))
     risk = assess_ground_risk(plan, site_model.site, request, height_m)
     fly_aways = simulate_fly_aways(plan, risk, n_fly_aways, monitor=monitor)
-    return SoraDraft(risk, fly_aways, site_model.site.origin, name)
+    return SoraDraft(risk, fly_aways, site_model.site.origin, name, (*changed, *risk.findings))
+
+
+def _site_findings(plan: Plan, site_model: SiteModel) -> tuple[Finding, ...]:
+    """Refuse a plan of another site, whose paths would lie elsewhere; say where its site has changed since."""
+    site = site_model.site
+    if plan.origin is not None and plan.origin != site.origin and plan.site == site.name:
+        raise InputError.say("the site has another origin than when the plan was made; plan again on the site as it is")
+    if plan.site != site.name:
+        raise InputError.say(
+            "the plan was made for site '{}', this is '{}'; take its own site file", plan.site, site.name
+        )
+    if is_planned_on(plan.site_sha256, site_model):
+        return ()
+    text = say("the site file has changed since this plan was made; what follows is measured on the file as it is now")
+    return (Finding(Severity.WARNING, "site", text),)
 
 
 def rounded_up(value_m: float) -> str:
@@ -148,7 +164,7 @@ def sora_summary(draft: SoraDraft) -> dict[str, Any]:
             "smallest_margin_m": float(flown.margins_m.min()),
             "longest_fall_m": float(flown.reach_m.max()),
         },
-        "findings": [plain_values(each) for each in risk.findings],
+        "findings": [plain_values(each) for each in draft.findings],
         "not_assessed": str(scope_text()),
     }
 

@@ -114,3 +114,17 @@ def test_without_people_there_is_no_class_and_the_draft_says_so():
     assert "keep everybody out" in sora_markdown(unknown)
     assert "nobody who is not involved" in sora_markdown(drafted(population="controlled"))
     assert "an assembly of people" in sora_markdown(drafted(population="assembly"))
+
+
+def test_a_plan_of_another_site_is_refused_and_a_changed_site_is_told():
+    plan, request = flown(ROUND), GroundRiskRequest(wind_m_s=2.0)
+    other = SiteModel(replace(place(), name="elsewhere"), empty_mesh())
+    with pytest.raises(InputError, match="made for site 'place', this is 'elsewhere'"):
+        sora_draft(plan, other, request, "x", n_fly_aways=3)
+    moved = replace(plan, origin=replace(ORIGIN, lat_deg=ORIGIN.lat_deg + 1.0))
+    with pytest.raises(InputError, match="another origin than when the plan was made"):
+        sora_draft(moved, SiteModel(place(), empty_mesh()), request, "x", n_fly_aways=3)
+    changed = sora_draft(
+        replace(plan, site_sha256="0" * 64), SiteModel(place(), empty_mesh(), sha256="1" * 64), request, "x", None, 3
+    )
+    assert "has changed since" in changed.findings[0].message
