@@ -5,6 +5,7 @@ What is not known is a finding of its own. A zone counts as clear only where its
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from datetime import UTC, datetime, timedelta
 
@@ -55,17 +56,17 @@ def _source(known: KnownFile) -> Iterator[Finding]:
         yield Finding(Severity.ERROR, code, text, place)
         return
     text = say(
-        "{} zones in {}, {} of them within {:.0f} m of the airspace; SHA-256 {}",
-        len(known.content.zones),
+        "{}: zones {}, within {:.0f} m of the airspace {}; SHA-256 {}",
         source_text(known),
-        len(known.local.near),
+        len(known.content.zones),
         REACH_M,
+        sum(bool(local.volumes) for local in known.local.near),
         known.source.sha256[:12],
     )
     yield Finding(Severity.OK, code, text, place)
     for question in known.content.questions:
         yield Finding(Severity.WARNING, "zones-question", question, place)
-    if known.local.nearest_m > COUNTRY_M:
+    if COUNTRY_M < known.local.nearest_m < math.inf:
         away_km = known.local.nearest_m / 1000.0
         text = (
             say("its zones lie here only if latitude and longitude are exchanged; ask its publisher which is which")

@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import re
 import sys
 import time
@@ -210,7 +211,10 @@ def run_zones(options: argparse.Namespace) -> int:
         kept = say("kept out of") if row.is_kept else say("not kept out of")
         if row.permitted:
             kept = say("permitted by '{}'", row.permitted)
-        tell("  {} [{}]: {}; {:.0f} m from the airspace; {}", row.id, row.file, row.what, row.distance_m, kept)
+        away = say("{:.0f} m from the airspace", row.distance_m)
+        if not math.isfinite(row.distance_m):
+            away = say("its place is not known")
+        tell("  {} [{}]: {}; {}; {}", row.id, row.file, row.what, away, kept)
         for question in row.questions:
             tell("    question: {}", question)
     if not done.model.site.zones:

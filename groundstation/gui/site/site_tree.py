@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
@@ -165,7 +166,9 @@ class SiteTreeModel(QAbstractItemModel):
             own = [each for each in near if each.source == source]
             row = add(Item(ItemKind.ZONE_FILE, source.file), source.file, self.tr("near: {0}").format(len(own)), group)
             for each in own:
-                add(Item(ItemKind.ZONE, each.key), each.local.zone.name, height.text(each.local.distance_m), row)
+                away_m = each.local.distance_m
+                info = height.text(away_m) if math.isfinite(away_m) else "?"
+                add(Item(ItemKind.ZONE, each.key), each.local.zone.name, info, row)
 
 
 def _airspace_size(site: Site) -> list[float]:

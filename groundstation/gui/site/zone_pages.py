@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import partial
 
 from PySide6.QtWidgets import QLabel, QPushButton, QWidget
@@ -43,7 +44,9 @@ class ZonePage(Page):
         self._item, self._zone_id, self._file = item, near.local.zone.id, near.source.file
         distance_m = near.local.distance_m
         away = self.tr("{0} from the airspace").format(length_unit(self._units).text(distance_m))
-        if distance_m <= 0.0:
+        if not math.isfinite(distance_m):
+            away = self.tr("Its place is not known.")
+        elif distance_m <= 0.0:
             away = self.tr("It reaches over the airspace.")
         lines = [translated(line, self._units) for line in zone_facts(near)]
         self._facts.setText("\n".join([*lines, away]))

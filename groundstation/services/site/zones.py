@@ -7,6 +7,7 @@ state of it begins without any.
 from __future__ import annotations
 
 import hashlib
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import date, datetime
@@ -218,7 +219,7 @@ class ZoneRow:
     what
         Name, restriction, reasons and heights, in words.
     distance_m
-        Horizontally from the airspace box.
+        Horizontally from the airspace box; infinite where nobody knows.
     """
 
     id: str
@@ -263,7 +264,11 @@ def zones_summary(model: SiteModel, at: datetime | None = None) -> dict[str, Any
         }
         for known in known_files(model)
     ]
-    rows = [{field: getattr(row, field) for field in ZoneRow.__slots__} for row in zone_rows(model, at)]
+    rows = [
+        {field: getattr(row, field) for field in ZoneRow.__slots__}
+        | {"distance_m": row.distance_m if math.isfinite(row.distance_m) else None}
+        for row in zone_rows(model, at)
+    ]
     return {"files": files, "zones": rows}
 
 

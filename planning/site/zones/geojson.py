@@ -60,7 +60,10 @@ def ring(value: Any, questions: list[str]) -> tuple[LonLat, ...]:
     values = value if isinstance(value, list) else []
     found = [position(each) for each in values]
     n_wrong = sum(each is None for each in found)
-    if n_wrong:
+    swapped = [position([each[1], each[0], *each[2:]]) for each in values if isinstance(each, list) and len(each) >= 2]
+    if n_wrong and len(swapped) == len(values) and None not in swapped:
+        questions.append(say("an outline lies on earth only if latitude and longitude are exchanged"))
+    elif n_wrong:
         questions.append(say("{} of {} corners of an outline are no places on earth", n_wrong, len(found)))
     return tuple(each for each in found if each is not None)
 

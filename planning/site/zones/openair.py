@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from planning.base.files import check_lines
@@ -270,8 +270,11 @@ def _limit(text: str | None, questions: list[str], *, is_lower: bool) -> Limit:
         return Limit(float(level[1]) * 100.0 * FOOT_M, HeightAbove.FLIGHT_LEVEL, f"FL{level[1]}")
     found = _HEIGHT.fullmatch(word)
     if found is None or found[3] is None:
-        questions.append(say("the height '{}' cannot be read", quoted(text)))
-        return EVERYWHERE_BELOW
+        if found is None:
+            questions.append(say("the height '{}' cannot be read", quoted(text)))
+        else:
+            questions.append(say("the height '{}' does not say whether it is above ground or sea", quoted(text)))
+        return replace(EVERYWHERE_BELOW, written=f"{quoted(text)} ?")
     above = HeightAbove.SEA_LEVEL if found[3] == "ALT" else REFERENCES[found[3]]
     return Limit(float(found[1]) * (1.0 if found[2] == "M" else FOOT_M), above, text)
 

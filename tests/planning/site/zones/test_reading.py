@@ -259,3 +259,9 @@ def test_zones_of_one_name_have_identifiers_of_their_own():
 def test_files_that_cannot_be_read_whole_are_refused(content, words):
     with pytest.raises(InputError, match=words):
         zones_of(content, FILE)
+
+
+def test_places_that_are_none_say_whether_latitude_and_longitude_are_exchanged():
+    east = [[lat, lon + 106.0] for lon, lat in RING]
+    assert "exchanged" in only(geojson(polygon(east))).place_questions[0]
+    assert "does not say whether" in only(openair(*openair_ring(RING), upper="2500ft")).questions[0]
