@@ -39,7 +39,7 @@ from groundstation.gui.map.viewport import MapCanvas, Viewport
 from groundstation.gui.widgets.layer_list import LayerPanel
 from groundstation.gui.widgets.questions import choose_file
 from groundstation.gui.widgets.theme import colours
-from groundstation.services.map.coordinates import EXAMPLES, parse_place
+from groundstation.services.map.coordinates import parse_place
 from groundstation.services.map.online import OnlineMap
 from groundstation.services.map.overlays import OVERLAY_SUFFIXES
 from groundstation.services.map.shapes import Area, PlanShapes, SiteShapes, airspace_outline, plan_shapes, site_shapes
@@ -498,7 +498,7 @@ class MapView(MapCanvas):
 
     def _add_buttons(self) -> None:
         self._search = QLineEdit()
-        self._search.setPlaceholderText(self.tr("Find: {0}, UTM or MGRS").format(EXAMPLES))
+        self._search.setPlaceholderText(self.tr("Find coordinates, UTM, MGRS"))
         self._search.setAccessibleName(self.tr("Find a place by its coordinates"))
         self._search.setToolTip(self.tr("Coordinates of a place (WGS 84), then Enter"))
         self._search.setClearButtonEnabled(True)

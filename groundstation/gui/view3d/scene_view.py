@@ -335,7 +335,7 @@ class SceneView(ScenePicture):
             titles |= {
                 Layer.ROUTES: self.tr("Routes"),
                 Layer.VIEWPOINTS: self.tr("Viewpoints"),
-                Layer.FRUSTA: self.tr("Pyramids of all views"),
+                Layer.FRUSTA: self.tr("All pyramids"),
             }
         if self._site is not None:
             model = self._site.model

@@ -23,8 +23,6 @@ _MGRS = re.compile(r"(\d{1,2})\s*([A-Z])\s*([A-Z])([A-Z])\s*((?:\d+\s*)*)")
 _MARKED = re.compile(r"[NSEW]")
 _NUMBER = r"\d+(?:\.\d+)?"
 
-EXAMPLES = "22.3372, 114.2636"
-
 
 def parse_place(text: str) -> tuple[float, float]:
     """Latitude and longitude, degrees, of a text.

@@ -281,7 +281,7 @@ def _to_wgs84(name: str, path: Path) -> Callable[[Floats], Floats]:
     try:
         transformer = Transformer.from_crs(horizontal_part(parse_crs(name)), "OGC:CRS84", always_xy=True)
     except InputError as error:
-        raise InputError.say("{}", error, place=path) from error
+        raise InputError.say("{}; export it again", error, place=path) from error
     return lambda points: np.stack(transformer.transform(points[:, 0], points[:, 1]), axis=1)
 
 
@@ -299,7 +299,7 @@ def _kmz_content(path: Path) -> bytes:
                 if name.lower().endswith(".kml"):
                     return read_member(archive, member, path.name)
     except MissionError as error:
-        raise InputError.say("{}", error, place=path) from error
+        raise InputError.say("{}; export it again", error, place=path) from error
     raise InputError.say("there is no KML in it; choose another file", place=path)
 
 
