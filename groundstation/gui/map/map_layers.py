@@ -15,14 +15,17 @@ from groundstation.gui.map.map_paint import paint_label, paint_tiles
 from groundstation.gui.map.tile_store import TileStore
 from groundstation.gui.map.viewport import Viewport
 from groundstation.gui.widgets.layer_list import LayerRow
-from groundstation.gui.widgets.theme import Colours
+from groundstation.gui.widgets.theme import SORTIES, Colours
 from groundstation.services.map.online import OnlineMap, OnlineTiles
 from groundstation.services.map.overlays import Overlay, read_overlay
 from groundstation.services.map.tiles import open_map_file
 from planning.base.errors import InputError
 
-ONLINE, FILE, ZONES, SITE, PLAN = "online", "file", "zones", "site", "plan"
-"""Keys of layers; those of overlays are `overlay:` and a number."""
+ONLINE, FILE, ZONES, SITE = "online", "file", "zones", "site"
+"""Keys of layers; those of overlays are `overlay:` and a number, those of sorties `sortie:` and theirs."""
+
+FADED = 0.2
+"""How strongly sorties are drawn that are not looked at while one is."""
 
 OVERLAY_COLOURS = ("#7b3294", "#008837", "#c51b7d", "#2166ac", "#8c510a", "#01665e")
 
@@ -48,6 +51,11 @@ class _Shown:
     colour: str
     image: QImage | None
     extent: NDArray[np.float64]
+
+
+def sortie_key(number: int) -> str:
+    """Key of a sortie, counted from 1."""
+    return f"sortie:{number}"
 
 
 class MapLayers(QObject):
@@ -151,11 +159,12 @@ class MapLayers(QObject):
 
     # How it is shown
 
-    def rows(self, *, has_site: bool, has_plan: bool, has_zones: bool = False) -> tuple[LayerRow, ...]:
+    def rows(self, *, has_site: bool, n_sorties: int = 0, has_zones: bool = False) -> tuple[LayerRow, ...]:
         """Layers for a list, the topmost first."""
         rows = []
-        if has_plan:
-            rows.append(LayerRow(PLAN, self.tr("Plan")))
+        for number in range(1, n_sorties + 1):
+            colour = SORTIES[(number - 1) % len(SORTIES)]
+            rows.append(LayerRow(sortie_key(number), self.tr("Sortie {0}").format(number), colour=colour))
         if has_site:
             rows.append(LayerRow(SITE, self.tr("Site")))
         if has_zones:
@@ -180,6 +189,14 @@ class MapLayers(QObject):
         """Show a layer otherwise."""
         self._states[key] = LayerState(is_visible, opacity)
         (self.changed if key in (FILE, ONLINE) else self.shapesChanged).emit()
+
+    def sortie_strengths(self, n_sorties: int, focus: int = 0) -> dict[int, float]:
+        """Opacity of each sortie, counted from 1, 0 where it is hidden; others than the one in focus are faint."""
+        states = {number: self.state(sortie_key(number)) for number in range(1, n_sorties + 1)}
+        return {
+            number: (state.opacity if focus in (0, number) else FADED * state.opacity) if state.is_visible else 0.0
+            for number, state in states.items()
+        }
 
     def has_tiles(self) -> bool:
         """Whether there is a map that is shown."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -188,10 +188,22 @@ def paint_legend(painter: QPainter, viewport: Viewport, rows: list[tuple[QColor,
         painter.drawText(row.adjusted(32, 0, 0, 0), Qt.AlignmentFlag.AlignVCenter, text)
 
 
-def paint_plan(painter: QPainter, viewport: Viewport, plan: PlanShapes) -> None:
-    """Routes by sortie, and a wedge per viewpoint that opens to where the camera looks."""
+def paint_plan(
+    painter: QPainter, viewport: Viewport, plan: PlanShapes, strengths: Mapping[int, float] | None = None
+) -> None:
+    """Routes by sortie, and a wedge per viewpoint that opens to where the camera looks.
+
+    Parameters
+    ----------
+    strengths
+        Opacity of sorties, counted from 1; 1 for those that are not in it.
+    """
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    strengths = strengths or {}
     for number, route in enumerate(plan.routes):
+        painter.setOpacity(strengths.get(number + 1, 1.0))
+        if not painter.opacity():
+            continue
         points = [QPointF(x, y) for x, y in viewport.screen(route).tolist()]
         # One by one: joining lines that cross each other a thousand times takes twice as long.
         legs = [QLineF(a, b) for a, b in itertools.pairwise(points)]
@@ -204,10 +216,12 @@ def paint_plan(painter: QPainter, viewport: Viewport, plan: PlanShapes) -> None:
     )
     for number in np.unique(plan.sortie_of):
         own = is_near & (plan.sortie_of == number)
+        painter.setOpacity(strengths.get(int(number), 1.0))
         painter.setPen(QPen(PAPER, 1))
         painter.setBrush(sortie_colour(int(number)))
         for corners in wedges(places[own], np.radians(plan.headings_deg[own])):
             painter.drawConvexPolygon(_polygon(corners))
+    painter.setOpacity(1.0)
 
 
 def wedges(places: NDArray[np.float64], heading_rad: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -18,7 +18,7 @@ from PySide6.QtGui import QColor, QFont, QImage, QPainter, QPaintEvent, QResizeE
 from PySide6.QtWidgets import QHBoxLayout, QLineEdit, QPushButton, QToolButton, QVBoxLayout, QWidget
 
 from groundstation.gui.application.translate import translated
-from groundstation.gui.map.map_layers import PLAN, SITE, ZONES, MapLayers
+from groundstation.gui.map.map_layers import SITE, ZONES, MapLayers
 from groundstation.gui.map.map_paint import (
     paint_grid,
     paint_landings,
@@ -323,8 +323,22 @@ class MapView(MapCanvas):
     def set_selection(self, item: Item | None) -> None:
         """Mark a thing."""
         if item != self._selection:
-            self._selection = item
+            before, self._selection = self._focus(), item
+            if self._focus() != before:
+                self._draw_anew()
             self.update()
+
+    def _focus(self) -> int:
+        """Sortie that is looked at, counted from 1; 0 for none."""
+        item, plan = self._selection, self._plan_shapes
+        if item is None or plan is None:
+            return 0
+        if item.kind in (ItemKind.SORTIE, ItemKind.LEG):
+            number = item.id.partition("/")[0]
+            return int(number) if number.isdecimal() and int(number) <= len(plan.routes) else 0
+        if item.kind is ItemKind.VIEWPOINT and item.id in plan.viewpoint_ids:
+            return int(plan.sortie_of[plan.viewpoint_ids.index(item.id)])
+        return 0
 
     def set_units(self, units: UnitSystem) -> None:
         """Show lengths in other units."""
@@ -478,7 +492,10 @@ class MapView(MapCanvas):
         site = self._site if self.layers.state(SITE).is_visible else None
         if site is not None and not self.layers.state(ZONES).is_visible:
             site = replace(site, zones=())
-        plan = self._plan_shapes if self.layers.state(PLAN).is_visible else None
+        plan = self._plan_shapes
+        if plan is not None:
+            strengths = self.layers.sortie_strengths(len(plan.routes))
+            plan = plan.without({number for number, strength in strengths.items() if not strength})
         return find_item(np.array([at.x(), at.y()]), self._viewport, site, plan)
 
     def pointer_text(self) -> str:
@@ -552,7 +569,8 @@ class MapView(MapCanvas):
 
     def _show_rows(self) -> None:
         has_zones = self._site is not None and len(self._site.zones) > 0
-        rows = self.layers.rows(has_site=self._model is not None, has_plan=self._plan is not None, has_zones=has_zones)
+        n_sorties = 0 if self._plan is None else len(self._plan.sorties)
+        rows = self.layers.rows(has_site=self._model is not None, n_sorties=n_sorties, has_zones=has_zones)
         self._panel.setValue(rows)
 
     def _search_edited(self, text: str) -> None:
@@ -713,7 +731,7 @@ class MapView(MapCanvas):
         if site is None or not site.is_on_map:
             return
         paint_volumes(painter, viewport, self._volumes)
-        of_site, of_plan = self.layers.state(SITE), self.layers.state(PLAN)
+        of_site = self.layers.state(SITE)
         of_zones = self.layers.state(ZONES)
         if of_zones.is_visible:
             painter.setOpacity(of_zones.opacity)
@@ -721,9 +739,8 @@ class MapView(MapCanvas):
         painter.setOpacity(of_site.opacity)
         if of_site.is_visible:
             paint_site(painter, viewport, site, found)
-        if plan is not None and of_plan.is_visible:
-            painter.setOpacity(of_plan.opacity)
-            paint_plan(painter, viewport, plan)
+        if plan is not None:
+            paint_plan(painter, viewport, plan, self.layers.sortie_strengths(len(plan.routes), self._focus()))
             painter.setOpacity(of_site.opacity)
         if of_site.is_visible:
             paint_landings(painter, viewport.screen(site.landings()), found)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
@@ -117,6 +118,19 @@ class PlanShapes:
     viewpoints: Floats
     headings_deg: Floats
     sortie_of: NDArray[np.int64]
+
+    def without(self, sorties: Collection[int]) -> PlanShapes:
+        """The plan without the viewpoints of some sorties, counted from 1, their routes empty."""
+        if not sorties:
+            return self
+        kept = np.flatnonzero(~np.isin(self.sortie_of, list(sorties)))
+        return PlanShapes(
+            tuple(route[:0] if number in sorties else route for number, route in enumerate(self.routes, 1)),
+            tuple(self.viewpoint_ids[i] for i in kept),
+            self.viewpoints[kept],
+            self.headings_deg[kept],
+            self.sortie_of[kept],
+        )
 
 
 def site_shapes(model: SiteModel) -> SiteShapes:

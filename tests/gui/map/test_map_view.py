@@ -2,6 +2,7 @@
 
 import contextlib
 import gzip
+import itertools
 import json
 import math
 import sqlite3
@@ -517,15 +518,32 @@ def test_site_and_plan_are_layers(view, settle):
     settle()
     at = on_screen(view, (0.0, 4.0, 0.0), kiosk().site.origin)
     rows = view.layer_panel().list
-    assert [row.key for row in rows.value()] == ["plan", "site"]
+    assert [row.key for row in rows.value()] == ["sortie:1", "sortie:2", "site"]
     rows.boxes("site")[0].click()
     settle()
     assert view.item_at(_point(*at)) is None
     assert np.abs(pixel(view, *at) - [0x8D, 0x96, 0xA0]).max() > 30
     plan = on_screen(view, example_plan().viewpoints[3].position_enu_m, kiosk().site.origin)
     assert view.item_at(_point(*plan)).kind is ItemKind.VIEWPOINT
-    rows.boxes("plan")[0].click()
+    rows.boxes("sortie:1")[0].click()
     assert view.item_at(_point(*plan)) is None
+    other = on_screen(view, example_plan().viewpoints[7].position_enu_m, kiosk().site.origin)
+    assert view.item_at(_point(*other)).kind is ItemKind.VIEWPOINT
+
+
+def test_other_sorties_are_faint_while_one_is_selected(view, settle):
+    view.set_document(document())
+    settle()
+    origin, plan = kiosk().site.origin, example_plan()
+    route = plan.sorties[1].path_enu_m
+    a, b = max(itertools.pairwise(route), key=lambda leg: math.dist(*leg))
+    middle = on_screen(view, tuple(0.9 * p + 0.1 * q for p, q in zip(a, b, strict=True)), origin)
+    strong = pixel(view, *middle)
+    view.set_selection(Item(ItemKind.SORTIE, "1"))
+    faint = pixel(view, *middle)
+    assert np.abs(faint - strong).max() > 60
+    view.set_selection(Item(ItemKind.SORTIE, "2"))
+    assert (pixel(view, *middle) == strong).all()
 
 
 def test_coordinates_are_searched_for_and_errors_are_in_plain_words(view, settle, qtbot):
