@@ -53,6 +53,9 @@ MAX_POSTS = 200_000_000
 POSTS_PER_BLOCK = 2_000_000
 """Looked at at once: some 200 MB of memory."""
 
+OVERLAP_M = 1.0
+"""Files that differ by no more where they overlap show the same ground: whole metres, or two surveys of it."""
+
 LATTICE_M, PLACED_M = 20.0, 1e-4
 """Posts and nodes between some that lie so far apart are placed by linear interpolation, in a twentieth of the time.
 The earth's curve between them is 0.01 mm; the bounds concede more."""
@@ -82,6 +85,8 @@ class Sampled:
         Between the posts of the finest source.
     n_posts
         That were looked at.
+    overlap_m
+        How far files differ at most where several know the height.
     """
 
     field: HeightField
@@ -91,6 +96,7 @@ class Sampled:
     rasters: tuple[Raster, ...]
     post_spacing_m: float
     n_posts: int
+    overlap_m: float = 0.0
 
     @property
     def error_m(self) -> float:
@@ -114,7 +120,15 @@ class Sampled:
 
     def notes(self) -> tuple[str, ...]:
         """What is worth knowing about the files."""
-        return unique_notes(self.rasters)
+        notes: tuple[str, ...] = unique_notes(self.rasters)
+        if self.overlap_m > OVERLAP_M:
+            text = say(
+                "files overlap, and their heights differ by up to {:.1f} m: the higher counts below flights, the first "
+                "for home",
+                self.overlap_m,
+            )
+            notes = (*notes, text)
+        return notes
 
 
 def sample_heights(
@@ -162,9 +176,12 @@ def sample_heights(
     field = HeightField(west, south, step_m, z)
     blocks = chunks(rows, max(2, int(rows * POSTS_PER_BLOCK / max(n_posts, 1.0))))
     tiles = [_Tile(raster, rasters) for raster in rasters]
+    overlap_m = 0.0
     for number, (first, last) in enumerate(blocks):
         monitor.report(say("reading heights"), number, 2 * len(blocks))
-        z[first:last] = _node_heights(origin, field.nodes_xy_m()[first:last], area.level_z_m, tiles)
+        nodes = field.nodes_xy_m()[first:last]
+        z[first:last], differ_m = _node_heights(origin, nodes, area.level_z_m, tiles)
+        overlap_m = max(overlap_m, differ_m)
     if np.isnan(z).all():
         raise _nothing_there(origin, area, places)
     above, below, n_read = np.zeros_like(z), np.zeros_like(z), 0
@@ -179,7 +196,7 @@ def sample_heights(
                 field.spread_departures(posts, above, below, tops)
     unknown = np.isnan(z)
     upper, lower = (np.where(unknown, np.nan, z + off) for off in (above + PLACED_M, below - PLACED_M))
-    return Sampled(field, upper, lower, tops, tuple(rasters), spacing_m, n_read)
+    return Sampled(field, upper, lower, tops, tuple(rasters), spacing_m, n_read, overlap_m)
 
 
 def _rasters(origin: Origin, area: Area, places: Sequence[Path], options: HeightOptions) -> list[Raster]:
@@ -237,14 +254,17 @@ def _spacing_m(raster: Raster, origin: Origin, area: Area) -> float:
     return float(min(np.linalg.norm(points[1] - points[0]), np.linalg.norm(points[2] - points[0])))
 
 
-def _node_heights(origin: Origin, nodes_xy_m: Array, level_z_m: float, tiles: Sequence[_Tile]) -> Array:
-    """ENU heights at nodes, shape (rows, columns, 2), from the first of some tiles that knows one; NaN from none."""
-    heights = np.full(nodes_xy_m.shape[:2], np.nan)
+def _node_heights(origin: Origin, nodes_xy_m: Array, level_z_m: float, tiles: Sequence[_Tile]) -> tuple[Array, float]:
+    """ENU heights at nodes, shape (rows, columns, 2), from the first of some tiles that knows one; NaN from none.
+
+    And how far others that know one differ from it at most.
+    """
+    heights, differ_m = np.full(nodes_xy_m.shape[:2], np.nan), 0.0
     for tile in tiles:
-        missing = np.isnan(heights)
-        if missing.any():
-            heights[missing] = tile.heights_m(origin, nodes_xy_m, level_z_m)[missing]
-    return heights
+        found = tile.heights_m(origin, nodes_xy_m, level_z_m)
+        differ_m = max(differ_m, float(np.nanmax(np.abs(found - heights), initial=0.0)))
+        heights = np.where(np.isnan(heights), found, heights)
+    return heights, differ_m
 
 
 class _Tile:

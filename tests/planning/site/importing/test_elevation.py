@@ -346,6 +346,16 @@ def test_a_step_that_makes_too_many_nodes_is_refused(tilted):
         sample_heights(ORIGIN, AREA, [tilted], ELLIPSOID, 0.01)
 
 
+def test_of_files_that_overlap_the_higher_counts_and_a_great_difference_is_told(tmp_path, tilted):
+    write_heights(tmp_path / "higher.tif", lambda x, y: plane(x, y) + 2.5)
+    found = sample_heights(ORIGIN, AREA, [tilted, tmp_path / "higher.tif"], ELLIPSOID, 2.0)
+    assert off(found).max() < FLOAT32_M
+    assert found.overlap_m == pytest.approx(2.5, abs=1e-3)
+    assert "differ by up to 2.5 m" in found.notes()[0]
+    assert (found.upper_m - found.field.z_m)[1:-1, 1:-1].min() == pytest.approx(2.5, abs=1e-3)
+    assert sample_heights(ORIGIN, AREA, [tilted, tilted], ELLIPSOID, 2.0).notes() == ()
+
+
 @pytest.mark.few(2)
 @pytest.mark.parametrize("step_m", [3.0, 1.0, 7.0, 20.0])
 def test_bounds_enclose_every_post_whatever_the_step(tmp_path, step_m):
