@@ -6,7 +6,9 @@ Version 2 answers with headers, and sends the data in chunks or as it is (RTCM 1
 | state | event | next |
 |---|---|---|
 | HEAD | `ICY 200 OK`, or status 200 with headers | DATA, CHUNKED |
-| HEAD | `SOURCETABLE 200 OK`, a page, another status, headers without end | REFUSED |
+| HEAD | `SOURCETABLE 200 OK`, or a list by its headers | TABLE |
+| HEAD | a page, another status, headers without end | REFUSED |
+| TABLE | its end, or more than any list has | REFUSED, with the names in it |
 | DATA, CHUNKED | bytes | the same |
 | CHUNKED | a size that is none, the last chunk | REFUSED, ENDED |
 """
@@ -25,6 +27,12 @@ MAX_HEAD = 16 * 1024
 """Bytes of headers: a caster that sends more sends without end."""
 
 MAX_CHUNK = 1 << 20
+MAX_TABLE = 256 * 1024
+"""Of a list of mountpoints; those of large networks have some thousand lines of a hundred bytes."""
+
+MAX_NAMES = 8
+"""Mountpoints that a message names."""
+
 MAX_LINE = 1024
 DEFAULT_PORT = 2101
 
@@ -93,6 +101,7 @@ class AnswerState(Enum):
     HEAD = auto()
     DATA = auto()
     CHUNKED = auto()
+    TABLE = auto()
     REFUSED = auto()
     ENDED = auto()
 
@@ -114,6 +123,8 @@ class CasterAnswer:
     is_final: bool = False
     _buffer: bytearray = field(default_factory=bytearray)
     _left: int = 0
+    _n_table: int = 0
+    _names: list[str] = field(default_factory=list)
 
     def feed(self, data: bytes) -> bytes:
         """What of these bytes is data of the stream."""
@@ -123,6 +134,9 @@ class CasterAnswer:
             return b""
         self._buffer += data
         state = self._head() if self.state is AnswerState.HEAD else self.state
+        if state is AnswerState.TABLE:
+            self._table()
+            return b""
         if state is AnswerState.DATA:
             data = bytes(self._buffer)
             self._buffer.clear()
@@ -148,7 +162,7 @@ class CasterAnswer:
             self.state = AnswerState.DATA
             return
         if status.startswith("SOURCETABLE"):
-            self._refuse(say("it knows no mountpoint of this name; its list of them came instead"), is_final=True)
+            self._begin_table()
             return
         if not status.startswith("HTTP/1."):
             self._refuse(say("what answers there is no NTRIP caster"))
@@ -171,13 +185,36 @@ class CasterAnswer:
         elif code != "200":
             self._refuse(say("it answers with status {}", code or status[:20]))
         elif "gnss/sourcetable" in head:
-            self._refuse(say("it knows no mountpoint of this name; its list of them came instead"), is_final=True)
+            self._begin_table()
         elif re.search(r"content-type:\s*text/", head):
             self._refuse(say("it answers with a page and no data: is the address right?"), is_final=True)
         elif re.search(r"content-encoding:\s*(?!identity)\S", head):
             self._refuse(say("it packs its data in a way that was not asked for"), is_final=True)
         else:
             self.state = AnswerState.CHUNKED if re.search(r"transfer-encoding:.*chunked", head) else AnswerState.DATA
+
+    def _begin_table(self) -> None:
+        """The list of mountpoints comes: there is none of the name that was asked for, whatever the list says."""
+        self.state, self.is_final = AnswerState.TABLE, True
+        self.problem = say("it knows no mountpoint of this name")
+
+    def _table(self) -> None:
+        """Mountpoints of the list that are there so far (`STR;NAME;...`), as far as they are names."""
+        *lines, rest = bytes(self._buffer).split(b"\n")
+        self._n_table += len(self._buffer) - len(rest)
+        # A line without end is longer than any that counts.
+        self._buffer[:] = rest[:MAX_LINE]
+        is_over = self._n_table > MAX_TABLE or len(rest) > MAX_LINE
+        for line in lines:
+            is_over |= line.startswith(b"ENDSOURCETABLE")
+            fields = line.split(b";", 2)
+            if len(fields) == 3 and fields[0] == b"STR" and re.fullmatch(rb"[\w.+-]{1,40}", fields[1]):
+                self._names = [*self._names, fields[1].decode("ascii")][: MAX_NAMES + 1]
+        if self._names:
+            shown = ", ".join(self._names[:MAX_NAMES]) + (", ..." if len(self._names) > MAX_NAMES else "")
+            self.problem = say("it knows no mountpoint of this name; it has {}", shown)
+        if is_over:
+            self._refuse(self.problem, is_final=True)
 
     def _chunks(self) -> bytes:
         """Data of the chunks that are there."""

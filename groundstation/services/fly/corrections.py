@@ -43,6 +43,9 @@ FAR_M = 20_000.0
 
 MAX_WAITING = 200
 
+MAX_NOISE = 64 * 1024
+"""Bytes without one right frame, before a connection is given up: to look for frames in them costs time."""
+
 
 @dataclass(frozen=True, slots=True)
 class CorrectionsStatus:
@@ -204,24 +207,28 @@ class Corrections:
         answer, decoder = CasterAnswer(), RtcmDecoder()
         channel.write(self.caster.request(self.password, self._gga()))
         heard_s = told_s = self.clock()
+        n_noise = 0
         while not self._ending.is_set():
-            chunk = channel.read(READ_S)
+            try:
+                chunk = channel.read(READ_S)
+            except LinkError as error:
+                # Casters that refuse close the connection behind it.
+                self._say(answer.problem or str(error))
+                return answer.is_final
             now_s = self.clock()
             frames = [] if chunk is None else decoder.feed(answer.feed(chunk.data))
             if frames:
-                heard_s = now_s
+                heard_s, n_noise = now_s, decoder.n_skipped
                 self._take(frames, now_s, decoder.n_skipped)
             if answer.state in (AnswerState.REFUSED, AnswerState.ENDED):
                 self._say(answer.problem)
                 return answer.is_final
-            if now_s - heard_s > SILENT_S:
-                self._say(
-                    say("it is connected and sends nothing that is RTCM")
-                    if answer.state is not AnswerState.HEAD
-                    else say("it does not answer")
-                )
-                return False
-            if answer.state is not AnswerState.HEAD and now_s - told_s > GGA_EVERY_S:
+            if now_s - heard_s > SILENT_S or decoder.n_skipped - n_noise > MAX_NOISE:
+                nothing = say("it is connected and sends nothing that is RTCM")
+                silent = say("it does not answer") if answer.state is AnswerState.HEAD else nothing
+                self._say(answer.problem or silent)
+                return answer.is_final
+            if answer.state in (AnswerState.DATA, AnswerState.CHUNKED) and now_s - told_s > GGA_EVERY_S:
                 told_s = now_s
                 channel.write(self._gga())
         return False

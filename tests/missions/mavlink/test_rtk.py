@@ -204,8 +204,10 @@ def test_data_comes_out_however_the_answer_is_cut(name, cut):
         (b"HTTP/1.1 404 Not Found\r\n\r\n", "knows no mountpoint", True),
         (b"HTTP/1.1 503 Busy\r\n\r\n", "answers with status 503", False),
         (b"HTTP/1.1 200 OK\r\nContent-Type: text/html\r\n\r\n<html>", "a page and no data", True),
-        (b"HTTP/1.1 200 OK\r\nContent-Type: gnss/sourcetable\r\n\r\nSTR;", "its list of them came", True),
-        (b"SOURCETABLE 200 OK\r\nSTR;A;", "its list of them came", True),
+        (b"HTTP/1.1 200 OK\r\nContent-Type: gnss/sourcetable\r\n\r\nSTR;", "no mountpoint of this name", True),
+        (b"SOURCETABLE 200 OK\r\nSTR;A;x\r\nSTR;B;x\r\nENDSOURCETABLE\r\n", "this name; it has A, B", True),
+        (b"SOURCETABLE 200 OK\r\nSTR;<b>;x\r\nSTR;;x\r\nSTR\r\nENDSOURCETABLE\r\n", "no mountpoint", True),
+        (b"SOURCETABLE 200 OK\r\n" + b"STR;A;x\r\n" * 40_000, "it has A, A, A, A, A, A, A, A, ...", True),
         (b"HTTP/1.1 200 OK\r\nContent-Encoding: gzip\r\n\r\n", "packs its data", True),
         (b"HTTP/1.1 301 Moved\r\nLocation: http://x\r\n\r\n", "answers with status 301", False),
         (b"HTTP/1.1 200 OK\r\n" + b"X: y\r\n" * MAX_HEAD, "its headers have no end", False),
@@ -232,7 +234,8 @@ def test_no_answer_crashes_or_grows_without_end(pieces, begin):
     for piece in pieces:
         answer.feed(piece)
         assert len(answer._buffer) <= MAX_HEAD + 200
-    assert (answer.state in (AnswerState.REFUSED, AnswerState.ENDED)) == bool(answer.problem)
+    stopped = (AnswerState.REFUSED, AnswerState.ENDED, AnswerState.TABLE)
+    assert (answer.state in stopped) == bool(answer.problem)
 
 
 def test_types_are_told_once_in_order():

@@ -143,6 +143,13 @@ def test_what_cannot_become_well_is_said_and_not_tried_again(corrections):
     assert caster.asked.qsize() == 1
 
 
+def test_a_caster_that_lists_its_mountpoints_and_hangs_up_is_understood(corrections):
+    caster, found = corrections([b"SOURCETABLE 200 OK\r\nSTR;NEAR;x;RTCM 3\r\nSTR;FAR;x\r\n"], [])
+    until(lambda: not found._thread.is_alive())
+    assert found.status().problem == "it knows no mountpoint of this name; it has NEAR, FAR"
+    assert caster.asked.qsize() == 1
+
+
 def test_a_caster_that_is_not_there_is_said_and_tried_with_longer_pauses(monkeypatch):
     tries, pauses = [], []
 
@@ -207,6 +214,16 @@ def test_silence_ends_a_connection_and_the_place_is_told_again_and_again(answer,
     assert len(silent.written) == n_told
 
 
+def test_a_stream_of_noise_is_given_up_long_before_it_ends():
+    clock = Clock()
+    noisy = Silent(clock)
+    noisy.answer = [b"\xd3\x03\xff" * 1000 for _ in range(300)] + [b"ICY 200 OK\r\n"]
+    found = Corrections(Caster("h", 1, "M"), "", PLACE, clock=clock, connect=lambda _host, _port: noisy)
+    assert found._connected() is False
+    assert found.status().problem == "it is connected and sends nothing that is RTCM"
+    assert len(noisy.answer) > 250
+
+
 def test_a_link_that_breaks_while_it_is_read_is_said():
     class Breaking(Silent):
         def read(self, timeout_s):
@@ -231,6 +248,7 @@ def test_corrections_that_nobody_takes_make_room_for_new_ones():
     assert found.status().n_too_long == 1
 
 
+@pytest.mark.slow
 def test_a_live_flight_has_them_on_its_link_and_in_its_list(corrections, tmp_path, monkeypatch):
     monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path))
     _, found = corrections([b"ICY 200 OK\r\n", EXAMPLE])
