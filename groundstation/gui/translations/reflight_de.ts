@@ -286,6 +286,38 @@
         <translation>Wind</translation>
     </message>
     <message>
+        <source>Ground risk (SORA 2.5, a draft)</source>
+        <translation>Bodenrisiko (SORA 2.5, ein Entwurf)</translation>
+    </message>
+    <message>
+        <source>Uninvolved people inside the buffer</source>
+        <translation>Unbeteiligte im Puffer</translation>
+    </message>
+    <message>
+        <source>contingency volume {0} to each side, up to {1} above ground; ground-risk buffer {2} beyond</source>
+        <translation>Notfallvolumen {0} zu jeder Seite, bis {1} über Grund; Bodenrisikopuffer {2} darüber hinaus</translation>
+    </message>
+    <message>
+        <source>{0}; class {1}</source>
+        <translation>{0}; Klasse {1}</translation>
+    </message>
+    <message>
+        <source>not stated how many: keep everybody out</source>
+        <translation>nicht angegeben, wie viele: halten Sie alle fern</translation>
+    </message>
+    <message>
+        <source>none: controlled ground area</source>
+        <translation>keine: kontrollierter Bodenbereich</translation>
+    </message>
+    <message>
+        <source>an assembly of people</source>
+        <translation>eine Menschenansammlung</translation>
+    </message>
+    <message>
+        <source>fewer than {0} per square kilometre</source>
+        <translation>weniger als {0} je Quadratkilometer</translation>
+    </message>
+    <message>
         <source>Position (WGS 84)</source>
         <translation>Position (WGS 84)</translation>
     </message>
@@ -2031,6 +2063,13 @@ Scheiben: {2}, je {3} × {4}</translation>
     </message>
 </context>
 <context>
+    <name>GroundRiskForm</name>
+    <message>
+        <source>More settings</source>
+        <translation>Weitere Einstellungen</translation>
+    </message>
+</context>
+<context>
     <name>HemisphereView</name>
     <message>
         <source>Click a panel to see from where it is photographed.</source>
@@ -2322,12 +2361,16 @@ Scheiben: {2}, je {3} × {4}</translation>
         <translation>{0} wartend</translation>
     </message>
     <message>
-        <source>{0:.0f} s so far</source>
-        <translation>bisher {0:.0f} s</translation>
+        <source>{0} left</source>
+        <translation>noch {0}</translation>
     </message>
     <message>
-        <source>this step: {0:.0f} s left</source>
-        <translation>dieser Schritt: noch {0:.0f} s</translation>
+        <source>{0} so far</source>
+        <translation>bisher {0}</translation>
+    </message>
+    <message>
+        <source>this step: {0} left</source>
+        <translation>dieser Schritt: noch {0}</translation>
     </message>
     <message>
         <source>Cancel: {0}</source>
@@ -2397,19 +2440,19 @@ Scheiben: {2}, je {3} × {4}</translation>
     <name>LayerList</name>
     <message>
         <source>Show or hide {0}</source>
-        <translation type="unfinished"></translation>
+        <translation>{0} zeigen oder verbergen</translation>
     </message>
     <message>
         <source>Translucent to the left, opaque to the right</source>
-        <translation type="unfinished"></translation>
+        <translation>Links durchscheinend, rechts deckend</translation>
     </message>
     <message>
         <source>Opacity of {0}</source>
-        <translation type="unfinished"></translation>
+        <translation>Deckkraft von {0}</translation>
     </message>
     <message>
         <source>Remove {0} from the map; the file stays</source>
-        <translation type="unfinished"></translation>
+        <translation>{0} von der Karte nehmen; die Datei bleibt</translation>
     </message>
 </context>
 <context>
@@ -2566,6 +2609,18 @@ Scheiben: {2}, je {3} × {4}</translation>
         <source>The site as the camera should see it, from the pose that the vehicle reports</source>
         <translation type="unfinished"></translation>
     </message>
+    <message>
+        <source>Drawn: no video</source>
+        <translation>Gezeichnet: kein Video</translation>
+    </message>
+    <message>
+        <source>Drawn: video awaited</source>
+        <translation>Gezeichnet: Video erwartet</translation>
+    </message>
+    <message>
+        <source>Camera, video</source>
+        <translation>Kamera, Video</translation>
+    </message>
 </context>
 <context>
     <name>LivePictures</name>
@@ -2630,7 +2685,7 @@ Scheiben: {2}, je {3} × {4}</translation>
     </message>
     <message>
         <source>Site</source>
-        <translation type="unfinished">Standort</translation>
+        <translation>Standort</translation>
     </message>
     <message>
         <source>Aircraft</source>
@@ -2793,11 +2848,11 @@ Scheiben: {2}, je {3} × {4}</translation>
     <name>MapLayers</name>
     <message>
         <source>Plan</source>
-        <translation type="unfinished"></translation>
+        <translation>Plan</translation>
     </message>
     <message>
         <source>Site</source>
-        <translation type="unfinished">Standort</translation>
+        <translation>Standort</translation>
     </message>
     <message>
         <source>Geo-zones</source>
@@ -2805,7 +2860,7 @@ Scheiben: {2}, je {3} × {4}</translation>
     </message>
     <message>
         <source>Online map</source>
-        <translation type="unfinished"></translation>
+        <translation>Onlinekarte</translation>
     </message>
 </context>
 <context>
@@ -2816,7 +2871,7 @@ Scheiben: {2}, je {3} × {4}</translation>
     </message>
     <message>
         <source>This place lies beyond the end of web maps (85.05 degrees).</source>
-        <translation type="unfinished"></translation>
+        <translation>Dieser Ort liegt jenseits des Endes von Webkarten (85,05 Grad).</translation>
     </message>
     <message>
         <source>This site lies beyond the end of web maps (85.05 degrees); use the 3-D view.</source>
@@ -2828,7 +2883,7 @@ Scheiben: {2}, je {3} × {4}</translation>
     </message>
     <message>
         <source>No map is loaded. &quot;Map file&quot; opens one (MBTiles, PMTiles); no network is used.</source>
-        <translation type="unfinished"></translation>
+        <translation>Keine Karte ist geladen. „Kartendatei“ öffnet eine (MBTiles, PMTiles); kein Netz wird benutzt.</translation>
     </message>
     <message>
         <source>The map &quot;{0}&quot; does not cover this place.</source>
@@ -2840,31 +2895,31 @@ Scheiben: {2}, je {3} × {4}</translation>
     </message>
     <message>
         <source>Find a place by its coordinates</source>
-        <translation type="unfinished"></translation>
+        <translation>Einen Ort nach Koordinaten suchen</translation>
     </message>
     <message>
         <source>Coordinates of a place (WGS 84), then Enter</source>
-        <translation type="unfinished"></translation>
+        <translation>Koordinaten eines Orts (WGS 84), dann Eingabetaste</translation>
     </message>
     <message>
         <source>Layers</source>
-        <translation type="unfinished"></translation>
+        <translation>Ebenen</translation>
     </message>
     <message>
         <source>Overlay ...</source>
-        <translation type="unfinished"></translation>
+        <translation>Auflage ...</translation>
     </message>
     <message>
         <source>Put GeoJSON, KML, KMZ or GeoTIFF on the map</source>
-        <translation type="unfinished"></translation>
+        <translation>GeoJSON, KML, KMZ oder GeoTIFF auf die Karte legen</translation>
     </message>
     <message>
         <source>Online map ...</source>
-        <translation type="unfinished"></translation>
+        <translation>Onlinekarte ...</translation>
     </message>
     <message>
         <source>A server for map tiles; off until you agree</source>
-        <translation type="unfinished"></translation>
+        <translation>Ein Server für Kartenkacheln; aus, bis Sie zustimmen</translation>
     </message>
     <message>
         <source>Nearer (+)</source>
@@ -2888,19 +2943,19 @@ Scheiben: {2}, je {3} × {4}</translation>
     </message>
     <message>
         <source>Open a map file (MBTiles or PMTiles) to put under the site</source>
-        <translation type="unfinished"></translation>
+        <translation>Eine Kartendatei (MBTiles oder PMTiles) unter den Standort legen</translation>
     </message>
     <message>
         <source>What is shown on the map, and how strongly; overlays and the online map</source>
-        <translation type="unfinished"></translation>
+        <translation>Was auf der Karte zu sehen ist und wie kräftig; Auflagen und die Onlinekarte</translation>
     </message>
     <message>
         <source>Overlay for the map</source>
-        <translation type="unfinished"></translation>
+        <translation>Auflage für die Karte</translation>
     </message>
     <message>
         <source>Overlays ({0})</source>
-        <translation type="unfinished"></translation>
+        <translation>Auflagen ({0})</translation>
     </message>
     <message>
         <source>{0}: not kept out of</source>
@@ -2908,7 +2963,7 @@ Scheiben: {2}, je {3} × {4}</translation>
     </message>
     <message>
         <source>Offline maps (*.mbtiles *.pmtiles);;All files (*)</source>
-        <translation type="unfinished"></translation>
+        <translation>Offlinekarten (*.mbtiles *.pmtiles);;Alle Dateien (*)</translation>
     </message>
     <message>
         <source>Open map</source>
@@ -3292,6 +3347,14 @@ Scheiben: {2}, je {3} × {4}</translation>
         <translation>Drucken oder als PDF speichern</translation>
     </message>
     <message>
+        <source>SORA ...</source>
+        <translation>SORA ...</translation>
+    </message>
+    <message>
+        <source>Ground risk: volumes, buffer and class, as a draft with formulas and sources</source>
+        <translation>Bodenrisiko: Volumen, Puffer und Klasse, als Entwurf mit Formeln und Quellen</translation>
+    </message>
+    <message>
         <source>Check</source>
         <translation>Prüfen</translation>
     </message>
@@ -3488,35 +3551,35 @@ Größe: {1}; Dreiecke: {2}</translation>
     <name>OnlineMapDialog</name>
     <message>
         <source>Online map</source>
-        <translation type="unfinished"></translation>
+        <translation>Onlinekarte</translation>
     </message>
     <message>
         <source>© who owns the data, and its licence</source>
-        <translation type="unfinished"></translation>
+        <translation>© wem die Daten gehören, und die Lizenz</translation>
     </message>
     <message>
         <source>Fetch tiles from this server</source>
-        <translation type="unfinished"></translation>
+        <translation>Kacheln von diesem Server holen</translation>
     </message>
     <message>
         <source>Reflight asks this server for the tiles that the map shows, and for nothing else. The server learns which area you look at. Use a server whose terms allow this, and enter the words that it asks for: they stand on the map. Tiles are kept on this computer, for a week where the server does not say otherwise, and are shown without network.</source>
-        <translation type="unfinished"></translation>
+        <translation>Reflight fragt diesen Server nach den Kacheln, die die Karte zeigt, und nach nichts anderem. Der Server erfährt, welches Gebiet Sie ansehen. Nehmen Sie einen Server, dessen Bedingungen das erlauben, und geben Sie die Worte ein, die er verlangt: Sie stehen auf der Karte. Kacheln bleiben auf diesem Rechner, eine Woche lang, wenn der Server nichts anderes sagt, und sind ohne Netz zu sehen.</translation>
     </message>
     <message>
         <source>Address of a tile</source>
-        <translation type="unfinished"></translation>
+        <translation>Adresse einer Kachel</translation>
     </message>
     <message>
         <source>Licence</source>
-        <translation type="unfinished"></translation>
+        <translation>Lizenz</translation>
     </message>
     <message>
         <source>Deepest level</source>
-        <translation type="unfinished"></translation>
+        <translation>Tiefste Stufe</translation>
     </message>
     <message>
         <source>Room for tiles, MB</source>
-        <translation type="unfinished"></translation>
+        <translation>Platz für Kacheln, MB</translation>
     </message>
 </context>
 <context>
@@ -4193,6 +4256,166 @@ Blickrichtung: {3}</translation>
     <message>
         <source>the processor</source>
         <translation>dem Prozessor</translation>
+    </message>
+    <message>
+        <source>People below</source>
+        <translation>Menschen darunter</translation>
+    </message>
+    <message>
+        <source>people below: a word of SORA, or people per square kilometre</source>
+        <translation>Menschen darunter: ein Wort von SORA, oder Menschen je Quadratkilometer</translation>
+    </message>
+    <message>
+        <source>strongest wind in which it flies, from any side</source>
+        <translation>stärkster Wind, in dem es fliegt, von jeder Seite</translation>
+    </message>
+    <message>
+        <source>Reaction</source>
+        <translation>Reaktion</translation>
+    </message>
+    <message>
+        <source>from leaving the flight geography until the pilot acts</source>
+        <translation>vom Verlassen der Fluggeographie, bis der Pilot handelt</translation>
+    </message>
+    <message>
+        <source>Full speed</source>
+        <translation>Volle Geschwindigkeit</translation>
+    </message>
+    <message>
+        <source>fastest level flight through the air, where a mode limits it</source>
+        <translation>schnellster Horizontalflug durch die Luft, wo ein Modus ihn begrenzt</translation>
+    </message>
+    <message>
+        <source>Braking tilt</source>
+        <translation>Neigung beim Bremsen</translation>
+    </message>
+    <message>
+        <source>tilt with which it brakes</source>
+        <translation>Neigung, mit der es bremst</translation>
+    </message>
+    <message>
+        <source>Largest dimension</source>
+        <translation>Größte Abmessung</translation>
+    </message>
+    <message>
+        <source>longest line between two points of the aircraft, propellers included</source>
+        <translation>längste Strecke zwischen zwei Punkten des Fluggeräts, mit Propellern</translation>
+    </message>
+    <message>
+        <source>Take-off mass in kg</source>
+        <translation>Startmasse in kg</translation>
+    </message>
+    <message>
+        <source>largest take-off mass in kilograms</source>
+        <translation>größte Startmasse in Kilogramm</translation>
+    </message>
+    <message>
+        <source>GNSS error</source>
+        <translation>GNSS-Fehler</translation>
+    </message>
+    <message>
+        <source>error of the position; near glass, reflected signals can make it larger</source>
+        <translation>Fehler der Position; nahe an Glas können gespiegelte Signale ihn vergrößern</translation>
+    </message>
+    <message>
+        <source>Position hold error</source>
+        <translation>Fehler beim Halten der Position</translation>
+    </message>
+    <message>
+        <source>how far it strays from the place that it holds</source>
+        <translation>wie weit es von der gehaltenen Stelle abweicht</translation>
+    </message>
+    <message>
+        <source>Map error</source>
+        <translation>Kartenfehler</translation>
+    </message>
+    <message>
+        <source>error of the map or site on which the paths were planned</source>
+        <translation>Fehler der Karte oder des Standorts, auf dem die Pfade geplant wurden</translation>
+    </message>
+    <message>
+        <source>Height by</source>
+        <translation>Höhe durch</translation>
+    </message>
+    <message>
+        <source>what the aircraft measures its height with</source>
+        <translation>womit das Fluggerät seine Höhe misst</translation>
+    </message>
+    <message>
+        <source>barometer</source>
+        <translation>Barometer</translation>
+    </message>
+    <message>
+        <source>Flight geography</source>
+        <translation>Fluggeographie</translation>
+    </message>
+    <message>
+        <source>flight geography: the hull of all paths, in which straight returns home stay, or the paths alone</source>
+        <translation>Fluggeographie: die Hülle aller Pfade, in der gerade Rückkehren bleiben, oder die Pfade allein</translation>
+    </message>
+    <message>
+        <source>hull of all paths</source>
+        <translation>Hülle aller Pfade</translation>
+    </message>
+    <message>
+        <source>paths alone</source>
+        <translation>Pfade allein</translation>
+    </message>
+    <message>
+        <source>Buffer</source>
+        <translation>Puffer</translation>
+    </message>
+    <message>
+        <source>ground-risk buffer: as far as the aircraft falls, or as wide as it flies high (1:1)</source>
+        <translation>Bodenrisikopuffer: so weit das Fluggerät fällt, oder so breit, wie es hoch fliegt (1:1)</translation>
+    </message>
+    <message>
+        <source>as far as it falls</source>
+        <translation>so weit es fällt</translation>
+    </message>
+    <message>
+        <source>as wide as high (1:1)</source>
+        <translation>so breit wie hoch (1:1)</translation>
+    </message>
+    <message>
+        <source>M1(A) sheltering</source>
+        <translation>M1(A) Schutz durch Gebäude</translation>
+    </message>
+    <message>
+        <source>M1(A): people are in buildings that the aircraft does not get into</source>
+        <translation>M1(A): Menschen sind in Gebäuden, in die das Fluggerät nicht eindringt</translation>
+    </message>
+    <message>
+        <source>M1(B) restrictions</source>
+        <translation>M1(B) Einschränkungen</translation>
+    </message>
+    <message>
+        <source>M1(B): place or time of the flight have fewer people there</source>
+        <translation>M1(B): Ort oder Zeit des Fluges haben weniger Menschen dort</translation>
+    </message>
+    <message>
+        <source>M1(C) ground observation</source>
+        <translation>M1(C) Bodenbeobachtung</translation>
+    </message>
+    <message>
+        <source>M1(C): somebody watches the ground and the flight keeps away from people</source>
+        <translation>M1(C): jemand beobachtet den Boden, und der Flug hält sich von Menschen fern</translation>
+    </message>
+    <message>
+        <source>M2 softer impact</source>
+        <translation>M2 milderer Aufprall</translation>
+    </message>
+    <message>
+        <source>M2: what lessens the blow, such as a parachute</source>
+        <translation>M2: was den Aufprall mildert, etwa ein Fallschirm</translation>
+    </message>
+    <message>
+        <source>Arc tolerance</source>
+        <translation>Bogentoleranz</translation>
+    </message>
+    <message>
+        <source>how much wider than exact the corners of the areas may be; less has more corners</source>
+        <translation>wie viel weiter als genau die Ecken der Gebiete sein dürfen; weniger hat mehr Ecken</translation>
     </message>
 </context>
 <context>
@@ -4970,6 +5193,41 @@ Blickrichtung: {3}</translation>
     </message>
 </context>
 <context>
+    <name>PlanPlayer</name>
+    <message>
+        <source>Fly</source>
+        <translation>Fliegen</translation>
+    </message>
+    <message>
+        <source>Let the aircraft fly the plan in the view</source>
+        <translation>Das Fluggerät den Plan in der Ansicht fliegen lassen</translation>
+    </message>
+    <message>
+        <source>Time in the flight</source>
+        <translation>Zeit im Flug</translation>
+    </message>
+    <message>
+        <source>Time in the flight, over all sorties</source>
+        <translation>Zeit im Flug, über alle Einsätze</translation>
+    </message>
+    <message>
+        <source>How much faster than the flight</source>
+        <translation>Wievielmal schneller als der Flug</translation>
+    </message>
+    <message>
+        <source>Show the plan without the aircraft</source>
+        <translation>Den Plan ohne das Fluggerät zeigen</translation>
+    </message>
+    <message>
+        <source>Sortie {0}: {1} of {2}, photo {3}</source>
+        <translation>Einsatz {0}: {1} von {2}, Foto {3}</translation>
+    </message>
+    <message>
+        <source>Pause</source>
+        <translation>Pause</translation>
+    </message>
+</context>
+<context>
     <name>PlansList</name>
     <message>
         <source>Plans</source>
@@ -5248,6 +5506,10 @@ Blickrichtung: {3}</translation>
         <translation>Kein Einsatz zu zeigen: zuerst einen Flug planen.</translation>
     </message>
     <message>
+        <source>terrain</source>
+        <translation>Gelände</translation>
+    </message>
+    <message>
         <source>ground</source>
         <translation>Boden</translation>
     </message>
@@ -5335,7 +5597,7 @@ Blickrichtung: {3}</translation>
     </message>
     <message>
         <source>Map tiles (*.mbtiles *.pmtiles)</source>
-        <translation type="unfinished"></translation>
+        <translation>Kartenkacheln (*.mbtiles *.pmtiles)</translation>
     </message>
     <message>
         <source>The settings could not be kept: {0}</source>
@@ -5603,6 +5865,14 @@ Damit weiterarbeiten?</translation>
     <message>
         <source>The model is written: {0}</source>
         <translation>Das Modell ist geschrieben: {0}</translation>
+    </message>
+    <message>
+        <source>Training: {0} steps</source>
+        <translation>Training: {0} Schritte</translation>
+    </message>
+    <message>
+        <source>Training: {0}</source>
+        <translation>Training: {0}</translation>
     </message>
     <message>
         <source>the system ended it, mostly because memory ran out</source>
@@ -6284,6 +6554,14 @@ Damit weiterarbeiten?</translation>
         <translation>Startplatz</translation>
     </message>
     <message>
+        <source>Panel {0}: in {1} views</source>
+        <translation>Scheibe {0}: in {1} Aufnahmen</translation>
+    </message>
+    <message>
+        <source>Viewpoint {0}: photo {1} of {2} of sortie {3}</source>
+        <translation>Aufnahmepunkt {0}: Foto {1} von {2} in Einsatz {3}</translation>
+    </message>
+    <message>
         <source>Building</source>
         <translation>Gebäude</translation>
     </message>
@@ -6330,6 +6608,69 @@ Damit weiterarbeiten?</translation>
     <message>
         <source>Landing {0}</source>
         <translation>Landung {0}</translation>
+    </message>
+</context>
+<context>
+    <name>SceneView</name>
+    <message>
+        <source>Layers</source>
+        <translation>Ebenen</translation>
+    </message>
+    <message>
+        <source>What is shown in the view, and how strongly, sortie by sortie</source>
+        <translation>Was in der Ansicht zu sehen ist und wie kräftig, Einsatz für Einsatz</translation>
+    </message>
+    <message>
+        <source>Sortie {0}</source>
+        <translation>Einsatz {0}</translation>
+    </message>
+    <message>
+        <source>Routes</source>
+        <translation>Routen</translation>
+    </message>
+    <message>
+        <source>Viewpoints</source>
+        <translation>Punkte</translation>
+    </message>
+    <message>
+        <source>Pyramids of all views</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Panels</source>
+        <translation>Scheiben</translation>
+    </message>
+    <message>
+        <source>Building</source>
+        <translation>Gebäude</translation>
+    </message>
+    <message>
+        <source>Obstacles</source>
+        <translation>Hindernisse</translation>
+    </message>
+    <message>
+        <source>No-fly zones</source>
+        <translation>Flugverbotszonen</translation>
+    </message>
+    <message>
+        <source>Airspace</source>
+        <translation>Luftraum</translation>
+    </message>
+    <message>
+        <source>Home</source>
+        <translation>Startplatz</translation>
+    </message>
+    <message>
+        <source>Shadows</source>
+        <translation>Schatten</translation>
+    </message>
+    <message>
+        <source>Ground</source>
+        <translation>Boden</translation>
+    </message>
+    <message>
+        <source>Names</source>
+        <translation>Namen</translation>
     </message>
 </context>
 <context>
@@ -6760,10 +7101,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>  {0}  {1}  {2}</translation>
     </message>
     <message>
-        <source>  {0} [{1}]: {2}; {3} m from the airspace; {4}</source>
-        <translation>  {0} [{1}]: {2}; {3} m vom Luftraum; {4}</translation>
-    </message>
-    <message>
         <source>% of the walls</source>
         <translation>% der Wände</translation>
     </message>
@@ -6773,7 +7110,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>&apos;{0}&apos; is nothing that heights are above; expected ellipsoid, egm96, egm2008 or the code of a height system such as EPSG:7837</source>
-        <translation type="unfinished"></translation>
+        <translation>'{0}' ist nichts, worüber Höhen gezählt werden; erwartet: ellipsoid, egm96, egm2008 oder der Code eines Höhensystems wie EPSG:7837</translation>
     </message>
     <message>
         <source>&apos;{0}&apos;, added on {1}</source>
@@ -6869,7 +7206,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>EGM96 stands in for &apos;{0}&apos;, which may be off by 1 m, in mountains by 2 m; home stands on the same terrain, so heights above take-off do not change</source>
-        <translation type="unfinished"></translation>
+        <translation>EGM96 steht für '{0}' ein, was um 1 m falsch sein kann, im Gebirge um 2 m; der Startplatz steht auf demselben Gelände, Höhen über dem Start ändern sich also nicht</translation>
     </message>
     <message>
         <source>Export</source>
@@ -6890,6 +7227,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>Google Earth (.kml), to look at</source>
         <translation>Google Earth (.kml), zum Ansehen</translation>
+    </message>
+    <message>
+        <source>Hemisphere section</source>
+        <translation>Sektor der Halbkugel</translation>
     </message>
     <message>
         <source>Ipopt found no speed profile: {0}</source>
@@ -7101,7 +7442,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>a grid in steps of {0} m has more than {1} nodes below this airspace; allow a longer step</source>
-        <translation type="unfinished"></translation>
+        <translation>ein Raster in Schritten von {0} m hat unter diesem Luftraum mehr als {1} Knoten; eine größere Schrittweite erlauben</translation>
     </message>
     <message>
         <source>a height is counted from &apos;{0}&apos;; expected AGL, AMSL or WGS84</source>
@@ -7113,7 +7454,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>a map in PMTiles format</source>
-        <translation type="unfinished"></translation>
+        <translation>eine Karte im Format PMTiles</translation>
     </message>
     <message>
         <source>a mesh does not tell windows from walls; state where the panels are, for example --panel-grid &apos;0,0,0 36,0,0 0,0,42&apos; --rows 14 --columns 20 (lower left, lower right and upper left corner of a facade, seen from outside), or import the building alone with --without-panels and find them in photos with &apos;panels&apos;</source>
@@ -7160,6 +7501,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>ein Standort allein hat keine Aufnahmepunkte zum Anfliegen; auch einen Plan nennen</translation>
     </message>
     <message>
+        <source>a table of tilts</source>
+        <translation>eine Tabelle von Neigungen</translation>
+    </message>
+    <message>
         <source>a time</source>
         <translation>eine Zeit</translation>
     </message>
@@ -7177,7 +7522,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>about {0} million heights lie below the airspace, expected at most {1} million; give a coarser file</source>
-        <translation type="unfinished"></translation>
+        <translation>unter dem Luftraum liegen etwa {0} Millionen Höhen, erwartet höchstens {1} Millionen; eine gröbere Datei angeben</translation>
     </message>
     <message>
         <source>above {0} and below {1}</source>
@@ -7217,11 +7562,15 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>an aircraft that returns by itself would fly {0}; raise the ceiling of the airspace</source>
-        <translation type="unfinished"></translation>
+        <translation>ein Fluggerät, das von selbst zurückkehrt, flöge {0}; die Obergrenze des Luftraums anheben</translation>
     </message>
     <message>
         <source>an area has no outline</source>
         <translation>eine Fläche hat keinen Umriss</translation>
+    </message>
+    <message>
+        <source>an outline lies on earth only if latitude and longitude are exchanged</source>
+        <translation>ein Umriss liegt nur auf der Erde, wenn Breite und Länge vertauscht werden</translation>
     </message>
     <message>
         <source>an unknown camera</source>
@@ -7261,11 +7610,11 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>below the building the files have no heights; those beside it were taken</source>
-        <translation type="unfinished"></translation>
+        <translation>unter dem Gebäude haben die Dateien keine Höhen; die daneben wurden genommen</translation>
     </message>
     <message>
         <source>below the ground, or where it is not known</source>
-        <translation type="unfinished"></translation>
+        <translation>unter dem Boden, oder wo er nicht bekannt ist</translation>
     </message>
     <message>
         <source>best</source>
@@ -7289,7 +7638,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>cannot be read as a GeoTIFF ({0}); copy it again</source>
-        <translation type="unfinished"></translation>
+        <translation>kann nicht als GeoTIFF gelesen werden ({0}); noch einmal kopieren</translation>
     </message>
     <message>
         <source>cannot be read as weights (safetensors, or tensors that torch.save wrote); get the file again</source>
@@ -7457,11 +7806,11 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>does not say what its heights are above ({0} has no heights); say it with --vertical: ellipsoid, egm96, egm2008, or a height system such as EPSG:7837</source>
-        <translation type="unfinished"></translation>
+        <translation>sagt nicht, worüber ihre Höhen gezählt sind ({0} hat keine Höhen); mit --vertical angeben: ellipsoid, egm96, egm2008 oder ein Höhensystem wie EPSG:7837</translation>
     </message>
     <message>
         <source>does not say where it lies; give a GeoTIFF with its georeference</source>
-        <translation type="unfinished"></translation>
+        <translation>sagt nicht, wo es liegt; ein GeoTIFF mit Georeferenz angeben</translation>
     </message>
     <message>
         <source>effect</source>
@@ -7506,6 +7855,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>erwartet wurden -12 bis 14 Stunden, gefunden {0}</translation>
     </message>
     <message>
+        <source>expected -{0} to {1} degrees, got &apos;{2}&apos;</source>
+        <translation>erwartet wurden -{0} bis {1} Grad, gefunden '{2}'</translation>
+    </message>
+    <message>
         <source>expected -{0} to {1} degrees, got {2}</source>
         <translation>erwartet wurden -{0} bis {1} Grad, gefunden {2}</translation>
     </message>
@@ -7530,16 +7883,20 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>erwartet wird 2 bis {0}, angegeben {1}</translation>
     </message>
     <message>
+        <source>expected 3 values, got {0}</source>
+        <translation>erwartet wurden 3 Werte, gefunden {0}</translation>
+    </message>
+    <message>
         <source>expected GeoJSON (features with points, lines or polygons), found something else; export it again</source>
-        <translation type="unfinished"></translation>
+        <translation>erwartet wird GeoJSON (Punkte, Linien oder Polygone), gefunden wurde etwas anderes; erneut exportieren</translation>
     </message>
     <message>
         <source>expected KML, found &apos;{0}&apos;; choose another file</source>
-        <translation type="unfinished"></translation>
+        <translation>erwartet wird KML, gefunden wurde '{0}'; eine andere Datei wählen</translation>
     </message>
     <message>
         <source>expected PMTiles of version 3, found version {0}; convert the map with the program pmtiles</source>
-        <translation type="unfinished"></translation>
+        <translation>erwartet wird PMTiles in Version 3, gefunden wurde Version {0}; die Karte mit dem Programm pmtiles umwandeln</translation>
     </message>
     <message>
         <source>expected TSP, ATSP or CVRP, found &apos;{0}&apos;</source>
@@ -7583,7 +7940,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>expected a deepest level from 0 to {0}, found {1}</source>
-        <translation type="unfinished"></translation>
+        <translation>erwartet wird eine tiefste Stufe von 0 bis {0}, gefunden wurde {1}</translation>
     </message>
     <message>
         <source>expected a file in the folder of the site, since it names meshes there</source>
@@ -7591,7 +7948,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>expected a file of {0}; choose another one</source>
-        <translation type="unfinished"></translation>
+        <translation>erwartet wird eine Datei aus {0}; eine andere wählen</translation>
     </message>
     <message>
         <source>expected a finite time and position</source>
@@ -7686,6 +8043,18 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>ein Start mit seinem Fluggerät wird erwartet, oder keins von beiden</translation>
     </message>
     <message>
+        <source>expected a table in UTF-8 with the columns {0}</source>
+        <translation>erwartet wurde eine Tabelle in UTF-8 mit den Spalten {0}</translation>
+    </message>
+    <message>
+        <source>expected a table of tilts, or --remove, and not both</source>
+        <translation>erwartet wurde eine Tabelle von Neigungen oder --remove, nicht beides</translation>
+    </message>
+    <message>
+        <source>expected a table with commas ({0})</source>
+        <translation>erwartet wurde eine Tabelle mit Kommas ({0})</translation>
+    </message>
+    <message>
         <source>expected a time of day such as 08:30, got &apos;{0}&apos;</source>
         <translation>erwartet wurde eine Uhrzeit wie 08:30, gefunden &apos;{0}&apos;</translation>
     </message>
@@ -7719,7 +8088,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>expected an address such as https://tile.example.org/{0}, found &apos;{1}&apos;</source>
-        <translation type="unfinished"></translation>
+        <translation>erwartet wird eine Adresse wie https://tile.example.org/{0}, gefunden wurde '{1}'</translation>
     </message>
     <message>
         <source>expected an earlier time than --until {0}, got {1}</source>
@@ -7727,7 +8096,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>expected an easting of 100000 to 900000 m and a northing of at most 10000000 m, found {0} and {1}</source>
-        <translation type="unfinished"></translation>
+        <translation>erwartet wird ein Ostwert von 100000 bis 900000 m und ein Nordwert bis 10000000 m, gefunden wurde {0} und {1}</translation>
     </message>
     <message>
         <source>expected an index image for each photo; &apos;{0}&apos; has none</source>
@@ -7751,11 +8120,11 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>expected as many digits of easting as of northing, up to 5 each, found &apos;{0}&apos;</source>
-        <translation type="unfinished"></translation>
+        <translation>erwartet werden so viele Ziffern für Ost wie für Nord, bis je 5, gefunden wurde '{0}'</translation>
     </message>
     <message>
         <source>expected at least 2 x 2 and at most {0} nodes, got {1} x {2}</source>
-        <translation type="unfinished"></translation>
+        <translation>erwartet mindestens 2 x 2 und höchstens {0} Knoten, gefunden {1} x {2}</translation>
     </message>
     <message>
         <source>expected at least one argument</source>
@@ -7783,7 +8152,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>expected coordinates as lon,lat in KML, found &apos;{0}&apos;</source>
-        <translation type="unfinished"></translation>
+        <translation>erwartet werden Koordinaten als Länge,Breite in KML, gefunden wurde '{0}'</translation>
     </message>
     <message>
         <source>expected distinct point numbers, {0} occurs twice</source>
@@ -7795,11 +8164,11 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>expected files of heights, or --remove, and not both</source>
-        <translation type="unfinished"></translation>
+        <translation>erwartet Dateien mit Höhen oder --remove, nicht beides</translation>
     </message>
     <message>
         <source>expected finite local metres, got {0}</source>
-        <translation type="unfinished"></translation>
+        <translation>erwartet endliche lokale Meter, gefunden {0}</translation>
     </message>
     <message>
         <source>expected finite numbers, at most {0}</source>
@@ -7823,7 +8192,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>expected heights for the same nodes in all three grids</source>
-        <translation type="unfinished"></translation>
+        <translation>erwartet Höhen für dieselben Knoten in allen drei Rastern</translation>
     </message>
     <message>
         <source>expected it once, or once for each of {0} --panel-grid, got {1}</source>
@@ -7839,15 +8208,15 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>expected local heights within {0} m</source>
-        <translation type="unfinished"></translation>
+        <translation>erwartet lokale Höhen innerhalb von {0} m</translation>
     </message>
     <message>
         <source>expected longitudes and latitudes in degrees, found {0}, {1}; export it in WGS 84 (EPSG:4326)</source>
-        <translation type="unfinished"></translation>
+        <translation>erwartet werden Länge und Breite in Grad, gefunden wurde {0}, {1}; in WGS 84 (EPSG:4326) exportieren</translation>
     </message>
     <message>
         <source>expected more than 0 m, got {0}</source>
-        <translation type="unfinished"></translation>
+        <translation>erwartet mehr als 0 m, gefunden {0}</translation>
     </message>
     <message>
         <source>expected more than 0, got {0}</source>
@@ -7899,7 +8268,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>expected one of {0}, or people per square kilometre, got &apos;{1}&apos;</source>
-        <translation>erwartet eines von {0}, oder Menschen je Quadratkilometer, erhalten '{1}'</translation>
+        <translation>erwartet eines von {0}, oder Menschen je Quadratkilometer, erhalten &apos;{1}&apos;</translation>
     </message>
     <message>
         <source>expected panel numbers up to {0}, got {1}</source>
@@ -7922,12 +8291,16 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>erwartet werden die Spalten {0}, gefunden &apos;{1}&apos;; das Modell noch einmal aus COLMAP exportieren</translation>
     </message>
     <message>
+        <source>expected the first line {0}</source>
+        <translation>erwartet wurde die erste Zeile {0}</translation>
+    </message>
+    <message>
         <source>expected the folder of a model; &apos;records FOLDER make --objects SITE&apos; makes one for records alone</source>
         <translation>erwartet wird der Ordner eines Modells; &apos;records FOLDER make --objects SITE&apos; legt einen für Einträge allein an</translation>
     </message>
     <message>
         <source>expected the ground between its bounds</source>
-        <translation type="unfinished"></translation>
+        <translation>erwartet den Boden zwischen seinen Schranken</translation>
     </message>
     <message>
         <source>expected the numbers of one camera, found {0}</source>
@@ -7955,15 +8328,15 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>expected tiles in PNG, JPEG, WebP or PBF, found something else (the file says {0}); export the map again</source>
-        <translation type="unfinished"></translation>
+        <translation>erwartet werden Kacheln in PNG, JPEG, WebP oder PBF, gefunden wurde etwas anderes (die Datei sagt {0}); die Karte erneut exportieren</translation>
     </message>
     <message>
         <source>expected tiles in PNG, JPEG, WebP or PBF, found something else; export the map again</source>
-        <translation type="unfinished"></translation>
+        <translation>erwartet werden Kacheln in PNG, JPEG, WebP oder PBF, gefunden wurde etwas anderes; die Karte erneut exportieren</translation>
     </message>
     <message>
         <source>expected tiles in PNG, JPEG, WebP or as vectors (MVT), found type {0}; export the map again</source>
-        <translation type="unfinished"></translation>
+        <translation>erwartet werden Kacheln in PNG, JPEG, WebP oder als Vektoren (MVT), gefunden wurde Typ {0}; die Karte erneut exportieren</translation>
     </message>
     <message>
         <source>expected two photos and metres such as A.JPG,B.JPG,12.5, got &apos;{0}&apos;</source>
@@ -8003,7 +8376,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>expected {0} once each behind the server&apos;s name, found &apos;{1}&apos;</source>
-        <translation type="unfinished"></translation>
+        <translation>erwartet wird je einmal {0} hinter dem Namen des Servers, gefunden wurde '{1}'</translation>
     </message>
     <message>
         <source>expected {0} or more photos, or 0, got {1}</source>
@@ -8107,7 +8480,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>finding what stands on the ground</source>
-        <translation type="unfinished"></translation>
+        <translation>suche, was auf dem Boden steht</translation>
     </message>
     <message>
         <source>findings: {0}</source>
@@ -8239,11 +8612,11 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>has changed while it was read</source>
-        <translation type="unfinished"></translation>
+        <translation>hat sich beim Lesen geändert</translation>
     </message>
     <message>
         <source>has more than {0} points; cut out the part that is wanted, or simplify it</source>
-        <translation type="unfinished"></translation>
+        <translation>hat mehr als {0} Punkte; den gewünschten Teil ausschneiden oder vereinfachen</translation>
     </message>
     <message>
         <source>has no &apos;{0}&apos;, so these are points and not splats</source>
@@ -8251,7 +8624,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>has no heights below the airspace of the site, which lies at {0}, {1} (tile {2}); give files that cover it</source>
-        <translation type="unfinished"></translation>
+        <translation>hat keine Höhen unter dem Luftraum des Standorts, der bei {0}, {1} liegt (Kachel {2}); Dateien angeben, die ihn abdecken</translation>
     </message>
     <message>
         <source>has no panels, and {0} learns what panels mirror; train plain splats instead, or find its panels first</source>
@@ -8295,11 +8668,11 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>has {0} bands, as pictures have; expected one band of heights</source>
-        <translation type="unfinished"></translation>
+        <translation>hat {0} Kanäle wie ein Bild; erwartet einen Kanal mit Höhen</translation>
     </message>
     <message>
         <source>has {0} bytes; a tile of SRTM has {1} or {2}; copy it again</source>
-        <translation type="unfinished"></translation>
+        <translation>hat {0} Bytes; eine SRTM-Kachel hat {1} oder {2}; noch einmal kopieren</translation>
     </message>
     <message>
         <source>heading</source>
@@ -8315,11 +8688,11 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>heights above the ground count from level ground: {0}</source>
-        <translation type="unfinished"></translation>
+        <translation>Höhen über Grund zählen vom ebenen Boden: {0}</translation>
     </message>
     <message>
         <source>heights above the ground count from the terrain: {0}</source>
-        <translation type="unfinished"></translation>
+        <translation>Höhen über Grund zählen vom Gelände: {0}</translation>
     </message>
     <message>
         <source>heights are counted from {0}; counted from {1} they would be {2} m</source>
@@ -8371,7 +8744,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>holds values of the type {0}, as shaded pictures do; expected heights as 16 or 32 bit</source>
-        <translation type="unfinished"></translation>
+        <translation>enthält Werte vom Typ {0} wie eine Schummerung; erwartet Höhen mit 16 oder 32 Bit</translation>
     </message>
     <message>
         <source>holds {0} {1} twice, by id or by name</source>
@@ -8379,11 +8752,11 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>home lies {0} m above the terrain; move it where that is not meant</source>
-        <translation type="unfinished"></translation>
+        <translation>der Startplatz liegt {0} m über dem Gelände; verschieben, wenn das nicht gemeint ist</translation>
     </message>
     <message>
         <source>home was put on the terrain, {0} m from where it was</source>
-        <translation type="unfinished"></translation>
+        <translation>der Startplatz wurde auf das Gelände gesetzt, {0} m von seinem alten Ort</translation>
     </message>
     <message>
         <source>home {0:m} lies inside the geo-zone &apos;{1}&apos; ({2}); move it outside, or state your authorisation (--permit)</source>
@@ -8391,7 +8764,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>home {0:m} stands where the terrain has no heights; move home, or attach terrain that covers it</source>
-        <translation type="unfinished"></translation>
+        <translation>der Startplatz {0:m} liegt, wo das Gelände keine Höhen hat; ihn verschieben oder Gelände anhängen, das ihn abdeckt</translation>
     </message>
     <message>
         <source>how far {0} photos disagree on their lines{1}</source>
@@ -8471,7 +8844,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>is cut off; copy it again</source>
-        <translation type="unfinished"></translation>
+        <translation>ist abgeschnitten; noch einmal kopieren</translation>
     </message>
     <message>
         <source>is for --link URL; the simulation in this program has no link to listen to</source>
@@ -8495,7 +8868,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>is no GeoTIFF; expected heights as .tif or .hgt</source>
-        <translation type="unfinished"></translation>
+        <translation>ist kein GeoTIFF; erwartet Höhen als .tif oder .hgt</translation>
     </message>
     <message>
         <source>is no PLY file (it does not start with &apos;ply&apos;)</source>
@@ -8523,7 +8896,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>is stored in one piece; export it as a tiled GeoTIFF</source>
-        <translation type="unfinished"></translation>
+        <translation>ist in einem Stück gespeichert; als gekacheltes GeoTIFF ausgeben</translation>
     </message>
     <message>
         <source>issued {0}</source>
@@ -8559,7 +8932,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>it does not begin as one</source>
-        <translation type="unfinished"></translation>
+        <translation>es beginnt nicht wie eines</translation>
     </message>
     <message>
         <source>it does not know where the operator stands</source>
@@ -8576,6 +8949,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>it ended the stream</source>
         <translation>er hat den Strom beendet</translation>
+    </message>
+    <message>
+        <source>it has a line for each panel</source>
+        <translation>sie hat eine Zeile für jedes Panel</translation>
     </message>
     <message>
         <source>it has no operator number: enter yours in the settings</source>
@@ -8595,7 +8972,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>it is cut off</source>
-        <translation type="unfinished"></translation>
+        <translation>es ist abgeschnitten</translation>
     </message>
     <message>
         <source>it is larger than any log that can be read; take the card out</source>
@@ -8603,7 +8980,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>it is {0} m above the terrain, and {1} m are required</source>
-        <translation type="unfinished"></translation>
+        <translation>es liegt {0} m über dem Gelände, verlangt sind {1} m</translation>
     </message>
     <message>
         <source>it knows no file transfer</source>
@@ -8683,7 +9060,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>its heights are in the unit &apos;{0}&apos;, which is not known here; say it with --height-unit</source>
-        <translation type="unfinished"></translation>
+        <translation>ihre Höhen sind in der Einheit '{0}', die hier nicht bekannt ist; mit --height-unit angeben</translation>
     </message>
     <message>
         <source>its lower limit &apos;{0}&apos; lies above the upper one &apos;{1}&apos;</source>
@@ -8706,6 +9083,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>ihr Umriss reicht um die Erde, darum zählt sie als hier gelegen</translation>
     </message>
     <message>
+        <source>its place is not known</source>
+        <translation>ihr Ort ist nicht bekannt</translation>
+    </message>
+    <message>
         <source>its places are in several systems: {0}</source>
         <translation>ihre Orte stehen in mehreren Bezugssystemen: {0}</translation>
     </message>
@@ -8719,11 +9100,11 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>its shape is that of another airspace, which is not in the file (&apos;{0}&apos;)</source>
-        <translation>ihre Form ist die eines anderen Luftraums, der nicht in der Datei steht ('{0}')</translation>
+        <translation>ihre Form ist die eines anderen Luftraums, der nicht in der Datei steht (&apos;{0}&apos;)</translation>
     </message>
     <message>
         <source>its values are depths ({0}); expected heights</source>
-        <translation type="unfinished"></translation>
+        <translation>ihre Werte sind Tiefen ({0}); erwartet Höhen</translation>
     </message>
     <message>
         <source>its zones lie here only if latitude and longitude are exchanged; ask its publisher which is which</source>
@@ -8847,7 +9228,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>looking for heights</source>
-        <translation type="unfinished"></translation>
+        <translation>suche Höhen</translation>
     </message>
     <message>
         <source>looking for walls</source>
@@ -8959,7 +9340,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>names no coordinate reference system; name it with --crs</source>
-        <translation type="unfinished"></translation>
+        <translation>nennt kein Koordinatenreferenzsystem; mit --crs angeben</translation>
     </message>
     <message>
         <source>needs the folder of its annotated photos; name it with --data</source>
@@ -9034,6 +9415,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>keine anderen Zeiten dieses Tages verderben weniger Fotos</translation>
     </message>
     <message>
+        <source>no pane has a measured tilt</source>
+        <translation>keine Scheibe hat eine gemessene Neigung</translation>
+    </message>
+    <message>
         <source>no panels found: is the facade seen from its front, and are its frames visible?</source>
         <translation>keine Scheiben gefunden: Ist die Fassade von vorn zu sehen, und sind ihre Rahmen sichtbar?</translation>
     </message>
@@ -9072,6 +9457,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>no two aircraft are in the air at the same time</source>
         <translation>keine zwei Fluggeräte sind zugleich in der Luft</translation>
+    </message>
+    <message>
+        <source>no video can be opened at {0}; it is tried again</source>
+        <translation>unter {0} lässt sich kein Video öffnen; es wird wieder versucht</translation>
     </message>
     <message>
         <source>no view shows a pane</source>
@@ -9131,7 +9520,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>none of the tiles in the folder ({0}) covers the site; it needs {1}</source>
-        <translation type="unfinished"></translation>
+        <translation>keine der Kacheln im Ordner ({0}) deckt den Standort ab; gebraucht wird {1}</translation>
     </message>
     <message>
         <source>none of the {0} images of the COLMAP model is a photo in {1}; are the names in the model the paths below the folder of photos?</source>
@@ -9151,15 +9540,15 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>not KML, or damaged ({0}); export it again</source>
-        <translation type="unfinished"></translation>
+        <translation>kein KML, oder beschädigt ({0}); erneut exportieren</translation>
     </message>
     <message>
         <source>not a GeoTIFF that can be shown ({0}); export it again</source>
-        <translation type="unfinished"></translation>
+        <translation>kein GeoTIFF, das gezeigt werden kann ({0}); erneut exportieren</translation>
     </message>
     <message>
         <source>not a map in PMTiles format, or damaged ({0}); choose another file, or export the map again</source>
-        <translation type="unfinished"></translation>
+        <translation>keine Karte im Format PMTiles, oder beschädigt ({0}); eine andere Datei wählen oder die Karte erneut exportieren</translation>
     </message>
     <message>
         <source>not allowed with argument %s</source>
@@ -9263,7 +9652,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>obstacles from the surface: {0} boxes, and {1} where it has no heights</source>
-        <translation type="unfinished"></translation>
+        <translation>Hindernisse aus der Oberfläche: {0} Quader, und {1}, wo sie keine Höhen hat</translation>
     </message>
     <message>
         <source>of all sections</source>
@@ -9291,7 +9680,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>of {0} it is not known how large, heavy and fast it is; state {1}, or &apos;body&apos; in a profile of your own</source>
-        <translation>von {0} ist nicht bekannt, wie groß, schwer und schnell es ist; geben Sie {1} an, oder 'body' in einem eigenen Profil</translation>
+        <translation>von {0} ist nicht bekannt, wie groß, schwer und schnell es ist; geben Sie {1} an, oder &apos;body&apos; in einem eigenen Profil</translation>
     </message>
     <message>
         <source>off</source>
@@ -9323,11 +9712,11 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>operator number &apos;{0}&apos;: expected 3 capitals for the state, 13 small letters and digits, and perhaps a hyphen and 3 more, such as FIN87astrdge12k8-xyz</source>
-        <translation>Betreibernummer '{0}': erwartet wurden 3 Großbuchstaben für den Staat, 13 kleine Buchstaben und Ziffern und vielleicht ein Bindestrich mit 3 weiteren, etwa FIN87astrdge12k8-xyz</translation>
+        <translation>Betreibernummer &apos;{0}&apos;: erwartet wurden 3 Großbuchstaben für den Staat, 13 kleine Buchstaben und Ziffern und vielleicht ein Bindestrich mit 3 weiteren, etwa FIN87astrdge12k8-xyz</translation>
     </message>
     <message>
         <source>operator number &apos;{0}&apos;: its checksum is wrong; compare it with your registration, letter by letter</source>
-        <translation>Betreibernummer '{0}': ihre Prüfsumme ist falsch; vergleichen Sie sie Zeichen für Zeichen mit Ihrer Registrierung</translation>
+        <translation>Betreibernummer &apos;{0}&apos;: ihre Prüfsumme ist falsch; vergleichen Sie sie Zeichen für Zeichen mit Ihrer Registrierung</translation>
     </message>
     <message>
         <source>operator number: expected 1 to {0} letters and digits, got {1}</source>
@@ -9347,7 +9736,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>over terrain of which no heights are known</source>
-        <translation type="unfinished"></translation>
+        <translation>über Gelände, dessen Höhen nicht bekannt sind</translation>
     </message>
     <message>
         <source>overall IoU of glass</source>
@@ -9360,6 +9749,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>overexposed photos</source>
         <translation>überbelichtete Fotos</translation>
+    </message>
+    <message>
+        <source>panel &apos;{0}&apos; stands there twice</source>
+        <translation>Panel '{0}' steht zweimal darin</translation>
     </message>
     <message>
         <source>panels of photo &apos;{0}&apos; are given for {1} x {2} pixels, but it has {3} x {4}; find and correct them in the photo itself</source>
@@ -9503,7 +9896,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>profile &apos;{0}&apos;</source>
-        <translation>Profil '{0}'</translation>
+        <translation>Profil &apos;{0}&apos;</translation>
     </message>
     <message>
         <source>profile: {0}</source>
@@ -9527,7 +9920,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>reaches beyond the end of web maps (85 degrees); cut out the part that is wanted</source>
-        <translation type="unfinished"></translation>
+        <translation>reicht über das Ende von Webkarten (85 Grad) hinaus; den gewünschten Teil ausschneiden</translation>
     </message>
     <message>
         <source>reaction</source>
@@ -9551,7 +9944,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>reading heights</source>
-        <translation type="unfinished"></translation>
+        <translation>lese Höhen</translation>
     </message>
     <message>
         <source>reading the IFC file</source>
@@ -9675,7 +10068,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>says two units of height: {0} m with its heights and {1} m in its reference system; say the right one with --height-unit</source>
-        <translation type="unfinished"></translation>
+        <translation>nennt zwei Einheiten der Höhe: {0} m bei den Höhen und {1} m im Referenzsystem; die richtige mit --height-unit angeben</translation>
     </message>
     <message>
         <source>scheduler and workers need the same program and libraries as here; {0} {1}: install it there</source>
@@ -9711,7 +10104,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>serial number &apos;{0}&apos;: expected at most {1} letters and digits</source>
-        <translation>Seriennummer '{0}': erwartet wurden höchstens {1} Buchstaben und Ziffern</translation>
+        <translation>Seriennummer &apos;{0}&apos;: erwartet wurden höchstens {1} Buchstaben und Ziffern</translation>
     </message>
     <message>
         <source>setting</source>
@@ -9747,7 +10140,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>site &apos;{0}&apos; without terrain</source>
-        <translation type="unfinished"></translation>
+        <translation>Standort '{0}' ohne Gelände</translation>
     </message>
     <message>
         <source>site &apos;{0}&apos;, {1}</source>
@@ -9859,7 +10252,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>steps of {0} m from heights {1} m apart: bounds at most {2} m off, and {3} m for the accuracy</source>
-        <translation type="unfinished"></translation>
+        <translation>Schritte von {0} m aus Höhen im Abstand von {1} m: Schranken höchstens {2} m daneben, dazu {3} m für die Genauigkeit</translation>
     </message>
     <message>
         <source>stop once the curve is flat, or let it end by itself</source>
@@ -9939,7 +10332,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>terrain and site differ by {0} m at home: where the ground is level there, one of them is wrong; &apos;--shift home&apos; brings the terrain to the site</source>
-        <translation type="unfinished"></translation>
+        <translation>Gelände und Standort unterscheiden sich am Startplatz um {0} m: ist der Boden dort eben, stimmt eines von beiden nicht; '--shift home' bringt das Gelände zum Standort</translation>
     </message>
     <message>
         <source>terrain from {0} m to {1} m in the site&apos;s own frame, known on {2} % of the area</source>
@@ -9963,7 +10356,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>the address holds a password, a space or a letter that addresses do not have</source>
-        <translation type="unfinished"></translation>
+        <translation>die Adresse enthält ein Passwort, ein Leerzeichen oder einen Buchstaben, den Adressen nicht haben</translation>
     </message>
     <message>
         <source>the aircraft did not fly while this log was written; take the log of the flight</source>
@@ -10014,6 +10407,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>der Cluster antwortet nicht mehr ({0}); fertige Fotos bleiben in {1}: noch einmal starten, um weiterzumachen</translation>
     </message>
     <message>
+        <source>the contingency volume reaches into the no-fly zone &apos;{0}&apos;</source>
+        <translation>das Notfallvolumen reicht in die Flugverbotszone '{0}'</translation>
+    </message>
+    <message>
         <source>the control points say the size of the model to {0} % only</source>
         <translation>die Passpunkte sagen die Größe des Modells nur auf {0} %</translation>
     </message>
@@ -10038,12 +10435,16 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>der Datensatz ist da</translation>
     </message>
     <message>
+        <source>the decoder of the video has ended</source>
+        <translation>der Dekoder des Videos ist beendet</translation>
+    </message>
+    <message>
         <source>the device was removed, or no longer answers ({0}); connect it and send again</source>
         <translation>das Gerät wurde entfernt oder antwortet nicht mehr ({0}); schließen Sie es an und senden Sie erneut</translation>
     </message>
     <message>
         <source>the ellipsoid</source>
-        <translation type="unfinished"></translation>
+        <translation>das Ellipsoid</translation>
     </message>
     <message>
         <source>the facade&apos;s horizon runs through its middle: it is seen edge-on, or the lines are wrong</source>
@@ -10087,11 +10488,11 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>the folder has no files of heights; expected .tif or .hgt</source>
-        <translation type="unfinished"></translation>
+        <translation>der Ordner hat keine Dateien mit Höhen; erwartet .tif oder .hgt</translation>
     </message>
     <message>
         <source>the folder has {0} files that may cover the site; expected at most {1}; name the right ones</source>
-        <translation type="unfinished"></translation>
+        <translation>der Ordner hat {0} Dateien, die den Standort abdecken können; erwartet höchstens {1}; die richtigen angeben</translation>
     </message>
     <message>
         <source>the following arguments are required: %s</source>
@@ -10099,7 +10500,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>the ground</source>
-        <translation type="unfinished"></translation>
+        <translation>der Boden</translation>
     </message>
     <message>
         <source>the ground falls away as far as the buffer is widened; limit speed or wind</source>
@@ -10110,20 +10511,32 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>der Boden fällt um {0} Grad; Höhen zählen vom Fuß des Gebäudes</translation>
     </message>
     <message>
+        <source>the ground risk cannot be assessed: {0}</source>
+        <translation>das Bodenrisiko kann nicht bewertet werden: {0}</translation>
+    </message>
+    <message>
         <source>the ground station disconnected; the aircraft went on by itself</source>
         <translation>die Bodenstation hat die Verbindung getrennt; das Fluggerät flog allein weiter</translation>
+    </message>
+    <message>
+        <source>the ground-risk buffer reaches into the no-fly zone &apos;{0}&apos;</source>
+        <translation>der Bodenrisikopuffer reicht in die Flugverbotszone '{0}'</translation>
     </message>
     <message>
         <source>the height &apos;{0}&apos; cannot be read</source>
         <translation>die Höhe &apos;{0}&apos; ist nicht lesbar</translation>
     </message>
     <message>
+        <source>the height &apos;{0}&apos; does not say whether it is above ground or sea</source>
+        <translation>die Höhe '{0}' sagt nicht, ob sie über Grund oder über dem Meer zählt</translation>
+    </message>
+    <message>
         <source>the heights are damaged (expected {0} nodes, found {1}); attach the terrain again</source>
-        <translation type="unfinished"></translation>
+        <translation>die Höhen sind beschädigt (erwartet {0} Knoten, gefunden {1}); das Gelände neu anhängen</translation>
     </message>
     <message>
         <source>the heights are damaged ({0}); attach the terrain again</source>
-        <translation type="unfinished"></translation>
+        <translation>die Höhen sind beschädigt ({0}); das Gelände neu anhängen</translation>
     </message>
     <message>
         <source>the image name at byte {0} has no end; the file is damaged</source>
@@ -10135,7 +10548,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>the latitude is {0} degrees; expected -90 to 90{1}</source>
-        <translation type="unfinished"></translation>
+        <translation>die Breite ist {0} Grad; erwartet wird -90 bis 90{1}</translation>
     </message>
     <message>
         <source>the lens moves pixels by up to {0} px</source>
@@ -10143,7 +10556,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>the licence is missing; enter the words that the map&apos;s owner asks for, such as © OpenStreetMap contributors</source>
-        <translation type="unfinished"></translation>
+        <translation>die Lizenz fehlt; die Worte eingeben, die der Besitzer der Karte verlangt, etwa © OpenStreetMap-Mitwirkende</translation>
     </message>
     <message>
         <source>the link to the simulated vehicle is closed</source>
@@ -10191,7 +10604,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>the longitude is {0} degrees; expected -180 to 180</source>
-        <translation type="unfinished"></translation>
+        <translation>die Länge ist {0} Grad; erwartet wird -180 bis 180</translation>
     </message>
     <message>
         <source>the lower bound</source>
@@ -10199,35 +10612,35 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>the map is compressed with {0}; expected gzip, Zstandard or none; convert it with the program pmtiles</source>
-        <translation type="unfinished"></translation>
+        <translation>die Karte ist mit {0} komprimiert; erwartet wird gzip, Zstandard oder nichts; mit dem Programm pmtiles umwandeln</translation>
     </message>
     <message>
         <source>the map server {0} cannot be reached ({1})</source>
-        <translation type="unfinished"></translation>
+        <translation>der Kartenserver {0} ist nicht erreichbar ({1})</translation>
     </message>
     <message>
         <source>the map server {0} does not answer</source>
-        <translation type="unfinished"></translation>
+        <translation>der Kartenserver {0} antwortet nicht</translation>
     </message>
     <message>
         <source>the map server {0} does not let Reflight in (answer {1}); look at its terms of use</source>
-        <translation type="unfinished"></translation>
+        <translation>der Kartenserver {0} lässt Reflight nicht zu (Antwort {1}); seine Nutzungsbedingungen ansehen</translation>
     </message>
     <message>
         <source>the map server {0} is busy or broken (answer {1})</source>
-        <translation type="unfinished"></translation>
+        <translation>der Kartenserver {0} ist überlastet oder gestört (Antwort {1})</translation>
     </message>
     <message>
         <source>the map server {0} sends elsewhere; enter the address that it sends to</source>
-        <translation type="unfinished"></translation>
+        <translation>der Kartenserver {0} verweist woandershin; die Adresse eingeben, auf die er verweist</translation>
     </message>
     <message>
         <source>the map server {0} sent more than {1} MiB for a tile</source>
-        <translation type="unfinished"></translation>
+        <translation>der Kartenserver {0} hat mehr als {1} MiB für eine Kachel geschickt</translation>
     </message>
     <message>
         <source>the map server {0} sent something else than a map tile ({1}); look at the address</source>
-        <translation type="unfinished"></translation>
+        <translation>der Kartenserver {0} hat etwas anderes als eine Kartenkachel geschickt ({1}); die Adresse prüfen</translation>
     </message>
     <message>
         <source>the mission is called &apos;{0}&apos; there: DJI&apos;s apps take no dots and underscores in names</source>
@@ -10259,11 +10672,11 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>the name does not say where the tile lies; expected one such as N22E114.hgt</source>
-        <translation type="unfinished"></translation>
+        <translation>der Name sagt nicht, wo die Kachel liegt; erwartet etwas wie N22E114.hgt</translation>
     </message>
     <message>
         <source>the name says a place that is not on earth</source>
-        <translation type="unfinished"></translation>
+        <translation>der Name nennt einen Ort, den es auf der Erde nicht gibt</translation>
     </message>
     <message>
         <source>the nearest neighbour ends where there is no leg back; take another method</source>
@@ -10275,11 +10688,11 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>the northing {0} m does not lie in band {1}</source>
-        <translation type="unfinished"></translation>
+        <translation>der Nordwert {0} m liegt nicht im Band {1}</translation>
     </message>
     <message>
         <source>the online map is off</source>
-        <translation type="unfinished"></translation>
+        <translation>die Onlinekarte ist aus</translation>
     </message>
     <message>
         <source>the operator number has the right form; with its secret part its checksum can be proved</source>
@@ -10335,7 +10748,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>the picture does not say where it lies; export it as GeoTIFF with a reference system</source>
-        <translation type="unfinished"></translation>
+        <translation>das Bild sagt nicht, wo es liegt; als GeoTIFF mit Bezugssystem exportieren</translation>
     </message>
     <message>
         <source>the picture is distorted, and splats are rendered without distortion; make it straight with `prepare`</source>
@@ -10410,6 +10823,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>die Standortdatei hat sich geändert, seit der Plan gemacht wurde; Fotos zeigen sie, wie sie jetzt ist</translation>
     </message>
     <message>
+        <source>the site has another origin than when the plan was made; plan again on the site as it is</source>
+        <translation>der Standort hat einen anderen Ursprung als bei der Planung; planen Sie neu auf dem Standort, wie er ist</translation>
+    </message>
+    <message>
         <source>the site has no building mesh, and panels are found on one; name a mesh instead</source>
         <translation>der Standort hat kein Gebäudenetz, und Scheiben werden auf einem gefunden; stattdessen ein Netz nennen</translation>
     </message>
@@ -10422,6 +10839,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>der Standort hat keine Geozonen, darum wird nicht geprüft, welche hier gelten</translation>
     </message>
     <message>
+        <source>the site has no panel &apos;{0}&apos;</source>
+        <translation>der Standort hat kein Panel '{0}'</translation>
+    </message>
+    <message>
         <source>the site has no panels</source>
         <translation>der Standort hat keine Paneele</translation>
     </message>
@@ -10431,7 +10852,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>the site has no terrain</source>
-        <translation type="unfinished"></translation>
+        <translation>der Standort hat kein Gelände</translation>
     </message>
     <message>
         <source>the site needs panels first</source>
@@ -10483,11 +10904,11 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>the surface</source>
-        <translation type="unfinished"></translation>
+        <translation>die Oberfläche</translation>
     </message>
     <message>
         <source>the surface makes more than {0} separate obstacles; give a longer --resolution, or a greater --taller-than</source>
-        <translation type="unfinished"></translation>
+        <translation>die Oberfläche ergibt mehr als {0} einzelne Hindernisse; eine gröbere --resolution oder ein größeres --taller-than angeben</translation>
     </message>
     <message>
         <source>the table is empty; expected a line with the names of its columns</source>
@@ -10503,19 +10924,19 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>the terrain below the airspace departs from its level ground by up to {0} m</source>
-        <translation type="unfinished"></translation>
+        <translation>das Gelände unter dem Luftraum weicht um bis zu {0} m vom ebenen Boden ab</translation>
     </message>
     <message>
         <source>the terrain cannot be brought to home: it has no heights there; give the shift in metres</source>
-        <translation type="unfinished"></translation>
+        <translation>das Gelände kann nicht zum Startplatz gebracht werden: es hat dort keine Höhen; die Verschiebung in Metern angeben</translation>
     </message>
     <message>
         <source>the terrain has no heights below it</source>
-        <translation type="unfinished"></translation>
+        <translation>das Gelände hat darunter keine Höhen</translation>
     </message>
     <message>
         <source>the terrain has no heights below the path (legs concerned: {0}): what is not known is not clear; attach terrain that covers it, or plan it again</source>
-        <translation type="unfinished"></translation>
+        <translation>das Gelände hat unter dem Weg keine Höhen (betroffene Strecken: {0}): was nicht bekannt ist, ist nicht frei; Gelände anhängen, das ihn abdeckt, oder neu planen</translation>
     </message>
     <message>
         <source>the terrain has no heights for a part below it, so its heights are not known</source>
@@ -10523,7 +10944,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>the terrain has no heights for a part below the airspace</source>
-        <translation type="unfinished"></translation>
+        <translation>das Gelände hat für einen Teil unter dem Luftraum keine Höhen</translation>
     </message>
     <message>
         <source>the terrain has no heights for a part of the buffer: what lies lower there is not counted</source>
@@ -10531,15 +10952,15 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>the terrain of the site is not used, as you asked, though {0}; heights count from level ground</source>
-        <translation type="unfinished"></translation>
+        <translation>das Gelände des Standorts wird wie gewünscht nicht benutzt, obwohl gilt: {0}; Höhen zählen vom ebenen Boden</translation>
     </message>
     <message>
         <source>the terrain of the site was made for the place where it is, and would lie wrong elsewhere; take it off first (&apos;site terrain --remove&apos;), and attach it again after the move</source>
-        <translation type="unfinished"></translation>
+        <translation>das Gelände des Standorts gilt für seinen jetzigen Ort und läge anderswo falsch; zuerst abnehmen ('site terrain --remove') und nach dem Verschieben neu anhängen</translation>
     </message>
     <message>
         <source>the terrain was shifted by {0} m, so that home stands on it</source>
-        <translation type="unfinished"></translation>
+        <translation>das Gelände wurde um {0} m verschoben, damit der Startplatz darauf steht</translation>
     </message>
     <message>
         <source>the time since boot began again</source>
@@ -10566,6 +10987,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>das Fahrzeug lehnt ab: {0}</translation>
     </message>
     <message>
+        <source>the video has stopped; it is tried again</source>
+        <translation>das Video ist stehen geblieben; es wird wieder versucht</translation>
+    </message>
+    <message>
         <source>the walls do not close to blocks; each got a depth of {0} m</source>
         <translation>die Wände schließen sich nicht zu Baukörpern; jede bekam eine Tiefe von {0} m</translation>
     </message>
@@ -10579,7 +11004,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>the zone is {0}; UTM has zones from 1 to 60</source>
-        <translation type="unfinished"></translation>
+        <translation>die Zone ist {0}; UTM hat Zonen von 1 bis 60</translation>
     </message>
     <message>
         <source>there are no logs on the vehicle</source>
@@ -10607,7 +11032,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>there is no KML in it; choose another file</source>
-        <translation type="unfinished"></translation>
+        <translation>darin ist kein KML; eine andere Datei wählen</translation>
     </message>
     <message>
         <source>there is no folder or device &apos;{0}&apos;; connected: {1}</source>
@@ -10623,11 +11048,11 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>there is no square {0} in band {1} of zone {2}</source>
-        <translation type="unfinished"></translation>
+        <translation>das Quadrat {0} gibt es im Band {1} der Zone {2} nicht</translation>
     </message>
     <message>
         <source>there is no square {0} in zone {1}</source>
-        <translation type="unfinished"></translation>
+        <translation>das Quadrat {0} gibt es in Zone {1} nicht</translation>
     </message>
     <message>
         <source>there is no such file or folder</source>
@@ -10635,7 +11060,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>there is no such file; choose an MBTiles or PMTiles file</source>
-        <translation type="unfinished"></translation>
+        <translation>diese Datei gibt es nicht; eine MBTiles- oder PMTiles-Datei wählen</translation>
     </message>
     <message>
         <source>there is no such folder or device; connect it and look again</source>
@@ -10651,7 +11076,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>there is nothing in it that has a place: no points, lines or areas; choose another file</source>
-        <translation type="unfinished"></translation>
+        <translation>nichts darin hat einen Ort: keine Punkte, Linien oder Flächen; eine andere Datei wählen</translation>
     </message>
     <message>
         <source>there is one photo</source>
@@ -10671,7 +11096,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>this place is {0} km from the site; move the site&apos;s zero there first</source>
-        <translation type="unfinished"></translation>
+        <translation>dieser Ort liegt {0} km vom Standort entfernt; zuerst den Nullpunkt dorthin setzen</translation>
     </message>
     <message>
         <source>this source begins on {0} only</source>
@@ -10751,7 +11176,19 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>value</source>
-        <translation type="unfinished">Wert</translation>
+        <translation>Wert</translation>
+    </message>
+    <message>
+        <source>video: expected a port from 1 to 65535 in &apos;{0}&apos;</source>
+        <translation>Video: einen Port von 1 bis 65535 in '{0}' erwartet</translation>
+    </message>
+    <message>
+        <source>video: expected an address without a password, for addresses are kept; found one</source>
+        <translation>Video: eine Adresse ohne Passwort erwartet, denn Adressen werden gespeichert; eines gefunden</translation>
+    </message>
+    <message>
+        <source>video: expected rtsp://HOST:PORT/PATH or udp://HOST:PORT, found &apos;{0}&apos;</source>
+        <translation>Video: rtsp://HOST:PORT/PFAD oder udp://HOST:PORT erwartet, '{0}' gefunden</translation>
     </message>
     <message>
         <source>viewpoints: {0}</source>
@@ -10839,7 +11276,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>zone &apos;{0}&apos; differs between files ({1}); name one as FILE/ZONE</source>
-        <translation>Zone '{0}' ist in den Dateien verschieden ({1}); eine als DATEI/ZONE nennen</translation>
+        <translation>Zone &apos;{0}&apos; ist in den Dateien verschieden ({1}); eine als DATEI/ZONE nennen</translation>
     </message>
     <message>
         <source>zones: {0}</source>
@@ -10918,6 +11355,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>{0} Zeilen des Logs ergeben keinen Sinn und wurden übersprungen</translation>
     </message>
     <message>
+        <source>{0} m from the airspace</source>
+        <translation>{0} m vom Luftraum</translation>
+    </message>
+    <message>
         <source>{0} may fly in wind of up to {1} m/s, but {2} m/s are stated; wait for less, or take another aircraft</source>
         <translation>{0} darf in Wind bis {1} m/s fliegen, angegeben sind aber {2} m/s; warten Sie auf weniger, oder nehmen Sie ein anderes Fluggerät</translation>
     </message>
@@ -10928,6 +11369,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>{0} of {1} found their place, {2} points, {3} of {4} pairs matched, image points off by {5} px</source>
         <translation>{0} von {1} haben ihren Platz gefunden, {2} Punkte, {3} von {4} Paaren verglichen, Bildpunkte liegen um {5} px daneben</translation>
+    </message>
+    <message>
+        <source>{0} of {1} panes have measured tilts, up to {2} degrees: they shift their glare by up to {3} min</source>
+        <translation>{0} von {1} Scheiben haben gemessene Neigungen, bis zu {2} Grad: sie verschieben ihre Blendung um bis zu {3} min</translation>
     </message>
     <message>
         <source>{0} of {1} photos do not say their focal length: it is found with the model</source>
@@ -11014,6 +11459,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>{0}: andere Programme suchen {1}-Dateien mit Namen, die auf {2} enden</translation>
     </message>
     <message>
+        <source>{0}: zones {1}, within {2} m of the airspace {3}; SHA-256 {4}</source>
+        <translation>{0}: Zonen {1}, bis {2} m vom Luftraum {3}; SHA-256 {4}</translation>
+    </message>
+    <message>
         <source>{0}: {1} items, read back and equal</source>
         <translation>{0}: {1} Elemente, zurückgelesen und gleich</translation>
     </message>
@@ -11023,7 +11472,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>{0}; export it again</source>
-        <translation type="unfinished"></translation>
+        <translation>{0}; erneut exportieren</translation>
     </message>
     <message>
         <source>{0}; the sun or its mirror image is in {1} of {2} photos, {3} show uneven light, the pilot is blinded for {4} s</source>
@@ -12243,11 +12692,11 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>the terrain of the site was made for the place where it is, and would lie wrong elsewhere; take it off first (Site &gt; Terrain), and attach it again after the move</source>
-        <translation type="unfinished"></translation>
+        <translation>das Gelände des Standorts gilt für seinen jetzigen Ort und läge anderswo falsch; zuerst abnehmen (Standort &gt; Gelände) und nach dem Verschieben neu anhängen</translation>
     </message>
     <message>
         <source>terrain and site differ by {0} m at home: where the ground is level there, one of them is wrong; the terrain can be brought to home</source>
-        <translation type="unfinished"></translation>
+        <translation>Gelände und Standort unterscheiden sich am Startplatz um {0} m: ist der Boden dort eben, stimmt eines von beiden nicht; das Gelände kann zum Startplatz gebracht werden</translation>
     </message>
     <message>
         <source>the picture is distorted, and splats are rendered without distortion; make a data set of it (Photos tab)</source>
@@ -12578,28 +13027,32 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>    {0}</translation>
     </message>
     <message>
+        <source>  {0} [{1}]: {2}; {3}; {4}</source>
+        <translation>  {0} [{1}]: {2}; {3}; {4}</translation>
+    </message>
+    <message>
         <source> (remote ID: {0})</source>
         <translation> (Remote ID: {0})</translation>
     </message>
     <message>
         <source>&apos;O&apos; is east in German and west in French; write E or W</source>
-        <translation type="unfinished"></translation>
+        <translation>'O' ist deutsch Ost und französisch West; E oder W schreiben</translation>
     </message>
     <message>
         <source>&apos;{0}&apos; has 60 or more minutes or seconds</source>
-        <translation type="unfinished"></translation>
+        <translation>'{0}' hat 60 oder mehr Minuten oder Sekunden</translation>
     </message>
     <message>
         <source>&apos;{0}&apos; has decimals before its last part</source>
-        <translation type="unfinished"></translation>
+        <translation>'{0}' hat Nachkommastellen vor dem letzten Teil</translation>
     </message>
     <message>
         <source>&apos;{0}&apos; is no band of UTM; bands are C to X without I and O</source>
-        <translation type="unfinished"></translation>
+        <translation>'{0}' ist kein UTM-Band; Bänder sind C bis X ohne I und O</translation>
     </message>
     <message>
         <source>&apos;{0}&apos; is no place; expected latitude and longitude (22.3372, 114.2636, or 22°20&apos;14&quot; N 114°15&apos;49&quot; E), UTM (50Q 218155 2472500) or MGRS (50Q KK 18155 72500)</source>
-        <translation type="unfinished"></translation>
+        <translation>'{0}' ist kein Ort; erwartet werden Breite und Länge (22.3372, 114.2636 oder 22°20'14" N 114°15'49" E), UTM (50Q 218155 2472500) oder MGRS (50Q KK 18155 72500)</translation>
     </message>
     <message>
         <source>, {0} dB on facades of {1}</source>
@@ -12615,7 +13068,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>; is the longitude written first?</source>
-        <translation type="unfinished"></translation>
+        <translation>; steht die Länge vorn?</translation>
     </message>
     <message>
         <source>; their base stands {0} km away</source>
@@ -12675,7 +13128,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>Airspace</source>
-        <translation type="unfinished">Luftraum</translation>
+        <translation>Luftraum</translation>
     </message>
     <message>
         <source>Airspace around the building</source>
@@ -12806,10 +13259,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation type="unfinished">Eigene Posen</translation>
     </message>
     <message>
-        <source>Panel grid</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
         <source>Photos with their poses, and the panels of the site: what a model learns from.</source>
         <translation>Fotos mit ihren Posen und die Scheiben des Standorts: wovon ein Modell lernt.</translation>
     </message>
@@ -12844,10 +13293,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>Safety distance</source>
         <translation type="unfinished">Mindestabstand</translation>
-    </message>
-    <message>
-        <source>Section</source>
-        <translation type="unfinished">Schnitt</translation>
     </message>
     <message>
         <source>Section step</source>
@@ -12915,7 +13360,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>Viewpoints</source>
-        <translation type="unfinished">Punkte</translation>
+        <translation>Punkte</translation>
     </message>
     <message>
         <source>Views</source>
@@ -12951,7 +13396,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>a GeoTIFF</source>
-        <translation type="unfinished"></translation>
+        <translation>ein GeoTIFF</translation>
     </message>
     <message>
         <source>a draft: check every number before you use it</source>
@@ -12967,15 +13412,15 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>a map tile</source>
-        <translation type="unfinished"></translation>
+        <translation>eine Kartenkachel</translation>
     </message>
     <message>
         <source>a part of its outline is a &apos;{0}&apos;, which is not read</source>
-        <translation>ein Teil ihres Umrisses ist '{0}', was nicht gelesen wird</translation>
+        <translation>ein Teil ihres Umrisses ist &apos;{0}&apos;, was nicht gelesen wird</translation>
     </message>
     <message>
         <source>a part of its outline stands elsewhere (&apos;{0}&apos;)</source>
-        <translation>ein Teil ihres Umrisses steht anderswo ('{0}')</translation>
+        <translation>ein Teil ihres Umrisses steht anderswo (&apos;{0}&apos;)</translation>
     </message>
     <message>
         <source>a straight return home may leave the paths; set hover or land for lost links, or take the hull</source>
@@ -12999,7 +13444,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>an overlay of shapes</source>
-        <translation type="unfinished"></translation>
+        <translation>eine Auflage mit Formen</translation>
     </message>
     <message>
         <source>another window writes it for too long; the flight is not in it</source>
@@ -13055,11 +13500,11 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>corrections: expected USER@HOST:PORT/MOUNTPOINT, such as me@rtk.example.org:2101/VRS, got &apos;{0}&apos;</source>
-        <translation>Korrekturen: erwartet wurde USER@HOST:PORT/MOUNTPOINT, etwa me@rtk.example.org:2101/VRS, es ist '{0}'</translation>
+        <translation>Korrekturen: erwartet wurde USER@HOST:PORT/MOUNTPOINT, etwa me@rtk.example.org:2101/VRS, es ist &apos;{0}&apos;</translation>
     </message>
     <message>
         <source>cut out the part that is wanted</source>
-        <translation type="unfinished"></translation>
+        <translation>den gewünschten Teil ausschneiden</translation>
     </message>
     <message>
         <source>downwind, full speed</source>
@@ -13091,7 +13536,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>site &apos;{0}&apos;</source>
-        <translation>Standort '{0}'</translation>
+        <translation>Standort &apos;{0}&apos;</translation>
     </message>
     <message>
         <source>the panes mirror something that the site lacks: {0} x {1} m, {2} m high, {3} m from home at bearing {4}; the flight keeps clear of what is seen of it, but look before you fly, and enter it into the site</source>
@@ -13299,11 +13744,11 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>where home stands the files have no heights: no flight can be planned until home is moved</source>
-        <translation type="unfinished"></translation>
+        <translation>am Startplatz haben die Dateien keine Höhen: bis er verschoben ist, lässt sich kein Flug planen</translation>
     </message>
     <message>
         <source>where the ground is not known, the surface counts as ground</source>
-        <translation type="unfinished"></translation>
+        <translation>wo der Boden nicht bekannt ist, zählt die Oberfläche als Boden</translation>
     </message>
     <message>
         <source>whole</source>
@@ -13411,7 +13856,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>{0} has roofs and trees in it, smoothed: they count as ground, not as obstacles</source>
-        <translation type="unfinished"></translation>
+        <translation>{0} enthält Dächer und Bäume, geglättet: sie zählen als Boden, nicht als Hindernisse</translation>
     </message>
     <message>
         <source>{0} has {1} x {2} pixels; expected at most {3}</source>
@@ -13447,7 +13892,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>{0} is good to {1} m at nine of ten places: so much more is kept above the ground; another value can be given with --accuracy</source>
-        <translation type="unfinished"></translation>
+        <translation>{0} stimmt an neun von zehn Orten auf {1} m: so viel mehr Höhe über Grund wird gehalten; ein anderer Wert lässt sich mit --accuracy angeben</translation>
     </message>
     <message>
         <source>{0} is missing</source>
@@ -13459,7 +13904,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>{0} is not known on {1} % of the area: no flight is planned there</source>
-        <translation type="unfinished"></translation>
+        <translation>{0} ist auf {1} % der Fläche nicht bekannt: dort wird kein Flug geplant</translation>
     </message>
     <message>
         <source>{0} is {1}, which has no place in MISSION_ITEM_INT; expected {2}</source>
@@ -13471,7 +13916,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>{0} m above the terrain</source>
-        <translation type="unfinished"></translation>
+        <translation>{0} m über dem Gelände</translation>
     </message>
     <message>
         <source>{0} m kept at least</source>
@@ -13682,10 +14127,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>{0} x {1} pixels, but its photo has {2} x {3}</source>
         <translation>{0} x {1} Pixel, aber sein Foto hat {2} x {3}</translation>
-    </message>
-    <message>
-        <source>{0} zones in {1}, {2} of them within {3} m of the airspace; SHA-256 {4}</source>
-        <translation>{0} Zonen in {1}, {2} davon bis {3} m vom Luftraum; SHA-256 {4}</translation>
     </message>
     <message>
         <source>{0} {1}</source>
@@ -19195,6 +19636,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Ihr Passwort</translation>
     </message>
     <message>
+        <source>The camera&apos;s stream, by RTSP, or as an MPEG transport stream by UDP</source>
+        <translation>Der Strom der Kamera, über RTSP oder als MPEG-Transportstrom über UDP</translation>
+    </message>
+    <message>
+        <source>Video</source>
+        <translation>Video</translation>
+    </message>
+    <message>
         <source>Start waits for RTK, and a warning comes when it is lost in flight.</source>
         <translation>Der Start wartet auf RTK, und geht es im Flug verloren, kommt eine Warnung.</translation>
     </message>
@@ -19326,7 +19775,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>Pick no place</source>
-        <translation type="unfinished"></translation>
+        <translation>Keinen Ort wählen</translation>
     </message>
     <message>
         <source>Camera preview</source>
@@ -19772,11 +20221,11 @@ Größe: {3}; Dreiecke: {4}</translation>
     </message>
     <message>
         <source>Zero on map</source>
-        <translation type="unfinished"></translation>
+        <translation>Nullpunkt auf Karte</translation>
     </message>
     <message>
         <source>Click on the map where the site&apos;s zero lies</source>
-        <translation type="unfinished"></translation>
+        <translation>Auf der Karte anklicken, wo der Nullpunkt des Standorts liegt</translation>
     </message>
     <message>
         <source>Airspace</source>
@@ -19808,15 +20257,15 @@ Größe: {3}; Dreiecke: {4}</translation>
     </message>
     <message>
         <source>Click where the aircraft takes off and lands. Esc cancels.</source>
-        <translation type="unfinished">Klicken, wo das Fluggerät startet und landet. Esc bricht ab.</translation>
+        <translation>Anklicken, wo das Fluggerät startet und landet. Esc bricht ab.</translation>
     </message>
     <message>
         <source>Click where the aircraft may land when it returns. Esc cancels.</source>
-        <translation type="unfinished">Anklicken, wo das Fluggerät bei der Rückkehr landen darf. Esc bricht ab.</translation>
+        <translation>Anklicken, wo das Fluggerät bei der Rückkehr landen darf. Esc bricht ab.</translation>
     </message>
     <message>
         <source>Click where the site&apos;s zero lies: all of the site moves there. Esc cancels.</source>
-        <translation type="unfinished"></translation>
+        <translation>Anklicken, wo der Nullpunkt liegt: Der ganze Standort rückt dorthin. Esc bricht ab.</translation>
     </message>
     <message>
         <source>Set origin</source>
@@ -19915,6 +20364,57 @@ Größe: {3}; Dreiecke: {4}</translation>
     <message>
         <source>Rally points</source>
         <translation>Rally-Punkte</translation>
+    </message>
+</context>
+<context>
+    <name>SoraDialog</name>
+    <message>
+        <source>Ground risk (SORA 2.5)</source>
+        <translation>Bodenrisiko (SORA 2.5)</translation>
+    </message>
+    <message>
+        <source>Numbers with formula and source</source>
+        <translation>Zahlen mit Formel und Quelle</translation>
+    </message>
+    <message>
+        <source>Save draft ...</source>
+        <translation>Entwurf speichern ...</translation>
+    </message>
+    <message>
+        <source>Table, KML and GeoJSON into a folder</source>
+        <translation>Tabelle, KML und GeoJSON in einen Ordner</translation>
+    </message>
+    <message>
+        <source>Close</source>
+        <translation>Schließen</translation>
+    </message>
+    <message>
+        <source>Assessing, and letting aircraft fly away ...</source>
+        <translation>Wird bewertet, mit simulierten Ausreißern ...</translation>
+    </message>
+    <message>
+        <source>Ground risk</source>
+        <translation>Bodenrisiko</translation>
+    </message>
+    <message>
+        <source>A draft: check every number before you use it.</source>
+        <translation>Ein Entwurf: prüfen Sie jede Zahl, bevor Sie sie verwenden.</translation>
+    </message>
+    <message>
+        <source>Not assessed: {0}</source>
+        <translation>Nicht bewertet: {0}</translation>
+    </message>
+    <message>
+        <source>Save the draft into this folder</source>
+        <translation>Entwurf in diesem Ordner speichern</translation>
+    </message>
+    <message>
+        <source>Draft saved in {0}: {1}</source>
+        <translation>Entwurf gespeichert in {0}: {1}</translation>
+    </message>
+    <message>
+        <source>Save draft</source>
+        <translation>Entwurf speichern</translation>
     </message>
 </context>
 <context>
@@ -21076,6 +21576,10 @@ Größe: {3}; Dreiecke: {4}</translation>
     <message>
         <source>{0} from the airspace</source>
         <translation>{0} vom Luftraum</translation>
+    </message>
+    <message>
+        <source>Its place is not known.</source>
+        <translation>Ihr Ort ist nicht bekannt.</translation>
     </message>
     <message>
         <source>It reaches over the airspace.</source>
