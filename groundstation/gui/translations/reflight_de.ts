@@ -1843,7 +1843,7 @@ Um trotzdem zu fliegen, {1} eintippen:</translation>
     </message>
     <message>
         <source>Report</source>
-        <translation type="unfinished">Bericht</translation>
+        <translation>Bericht</translation>
     </message>
 </context>
 <context>
@@ -2607,7 +2607,7 @@ Scheiben: {2}, je {3} × {4}</translation>
     </message>
     <message>
         <source>The site as the camera should see it, from the pose that the vehicle reports</source>
-        <translation type="unfinished"></translation>
+        <translation>Der Standort, wie die Kamera ihn sehen sollte, aus der Pose, die das Fluggerät meldet</translation>
     </message>
     <message>
         <source>Drawn: no video</source>
@@ -2657,7 +2657,7 @@ Scheiben: {2}, je {3} × {4}</translation>
     </message>
     <message>
         <source>Written: {0}</source>
-        <translation type="unfinished">Geschrieben: {0}</translation>
+        <translation>Geschrieben: {0}</translation>
     </message>
     <message>
         <source>Battery {0}: flights: {1}, cycles: {2:.1f}</source>
@@ -2681,7 +2681,7 @@ Scheiben: {2}, je {3} × {4}</translation>
     </message>
     <message>
         <source>Time</source>
-        <translation type="unfinished">Zeit</translation>
+        <translation>Zeit</translation>
     </message>
     <message>
         <source>Site</source>
@@ -2689,11 +2689,11 @@ Scheiben: {2}, je {3} × {4}</translation>
     </message>
     <message>
         <source>Aircraft</source>
-        <translation type="unfinished">Fluggerät</translation>
+        <translation>Fluggerät</translation>
     </message>
     <message>
         <source>Battery</source>
-        <translation type="unfinished">Akku</translation>
+        <translation>Akku</translation>
     </message>
     <message>
         <source>Charge used</source>
@@ -2701,11 +2701,11 @@ Scheiben: {2}, je {3} × {4}</translation>
     </message>
     <message>
         <source>Photos</source>
-        <translation type="unfinished">Fotos</translation>
+        <translation>Fotos</translation>
     </message>
     <message>
         <source>Findings</source>
-        <translation type="unfinished">Befunde</translation>
+        <translation>Befunde</translation>
     </message>
     <message>
         <source>Ended</source>
@@ -2713,7 +2713,7 @@ Scheiben: {2}, je {3} × {4}</translation>
     </message>
     <message>
         <source>landed</source>
-        <translation type="unfinished">gelandet</translation>
+        <translation>gelandet</translation>
     </message>
 </context>
 <context>
@@ -2847,8 +2847,8 @@ Scheiben: {2}, je {3} × {4}</translation>
 <context>
     <name>MapLayers</name>
     <message>
-        <source>Plan</source>
-        <translation>Plan</translation>
+        <source>Sortie {0}</source>
+        <translation>Einsatz {0}</translation>
     </message>
     <message>
         <source>Site</source>
@@ -2890,8 +2890,8 @@ Scheiben: {2}, je {3} × {4}</translation>
         <translation>Die Karte „{0}“ enthält diesen Ort nicht.</translation>
     </message>
     <message>
-        <source>Find: {0}, UTM or MGRS</source>
-        <translation type="unfinished"></translation>
+        <source>Find coordinates, UTM, MGRS</source>
+        <translation>Koordinaten, UTM, MGRS suchen</translation>
     </message>
     <message>
         <source>Find a place by its coordinates</source>
@@ -6633,8 +6633,8 @@ Damit weiterarbeiten?</translation>
         <translation>Punkte</translation>
     </message>
     <message>
-        <source>Pyramids of all views</source>
-        <translation type="unfinished"></translation>
+        <source>All pyramids</source>
+        <translation>Alle Pyramiden</translation>
     </message>
     <message>
         <source>Panels</source>
@@ -6709,7 +6709,7 @@ Damit weiterarbeiten?</translation>
     </message>
     <message>
         <source>No objections to these files.</source>
-        <translation type="unfinished">Keine Einwände gegen diese Dateien.</translation>
+        <translation>Keine Einwände gegen diese Dateien.</translation>
     </message>
     <message>
         <source>Send</source>
@@ -6749,11 +6749,11 @@ Damit weiterarbeiten?</translation>
     </message>
     <message>
         <source>Making the files ...</source>
-        <translation type="unfinished">Dateien werden erstellt ...</translation>
+        <translation>Dateien werden erstellt ...</translation>
     </message>
     <message>
         <source>Prepare export</source>
-        <translation type="unfinished">Export vorbereiten</translation>
+        <translation>Export vorbereiten</translation>
     </message>
     <message>
         <source>Cannot be sent: {0}</source>
@@ -6785,7 +6785,7 @@ Kopien von ihnen bleiben auf diesem Computer.</translation>
     </message>
     <message>
         <source>Replace files?</source>
-        <translation type="unfinished">Dateien ersetzen?</translation>
+        <translation>Dateien ersetzen?</translation>
     </message>
     <message>
         <source>Writing and reading back ...</source>
@@ -7110,7 +7110,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>&apos;{0}&apos; is nothing that heights are above; expected ellipsoid, egm96, egm2008 or the code of a height system such as EPSG:7837</source>
-        <translation>'{0}' ist nichts, worüber Höhen gezählt werden; erwartet: ellipsoid, egm96, egm2008 oder der Code eines Höhensystems wie EPSG:7837</translation>
+        <translation>&apos;{0}&apos; ist nichts, worüber Höhen gezählt werden; erwartet: ellipsoid, egm96, egm2008 oder der Code eines Höhensystems wie EPSG:7837</translation>
     </message>
     <message>
         <source>&apos;{0}&apos;, added on {1}</source>
@@ -7206,7 +7206,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>EGM96 stands in for &apos;{0}&apos;, which may be off by 1 m, in mountains by 2 m; home stands on the same terrain, so heights above take-off do not change</source>
-        <translation>EGM96 steht für '{0}' ein, was um 1 m falsch sein kann, im Gebirge um 2 m; der Startplatz steht auf demselben Gelände, Höhen über dem Start ändern sich also nicht</translation>
+        <translation>EGM96 steht für &apos;{0}&apos; ein, was um 1 m falsch sein kann, im Gebirge um 2 m; der Startplatz steht auf demselben Gelände, Höhen über dem Start ändern sich also nicht</translation>
     </message>
     <message>
         <source>Export</source>
@@ -7856,7 +7856,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>expected -{0} to {1} degrees, got &apos;{2}&apos;</source>
-        <translation>erwartet wurden -{0} bis {1} Grad, gefunden '{2}'</translation>
+        <translation>erwartet wurden -{0} bis {1} Grad, gefunden &apos;{2}&apos;</translation>
     </message>
     <message>
         <source>expected -{0} to {1} degrees, got {2}</source>
@@ -7892,7 +7892,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>expected KML, found &apos;{0}&apos;; choose another file</source>
-        <translation>erwartet wird KML, gefunden wurde '{0}'; eine andere Datei wählen</translation>
+        <translation>erwartet wird KML, gefunden wurde &apos;{0}&apos;; eine andere Datei wählen</translation>
     </message>
     <message>
         <source>expected PMTiles of version 3, found version {0}; convert the map with the program pmtiles</source>
@@ -8088,7 +8088,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>expected an address such as https://tile.example.org/{0}, found &apos;{1}&apos;</source>
-        <translation>erwartet wird eine Adresse wie https://tile.example.org/{0}, gefunden wurde '{1}'</translation>
+        <translation>erwartet wird eine Adresse wie https://tile.example.org/{0}, gefunden wurde &apos;{1}&apos;</translation>
     </message>
     <message>
         <source>expected an earlier time than --until {0}, got {1}</source>
@@ -8120,7 +8120,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>expected as many digits of easting as of northing, up to 5 each, found &apos;{0}&apos;</source>
-        <translation>erwartet werden so viele Ziffern für Ost wie für Nord, bis je 5, gefunden wurde '{0}'</translation>
+        <translation>erwartet werden so viele Ziffern für Ost wie für Nord, bis je 5, gefunden wurde &apos;{0}&apos;</translation>
     </message>
     <message>
         <source>expected at least 2 x 2 and at most {0} nodes, got {1} x {2}</source>
@@ -8152,7 +8152,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>expected coordinates as lon,lat in KML, found &apos;{0}&apos;</source>
-        <translation>erwartet werden Koordinaten als Länge,Breite in KML, gefunden wurde '{0}'</translation>
+        <translation>erwartet werden Koordinaten als Länge,Breite in KML, gefunden wurde &apos;{0}&apos;</translation>
     </message>
     <message>
         <source>expected distinct point numbers, {0} occurs twice</source>
@@ -8376,7 +8376,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>expected {0} once each behind the server&apos;s name, found &apos;{1}&apos;</source>
-        <translation>erwartet wird je einmal {0} hinter dem Namen des Servers, gefunden wurde '{1}'</translation>
+        <translation>erwartet wird je einmal {0} hinter dem Namen des Servers, gefunden wurde &apos;{1}&apos;</translation>
     </message>
     <message>
         <source>expected {0} or more photos, or 0, got {1}</source>
@@ -8461,6 +8461,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>fewer than {0} per square kilometre, {1} in the whole area</source>
         <translation>weniger als {0} je Quadratkilometer, {1} im ganzen Gebiet</translation>
+    </message>
+    <message>
+        <source>files overlap, and their heights differ by up to {0} m: the higher counts below flights, the first for home</source>
+        <translation>Dateien überlappen sich, und ihre Höhen unterscheiden sich um bis zu {0} m: unter Flügen zählt die höhere, für den Startplatz die erste</translation>
     </message>
     <message>
         <source>final ground risk class</source>
@@ -9060,7 +9064,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>its heights are in the unit &apos;{0}&apos;, which is not known here; say it with --height-unit</source>
-        <translation>ihre Höhen sind in der Einheit '{0}', die hier nicht bekannt ist; mit --height-unit angeben</translation>
+        <translation>ihre Höhen sind in der Einheit &apos;{0}&apos;, die hier nicht bekannt ist; mit --height-unit angeben</translation>
     </message>
     <message>
         <source>its lower limit &apos;{0}&apos; lies above the upper one &apos;{1}&apos;</source>
@@ -9459,6 +9463,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>keine zwei Fluggeräte sind zugleich in der Luft</translation>
     </message>
     <message>
+        <source>no type</source>
+        <translation>kein Typ</translation>
+    </message>
+    <message>
         <source>no video can be opened at {0}; it is tried again</source>
         <translation>unter {0} lässt sich kein Video öffnen; es wird wieder versucht</translation>
     </message>
@@ -9752,7 +9760,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>panel &apos;{0}&apos; stands there twice</source>
-        <translation>Panel '{0}' steht zweimal darin</translation>
+        <translation>Panel &apos;{0}&apos; steht zweimal darin</translation>
     </message>
     <message>
         <source>panels of photo &apos;{0}&apos; are given for {1} x {2} pixels, but it has {3} x {4}; find and correct them in the photo itself</source>
@@ -9967,6 +9975,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>flugbereit, aber {0} oben lesen</translation>
     </message>
     <message>
+        <source>ready to take off</source>
+        <translation>startbereit</translation>
+    </message>
+    <message>
         <source>receivers are off by {0} m in the middle, {1} m at most</source>
         <translation>die Empfänger liegen im Mittel um {0} m daneben, höchstens um {1} m</translation>
     </message>
@@ -10140,7 +10152,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>site &apos;{0}&apos; without terrain</source>
-        <translation>Standort '{0}' ohne Gelände</translation>
+        <translation>Standort &apos;{0}&apos; ohne Gelände</translation>
     </message>
     <message>
         <source>site &apos;{0}&apos;, {1}</source>
@@ -10332,7 +10344,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>terrain and site differ by {0} m at home: where the ground is level there, one of them is wrong; &apos;--shift home&apos; brings the terrain to the site</source>
-        <translation>Gelände und Standort unterscheiden sich am Startplatz um {0} m: ist der Boden dort eben, stimmt eines von beiden nicht; '--shift home' bringt das Gelände zum Standort</translation>
+        <translation>Gelände und Standort unterscheiden sich am Startplatz um {0} m: ist der Boden dort eben, stimmt eines von beiden nicht; &apos;--shift home&apos; bringt das Gelände zum Standort</translation>
     </message>
     <message>
         <source>terrain from {0} m to {1} m in the site&apos;s own frame, known on {2} % of the area</source>
@@ -10408,7 +10420,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>the contingency volume reaches into the no-fly zone &apos;{0}&apos;</source>
-        <translation>das Notfallvolumen reicht in die Flugverbotszone '{0}'</translation>
+        <translation>das Notfallvolumen reicht in die Flugverbotszone &apos;{0}&apos;</translation>
     </message>
     <message>
         <source>the control points say the size of the model to {0} % only</source>
@@ -10520,7 +10532,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>the ground-risk buffer reaches into the no-fly zone &apos;{0}&apos;</source>
-        <translation>der Bodenrisikopuffer reicht in die Flugverbotszone '{0}'</translation>
+        <translation>der Bodenrisikopuffer reicht in die Flugverbotszone &apos;{0}&apos;</translation>
     </message>
     <message>
         <source>the height &apos;{0}&apos; cannot be read</source>
@@ -10528,7 +10540,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>the height &apos;{0}&apos; does not say whether it is above ground or sea</source>
-        <translation>die Höhe '{0}' sagt nicht, ob sie über Grund oder über dem Meer zählt</translation>
+        <translation>die Höhe &apos;{0}&apos; sagt nicht, ob sie über Grund oder über dem Meer zählt</translation>
     </message>
     <message>
         <source>the heights are damaged (expected {0} nodes, found {1}); attach the terrain again</source>
@@ -10840,7 +10852,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>the site has no panel &apos;{0}&apos;</source>
-        <translation>der Standort hat kein Panel '{0}'</translation>
+        <translation>der Standort hat kein Panel &apos;{0}&apos;</translation>
     </message>
     <message>
         <source>the site has no panels</source>
@@ -10956,7 +10968,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>the terrain of the site was made for the place where it is, and would lie wrong elsewhere; take it off first (&apos;site terrain --remove&apos;), and attach it again after the move</source>
-        <translation>das Gelände des Standorts gilt für seinen jetzigen Ort und läge anderswo falsch; zuerst abnehmen ('site terrain --remove') und nach dem Verschieben neu anhängen</translation>
+        <translation>das Gelände des Standorts gilt für seinen jetzigen Ort und läge anderswo falsch; zuerst abnehmen (&apos;site terrain --remove&apos;) und nach dem Verschieben neu anhängen</translation>
     </message>
     <message>
         <source>the terrain was shifted by {0} m, so that home stands on it</source>
@@ -11180,7 +11192,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>video: expected a port from 1 to 65535 in &apos;{0}&apos;</source>
-        <translation>Video: einen Port von 1 bis 65535 in '{0}' erwartet</translation>
+        <translation>Video: einen Port von 1 bis 65535 in &apos;{0}&apos; erwartet</translation>
     </message>
     <message>
         <source>video: expected an address without a password, for addresses are kept; found one</source>
@@ -11188,7 +11200,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>video: expected rtsp://HOST:PORT/PATH or udp://HOST:PORT, found &apos;{0}&apos;</source>
-        <translation>Video: rtsp://HOST:PORT/PFAD oder udp://HOST:PORT erwartet, '{0}' gefunden</translation>
+        <translation>Video: rtsp://HOST:PORT/PFAD oder udp://HOST:PORT erwartet, &apos;{0}&apos; gefunden</translation>
     </message>
     <message>
         <source>viewpoints: {0}</source>
@@ -11281,10 +11293,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>zones: {0}</source>
         <translation>Zonen: {0}</translation>
-    </message>
-    <message>
-        <source>{0}</source>
-        <translation type="unfinished"></translation>
     </message>
     <message>
         <source>{0}  {1} min  {2}, {3}, photos: {4} of {5}</source>
@@ -13036,23 +13044,23 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>&apos;O&apos; is east in German and west in French; write E or W</source>
-        <translation>'O' ist deutsch Ost und französisch West; E oder W schreiben</translation>
+        <translation>&apos;O&apos; ist deutsch Ost und französisch West; E oder W schreiben</translation>
     </message>
     <message>
         <source>&apos;{0}&apos; has 60 or more minutes or seconds</source>
-        <translation>'{0}' hat 60 oder mehr Minuten oder Sekunden</translation>
+        <translation>&apos;{0}&apos; hat 60 oder mehr Minuten oder Sekunden</translation>
     </message>
     <message>
         <source>&apos;{0}&apos; has decimals before its last part</source>
-        <translation>'{0}' hat Nachkommastellen vor dem letzten Teil</translation>
+        <translation>&apos;{0}&apos; hat Nachkommastellen vor dem letzten Teil</translation>
     </message>
     <message>
         <source>&apos;{0}&apos; is no band of UTM; bands are C to X without I and O</source>
-        <translation>'{0}' ist kein UTM-Band; Bänder sind C bis X ohne I und O</translation>
+        <translation>&apos;{0}&apos; ist kein UTM-Band; Bänder sind C bis X ohne I und O</translation>
     </message>
     <message>
         <source>&apos;{0}&apos; is no place; expected latitude and longitude (22.3372, 114.2636, or 22°20&apos;14&quot; N 114°15&apos;49&quot; E), UTM (50Q 218155 2472500) or MGRS (50Q KK 18155 72500)</source>
-        <translation>'{0}' ist kein Ort; erwartet werden Breite und Länge (22.3372, 114.2636 oder 22°20'14" N 114°15'49" E), UTM (50Q 218155 2472500) oder MGRS (50Q KK 18155 72500)</translation>
+        <translation>&apos;{0}&apos; ist kein Ort; erwartet werden Breite und Länge (22.3372, 114.2636 oder 22°20&apos;14&quot; N 114°15&apos;49&quot; E), UTM (50Q 218155 2472500) oder MGRS (50Q KK 18155 72500)</translation>
     </message>
     <message>
         <source>, {0} dB on facades of {1}</source>
@@ -13108,23 +13116,23 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>Above ellipsoid</source>
-        <translation type="unfinished">Über Ellipsoid</translation>
+        <translation>Über Ellipsoid</translation>
     </message>
     <message>
         <source>Above sea level</source>
-        <translation type="unfinished">Über Meer</translation>
+        <translation>Über Meer</translation>
     </message>
     <message>
         <source>Above take-off</source>
-        <translation type="unfinished">Über Start</translation>
+        <translation>Über Start</translation>
     </message>
     <message>
         <source>Address</source>
-        <translation type="unfinished">Adresse</translation>
+        <translation>Adresse</translation>
     </message>
     <message>
         <source>Aircraft at once</source>
-        <translation type="unfinished">Fluggeräte zugleich</translation>
+        <translation>Fluggeräte zugleich</translation>
     </message>
     <message>
         <source>Airspace</source>
@@ -13132,19 +13140,19 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>Airspace around the building</source>
-        <translation type="unfinished">Luftraum um das Gebäude</translation>
+        <translation>Luftraum um das Gebäude</translation>
     </message>
     <message>
         <source>Autopilot</source>
-        <translation type="unfinished">Autopilot</translation>
+        <translation>Autopilot</translation>
     </message>
     <message>
         <source>Batteries</source>
-        <translation type="unfinished">Akkus</translation>
+        <translation>Akkus</translation>
     </message>
     <message>
         <source>Battery reserve</source>
-        <translation type="unfinished">Akkureserve</translation>
+        <translation>Akkureserve</translation>
     </message>
     <message>
         <source>By how much unseen views of the model must get better, in decibels, for one battery more to be planned.</source>
@@ -13152,7 +13160,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>Clearance</source>
-        <translation type="unfinished">Abstand</translation>
+        <translation>Abstand</translation>
     </message>
     <message>
         <source>Coarsest GSD</source>
@@ -13164,15 +13172,15 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>Count whole panels only</source>
-        <translation type="unfinished">Nur ganze Scheiben</translation>
+        <translation>Nur ganze Scheiben</translation>
     </message>
     <message>
         <source>Coverage</source>
-        <translation type="unfinished">Abdeckung</translation>
+        <translation>Abdeckung</translation>
     </message>
     <message>
         <source>Data set</source>
-        <translation type="unfinished">Datensatz</translation>
+        <translation>Datensatz</translation>
     </message>
     <message>
         <source>EGM96 stands in for EGM2008: both differ by 0.5 m in the mean, at few places by several metres; home stands on the same terrain, so heights above take-off do not change</source>
@@ -13180,7 +13188,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>Effects</source>
-        <translation type="unfinished">Effekte</translation>
+        <translation>Effekte</translation>
     </message>
     <message>
         <source>Equal panels in rows and columns, laid into a rectangle on a wall.</source>
@@ -13212,7 +13220,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>Heights are</source>
-        <translation type="unfinished">Höhen sind</translation>
+        <translation>Höhen sind</translation>
     </message>
     <message>
         <source>How many times faster than real time a simulated vehicle flies.</source>
@@ -13228,11 +13236,11 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>Layer</source>
-        <translation type="unfinished">Ebene</translation>
+        <translation>Ebene</translation>
     </message>
     <message>
         <source>Link</source>
-        <translation type="unfinished">Verbindung</translation>
+        <translation>Verbindung</translation>
     </message>
     <message>
         <source>M1(A) medium and M1(B) count the same people; state one of them</source>
@@ -13244,11 +13252,11 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>Method</source>
-        <translation type="unfinished">Verfahren</translation>
+        <translation>Verfahren</translation>
     </message>
     <message>
         <source>Not covered</source>
-        <translation type="unfinished">Lücken</translation>
+        <translation>Lücken</translation>
     </message>
     <message>
         <source>Nothing of the flight comes nearer than this to panels, building and obstacles.</source>
@@ -13256,7 +13264,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>Own poses</source>
-        <translation type="unfinished">Eigene Posen</translation>
+        <translation>Eigene Posen</translation>
     </message>
     <message>
         <source>Photos with their poses, and the panels of the site: what a model learns from.</source>
@@ -13264,7 +13272,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>Place on earth</source>
-        <translation type="unfinished">Lage auf der Erde</translation>
+        <translation>Lage auf der Erde</translation>
     </message>
     <message>
         <source>Pose</source>
@@ -13272,11 +13280,11 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>Precision</source>
-        <translation type="unfinished">Genauigkeit</translation>
+        <translation>Genauigkeit</translation>
     </message>
     <message>
         <source>Quality</source>
-        <translation type="unfinished">Güte</translation>
+        <translation>Güte</translation>
     </message>
     <message>
         <source>RTK</source>
@@ -13284,19 +13292,19 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>Rally point</source>
-        <translation type="unfinished">Rally-Punkt</translation>
+        <translation>Rally-Punkt</translation>
     </message>
     <message>
         <source>Refine poses</source>
-        <translation type="unfinished">Posen verfeinern</translation>
+        <translation>Posen verfeinern</translation>
     </message>
     <message>
         <source>Safety distance</source>
-        <translation type="unfinished">Mindestabstand</translation>
+        <translation>Mindestabstand</translation>
     </message>
     <message>
         <source>Section step</source>
-        <translation type="unfinished">Sektorweite</translation>
+        <translation>Sektorweite</translation>
     </message>
     <message>
         <source>Single precision counts sections several times as fast, and errs on borders of sections alone.</source>
@@ -13308,11 +13316,11 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>Sortie</source>
-        <translation type="unfinished">Einsatz</translation>
+        <translation>Einsatz</translation>
     </message>
     <message>
         <source>Speed-up</source>
-        <translation type="unfinished">Zeitraffer</translation>
+        <translation>Zeitraffer</translation>
     </message>
     <message>
         <source>Splat</source>
@@ -13352,11 +13360,11 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>Time to plan</source>
-        <translation type="unfinished">Planungszeit</translation>
+        <translation>Planungszeit</translation>
     </message>
     <message>
         <source>Viewpoint</source>
-        <translation type="unfinished">Aufnahmepunkt</translation>
+        <translation>Aufnahmepunkt</translation>
     </message>
     <message>
         <source>Viewpoints</source>
@@ -13364,11 +13372,11 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>Views</source>
-        <translation type="unfinished">Aufnahmen</translation>
+        <translation>Aufnahmen</translation>
     </message>
     <message>
         <source>Views are chosen for</source>
-        <translation type="unfinished">Ansichten gewählt für</translation>
+        <translation>Ansichten gewählt für</translation>
     </message>
     <message>
         <source>Wanted GSD</source>
@@ -13376,7 +13384,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>Weight sections by solid angle</source>
-        <translation type="unfinished">Raumwinkel gewichten</translation>
+        <translation>Raumwinkel gewichten</translation>
     </message>
     <message>
         <source>What is simulated because this scene calls for it; each says how large it is, why, and what it costs.</source>
@@ -13392,7 +13400,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>Worth another battery</source>
-        <translation type="unfinished">Wert für weiteren Akku</translation>
+        <translation>Wert für weiteren Akku</translation>
     </message>
     <message>
         <source>a GeoTIFF</source>
@@ -20269,7 +20277,7 @@ Größe: {3}; Dreiecke: {4}</translation>
     </message>
     <message>
         <source>Set origin</source>
-        <translation type="unfinished">Nullpunkt setzen</translation>
+        <translation>Nullpunkt setzen</translation>
     </message>
     <message>
         <source>Draw no-fly zone</source>

@@ -312,7 +312,7 @@ class OnlineTiles:
         raise TileNotReached.say(
             "the map server {} sent something else than a map tile ({}); look at the address",
             self._online.server,
-            plain_text(head.get("Content-Type", ""))[:40] or say("nothing"),
+            plain_text(head.get("Content-Type", ""))[:40] or say("no type"),
         )
 
     def _fetched(self, address: str) -> tuple[int, http.client.HTTPMessage, bytes]:

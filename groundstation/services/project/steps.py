@@ -201,7 +201,7 @@ def _fly(now: Milestones) -> Guidance:
             return Guidance(now.is_flown, say("the mission is on board"), further, "", None)
         case FlightState.READY:
             return Guidance(
-                now.is_flown, say("ready for take-off"), say("start; it asks first"), say("Start"), Act.TAKE_OFF
+                now.is_flown, say("ready to take off"), say("start; it asks first"), say("Start"), Act.TAKE_OFF
             )
         case FlightState.IN_AIR:
             return Guidance(now.is_flown, say("in the air"), say("watch the flight until it has landed"), "", None)
