@@ -43,7 +43,7 @@ FAR_M = 20_000.0
 
 MAX_WAITING = 200
 
-MAX_NOISE = 64 * 1024
+MAX_NOISE = 8 * 1024
 """Bytes without one right frame, before a connection is given up: to look for frames in them costs time."""
 
 

@@ -217,7 +217,7 @@ def test_silence_ends_a_connection_and_the_place_is_told_again_and_again(answer,
 def test_a_stream_of_noise_is_given_up_long_before_it_ends():
     clock = Clock()
     noisy = Silent(clock)
-    noisy.answer = [b"\xd3\x03\xff" * 1000 for _ in range(300)] + [b"ICY 200 OK\r\n"]
+    noisy.answer = [b"\xd3\x03\xff" * 200 for _ in range(300)] + [b"ICY 200 OK\r\n"]
     found = Corrections(Caster("h", 1, "M"), "", PLACE, clock=clock, connect=lambda _host, _port: noisy)
     assert found._connected() is False
     assert found.status().problem == "it is connected and sends nothing that is RTCM"
