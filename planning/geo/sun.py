@@ -236,8 +236,9 @@ def spans_within(
         n arrays of shape (k, 2), whose ends are good to `END_S`.
     """
     whole = np.array([[0.0, track.length_s]]) if during is None else during
-    least = np.broadcast_to(np.asarray(least_rad, np.float64), (len(planes),))
-    return _spans_within(track.table_enu, np.ascontiguousarray(planes), np.ascontiguousarray(least), whole, least_s)
+    # A kernel is compiled anew for arrays that may not be written to.
+    least = np.array(np.broadcast_to(np.asarray(least_rad, np.float64), (len(planes),)))
+    return _spans_within(track.table_enu, np.ascontiguousarray(planes), least, whole, least_s)
 
 
 def _spans_within(table: Array, planes: Array, least: Array, during: Spans, least_s: float) -> list[Spans]:

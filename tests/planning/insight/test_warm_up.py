@@ -9,7 +9,10 @@ import pytest
 REPOSITORY = Path(__file__).resolve().parents[3]
 
 ANALYSES = """
-from planning.insight import clearance, reason_kernel, things
+from datetime import date, timedelta, timezone
+from groundstation.services.mission.sunlight import SunRequest, sun_report
+from planning.geo import sun
+from planning.insight import clearance, obstructions, reasons, sunlight
 from planning.insight.clearance import route_clearance
 from planning.insight.reasons import section_reasons
 from planning.insight.obstructions import obstructions_of
@@ -17,7 +20,10 @@ from planning.warm_up import compile_kernels
 from planning.site.free_space import unchecked_space
 from tests.planning.insight.cases import plan, prepared, scene
 
-kernels = [reason_kernel.explain_sections, clearance._nearest_parts, things._nearest_triangles, things._first_hits]
+kernels = [
+    *(reasons.explain_sections, clearance._nearest_parts, obstructions._nearest_triangles, obstructions._first_hits),
+    *(sun._trace_all, sunlight._mirrored_spans),
+]
 compile_kernels()
 warm = [len(kernel.signatures) for kernel in kernels]
 for name in ("kiosk", "canyon"):
@@ -25,7 +31,8 @@ for name in ("kiosk", "canyon"):
     space = unchecked_space(scene(name), 5.0)
     for sortie in plan(name).sorties:
         route_clearance(sortie, space, obstructions_of(scene(name), space))
-print(warm == [1] * 4 == [len(kernel.signatures) for kernel in kernels])
+    sun_report(scene(name), plan(name), SunRequest(date(2026, 12, 21), timezone(timedelta(hours=8))))
+print(warm == [1] * 6 == [len(kernel.signatures) for kernel in kernels])
 """
 
 
