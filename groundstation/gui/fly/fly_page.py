@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from PySide6.QtCore import QObject, Qt
-from PySide6.QtGui import QAction, QCloseEvent, QColor
+from PySide6.QtGui import QAction, QCloseEvent, QColor, QKeySequence
 from PySide6.QtWidgets import (
     QApplication,
     QLabel,
@@ -271,6 +271,7 @@ class FlyPage(QObject):
         self.lists.setToolTip(self.tr("Show what stands beside and below the view, which has their room in flight"))
         self.lists.hide()
         shared_view.add_overlay_bar(self.lists)
+        self._view_actions = self._make_view_actions()
         self._is_shown = False
         self._voice = Voice(self)
         self._speaker = WarningSpeaker(self._voice, self)
@@ -314,7 +315,7 @@ class FlyPage(QObject):
 
     def actions(self) -> tuple[QAction, ...]:
         """For the tab's menu."""
-        return (*self.buttons.flight_actions(), self._book)
+        return (*self.buttons.flight_actions(), self._book, *self._view_actions)
 
     def take_step(self, act: Act) -> None:
         """Connect, upload, or start, each as its own button does."""
@@ -333,6 +334,21 @@ class FlyPage(QObject):
         return 0 if self.controller.active is None else len(self.controller.active.photos)
 
     # How it is put together
+
+    def _make_view_actions(self) -> tuple[QAction, ...]:
+        """What lies over the view, by the keyboard."""
+        found = []
+        for text, key, slot in (
+            (self.tr("Lists beside the view"), "Ctrl+Shift+D", self.lists.toggle),
+            (self.tr("Camera picture large"), "Ctrl+Shift+K", self.overlay.toggle_camera),
+            (self.tr("Mute warnings"), "Ctrl+Shift+T", lambda: self._mute(self.settings.value().speaks)),
+        ):
+            action = QAction(text, self)
+            action.setShortcut(QKeySequence(key))
+            action.setEnabled(False)
+            action.triggered.connect(lambda _checked=False, slot=slot: slot())
+            found.append(action)
+        return tuple(found)
 
     def _make_left(self) -> QWidget:
         left = QWidget()
@@ -433,6 +449,8 @@ class FlyPage(QObject):
         """While connected the view has the room of the lists, unless these are wanted; what matters lies over it."""
         is_connected = self._is_shown and self.controller.is_connected
         self.lists.setVisible(is_connected)
+        for action in self._view_actions:
+            action.setEnabled(is_connected)
         self._shared_view.aloneRequested.emit(is_connected and not self.lists.isChecked())
         self.overlay.show(is_shown=is_connected, has_sides=not self.lists.isChecked())
 

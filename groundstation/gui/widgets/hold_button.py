@@ -10,6 +10,9 @@ HOLD_MS = 700
 """Time for which it is held: longer than a slip, which lifts within 0.2 s, and short enough for an emergency."""
 
 STEP_MS = 20
+MOST_STEP_MS = 200
+"""Of one step that counts: while the window stands still, a finger may have been lifted without being heard."""
+
 BAR_PX = 7.0
 NEAR_PX = 16
 """A finger that slides so far off the button still holds it."""
@@ -26,6 +29,7 @@ class HoldButton(QPushButton):
     def __init__(self, text: str, parent: QWidget | None = None) -> None:
         super().__init__(text, parent)
         self._clock = QElapsedTimer()
+        self._held_ms = 0
         self._timer = QTimer(self, interval=STEP_MS)
         self._timer.timeout.connect(self._step)
 
@@ -37,6 +41,7 @@ class HoldButton(QPushButton):
         """Begin to hold it, as a key of a joystick does."""
         if self.isEnabled() and not self.is_held():
             self._clock.start()
+            self._held_ms = 0
             self._timer.start()
             self.setDown(True)
             self.update()
@@ -98,7 +103,7 @@ class HoldButton(QPushButton):
         """Paint the bar over the button."""
         super().paintEvent(event)
         if self.is_held():
-            part = min(1.0, self._clock.elapsed() / HOLD_MS)
+            part = min(1.0, self._held_ms / HOLD_MS)
             painter = QPainter(self)
             colour = QColor(self.palette().color(self.foregroundRole()))
             role = self.palette().buttonText().color()
@@ -107,9 +112,10 @@ class HoldButton(QPushButton):
             painter.end()
 
     def _step(self) -> None:
+        self._held_ms += min(self._clock.restart(), MOST_STEP_MS)
         if not self.isEnabled():
             self.let_go()
-        elif self._clock.elapsed() >= HOLD_MS:
+        elif self._held_ms >= HOLD_MS:
             self.let_go()
             self.click()
         else:

@@ -863,6 +863,13 @@ def test_in_flight_the_view_has_the_room_of_the_lists_and_a_joystick_returns_by_
     controller.window.show_tab("fly")
     application.processEvents()
     assert page.overlay.figures.isVisible()
+    looks = (page.lists.isChecked, page.overlay.camera.width, lambda: page.settings.value().speaks)
+    for action, look in zip(page.actions()[-3:], looks, strict=True):
+        before = look()
+        action.trigger()
+        assert look() != before, action.text()
+        action.trigger()
+        assert look() == before, action.text()
     page.joystick.pressed.emit(JoystickAction.VIEW)
     assert shared_view.page() is SharedViewPage.MAP
     heard = []

@@ -105,3 +105,14 @@ def test_it_is_let_go_by_whatever_ends_the_hold(button, away):
 def test_shortcuts_and_screen_readers_act_at_once(button):
     button.click()
     assert button.acted == [True]
+
+
+def test_while_the_window_stands_still_nothing_is_held(button):
+    """The finger was lifted meanwhile, and that is heard after the timer."""
+    QTest.mousePress(button, LEFT)
+    time.sleep(1.5 * HOLD_MS / 1000.0)
+    QApplication.processEvents()
+    assert not button.acted
+    QTest.mouseRelease(button, LEFT)
+    wait(0.1)
+    assert not button.acted
