@@ -129,6 +129,7 @@ tables: setup
 pictures: setup
 	$(PY) app.py --screenshots pictures
 	cp pictures/1280x720/plan-hemispheres.png docs/pictures/window.png
+	cp pictures/1280x720/empty-start.png docs/pictures/window-start.png
 	cp pictures/1280x720/plan-photo.png docs/pictures/window-camera.png
 	cp pictures/1280x720/site.png docs/pictures/window-site.png
 	cp pictures/1280x720/mission-2.png docs/pictures/window-mission.png

@@ -523,7 +523,8 @@ class MissionPage(QObject):
         if self._is_fresh():
             self.findings.set_findings(found.findings)
             self.lists.set_panels_covered(found.panels_covered)
-            self._context.note(n_errors=sum(one.severity is Severity.ERROR for one in found.findings))
+            counts = counts_by_severity(found.findings)
+            self._context.note(n_errors=counts[Severity.ERROR], n_warnings=counts[Severity.WARNING])
         elif self._is_shown:
             self._check_soon.start()
         self._show_freshness()

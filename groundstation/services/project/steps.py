@@ -78,8 +78,8 @@ class Milestones:
     ----------
     n_panels, n_viewpoints
         Of the site and of the plan that is shown; None without one.
-    n_errors
-        Errors that the pre-flight check found in the plan as it is; None where it has not been checked.
+    n_errors, n_warnings
+        What the pre-flight check found in the plan as it is; no number of errors where it has not been checked.
     flight, is_flown
         Where its flight stands, and whether all of its sorties have landed.
     n_photos
@@ -92,6 +92,7 @@ class Milestones:
     n_viewpoints: int | None = None
     is_planning: bool = False
     n_errors: int | None = None
+    n_warnings: int = 0
     is_exported: bool = False
     flight: FlightState = FlightState.APART
     is_flown: bool = False
@@ -180,6 +181,9 @@ def _mission(now: Milestones) -> Guidance:
             say("Show the first"),
             Act.SHOW_FINDING,
         )
+    if now.n_warnings:
+        further = say("read the warnings; then fly it, first in simulation, or export it")
+        return Guidance(True, say("no errors; warnings: {}", now.n_warnings), further, say("To Fly"), Act.TO_FLY)
     done = say("all checks passed; mission files are written") if now.is_exported else say("all checks passed")
     further = say("fly it, first in simulation; or export it for your aircraft")
     return Guidance(True, done, further, say("To Fly"), Act.TO_FLY)

@@ -112,6 +112,15 @@ def test_a_plan_with_errors_is_not_done_and_its_first_error_is_shown():
     assert "2" in found.done
 
 
+def test_a_plan_with_warnings_is_done_and_they_are_to_be_read():
+    found = guidance(Step.MISSION, Milestones(n_panels=280, n_viewpoints=60, n_errors=0, n_warnings=3))
+    assert found.is_done
+    assert found.done == "no errors; warnings: 3"
+    assert found.next.startswith("read the warnings")
+    clean = guidance(Step.MISSION, Milestones(n_panels=280, n_viewpoints=60, n_errors=0))
+    assert clean.done == "all checks passed"
+
+
 def test_edits_take_back_what_they_spoil_and_nothing_else():
     before = document("canyon")
     model, entry = before.site, before.current
