@@ -135,3 +135,29 @@ def test_the_long_search_waits_while_the_window_is_busy(application):
         assert gone() is None
     finally:
         collector.close()
+
+
+def test_modules_that_were_imported_later_are_left_out_of_long_searches(application, monkeypatch):
+    import sys
+    import types
+
+    from groundstation.gui.application.interpreter import MANY_MODULES, GarbageCollector
+
+    others = gc.get_freeze_count() > 0
+    gc.unfreeze()
+    collector = GarbageCollector()
+    try:
+        collector.freeze()
+        before = gc.get_freeze_count()
+        for number in range(MANY_MODULES - 1):
+            monkeypatch.setitem(sys.modules, f"made_{number}", types.ModuleType(f"made_{number}"))
+        collector._collect()
+        assert gc.get_freeze_count() == before
+        monkeypatch.setitem(sys.modules, "made_last", types.ModuleType("made_last"))
+        litter(100)
+        collector._collect()
+        assert gc.get_freeze_count() > before
+    finally:
+        collector.close()
+        if others:
+            gc.freeze()
