@@ -94,7 +94,7 @@ def outputs(parser, path=()):
             yield " ".join(path), action
 
 
-CHECKED_BY_FORMAT = {"brief", "export", "records export", "score weights"}
+CHECKED_BY_FORMAT = {"brief", "export", "logbook", "records export", "score weights"}
 """Where what is written depends on more than the command, or has one ending only; they have tests of their own."""
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from groundstation.cli.console import print_json, print_next, run_job, show, tell
-from groundstation.cli.options import count
+from groundstation.cli.options import count, new_folder
 from planning.base.messages import say
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ def add_parser(subparsers: Any) -> None:
     add = parser.add_argument
     add("url", metavar="URL", help="link to the vehicle, such as serial:/dev/ttyACM0:115200 or udp:0.0.0.0:14550")
     add("names", nargs="*", metavar="NAME", help="of logs (default: the newest)")
-    add("-o", "--out", type=Path, metavar="DIR", default=Path(), help="folder for the logs (default: this one)")
+    add("-o", "--out", type=new_folder, metavar="DIR", default=Path(), help="folder for the logs (default: this one)")
     add("--newest", type=count, default=1, metavar="N", help="number of logs to fetch (default: 1)")
     add("--list", action="store_true", help="list what is on the vehicle, and fetch nothing")
     add("--signed", action="store_true", help="sign the link (see 'signing')")
