@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from PySide6.QtCore import Qt, QTimer
 
-from tests.gui.driving import clicked
+from tests.gui.driving import TurnGaps, clicked
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -27,7 +27,8 @@ USABLE_S = 2.0
 class OwnGaps:
     """Time between turns of the event loop: by the clock, and as the window's own thread worked in it.
 
-    On a machine that others use the clock tells of them; it counts only where there is a core for each who wants one.
+    On a machine that others use the clock tells of them, so that the thread's own work counts there; that, too, takes
+    longer where caches are shared, and is given `TurnGaps.TAKEN_AWAY` times as long.
     """
 
     def __init__(self):
@@ -39,8 +40,14 @@ class OwnGaps:
 
     def longest_ms(self):
         clock, own = 1e3 * np.diff(np.array(self.ticks[:-1]), axis=0).max(axis=0)
-        is_shared = os.getloadavg()[0] > os.cpu_count()
-        return round(float(own if is_shared else max(clock, own)), 1)
+        return round(float(own if self.is_shared() else max(clock, own)), 1)
+
+    def allowed_ms(self):
+        return LONGEST_GAP_MS * (TurnGaps.TAKEN_AWAY if self.is_shared() else 1.0)
+
+    @staticmethod
+    def is_shared():
+        return os.getloadavg()[0] > os.cpu_count()
 
 
 class Mouse:
@@ -106,7 +113,7 @@ def test_from_the_start_page_to_the_report_of_a_simulated_flight(pilot):
     sys.stdout.write(told + "\n")
     assert mouse.n_clicks <= MOST_CLICKS, told
     assert took_s <= MOST_S, told
-    assert max(mouse.longest_ms.values()) <= LONGEST_GAP_MS, told
+    assert max(mouse.longest_ms.values()) <= mouse.gaps.allowed_ms(), told
 
 
 @pytest.mark.slow
