@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QEvent, QSize, Qt, Signal
-from PySide6.QtGui import QAction, QKeySequence, QMouseEvent
+from PySide6.QtGui import QAction, QFont, QFontMetrics, QKeySequence, QMouseEvent, QResizeEvent
 from PySide6.QtWidgets import QGridLayout, QLabel, QPushButton, QSizePolicy, QVBoxLayout, QWidget
 
 from groundstation.gui.application.translate import shown_keys, translated
@@ -186,6 +186,9 @@ class _Row:
         layout.addLayout(self.line)
 
 
+ASIDE_PX, LEAST_POINTS = 38, 8.0
+"""What frame, padding and the space beside the icon take of a button's width; the smallest words."""
+
 APART_PX = 16
 """Free space around Return and Land, in which a click that misses does nothing."""
 
@@ -230,7 +233,7 @@ class FlightButtons(QWidget):
         super().__init__(parent)
         self._actions: dict[Request, QAction] = {}
         self._buttons: dict[Request, QPushButton] = {}
-        layout = QGridLayout(self)
+        layout = self._grid = QGridLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         for request, text, key, tip in self._rows():
             action = QAction(text, self)
@@ -238,7 +241,8 @@ class FlightButtons(QWidget):
             action.setAutoRepeat(False)
             action.triggered.connect(lambda _checked=False, request=request: self._order(request))
             button = HoldButton(text) if request in HELD else _Button(text)
-            button.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+            # As wide as the column is: a button of a flight is never cut off at its side, see `_fit`.
+            button.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
             button.setIconSize(QSize(ICON_PX, ICON_PX))
             button.setProperty("flight", request.name.lower())
             tip = self.tr("Hold: {0}").format(tip) if request in HELD else tip
@@ -302,11 +306,31 @@ class FlightButtons(QWidget):
         """For the tab's menu."""
         return list(self._actions.values())
 
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
+        """Fit the words to another width."""
+        super().resizeEvent(event)
+        self._fit()
+
+    def _fit(self) -> None:
+        """Write words that are too long for their button smaller."""
+        self._grid.activate()
+        for request, button in self._buttons.items():
+            font = QFont(self.font())
+            # The style sheet writes these bold.
+            font.setBold(request in (Request.RETURN, Request.LAND))
+            wide = QFontMetrics(font).horizontalAdvance(button.text())
+            room = button.width() - ICON_PX - ASIDE_PX
+            if wide > room > 0:
+                font.setPointSizeF(max(LEAST_POINTS, font.pointSizeF() * room / wide))
+            if button.font() != font:
+                button.setFont(font)
+
     def changeEvent(self, event: QEvent) -> None:  # noqa: N802
         """Draw the icons in the colours of another theme."""
         super().changeEvent(event)
         if event.type() in (QEvent.Type.PaletteChange, QEvent.Type.StyleChange) and self._buttons:
             self._draw_icons()
+            self._fit()
 
     def _draw_icons(self) -> None:
         for request in self._buttons:

@@ -183,12 +183,14 @@ class FlightOverlay(QObject):
         if self._is_stale:
             self._is_stale = False
             view = self._view
+            wide = self.figures.sizeHint().width()
             self.figures.set_view(view)
+            is_wider = self.figures.sizeHint().width() != wide
             state = None if view is None else view.state
             attitude = None if state is None or state.attitude is None else state.attitude.value
             pointing = None if state is None or state.camera is None else state.camera.value
             self.attitude.set_angles(attitude, pointing, is_old=view is not None and view.link is LinkState.LOST)
-            if self.banner.set_view(view):
+            if self.banner.set_view(view) or is_wider:
                 self._place()
         if self.camera.isVisible():
             self.camera.show_video()

@@ -31,7 +31,7 @@ from planning.coverage.sections import panel_frames
 from planning.plan import Camera
 from planning.site.records import panel_corners
 
-CAPTION_PX = 24
+CAPTION_PX, CAPTION_TEXT_PX = 24, 15
 VIDEO_MS = 90
 """Between pictures of the video, a little less than that in which they come."""
 
@@ -75,6 +75,9 @@ class LiveCamera(QFrame):
         self._film.hide()
         self._caption = QLabel(self.tr("Camera, drawn"), self)
         self._caption.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        font = self._caption.font()
+        font.setPixelSize(CAPTION_TEXT_PX)
+        self._caption.setFont(font)
         self._caption.setToolTip(
             self.tr("The site as the camera should see it, from the pose that the vehicle reports")
         )

@@ -459,6 +459,8 @@ def test_return_and_land_lie_apart_from_each_other_and_from_the_rest(application
             button = page.buttons.button(request)
             assert button.fontMetrics().horizontalAdvance(button.text()) + ICON_PX < button.width()
             assert not button.icon().isNull()
+            right = button.mapTo(page.left.parentWidget(), button.rect().topRight()).x()
+            assert right < page.left.parentWidget().width(), "not cut off at the side of the column"
     finally:
         controller.choose(language=Language.ENGLISH, text_scale=1.0)
         turn_until(application, lambda: controller.window.shared_view.scene() is not None)
