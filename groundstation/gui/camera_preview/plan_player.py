@@ -161,6 +161,10 @@ class PlanPlayer(QWidget):
         self._timer.start()
 
     def _tick(self) -> None:
+        if self.window().isVisible() and not self.isVisible():
+            # Another tab or page is in front: the flight waits.
+            self.play.setChecked(False)
+            return
         now_s = time.monotonic()
         elapsed_s, self._last_s = now_s - self._last_s, now_s
         self.setValue(self._t_s + elapsed_s * float(self.speed.currentData()))
