@@ -267,7 +267,7 @@ class GreedyParameters:
     solid_angle_weights: bool = parameter(
         False,
         "weight hemisphere sections by their solid angle instead of equally",
-        label="Weight sections by solid angle",
+        label="Weight by solid angle",
         choices=(Choice(False, word="equal"), Choice(True, word="solid-angle")),
         option="--weights",
         group=GOAL,

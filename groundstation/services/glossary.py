@@ -38,7 +38,7 @@ TERMS = (
             "glass looks different from each."
         ),
         "concepts/coverage.md",
-        (say("Section step"), say("Weight sections by solid angle")),
+        (say("Section step"), say("Weight by solid angle")),
     ),
     Term(
         say("Coverage"),

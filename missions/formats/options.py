@@ -65,7 +65,7 @@ class ExportOptions:
         "DJI: what to do without radio link",
         label="Without radio link",
         choices=(
-            Choice(LinkLoss.CONTINUE, "fly the mission to its end"),
+            Choice(LinkLoss.CONTINUE, "continue mission"),
             Choice(LinkLoss.GO_HOME, "return home straight"),
         ),
         option="--link-loss",

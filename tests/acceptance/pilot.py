@@ -31,8 +31,9 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from groundstation.gui.widgets.hold_button import HoldButton
 from groundstation.services.settings import Language
-from tests.gui.driving import LOOK_MS, click_on, scroll_to, turn_until, turn_until_idle, type_into
+from tests.gui.driving import LOOK_MS, click_on, hold_on, scroll_to, turn_until, turn_until_idle, type_into
 
 PICTURES = os.environ.get("REFLIGHT_ACCEPTANCE_PICTURES", "")
 """Folder into which the window is photographed at each stage; none unless one is named."""
@@ -138,12 +139,15 @@ class Pilot:
             self.until(window.isActiveWindow, "the window is in front")
 
     def press(self, text: str) -> None:
-        """Click a button, once it can be pressed."""
+        """Click a button, once it can be pressed; one that acts when it is held is held."""
         self.come_to_front()
         button = self.button(text)
         self.until(button.isEnabled, f"“{text}” can be pressed")
         scroll_to(button)
-        click_on(button.window(), button)
+        if isinstance(button, HoldButton):
+            hold_on(button.window(), button)
+        else:
+            click_on(button.window(), button)
         self.application.processEvents()
 
     def tab(self, text: str) -> None:

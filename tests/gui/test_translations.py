@@ -160,7 +160,7 @@ def test_the_window_speaks_german_once_it_is_chosen(controller):
     titles = [action.text().replace("&", "") for action in controller.window.menuBar().actions()]
     assert {"Projekt", "Bearbeiten", "Ansicht", "Hilfe"} <= set(titles)
     assert [spec.shown_title() for spec in TABS] == [
-        *("Standort", "Planung", "Mission", "Fliegen", "Fotos", "Rekonstruktion", "Modell")
+        *("Start", "Standort", "Planung", "Mission", "Fliegen", "Fotos", "Rekonstruktion", "Modell")
     ]
 
 

@@ -45,7 +45,7 @@ TEXTS = (
     QT_TRANSLATE_NOOP("Parameters", "steady wind that is expected, from the worst direction"),
     QT_TRANSLATE_NOOP("Parameters", "Aircraft at once"),
     QT_TRANSLATE_NOOP("Parameters", "sorties that are in the air at the same time, each with an aircraft of its own"),
-    QT_TRANSLATE_NOOP("Parameters", "Weight sections by solid angle"),
+    QT_TRANSLATE_NOOP("Parameters", "Weight by solid angle"),
     QT_TRANSLATE_NOOP("Parameters", "weight hemisphere sections by their solid angle instead of equally"),
     QT_TRANSLATE_NOOP("Parameters", "Views are chosen for"),
     QT_TRANSLATE_NOOP(
@@ -85,7 +85,7 @@ TEXTS = (
     QT_TRANSLATE_NOOP("Parameters", "by aircraft"),
     QT_TRANSLATE_NOOP("Parameters", "Without radio link"),
     QT_TRANSLATE_NOOP("Parameters", "DJI: what to do without radio link"),
-    QT_TRANSLATE_NOOP("Parameters", "fly the mission to its end"),
+    QT_TRANSLATE_NOOP("Parameters", "continue mission"),
     QT_TRANSLATE_NOOP("Parameters", "return home straight"),
     QT_TRANSLATE_NOOP("Parameters", "Return height"),
     QT_TRANSLATE_NOOP("Parameters", "DJI: of the return above take-off, 20 to 1500"),

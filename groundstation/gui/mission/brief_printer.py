@@ -128,7 +128,7 @@ WORDS = (
     QT_TRANSLATE_NOOP("Brief", "The plan has no sorties."),
     QT_TRANSLATE_NOOP("Brief", "Return height, above take-off"),
     QT_TRANSLATE_NOOP("Brief", "not known"),
-    QT_TRANSLATE_NOOP("Brief", "fly the mission to its end"),
+    QT_TRANSLATE_NOOP("Brief", "continue mission"),
     QT_TRANSLATE_NOOP("Brief", "return home straight, at the return height"),
     QT_TRANSLATE_NOOP("Brief", "Without radio link"),
     QT_TRANSLATE_NOOP("Brief", "Battery reserve at landing"),

@@ -223,7 +223,7 @@ class ViewpointEditor(QWidget):
         self._heading = NumberBox(-180.0, 180.0, 5.0, "°")
         self._heading.setWrapping(True)
         self._pitch = NumberBox(-90.0, 90.0, 5.0, "°")
-        self._locked = QCheckBox(self.tr("Keep when planning again"))
+        self._locked = QCheckBox(self.tr("Keep in the next plan"))
         self._locked.setToolTip(self.tr("Keep this viewpoint as it is when planning again"))
         self._add = QPushButton(self.tr("Add"))
         self._add.setToolTip(self.tr("A new viewpoint beside this one"))

@@ -374,8 +374,8 @@
         <translation>unbekannt</translation>
     </message>
     <message>
-        <source>fly the mission to its end</source>
-        <translation>Mission zu Ende fliegen</translation>
+        <source>continue mission</source>
+        <translation>Mission fortsetzen</translation>
     </message>
     <message>
         <source>return home straight, at the return height</source>
@@ -1492,7 +1492,7 @@ Blickrichtung: {2}</translation>
     </message>
     <message>
         <source>Return to home (RTH)</source>
-        <translation>Rückkehr zum Start (RTH)</translation>
+        <translation>Rückkehr (RTH)</translation>
     </message>
     <message>
         <source>Land</source>
@@ -1863,6 +1863,18 @@ Um trotzdem zu fliegen, {1} eintippen:</translation>
     <message>
         <source>Flights with aircraft, battery, times and findings; cycles of batteries</source>
         <translation>Flüge mit Luftfahrzeug, Akku, Zeiten und Befunden; Zyklen der Akkus</translation>
+    </message>
+    <message>
+        <source>Lists beside the view</source>
+        <translation>Listen neben der Ansicht</translation>
+    </message>
+    <message>
+        <source>Camera picture large</source>
+        <translation>Kamerabild groß</translation>
+    </message>
+    <message>
+        <source>Mute warnings</source>
+        <translation>Warnungen stumm</translation>
     </message>
     <message>
         <source>Sortie to be flown</source>
@@ -3320,7 +3332,7 @@ Scheiben: {2}, je {3} × {4}</translation>
     </message>
     <message>
         <source>Send to controller ...</source>
-        <translation>An Fernsteuerung senden ...</translation>
+        <translation>Zur Fernsteuerung ...</translation>
     </message>
     <message>
         <source>Onto an SD card or a connected remote controller of DJI, read back and compared</source>
@@ -3974,7 +3986,7 @@ Blickrichtung: {3}</translation>
         <translation>Hemisphärenabschnitte</translation>
     </message>
     <message>
-        <source>Weight sections by solid angle</source>
+        <source>Weight by solid angle</source>
         <translation>Raumwinkel gewichten</translation>
     </message>
     <message>
@@ -4110,8 +4122,8 @@ Blickrichtung: {3}</translation>
         <translation>DJI: was ohne Funkverbindung geschieht</translation>
     </message>
     <message>
-        <source>fly the mission to its end</source>
-        <translation>Mission zu Ende fliegen</translation>
+        <source>continue mission</source>
+        <translation>Mission fortsetzen</translation>
     </message>
     <message>
         <source>return home straight</source>
@@ -4872,7 +4884,7 @@ Blickrichtung: {3}</translation>
         <translation>{0}: Sektoren gewonnen {1}, verloren {2}; Flugzeit {3:+.0f} s</translation>
     </message>
     <message>
-        <source>{0} stays as it is: switch off “Keep when planning again” before you change it.</source>
+        <source>{0} stays as it is: switch off “Keep in the next plan” before you change it.</source>
         <translation>{0} bleibt, wie er ist: vor dem Ändern „Für Neuplanung fixieren“ ausschalten.</translation>
     </message>
     <message>
@@ -5436,7 +5448,7 @@ Blickrichtung: {3}</translation>
     </message>
     <message>
         <source>Return to home (RTH)</source>
-        <translation>Rückkehr zum Start (RTH)</translation>
+        <translation>Rückkehr (RTH)</translation>
     </message>
     <message>
         <source>Remote control lost</source>
@@ -8764,7 +8776,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>home {0:m} lies inside the geo-zone &apos;{1}&apos; ({2}); move it outside, or state your authorisation (--permit)</source>
-        <translation>der Startplatz {0} liegt in der Geozone &apos;{1}&apos; ({2}); nach außen verlegen oder die Genehmigung angeben (--permit)</translation>
+        <translation>der Startplatz {0:m} liegt in der Geozone &apos;{1}&apos; ({2}); nach außen verlegen oder die Genehmigung angeben (--permit)</translation>
     </message>
     <message>
         <source>home {0:m} stands where the terrain has no heights; move home, or attach terrain that covers it</source>
@@ -8993,10 +9005,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>it knows no mountpoint of this name</source>
         <translation>er kennt keinen Mountpoint dieses Namens</translation>
-    </message>
-    <message>
-        <source>it knows no mountpoint of this name; its list of them came instead</source>
-        <translation>er kennt keinen Mountpoint dieses Namens; stattdessen kam seine Liste</translation>
     </message>
     <message>
         <source>it packs its data in a way that was not asked for</source>
@@ -9393,6 +9401,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>no choice of as many viewpoints from those compared covers more than {0}</source>
         <translation>keine Auswahl ebenso vieler Aufnahmepunkte aus den verglichenen deckt mehr als {0} ab</translation>
+    </message>
+    <message>
+        <source>no errors; warnings: {0}</source>
+        <translation>keine Fehler; Warnungen: {0}</translation>
     </message>
     <message>
         <source>no flight can cover more than {0}, so this is {1} % of what is possible</source>
@@ -9945,6 +9957,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>read the photos of the flight</source>
         <translation>die Fotos des Flugs lesen</translation>
+    </message>
+    <message>
+        <source>read the warnings; then fly it, first in simulation, or export it</source>
+        <translation>die Warnungen lesen; dann fliegen, zuerst simuliert, oder exportieren</translation>
     </message>
     <message>
         <source>reading geo-zones</source>
@@ -13312,7 +13328,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>Site origin</source>
-        <translation>Nullpunkt des Standorts</translation>
+        <translation>Nullpunkt</translation>
     </message>
     <message>
         <source>Sortie</source>
@@ -13383,7 +13399,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Gewünschte GSD</translation>
     </message>
     <message>
-        <source>Weight sections by solid angle</source>
+        <source>Weight by solid angle</source>
         <translation>Raumwinkel gewichten</translation>
     </message>
     <message>
@@ -13537,6 +13553,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>it covers nothing; take it closer or drop it</source>
         <translation>es deckt nichts ab; näher heran oder weglassen</translation>
+    </message>
+    <message>
+        <source>it knows no mountpoint of this name; it has {0}</source>
+        <translation>er kennt keinen Mountpoint dieses Namens; er hat {0}</translation>
     </message>
     <message>
         <source>sections seen only with pixels larger than {0} mm: {1} of {2} covered</source>
@@ -19601,7 +19621,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>Warnings are spoken</source>
-        <translation>Warnungen werden gesprochen</translation>
+        <translation>Warnungen sprechen</translation>
     </message>
     <message>
         <source>For aircraft with remote ID. The secret part proves the checksum, and is neither sent nor kept</source>
@@ -20114,7 +20134,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>Site origin</source>
-        <translation>Nullpunkt des Standorts</translation>
+        <translation>Nullpunkt</translation>
     </message>
     <message>
         <source>Rename site</source>
@@ -21223,7 +21243,7 @@ Größe: {3}; Dreiecke: {4}</translation>
 <context>
     <name>ViewpointEditor</name>
     <message>
-        <source>Keep when planning again</source>
+        <source>Keep in the next plan</source>
         <translation>Für Neuplanung fixieren</translation>
     </message>
     <message>

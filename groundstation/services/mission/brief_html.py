@@ -484,7 +484,7 @@ def _settings(brief: FlightBrief, units: UnitSystem, tr: Translate) -> Iterable[
         tr("not known") if height_m is None else length_unit(units).text(height_m),
     )
     links = {
-        LinkLoss.CONTINUE: tr("fly the mission to its end"),
+        LinkLoss.CONTINUE: tr("continue mission"),
         LinkLoss.GO_HOME: tr("return home straight, at the return height"),
     }
     yield tr("Without radio link"), links[brief.link_loss]

@@ -1,6 +1,7 @@
 """Where findings, errors, stages and effects stand in the window, they stand in the user's language and units."""
 
 import re
+import threading
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -101,16 +102,21 @@ def test_an_effect_says_in_german_what_it_is_and_why(german):
 
 def test_the_stage_and_the_failure_of_a_job_are_german(german, application, context):
     bar, stages, messages = JobBar(context), [], []
-    context.bridge.progressed.connect(lambda _event: stages.append(bar._label.text()))
     context.messageShown.connect(messages.append)
+
+    seen = threading.Event()
 
     def work(job):
         job.report("finding ways around", 0, 1)
+        seen.wait(10.0)
         raise InfeasibleError(
             say("home {:m} lies inside a no-fly volume; move it outside", "(0, 0, 3)", place="home_enu_m")
         )
 
     context.start("Planen", work)
+    turn_until(application, lambda: bar._label.text().startswith("Planen:"))
+    stages.append(bar._label.text())
+    seen.set()
     turn_until(application, lambda: bool(messages))
     assert stages[-1:] == ["Planen: Umwege werden gesucht"]
     assert messages[0].text == (

@@ -175,7 +175,7 @@ def test_an_edit_that_is_refused_leaves_the_boxes_as_they_were(application, cont
     assert not editor._position[0].isEnabled()
     editor._position[0].box().setValue(99.0)
     assert editor.value() == kept
-    assert "Keep when planning again" in editor._says.text()
+    assert "Keep in the next plan" in editor._says.text()
     assert controller.context.document.current.viewpoint(viewpoint.id) == kept
 
 

@@ -131,7 +131,7 @@ def test_editing_by_hand_shows_at_once_and_can_be_undone(application, controller
     locked = controller.context.document.current.viewpoint(viewpoint.id)
     assert locked.locked
     page.viewpoint.delete_viewpoint()
-    assert "switch off “Keep when planning again”" in controller.window.messages.texts()
+    assert "switch off “Keep in the next plan”" in controller.window.messages.texts()
     page.viewpoint.add_viewpoint()
     assert len(controller.context.document.current.plan.viewpoints) == 9
     again = planned(application, controller, replace(QUICK, n_views=6))
