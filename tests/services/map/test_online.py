@@ -124,7 +124,7 @@ def endless(handler):
     ("answer", "says"),
     [
         (lambda h: send(h, b"<html>", Content_Type="text/html"), r"something else than a map tile \(text/html"),
-        (lambda h: send(h, b""), r"something else than a map tile \(nothing"),
+        (lambda h: send(h, b""), r"something else than a map tile \(no type"),
         (redirect, "sends elsewhere; enter the address"),
         (lambda h: send(h, b"", 403), "does not let Reflight in"),
         (lambda h: send(h, b"", 429), "busy or broken"),
