@@ -326,9 +326,7 @@ class PlanController(QObject):
         if viewpoint is None or not viewpoint.locked:
             return False
         self.refused.emit(
-            self.tr("{0} stays as it is: switch off “Keep in the next plan” before you change it.").format(
-                viewpoint_id
-            )
+            self.tr("{0} stays as it is: switch off “Keep in the next plan” before you change it.").format(viewpoint_id)
         )
         return True
 
