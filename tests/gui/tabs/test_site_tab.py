@@ -72,7 +72,12 @@ class Window:
         self.idle()
 
     def close(self):
+        from PySide6.QtCore import QCoreApplication, QEvent
+
         self.window.close()
+        # As `ProjectController.close` does: with the window go the timers that would still start jobs.
+        self.window.deleteLater()
+        QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete.value)
         self.runner.shutdown()
 
 
