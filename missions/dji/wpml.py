@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from missions.mission.safe_files import open_archive, read_limited, read_member
 from planning.base.errors import MissionError
-from planning.base.files import HostileXml, parse_xml
+from planning.base.files import HostileXml, local_name, parse_xml
 from planning.base.json_file import read_toml
 from planning.base.messages import about, say
 
@@ -234,18 +234,14 @@ def parse_wpml(content: bytes, part: str) -> WpmlDocument:
         raise MissionError.say(
             "this is XML, but not a DJI mission; expected kml/Document with the namespace "
             "http://www.dji.com/wpmz/1.0.x, found <{}>",
-            _local(root),
+            local_name(root),
             place=part,
         )
     return _Parser().document(document, version)
 
 
-def _local(element: Element) -> str:
-    return element.tag.rpartition("}")[2]
-
-
 def _children(element: Element | None, name: str) -> Iterator[Element]:
-    return (child for child in (element if element is not None else ()) if _local(child) == name)
+    return (child for child in (element if element is not None else ()) if local_name(child) == name)
 
 
 def _child(element: Element | None, name: str) -> Element | None:
@@ -372,7 +368,7 @@ class _Parser:
         return Action(
             action_id=self.number(element, "actionId", int),
             func=_text(element, "actionActuatorFunc"),
-            params={_local(p): (p.text or "").strip() for p in (params if params is not None else ())},
+            params={local_name(p): (p.text or "").strip() for p in (params if params is not None else ())},
         )
 
 

@@ -350,6 +350,11 @@ def check_zip_directory(file: BinaryIO, place: object) -> None:
         )
 
 
+def local_name(element: Element) -> str:
+    """Name of an XML element without its namespace; empty for comments and the like."""
+    return element.tag.rpartition("}")[2] if isinstance(element.tag, str) else ""
+
+
 class HostileXml(ValueError):  # noqa: N818  (the name says what happened)
     """XML that does what no file of its kind needs: it declares a document type, entities or endless depth."""
 

@@ -350,3 +350,8 @@ def _heights(crs: CRS, stated: HeightReference, keeps_height: bool, geoid_m: flo
         else say("as the system has none of its own (see --height-reference)")
     )
     return _Heights(unit_m, True, say("heights are taken above sea level{}, {}; {}", unit, why, stand_in))
+
+
+def names_wgs84(name: str) -> bool:
+    """Whether a name, such as the `crs` of older GeoJSON, is that of WGS 84 in degrees, in any of its spellings."""
+    return name.strip().upper().endswith(("CRS84", "CRS84H", ":4326", "/4326"))

@@ -9043,6 +9043,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>sein Inhalt ist kein Fluglog; erwartet wird Telemetrie (.tlog), ArduPilot (.BIN, .log) oder PX4 (.ulg)</translation>
     </message>
     <message>
+        <source>its coordinates are in the reference system {0}; export it in WGS 84 (EPSG:4326)</source>
+        <translation>ihre Koordinaten sind im Referenzsystem {0}; in WGS 84 (EPSG:4326) ausgeben</translation>
+    </message>
+    <message>
         <source>its curvature is {0} standard deviations, which is noise</source>
         <translation>seine Krümmung ist {0} Standardabweichungen groß, also Rauschen</translation>
     </message>
@@ -9349,6 +9353,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>name: several objects have the name &apos;{0}&apos;; give the GlobalId</source>
         <translation>name: mehrere Objekte haben den Namen &apos;{0}&apos;; die GlobalId nennen</translation>
+    </message>
+    <message>
+        <source>names a coordinate reference system that is not known here; name it with --crs</source>
+        <translation>nennt ein Koordinatenreferenzsystem, das hier nicht bekannt ist; mit --crs angeben</translation>
     </message>
     <message>
         <source>names no coordinate reference system; name it with --crs</source>

@@ -19,7 +19,16 @@ from numpy.typing import NDArray
 from groundstation.services.map.tile_source import plain_text
 from groundstation.services.map.web_mercator import MAX_LAT_DEG, world_from_geodetic
 from planning.base.errors import InputError, MissionError
-from planning.base.files import MIB, FileLimit, HostileXml, check_input_file, parse_xml, read_input_file, real_path
+from planning.base.files import (
+    MIB,
+    FileLimit,
+    HostileXml,
+    check_input_file,
+    local_name,
+    parse_xml,
+    read_input_file,
+    real_path,
+)
 from planning.base.json_file import read_json
 from planning.base.messages import say
 
@@ -274,9 +283,9 @@ def _to_wgs84(name: str, path: Path) -> Callable[[Floats], Floats]:
     """From the system that an older file names."""
     from pyproj import Transformer
 
-    from planning.geo.crs import horizontal_part, parse_crs
+    from planning.geo.crs import horizontal_part, names_wgs84, parse_crs
 
-    if not name or name.upper().endswith(("CRS84", "4326")):
+    if not name or names_wgs84(name):
         return lambda points: points
     try:
         transformer = Transformer.from_crs(horizontal_part(parse_crs(name)), "OGC:CRS84", always_xy=True)
@@ -310,29 +319,29 @@ def _read_kml(shapes: _Shapes, content: bytes) -> None:
         raise InputError.say("{}; export it again", error, place=shapes.path) from error
     except ValueError as error:
         raise InputError.say("not KML, or damaged ({}); export it again", error, place=shapes.path) from error
-    if _tag(root) != "kml":
-        raise InputError.say("expected KML, found '{}'; choose another file", _tag(root)[:40], place=shapes.path)
+    if local_name(root) != "kml":
+        raise InputError.say("expected KML, found '{}'; choose another file", local_name(root)[:40], place=shapes.path)
     for placemark in root.iter():
-        if _tag(placemark) == "Placemark":
-            name = next((child.text or "" for child in placemark if _tag(child) == "name"), "")
+        if local_name(placemark) == "Placemark":
+            name = next((child.text or "" for child in placemark if local_name(child) == "name"), "")
             for child in placemark.iter():
                 _add_kml(shapes, child, name)
 
 
 def _add_kml(shapes: _Shapes, element: Element, name: str) -> None:
-    match _tag(element):
+    match local_name(element):
         case "Point":
             shapes.add_points(_coordinates(element, shapes.path), name)
         case "LineString":
             shapes.add_line(_coordinates(element, shapes.path), name)
         case "Polygon":
-            rings = [ring for ring in element.iter() if _tag(ring) == "LinearRing"]
+            rings = [ring for ring in element.iter() if local_name(ring) == "LinearRing"]
             shapes.add_area([_coordinates(ring, shapes.path) for ring in rings], name)
 
 
 def _coordinates(element: Element, path: Path) -> Floats:
     """Longitudes and latitudes, shape (n, 2): "lon,lat[,height]" with spaces between (section 16.2)."""
-    text = next((child.text or "" for child in element if _tag(child) == "coordinates"), "")
+    text = next((child.text or "" for child in element if local_name(child) == "coordinates"), "")
     words = text.split()
     if len(words) > MAX_POINTS:
         raise InputError.say(
@@ -345,10 +354,6 @@ def _coordinates(element: Element, path: Path) -> Floats:
         raise InputError.say(
             "expected coordinates as lon,lat in KML, found '{}'", text.strip()[:40], place=path
         ) from error
-
-
-def _tag(element: Element) -> str:
-    return element.tag.rpartition("}")[2] if isinstance(element.tag, str) else ""
 
 
 # GeoTIFF

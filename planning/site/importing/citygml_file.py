@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InputError
-from planning.base.files import MIB, FileLimit, HostileXml, parse_xml, read_input_file
+from planning.base.files import MIB, FileLimit, HostileXml, local_name, parse_xml, read_input_file
 from planning.base.messages import say
 from planning.base.progress import Monitor
 from planning.base.step_physical_file import real_name
@@ -69,8 +69,10 @@ def read_citygml(path: Path, options: ImportOptions, monitor: Monitor) -> Source
         The file is not CityGML, is broken or hostile (entities are refused), or see `city_source`.
     """
     root = _parse(path)
-    if _local(root) != "CityModel":
-        raise InputError.say("expected a CityGML file (root element CityModel), found '{}'", _local(root), place=path)
+    if local_name(root) != "CityModel":
+        raise InputError.say(
+            "expected a CityGML file (root element CityModel), found '{}'", local_name(root), place=path
+        )
     crs = next((element.attrib["srsName"] for element in root.iter() if element.get("srsName")), None)
     buildings = []
     elements = list(_buildings(root))
@@ -89,12 +91,6 @@ def _parse(path: Path) -> Any:
         raise InputError.say("not valid XML ({})", error, place=path) from error
 
 
-def _local(element: Element) -> str:
-    """Name without its namespace."""
-    tag = element.tag
-    return tag.rpartition("}")[2] if isinstance(tag, str) else ""
-
-
 def _id(element: Element) -> str:
     """The gml:id, empty where there is none."""
     return next((value for key, value in element.attrib.items() if key.rpartition("}")[2] == GML_ID), "")
@@ -103,7 +99,7 @@ def _id(element: Element) -> str:
 def _buildings(element: Element) -> Iterator[Element]:
     """Buildings below an element; parts stay with their building."""
     for child in element:
-        if _local(child) == "Building":
+        if local_name(child) == "Building":
             yield child
         else:
             yield from _buildings(child)
@@ -119,7 +115,7 @@ def _building(path: Path, element: Element, number: str) -> CityBuilding:
     building = CityBuilding(
         id=_id(element) or number,
         name=real_name(_name(element), _id(element)),
-        part_ids=tuple(_id(part) for part in element.iter() if _local(part) == "BuildingPart" and _id(part)),
+        part_ids=tuple(_id(part) for part in element.iter() if local_name(part) == "BuildingPart" and _id(part)),
     )
     for number_of_part, part in enumerate(reading.every()):
         for window_id, faces in part.windows[max(part.windows, key=_fineness)].items() if part.windows else ():
@@ -140,7 +136,7 @@ def _fineness(lod: int) -> float:
 
 
 def _name(element: Element) -> str:
-    return next((child.text.strip() for child in element if _local(child) == "name" and child.text), "")
+    return next((child.text.strip() for child in element if local_name(child) == "name" and child.text), "")
 
 
 class _Place(NamedTuple):
@@ -156,7 +152,7 @@ def _walk(element: Element, reading: _Reading, place: _Place) -> None:
     """Collect the polygons below an element; those that are no outlines are left out."""
     place = place._replace(id=_id(element) or place.id)
     for child in element:
-        name = _local(child)
+        name = local_name(child)
         if name in SKIPPED:
             continue
         if name in POLYGONS:
@@ -177,7 +173,7 @@ def _walk(element: Element, reading: _Reading, place: _Place) -> None:
 
 def _add_polygon(element: Element, reading: _Reading, place: _Place) -> None:
     rings = []
-    for ring in (ring for ring in element.iter() if _local(ring) == "LinearRing"):
+    for ring in (ring for ring in element.iter() if local_name(ring) == "LinearRing"):
         points = _ring(ring)
         if points is not None:
             rings.append(points)
@@ -201,9 +197,9 @@ def _ring(ring: Element) -> Array | None:
     numbers: list[str] = []
     for element in ring.iter():
         text = element.text or ""
-        if _local(element) in ("posList", "pos"):
+        if local_name(element) in ("posList", "pos"):
             numbers += text.split()
-        elif _local(element) == "coordinates":
+        elif local_name(element) == "coordinates":
             numbers += text.replace(",", " ").split()
     try:
         values = np.array(numbers, np.float64)

@@ -451,7 +451,14 @@ def _open_tiff(path: Path, options: HeightOptions) -> Raster:
         raise InputError.say("does not say where it lies; give a GeoTIFF with its georeference", place=path)
     if options.crs is None and not wkt:
         raise InputError.say("names no coordinate reference system; name it with --crs", place=path)
-    crs = parse_crs(options.crs or str(wkt))
+    try:
+        crs = parse_crs(options.crs or str(wkt))
+    except InputError as error:
+        if options.crs is not None:
+            raise
+        raise InputError.say(
+            "names a coordinate reference system that is not known here; name it with --crs", place=path
+        ) from error
     if unit not in UNIT_NAMES and options.unit == "auto":
         raise InputError.say(
             "its heights are in the unit '{}', which is not known here; say it with --height-unit", unit, place=path

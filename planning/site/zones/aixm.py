@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from planning.base.errors import InputError
-from planning.base.files import HostileXml, parse_xml
+from planning.base.files import HostileXml, local_name, parse_xml
 from planning.base.messages import say
 from planning.site.zones.arcs import arc_corners
 from planning.site.zones.fields import quoted
@@ -98,17 +98,13 @@ class _Shape:
     places: list[str]
 
 
-def _local(element: Element) -> str:
-    return element.tag.rpartition("}")[2] if isinstance(element.tag, str) else ""
-
-
 def _all(element: Element, *names: str) -> Iterator[Element]:
     """Elements below that have one of these names."""
-    return (each for each in element.iter() if each is not element and _local(each) in names)
+    return (each for each in element.iter() if each is not element and local_name(each) in names)
 
 
 def _child(element: Element, name: str) -> Element | None:
-    return next((each for each in element if _local(each) == name), None)
+    return next((each for each in element if local_name(each) == name), None)
 
 
 def _text(element: Element, name: str) -> str:
@@ -227,7 +223,7 @@ def _holes(patch: Element, shape: _Shape) -> tuple[tuple[LonLat, ...], ...]:
     """Holes of a patch, as far as they are known: what is not read of one is no hole."""
     found = []
     for each in patch:
-        if _local(each) == "interior":
+        if local_name(each) == "interior":
             own = replace(shape, places=[])
             corners, circles, tolerance_m = _boundary(each, own)
             if len(corners) > 3 and not (own.places or circles or tolerance_m):
@@ -265,7 +261,7 @@ def _boundary(element: Element, shape: _Shape) -> tuple[list[LonLat], list[Circl
     circles: list[Circle] = []
     tolerance_m = 0.0
     for each in _segments(element, shape):
-        kind = _local(each)
+        kind = local_name(each)
         if kind == "CircleByCenterPoint":
             centre, radius_m = _centre(each, shape), _radius_m(each)
             if centre is None or radius_m is None:
@@ -288,16 +284,16 @@ def _segments(element: Element, shape: _Shape, depth: int = 0) -> Iterator[Eleme
     """Segments in the order in which they stand, those of curves elsewhere in the file included."""
     for each in element:
         href = each.get(HREF)
-        if _local(each) in SEGMENTS:
+        if local_name(each) in SEGMENTS:
             yield each
-        elif href and _local(each) in ("curveMember", "baseCurve"):
+        elif href and local_name(each) in ("curveMember", "baseCurve"):
             target = shape.known.get(href.removeprefix("#"))
             if target is None or depth > 3:
                 shape.places.append(say("a part of its outline stands elsewhere ('{}')", quoted(href)))
             else:
                 yield from _segments(target, shape, depth + 1)
-        elif _local(each) in ("Arc", "ArcString", "ArcByBulge", "Bezier", "BSpline", "CubicSpline", "OffsetCurve"):
-            shape.places.append(say("a part of its outline is a '{}', which is not read", _local(each)))
+        elif local_name(each) in ("Arc", "ArcString", "ArcByBulge", "Bezier", "BSpline", "CubicSpline", "OffsetCurve"):
+            shape.places.append(say("a part of its outline is a '{}', which is not read", local_name(each)))
         else:
             yield from _segments(each, shape, depth)
 
@@ -306,10 +302,10 @@ def _positions(element: Element, shape: _Shape) -> tuple[LonLat, ...]:
     """Positions of `pos` and `posList` below, longitude first."""
     found: list[object] = []
     for each in element.iter():
-        if _local(each) == "pointProperty" and each.get(HREF):
+        if local_name(each) == "pointProperty" and each.get(HREF):
             target = shape.known.get((each.get(HREF) or "").removeprefix("#"))
             found += [[lon, lat] for lon, lat in _positions(target, shape)] if target is not None else [None]
-        if _local(each) not in ("pos", "posList"):
+        if local_name(each) not in ("pos", "posList"):
             continue
         system = each.get("srsName") or element.get("srsName") or shape.system
         size = 3 if each.get("srsDimension") == "3" else 2

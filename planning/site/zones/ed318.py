@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from planning.site.zones.fields import Fields
-from planning.site.zones.geojson import features_of, volumes
+from planning.site.zones.geojson import check_reference_system, features_of, volumes
 from planning.site.zones.records import (
     ALWAYS,
     Authority,
@@ -51,7 +51,8 @@ def _is_zone(feature: Any) -> bool:
 
 
 def read(content: Any, path: Path) -> ZoneSet:
-    """Zones of an ED-318 file, parsed."""
+    """Zones of an ED-318 file, parsed; errors as `geojson.read`."""
+    check_reference_system(content, path)
     questions: list[str] = []
     top = Fields(content, "file", questions)
     metadata = Fields(top.values.get("metadata") or {}, "metadata", questions)

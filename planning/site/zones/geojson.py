@@ -9,8 +9,10 @@ import math
 from pathlib import Path
 from typing import Any
 
+from planning.base.errors import InputError
 from planning.base.messages import say
-from planning.site.zones.fields import Fields
+from planning.geo.crs import names_wgs84
+from planning.site.zones.fields import Fields, quoted
 from planning.site.zones.heights import EVERYWHERE_BELOW, limit
 from planning.site.zones.records import (
     UNLIMITED,
@@ -180,6 +182,36 @@ def _layer(value: Any, questions: list[str]) -> tuple[Limit, Limit]:
     return lower, upper
 
 
+def check_reference_system(content: Any, path: Path) -> None:
+    """Refuse numbers that are no degrees of WGS 84: read as such, their zones would lie elsewhere, and count as clear.
+
+    Older GeoJSON (2008) may name another system by `crs`, of the whole, of a feature or of a geometry.
+
+    Raises
+    ------
+    InputError
+        Another system is named, or one by what is no name.
+    """
+    level = [content]
+    for _ in range(MAX_NESTED + 3):
+        level = [each for each in level if isinstance(each, dict)]
+        for each in level:
+            system = each.get("crs")
+            if system is None:
+                continue
+            properties = system.get("properties") if isinstance(system, dict) else None
+            name = properties.get("name") if isinstance(properties, dict) else None
+            if not (isinstance(name, str) and names_wgs84(name)):
+                raise InputError.say(
+                    "its coordinates are in the reference system {}; export it in WGS 84 (EPSG:4326)",
+                    quoted(name if isinstance(name, str) else system),
+                    place=path,
+                )
+        parts = [each.get(name) for each in level for name in ("features", "geometries")]
+        level = [each.get("geometry") for each in level]
+        level += [part for several in parts if isinstance(several, list) for part in several]
+
+
 def features_of(content: Any) -> list[Any]:
     """Features of a GeoJSON object: a collection's, one alone, or a bare geometry as one."""
     if not isinstance(content, dict):
@@ -199,7 +231,14 @@ def recognises(content: Any) -> bool:
 
 
 def read(content: Any, path: Path) -> ZoneSet:
-    """Zones of plain GeoJSON, parsed; `path` names zones that have no name."""
+    """Zones of plain GeoJSON, parsed; `path` names zones that have no name.
+
+    Raises
+    ------
+    InputError
+        Its coordinates are no degrees of WGS 84.
+    """
+    check_reference_system(content, path)
     zones = []
     for number, feature in enumerate(features_of(content), 1):
         questions: list[str] = []

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from planning.base.errors import InputError
-from planning.base.files import HostileXml, parse_xml
+from planning.base.files import HostileXml, local_name, parse_xml
 from planning.base.messages import say
 from planning.site.zones.geojson import NO_MEANING, POINT_WIDTH_M, ring
 from planning.site.zones.records import LonLat, Outline, Restriction, Volume, Zone, ZoneSet
@@ -64,17 +64,13 @@ def read(content: bytes, path: Path) -> ZoneSet:
     return ZoneSet("KML", tuple(zones), questions=tuple(questions))
 
 
-def _local(element: Element) -> str:
-    return element.tag.rpartition("}")[2] if isinstance(element.tag, str) else ""
-
-
 def _named(element: Element, name: str) -> Iterator[Element]:
     """Elements of a name, of whatever version of KML."""
-    return (each for each in element.iter() if _local(each) == name)
+    return (each for each in element.iter() if local_name(each) == name)
 
 
 def _text(element: Element, name: str) -> str:
-    return next((" ".join((each.text or "").split()) for each in element if _local(each) == name), "")
+    return next((" ".join((each.text or "").split()) for each in element if local_name(each) == name), "")
 
 
 def _areas(placemark: Element, questions: list[str]) -> Iterator[Outline]:

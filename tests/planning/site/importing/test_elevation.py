@@ -418,6 +418,19 @@ def test_damaged_files_are_refused_or_say_heights_and_never_more_than_they_did(t
     assert (np.abs(found.field.z_m[known]) < 20_000.0).all()
 
 
+def test_a_system_that_is_not_known_is_told_of_the_file(tmp_path):
+    """Fuzzing came upon one: the message named neither the file nor what to do, but all of the system's text."""
+    path = tmp_path / "engineering.tif"
+    local = 'LOCAL_CS["site grid",UNIT["metre",1]]'
+    with rasterio.open(
+        path, "w", driver="GTiff", width=4, height=4, count=1, dtype="float32", crs=local,
+        transform=Affine(10.0, 0.0, 0.0, 0.0, -10.0, 40.0),
+    ) as file:  # fmt: skip
+        file.write(np.zeros((1, 4, 4), np.float32))
+    with pytest.raises(InputError, match=r"engineering\.tif.*--crs"):
+        sample_heights(ORIGIN, AREA, [path], ELLIPSOID)
+
+
 def test_a_cut_file_is_not_read_as_far_as_it_goes(tmp_path, tilted):
     content = tilted.read_bytes()
     path = tmp_path / "cut.tif"

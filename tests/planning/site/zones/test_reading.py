@@ -265,3 +265,30 @@ def test_places_that_are_none_say_whether_latitude_and_longitude_are_exchanged()
     east = [[lat, lon + 106.0] for lon, lat in RING]
     assert "exchanged" in only(geojson(polygon(east))).place_questions[0]
     assert "does not say whether" in only(openair(*openair_ring(RING), upper="2500ft")).questions[0]
+
+
+def with_crs(place, system):
+    """A small square, whose numbers are places on earth whatever the system; `place` says what names it."""
+    geometry = {"type": "Polygon", "coordinates": [[[10, 10], [50, 10], [50, 60], [10, 10]]]}
+    feature = {"type": "Feature", "properties": {"name": "field"}, "geometry": geometry}
+    content = {"type": "FeatureCollection", "features": [feature]}
+    {"file": content, "feature": feature, "geometry": geometry}[place]["crs"] = system
+    return json.dumps(content).encode()
+
+
+def named(name):
+    return {"type": "name", "properties": {"name": name}}
+
+
+@pytest.mark.parametrize("place", ["file", "feature", "geometry"])
+@pytest.mark.parametrize("system", [named("urn:ogc:def:crs:EPSG::32650"), named(""), named(4326), "EPSG:4326", {}])
+def test_areas_in_metres_are_not_taken_for_degrees(place, system):
+    """They would lie elsewhere, and count as clear."""
+    with pytest.raises(InputError, match=r"export it in WGS 84"):
+        zones_of(with_crs(place, system), Path("field.geojson"))
+
+
+@pytest.mark.parametrize("name", ["urn:ogc:def:crs:OGC:1.3:CRS84", "EPSG:4326", "urn:ogc:def:crs:EPSG::4326"])
+def test_wgs_84_may_be_named(name):
+    (zone,) = zones_of(with_crs("file", named(name)), Path("field.geojson")).zones
+    assert not zone.place_questions
