@@ -1,22 +1,23 @@
 """Files of geo-zones: which format one is in, and what it says.
 
-A format is one module with `recognises` and `read`, and a row of `FORMATS`.
+A format is one module with `recognises` and `read`, and a row of `FORMATS`. It is loaded when a file is read: few sites
+have zones, and all windows wait for what is loaded at the start.
 """
 
 from __future__ import annotations
 
+import importlib
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from planning.base.errors import InputError
 from planning.base.files import MIB, FileLimit, read_input_file
 from planning.base.json_file import parse_json
 from planning.base.messages import say
-from planning.site.zones import aixm, ed269, ed318, geojson, kml, openair
 from planning.site.zones.records import Zone, ZoneSet
 
 ZONES_FILE = FileLimit(
@@ -29,27 +30,37 @@ KNOWN = say("a file of geo-zones: ED-269 or ED-318 JSON, GeoJSON, KML, AIXM 5.1 
 
 @dataclass(frozen=True, slots=True)
 class ZoneFormat:
-    """A format of geo-zones: how it is told, and how it is read.
+    """A format of geo-zones.
 
     Parameters
     ----------
+    module
+        In this room: `recognises` tells a file of the format, `read` reads it.
     is_json
         Whether both take parsed JSON, else the bytes of the file.
     """
 
-    name: str
+    module: str
     is_json: bool
+
+    def reader(self) -> _Reader:
+        """The module."""
+        found: _Reader = importlib.import_module(f"planning.site.zones.{self.module}")
+        return found
+
+
+class _Reader(Protocol):
     recognises: Callable[[Any], bool]
     read: Callable[[Any, Path], ZoneSet]
 
 
 FORMATS = (
-    ZoneFormat("ED-269", True, ed269.recognises, ed269.read),
-    ZoneFormat("ED-318", True, ed318.recognises, ed318.read),
-    ZoneFormat("GeoJSON", True, geojson.recognises, geojson.read),
-    ZoneFormat("KML", False, kml.recognises, kml.read),
-    ZoneFormat("AIXM 5.1", False, aixm.recognises, aixm.read),
-    ZoneFormat("OpenAir", False, openair.recognises, openair.read),
+    ZoneFormat("ed269", is_json=True),
+    ZoneFormat("ed318", is_json=True),
+    ZoneFormat("geojson", is_json=True),
+    ZoneFormat("kml", is_json=False),
+    ZoneFormat("aixm", is_json=False),
+    ZoneFormat("openair", is_json=False),
 )
 """The first that recognises a file reads it."""
 
@@ -71,8 +82,8 @@ def zones_of(written: bytes, path: Path) -> ZoneSet:
     content = parse_json(written, path) if start in (b"{", b"[") else None
     for each in FORMATS:
         given = content if each.is_json else written
-        if (content is None) != each.is_json and each.recognises(given):
-            found = each.read(given, path)
+        if (content is None) != each.is_json and (reader := each.reader()).recognises(given):
+            found = reader.read(given, path)
             if not found.zones:
                 raise InputError.say("there is no zone in this {} file", found.format, place=path)
             return replace(found, zones=_with_unique_ids(found.zones))
