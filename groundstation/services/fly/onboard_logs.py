@@ -7,16 +7,23 @@ from collections.abc import Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Protocol, TypeVar
 
 from groundstation.vehicle.onboard_logs import FetchedLogs, LogFetch, LogListing, OnboardFile, newest
 from missions.flight.logs.read import LOG_FILE
 from missions.mavlink.autopilots import Autopilot, facts
-from missions.mavlink.link import GROUND_HEARTBEAT, GROUND_STATION, HEARTBEAT_EVERY_S, Link, open_link
-from missions.mavlink.messages import Address, Heartbeat, Message, Received
+from missions.mavlink.link import (
+    GROUND_HEARTBEAT,
+    GROUND_STATION,
+    HEARTBEAT_EVERY_S,
+    LONGEST_WAIT_S,
+    Link,
+    drive,
+    open_link,
+)
+from missions.mavlink.messages import Address, Heartbeat
 from missions.mavlink.signing import Signer
 from missions.mavlink.transfer.exchange import Route
-from planning.base.errors import InputError, LinkError, LinkTimeout, OperationCancelled
+from planning.base.errors import InputError, LinkError, LinkTimeout
 from planning.base.files import make_folder, read_input_file
 from planning.base.json_file import write_atomically
 from planning.base.messages import about
@@ -24,39 +31,6 @@ from planning.base.progress import QUIET, Clock, Monitor
 
 HEARD_S = 10.0
 """Autopilots send a heartbeat each second; a lossy link loses some."""
-
-LONGEST_WAIT_S = 0.25
-SHORTEST_WAIT_S = 0.02
-
-Outcome_co = TypeVar("Outcome_co", covariant=True)
-
-
-class Machine(Protocol[Outcome_co]):
-    """A state machine without a link."""
-
-    @property
-    def outcome(self) -> Outcome_co | None:
-        """None while it runs."""
-
-    @property
-    def next_deadline_s(self) -> float:
-        """When `tick` wants to be called."""
-
-    @property
-    def progress(self) -> tuple[str, float, float]:
-        """What it does, how much of it, and of how much."""
-
-    def start(self, now_s: float) -> list[Message]:
-        """Begin."""
-
-    def receive(self, received: Received) -> list[Message]:
-        """Take a message."""
-
-    def tick(self, now_s: float) -> list[Message]:
-        """Let time pass."""
-
-    def cancel(self) -> list[Message]:
-        """Tell the vehicle that it is given up."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,7 +92,7 @@ def fetch_logs(
             raise LinkError.say("the logs on the vehicle are empty", place=url)
         make_folder(folder)
         route, _ = _vehicle(link, url, clock)
-        fetched = run_machine(LogFetch(route, chosen), link, clock, monitor)
+        fetched = drive(LogFetch(route, chosen), link, clock, monitor)
     kept = keep_logs(fetched, folder)
     if fetched.problem:
         raise LinkError(fetched.problem)
@@ -157,7 +131,7 @@ def _named(files: Sequence[OnboardFile], name: str, url: str) -> OnboardFile:
 
 
 def _listed(link: Link, url: str, monitor: Monitor, clock: Clock) -> tuple[OnboardFile, ...]:
-    listed = run_machine(LogListing(*_vehicle(link, url, clock)), link, clock, monitor)
+    listed = drive(LogListing(*_vehicle(link, url, clock)), link, clock, monitor)
     if listed.problem:
         raise LinkError(about(url, listed.problem))
     return listed.files
@@ -182,35 +156,3 @@ def _vehicle(link: Link, url: str, clock: Clock) -> tuple[Route, Autopilot]:
 
 def _own(link: Link) -> Address:
     return getattr(link, "address", GROUND_STATION)
-
-
-def run_machine(machine: Machine[Outcome_co], link: Link, clock: Clock, monitor: Monitor = QUIET) -> Outcome_co:
-    """Run a machine to its outcome; sends a heartbeat each second besides.
-
-    Raises
-    ------
-    LinkError
-        The link broke.
-    OperationCancelled
-        By the monitor; the vehicle was told.
-    """
-    outgoing, heartbeat_s = machine.start(clock()), clock()
-    while True:
-        for message in outgoing:
-            link.send(message)
-        if (outcome := machine.outcome) is not None:
-            return outcome
-        now_s = clock()
-        if now_s >= heartbeat_s:
-            link.send(GROUND_HEARTBEAT)
-            heartbeat_s = now_s + HEARTBEAT_EVERY_S
-        try:
-            monitor.report(*machine.progress)
-        except OperationCancelled:
-            for message in machine.cancel():
-                link.send(message)
-            raise
-        received = link.receive(min(LONGEST_WAIT_S, max(SHORTEST_WAIT_S, machine.next_deadline_s - now_s)))
-        outgoing = [] if received is None else machine.receive(received)
-        if machine.outcome is None and clock() >= machine.next_deadline_s:
-            outgoing = [*outgoing, *machine.tick(clock())]

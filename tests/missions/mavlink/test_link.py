@@ -17,6 +17,7 @@ from missions.mavlink.link import (
     ChannelLink,
     Link,
     UdpChannel,
+    drive,
     memory_pair,
     open_link,
 )
@@ -25,7 +26,6 @@ from missions.mavlink.signing import Signer
 from missions.mavlink.transfer.exchange import Ending, Route
 from missions.mavlink.transfer.verified import Clear, Verified, VerifiedUpload
 from planning.base.errors import InputError, LinkError, LinkTimeout, OperationCancelled
-from tests.missions.mavlink.driving import drive
 from tests.missions.mavlink.transfer.fake_vehicle import ARDUPILOT, OWN, FakeVehicle, waypoints
 
 WAIT_S = 60.0

@@ -16,7 +16,7 @@ import pytest
 
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.fence import FenceCircle, FencePolygon, fence_items, rally_items
-from missions.mavlink.link import GROUND_HEARTBEAT, ChannelLink, open_link
+from missions.mavlink.link import GROUND_HEARTBEAT, ChannelLink, drive, open_link
 from missions.mavlink.messages import Heartbeat, MissionItemInt
 from missions.mavlink.plan_json import plan_json_bytes
 from missions.mavlink.transfer.exchange import Download, Ending, MissionType, Route
@@ -27,7 +27,6 @@ from missions.mission.export_choices import HeightReference
 from missions.mission.model import GeoPoint
 from missions.simulator.server import serve
 from missions.simulator.vehicle import SimulatedVehicle
-from tests.missions.mavlink.driving import drive
 from tests.missions.mavlink.transfer.fake_vehicle import ARDUPILOT, PX4
 from tests.missions.mavlink.transfer.test_simulated_vehicle import planned
 from tests.missions.plans import example_plan

@@ -21,7 +21,7 @@ from missions.flight.outcome import Reason
 from missions.flight.report import report_flight
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.fence import rally_items
-from missions.mavlink.link import GROUND_STATION, VEHICLE, open_link
+from missions.mavlink.link import GROUND_STATION, VEHICLE, drive, open_link
 from missions.mavlink.transfer.exchange import MissionType, Route
 from missions.mavlink.transfer.verified import Verified, VerifiedUpload
 from missions.mavlink.transfer.wire_items import to_wire
@@ -30,7 +30,6 @@ from missions.mission.resume import resume_sortie
 from planning.planner import plan_flight
 from planning.request import PlanRequest
 from planning.site.bundled import single_panel
-from tests.missions.mavlink.driving import drive
 from tests.services.real_autopilots import real_vehicle, variable
 
 ARDUPILOT = Autopilot.ARDUPILOT

@@ -7,7 +7,7 @@ import threading
 
 import pytest
 
-from groundstation.services.fly.onboard_logs import fetch_logs, keep_logs, list_logs, run_machine
+from groundstation.services.fly.onboard_logs import fetch_logs, keep_logs, list_logs
 from groundstation.vehicle.onboard_logs import FetchedLogs, LogFetch, LogListing, OnboardFile, newest
 from groundstation.vehicle.orders import sortie_orders
 from groundstation.vehicle.sortie.conduct import conduct
@@ -15,7 +15,7 @@ from groundstation.vehicle.sortie.flight_run import FlightRun
 from groundstation.vehicle.sortie.run_records import RunOptions
 from missions.flight.logs.read import read_log
 from missions.mavlink.autopilots import Autopilot
-from missions.mavlink.link import memory_pair, open_link
+from missions.mavlink.link import drive, memory_pair, open_link
 from missions.mavlink.messages import Address, FileTransferProtocol, Message, Received
 from missions.mavlink.transfer.exchange import Route
 from missions.mission.build import missions_from_plan
@@ -160,7 +160,7 @@ def test_cancelling_tells_the_vehicle(flown):
     path, content = next(iter(vehicle.log.files().items()))
     wanted = [OnboardFile(path, len(content))]
     with pytest.raises(OperationCancelled):
-        run_machine(LogFetch(ROUTE, wanted), link, link.clock, Cancels())
+        drive(LogFetch(ROUTE, wanted), link, link.clock, Cancels())
     assert vehicle._file_server._session is None
 
 
@@ -168,7 +168,7 @@ def test_a_link_that_breaks_is_said_and_leaves_no_file(tmp_path):
     ground, air = memory_pair()
     air.close()
     with pytest.raises(LinkError, match="the other end closed the link"):
-        run_machine(LogListing(ROUTE, Autopilot.ARDUPILOT), ground, ground.clock)
+        drive(LogListing(ROUTE, Autopilot.ARDUPILOT), ground, ground.clock)
     assert keep_logs(FetchedLogs(()), tmp_path) == ()
     assert list(tmp_path.iterdir()) == []
 

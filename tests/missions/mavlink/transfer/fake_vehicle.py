@@ -15,6 +15,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from missions.mavlink.autopilots import Autopilot
+from missions.mavlink.link import Machine
 from missions.mavlink.messages import (
     Address,
     Message,
@@ -28,7 +29,6 @@ from missions.mavlink.messages import (
     Received,
 )
 from missions.mavlink.transfer.exchange import MissionType, Result, Route
-from tests.missions.mavlink.driving import Machine
 
 OWN, VEHICLE = Address(255, 190), Address(1, 1)
 ROUTE = Route(OWN, VEHICLE)

@@ -13,6 +13,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from missions.mavlink.link import Machine
 from missions.mavlink.messages import (
     Message,
     MissionAck,
@@ -26,7 +27,6 @@ from missions.mavlink.transfer.exchange import Download, Ending
 from missions.mavlink.transfer.verified import Clear, NotVerified, Upload, Verified, VerifiedUpload
 from missions.mavlink.transfer.wire_items import compare
 from missions.mavlink.wire import Decoder, Encoder
-from tests.missions.mavlink.driving import Machine
 from tests.missions.mavlink.test_wire import messages_of
 from tests.missions.mavlink.transfer.fake_vehicle import (
     ARDUPILOT,

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from missions.mavlink.autopilots import Autopilot, facts
 from missions.mavlink.fence import FenceCircle, FencePolygon, fence_items, rally_items
 from missions.mavlink.items import MissionItem, mission_items
+from missions.mavlink.link import drive
 from missions.mavlink.messages import Message, MissionItemInt, Received
 from missions.mavlink.transfer.exchange import MissionType
 from missions.mavlink.transfer.verified import NotVerified, Verified, VerifiedUpload
@@ -23,7 +24,7 @@ from missions.simulator.autopilot.mission_store import MissionStores, StoredItem
 from missions.simulator.autopilot.mission_store import to_wire as stored_to_wire
 from missions.simulator.server import DirectLink
 from missions.simulator.vehicle import SimulatedVehicle
-from tests.missions.mavlink.driving import drive, fences_of, from_wire
+from tests.missions.mavlink.driving import fences_of, from_wire
 from tests.missions.mavlink.transfer.fake_vehicle import ARDUPILOT, PX4, Air, route
 from tests.missions.plans import example_plan
 from tests.missions.simulator.ground import ORIGIN, PointMass
