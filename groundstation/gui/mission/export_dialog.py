@@ -121,9 +121,82 @@ class ExportForm(QWidget):
 FORM_WIDTH_PX = 360
 
 REST_MS = 200
+"""Turning a wheel through choices, or typing, asks once, not once for each."""
 
 
-class ExportDialog(QDialog):
+class AnsweringDialog(QDialog):
+    """Shows what a service answers to what is chosen in it, and does it once the user agrees.
+
+    Answers to what was chosen before are not shown. Closed while it writes, it goes when that is over.
+
+    Parameters
+    ----------
+    action
+        On its button, which can be pressed while an answer stands.
+    """
+
+    def __init__(self, context: ApplicationContext, action: str, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._context = context
+        self._asked, self._is_writing = 0, False
+        self._state, self._findings = QLabel(), FindingsList()
+        self._state.setWordWrap(True)
+        self._findings.set_units(context.units)
+        self._action = QPushButton(action)
+        self._action.setProperty("primary", True)
+        self._ask_soon = QTimer(self, interval=REST_MS, singleShot=True)
+        self.finished.connect(self._let_go)
+
+    def state_text(self) -> str:
+        """What is said of the answer."""
+        return self._state.text()
+
+    def findings(self) -> FindingsList:
+        """What the checks say."""
+        return self._findings
+
+    def _edited(self) -> None:
+        self._forget()
+        self._ask_soon.start()
+
+    def _forget(self) -> int:
+        """Answers to what was asked before are not shown any more; the number of the new question."""
+        self._asked += 1
+        self._action.setEnabled(False)
+        return self._asked
+
+    def _say(self, role: str, text: str) -> None:
+        self._state.setProperty("role", role)
+        self._state.style().polish(self._state)
+        self._state.setText(text)
+
+    def _say_failed(self, text: str) -> None:
+        """That it was not done: here, or among the messages where the dialog was closed meanwhile."""
+        self._is_writing = False
+        if self.isVisible():
+            self._say("error", text)
+        else:
+            self._context.say(Severity.WARNING, text)
+            self._let_go()
+
+    def _foot(self) -> QHBoxLayout:
+        """Close, and the button of what it does."""
+        close, foot = QPushButton(self.tr("Close")), QHBoxLayout()
+        close.clicked.connect(self.reject)
+        foot.addStretch(1)
+        foot.addWidget(close)
+        foot.addWidget(self._action)
+        return foot
+
+    def _let_go(self) -> None:
+        """Closed: nothing more is shown, and nothing is left in the window once files that are being written are."""
+        self._asked += 1
+        self._ask_soon.stop()
+        if not self._is_writing:
+            self.deleteLater()
+
+
+class ExportDialog(AnsweringDialog):
     """Exports one plan of one site.
 
     Signals
@@ -141,22 +214,12 @@ class ExportDialog(QDialog):
         folder: Path,
         parent: QWidget | None = None,
     ) -> None:
-        super().__init__(parent)
-        self._is_writing = False
-        self.finished.connect(self._let_go)
+        super().__init__(context, self.tr("Write ..."), parent)
         self.setWindowTitle(self.tr("Export mission files"))
-        self._context, self._plan, self._site_model, self._folder = context, plan, site_model, folder
+        self._plan, self._site_model, self._folder = plan, site_model, folder
         self._prepared: PreparedExport | None = None
-        self._asked = 0
         self._form = ExportForm(context.units)
-        self._state = QLabel()
-        self._state.setWordWrap(True)
-        self._findings = FindingsList()
-        self._findings.set_units(context.units)
-        self._write = QPushButton(self.tr("Write ..."))
-        self._write.setProperty("primary", True)
-        self._write.setDefault(True)
-        close = QPushButton(self.tr("Close"))
+        self._action.setDefault(True)
         left = QWidget()
         left.setFixedWidth(FORM_WIDTH_PX)
         left_layout = QVBoxLayout(left)
@@ -169,21 +232,14 @@ class ExportDialog(QDialog):
         columns = QHBoxLayout()
         columns.addWidget(left)
         columns.addLayout(right, 1)
-        buttons = QHBoxLayout()
-        buttons.addStretch(1)
-        buttons.addWidget(close)
-        buttons.addWidget(self._write)
         layout = QVBoxLayout(self)
         layout.addLayout(columns, 1)
         layout.addWidget(DialogFoot(context))
-        layout.addLayout(buttons)
+        layout.addLayout(self._foot())
         self.resize(820, 460)
-        # Turning a wheel through the choices makes one set of files, not one for each.
-        self._prepare_soon = QTimer(self, interval=REST_MS, singleShot=True)
-        self._prepare_soon.timeout.connect(self._prepare)
-        self._form.valueChanged.connect(self._options_changed)
-        self._write.clicked.connect(self._choose_file)
-        close.clicked.connect(self.reject)
+        self._ask_soon.timeout.connect(self._prepare)
+        self._form.valueChanged.connect(self._edited)
+        self._action.clicked.connect(self._choose_file)
         self._prepare()
 
     def form(self) -> ExportForm:
@@ -193,14 +249,6 @@ class ExportDialog(QDialog):
     def prepared(self) -> PreparedExport | None:
         """What would be written; None while it is being made."""
         return self._prepared
-
-    def state_text(self) -> str:
-        """What is said of the files."""
-        return self._state.text()
-
-    def findings(self) -> FindingsList:
-        """What the checks say of the files."""
-        return self._findings
 
     def folder(self) -> Path:
         """Where files were written last."""
@@ -219,19 +267,15 @@ class ExportDialog(QDialog):
         self._is_writing = True
         self._context.start(self.tr("Export"), work, self._when_written, self._when_failed)
 
-    def _options_changed(self) -> None:
-        self._asked += 1
+    def _forget(self) -> int:
         self._prepared = None
-        self._write.setEnabled(False)
-        self._prepare_soon.start()
+        return super()._forget()
 
     def _prepare(self) -> None:
         """Make the files in memory; an answer to older options is not shown."""
         file_format, options = self._form.value()
         plan, site_model = self._plan, self._site_model
-        self._asked += 1
-        request, self._prepared = self._asked, None
-        self._write.setEnabled(False)
+        request = self._forget()
         self._say("heading", self.tr("Making the files ..."))
 
         def work(_context: JobContext) -> PreparedExport:
@@ -247,7 +291,7 @@ class ExportDialog(QDialog):
         self._prepared = prepared
         self._findings.set_findings(prepared.findings)
         self._findings.set_placeholder("" if prepared.encoded is None else self.tr("No objections to these files."))
-        self._write.setEnabled(prepared.can_be_written)
+        self._action.setEnabled(prepared.can_be_written)
         if prepared.encoded is None:
             self._say("error", self.tr("Cannot be exported: {0}").format(prepared.refusal))
         elif not prepared.can_be_written:
@@ -258,11 +302,6 @@ class ExportDialog(QDialog):
             )
         else:
             self._say("ok", self.tr("Ready to be written, files: {0}").format(prepared.n_files))
-
-    def _say(self, role: str, text: str) -> None:
-        self._state.setProperty("role", role)
-        self._state.style().polish(self._state)
-        self._state.setText(text)
 
     def _choose_file(self) -> None:
         file_format, _ = self._form.value()
@@ -290,16 +329,4 @@ class ExportDialog(QDialog):
         self.accept()
 
     def _when_failed(self, error: BaseException) -> None:
-        self._is_writing = False
-        text = self.tr("Not written: {0}").format(self._context.localized(str(error)))
-        if self.isVisible():
-            self._say("error", text)
-        else:
-            self._context.say(Severity.WARNING, text)
-            self._let_go()
-
-    def _let_go(self) -> None:
-        """Closed: nothing more is shown, and nothing is left in the window once files that are being written are."""
-        self._asked += 1
-        if not self._is_writing:
-            self.deleteLater()
+        self._say_failed(self.tr("Not written: {0}").format(self._context.localized(str(error))))

@@ -6,12 +6,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from PySide6.QtCore import QDateTime, QLocale, QTimer, Signal
-from PySide6.QtWidgets import QDialog, QHBoxLayout, QLabel, QLineEdit, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtCore import QDateTime, QLocale, Signal
+from PySide6.QtWidgets import QHBoxLayout, QLineEdit, QPushButton, QVBoxLayout, QWidget
 
 from groundstation.gui.application.context import ApplicationContext
-from groundstation.gui.mission.export_dialog import FORM_WIDTH_PX, REST_MS, ExportForm
-from groundstation.gui.widgets.findings_list import FindingsList
+from groundstation.gui.mission.export_dialog import FORM_WIDTH_PX, AnsweringDialog, ExportForm
 from groundstation.gui.widgets.inputs import ChoiceBox, Form
 from groundstation.gui.widgets.job_bar import DialogFoot
 from groundstation.gui.widgets.questions import Questions, agrees
@@ -33,7 +32,7 @@ from planning.plan import Plan
 from planning.site.records import SiteModel
 
 
-class SendDialog(QDialog):
+class SendDialog(AnsweringDialog):
     """Puts one plan of one site onto a card or a remote controller.
 
     Signals
@@ -52,15 +51,13 @@ class SendDialog(QDialog):
         parent: QWidget | None = None,
         find: Callable[[], tuple[Storage, ...]] = find_storages,
     ) -> None:
-        super().__init__(parent)
+        super().__init__(context, self.tr("Send"), parent)
         self.setWindowTitle(self.tr("Send to controller"))
-        self._context, self._plan, self._site_model, self._find = context, plan, site_model, find
-        self._asked, self._is_writing = 0, False
+        self._plan, self._site_model, self._find = plan, site_model, find
         self._storages: list[Storage] = []
         self._payload: Payload | None = None
         self._prepared: PreparedSending | None = None
         self._routes: list[ChoiceBox] = []
-        self.finished.connect(self._let_go)
         self._make_widgets(name)
         self._lay_out()
         self.look()
@@ -80,15 +77,8 @@ class SendDialog(QDialog):
         self._folder = QPushButton(self.tr("Folder ..."))
         self._folder.setToolTip(self.tr("Send into a folder that you choose"))
         self._options = ExportForm(self._context.units, only=FileFormat.DJI_KMZ)
-        self._state = QLabel()
-        self._state.setWordWrap(True)
-        self._findings = FindingsList()
-        self._findings.set_units(self._context.units)
         self._findings.set_placeholder(self.tr("No objections to these files."))
-        self._send = QPushButton(self.tr("Send"))
-        self._send.setProperty("primary", True)
-        self._send.setDefault(True)
-        self._close = QPushButton(self.tr("Close"))
+        self._action.setDefault(True)
 
     def _lay_out(self) -> None:
         left = QWidget()
@@ -107,36 +97,26 @@ class SendDialog(QDialog):
         left_layout.addLayout(self._route_rows)
         left_layout.addWidget(self._options)
         left_layout.addStretch(1)
-        right, columns, foot = QVBoxLayout(), QHBoxLayout(), QHBoxLayout()
+        right, columns = QVBoxLayout(), QHBoxLayout()
         right.addWidget(self._state)
         right.addWidget(self._findings, 1)
         columns.addWidget(left)
         columns.addLayout(right, 1)
-        foot.addStretch(1)
-        foot.addWidget(self._close)
-        foot.addWidget(self._send)
         layout = QVBoxLayout(self)
         layout.addLayout(columns, 1)
         layout.addWidget(DialogFoot(self._context))
-        layout.addLayout(foot)
+        layout.addLayout(self._foot())
         self.resize(860, 480)
-        # Typing a name looks once, not once a letter.
-        self._look_soon = QTimer(self, interval=REST_MS, singleShot=True)
-        self._look_soon.timeout.connect(self._look_there)
+        self._ask_soon.timeout.connect(self._look_there)
         self._place.currentIndexChanged.connect(self._place_chosen)
         self._app.currentIndexChanged.connect(self._app_chosen)
         self._name.textChanged.connect(self._edited)
         self._options.valueChanged.connect(self._prepare)
         self._again.clicked.connect(self.look)
         self._folder.clicked.connect(self._choose_folder)
-        self._send.clicked.connect(self._ask_and_send)
-        self._close.clicked.connect(self.reject)
+        self._action.clicked.connect(self._ask_and_send)
 
     # What there is
-
-    def state_text(self) -> str:
-        """What is said of sending."""
-        return self._state.text()
 
     def storage(self) -> Storage | None:
         """Where it is to go."""
@@ -147,7 +127,7 @@ class SendDialog(QDialog):
         """Look for cards and remote controllers; those that were chosen as folders stay."""
         find = self._find
         self._say("heading", self.tr("Looking for cards and remote controllers ..."))
-        self._send.setEnabled(False)
+        self._action.setEnabled(False)
 
         def work(_context: JobContext) -> tuple[Storage, ...]:
             return find()
@@ -206,7 +186,7 @@ class SendDialog(QDialog):
                 self._show_routes()
                 self._prepare()
 
-        self._send.setEnabled(False)
+        self._action.setEnabled(False)
         self._context.start(self.tr("Look for devices"), work, done, self._failed)
 
     # What will be sent
@@ -265,16 +245,9 @@ class SendDialog(QDialog):
 
         self._context.start(self.tr("Look for devices"), work, done, self._failed)
 
-    def _edited(self) -> None:
-        self._forget()
-        self._look_soon.start()
-
     def _forget(self) -> int:
-        """Answers to what was asked before are not shown any more; the number of the new question."""
-        self._asked += 1
         self._prepared = None
-        self._send.setEnabled(False)
-        return self._asked
+        return super()._forget()
 
     def _refuse(self, reason: str) -> None:
         self._findings.set_findings(())
@@ -312,7 +285,7 @@ class SendDialog(QDialog):
             return
         n = len(prepared.targets)
         self._findings.set_findings(prepared.findings)
-        self._send.setEnabled(True)
+        self._action.setEnabled(True)
         if any(found.severity is Severity.WARNING for found in prepared.findings):
             self._say("warning", self.tr("Ready to be sent, files: {0}. Read the warnings.").format(n))
         else:
@@ -335,7 +308,7 @@ class SendDialog(QDialog):
             return send(payload, storage, prepared.targets, backups, context)
 
         self._is_writing = True
-        self._send.setEnabled(False)
+        self._action.setEnabled(False)
         self._say("heading", self.tr("Writing and reading back ..."))
         self._context.start(self.tr("Send to controller"), work, self._when_sent, self._failed)
 
@@ -350,22 +323,5 @@ class SendDialog(QDialog):
         self.accept()
 
     def _failed(self, error: BaseException) -> None:
-        self._is_writing = False
-        self._send.setEnabled(False)
-        text = self.tr("Not sent: {0}").format(self._context.localized(str(error)))
-        if self.isVisible():
-            self._say("error", text)
-        else:
-            self._context.say(Severity.WARNING, text)
-            self._let_go()
-
-    def _say(self, role: str, text: str) -> None:
-        self._state.setProperty("role", role)
-        self._state.style().polish(self._state)
-        self._state.setText(text)
-
-    def _let_go(self) -> None:
-        """Closed: nothing more is shown, and nothing is left in the window once files that are being written are."""
-        self._asked += 1
-        if not self._is_writing:
-            self.deleteLater()
+        self._action.setEnabled(False)
+        self._say_failed(self.tr("Not sent: {0}").format(self._context.localized(str(error))))

@@ -6,13 +6,10 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from PySide6.QtCore import QTimer, Signal
+from PySide6.QtCore import Signal
 from PySide6.QtGui import QColor
 from PySide6.QtWidgets import (
-    QDialog,
     QHBoxLayout,
-    QLabel,
-    QPushButton,
     QScrollArea,
     QSplitter,
     QToolButton,
@@ -22,7 +19,7 @@ from PySide6.QtWidgets import (
 
 from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.map.map_view import MapView
-from groundstation.gui.widgets.findings_list import FindingsList
+from groundstation.gui.mission.export_dialog import AnsweringDialog
 from groundstation.gui.widgets.inputs import ChoiceBox, Form
 from groundstation.gui.widgets.job_bar import DialogFoot
 from groundstation.gui.widgets.parameter_form import ParameterRow, add_rows, rows_of
@@ -51,7 +48,6 @@ from planning.site.records import SiteModel
 
 FORM_WIDTH_PX = 380
 
-REST_MS = 300
 
 KNOWN = declared(GroundRiskRequest)
 
@@ -127,7 +123,7 @@ class GroundRiskForm(QWidget):
                 self._known[name] = row.value()
 
 
-class SoraDialog(QDialog):
+class SoraDialog(AnsweringDialog):
     """Ground risk of one plan on one site.
 
     Signals
@@ -147,42 +143,30 @@ class SoraDialog(QDialog):
         request: GroundRiskRequest | None = None,
         parent: QWidget | None = None,
     ) -> None:
-        super().__init__(parent)
+        super().__init__(context, self.tr("Save draft ..."), parent)
         self.setWindowTitle(self.tr("Ground risk (SORA 2.5)"))
-        self._context, self._plan, self._site_model, self._name = context, plan, site_model, name
+        self._plan, self._site_model, self._name = plan, site_model, name
         self._draft: SoraDraft | None = None
-        self._asked, self._is_writing = 0, False
         self.form, self.map = GroundRiskForm(plan), MapView()
         if request is not None:
             self.form.setValue(request)
-        self._state, self._findings = QLabel(), FindingsList()
-        self._state.setWordWrap(True)
-        self._findings.set_units(context.units)
         titles = table_titles(context.localized)
         columns = [Column(title, _cell(number)) for number, title in enumerate(titles)]
         self._rows: RowModel[tuple[str, ...]] = RowModel(columns, self)
         self._table = table_of(self._rows, self.tr("Numbers with formula and source"))
-        self._save = QPushButton(self.tr("Save draft ..."))
-        self._save.setToolTip(self.tr("Table, KML and GeoJSON into a folder"))
-        self._save.setProperty("primary", True)
+        self._action.setToolTip(self.tr("Table, KML and GeoJSON into a folder"))
         self._lay_out()
         self.map.set_units(context.units)
         self.map.set_site(site_model)
         self.map.set_plan(plan)
-        self._assess_soon = QTimer(self, interval=REST_MS, singleShot=True)
-        self._assess_soon.timeout.connect(self._assess)
+        self._ask_soon.timeout.connect(self._assess)
         self.form.valueChanged.connect(self._edited)
-        self._save.clicked.connect(self._choose_folder)
-        self.finished.connect(self._let_go)
+        self._action.clicked.connect(self._choose_folder)
         self._assess()
 
     def draft(self) -> SoraDraft | None:
         """The draft of what is stated now; None while it is being made."""
         return self._draft
-
-    def state_text(self) -> str:
-        """What is said of it."""
-        return self._state.text()
 
     def table_texts(self) -> list[tuple[str, ...]]:
         """Rows of the table."""
@@ -194,37 +178,25 @@ class SoraDialog(QDialog):
         scroll.setWidgetResizable(True)
         scroll.setFrameShape(QScrollArea.Shape.NoFrame)
         scroll.setFixedWidth(FORM_WIDTH_PX)
-        close = QPushButton(self.tr("Close"))
-        close.clicked.connect(self.reject)
         below = QSplitter()
         below.addWidget(self._table)
         below.addWidget(self._findings)
         below.setSizes([560, 200])
-        right, columns, foot = QVBoxLayout(), QHBoxLayout(), QHBoxLayout()
+        right, columns = QVBoxLayout(), QHBoxLayout()
         right.addWidget(self._state)
         right.addWidget(self.map, 3)
         right.addWidget(below, 2)
         columns.addWidget(scroll)
         columns.addLayout(right, 1)
-        foot.addStretch(1)
-        foot.addWidget(close)
-        foot.addWidget(self._save)
         layout = QVBoxLayout(self)
         layout.addLayout(columns, 1)
         layout.addWidget(DialogFoot(self._context))
-        layout.addLayout(foot)
+        layout.addLayout(self._foot())
         self.resize(1180, 760)
 
-    def _edited(self) -> None:
-        self._forget()
-        self._assess_soon.start()
-
     def _forget(self) -> int:
-        """Answers to what was stated before are not shown any more; the number of the new question."""
-        self._asked += 1
         self._draft = None
-        self._save.setEnabled(False)
-        return self._asked
+        return super()._forget()
 
     def _assess(self) -> None:
         number = self._forget()
@@ -268,7 +240,7 @@ class SoraDialog(QDialog):
         self._findings.set_findings(draft.findings)
         self.map.set_volumes([(QColor(colour), rings) for colour, rings in volume_shapes(draft)])
         self.map.look_at_volumes()
-        self._save.setEnabled(True)
+        self._action.setEnabled(True)
         self.drafted.emit(draft)
 
     def _refuse(self, reason: str) -> None:
@@ -278,8 +250,10 @@ class SoraDialog(QDialog):
         self._say("error", self.tr("Not assessed: {0}").format(self._context.localized(reason)))
 
     def _failed(self, error: BaseException) -> None:
-        self._is_writing = False
         self._refuse(str(error))
+
+    def _not_saved(self, error: BaseException) -> None:
+        self._say_failed(self.tr("Not written: {0}").format(self._context.localized(str(error))))
 
     def _choose_folder(self) -> None:
         project = self._context.session.folder
@@ -298,23 +272,17 @@ class SoraDialog(QDialog):
 
         def done(paths: tuple[Path, ...]) -> None:
             self._is_writing = False
+            if not self.isVisible():
+                self._let_go()
             names = ", ".join(path.name for path in paths)
             self._context.say(Severity.OK, self.tr("Draft saved in {0}: {1}").format(folder, names))
 
         self._is_writing = True
-        self._context.start(self.tr("Save draft"), work, done, self._failed)
-
-    def _say(self, role: str, text: str) -> None:
-        self._state.setProperty("role", role)
-        self._state.style().polish(self._state)
-        self._state.setText(text)
+        self._context.start(self.tr("Save draft"), work, done, self._not_saved)
 
     def _let_go(self) -> None:
-        """Closed: nothing more is shown."""
-        self._asked += 1
-        self._assess_soon.stop()
         self.map.close_view()
-        self.deleteLater()
+        super()._let_go()
 
 
 def _cell(number: int) -> Callable[[tuple[str, ...]], str]:

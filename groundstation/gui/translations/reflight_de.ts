@@ -87,6 +87,13 @@
     </message>
 </context>
 <context>
+    <name>AnsweringDialog</name>
+    <message>
+        <source>Close</source>
+        <translation>Schließen</translation>
+    </message>
+</context>
+<context>
     <name>ApplicationContext</name>
     <message>
         <source>{0}: cancelled</source>
@@ -1167,10 +1174,6 @@ Bild in dieser Entfernung: {4} x {5}</translation>
     <message>
         <source>Write ...</source>
         <translation>Schreiben ...</translation>
-    </message>
-    <message>
-        <source>Close</source>
-        <translation>Schließen</translation>
     </message>
     <message>
         <source>Export</source>
@@ -6726,10 +6729,6 @@ Damit weiterarbeiten?</translation>
     <message>
         <source>Send</source>
         <translation>Senden</translation>
-    </message>
-    <message>
-        <source>Close</source>
-        <translation>Schließen</translation>
     </message>
     <message>
         <source>Device</source>
@@ -20421,10 +20420,6 @@ Größe: {3}; Dreiecke: {4}</translation>
         <translation>Tabelle, KML und GeoJSON in einen Ordner</translation>
     </message>
     <message>
-        <source>Close</source>
-        <translation>Schließen</translation>
-    </message>
-    <message>
         <source>Assessing, and letting aircraft fly away ...</source>
         <translation>Wird bewertet, mit simulierten Ausreißern ...</translation>
     </message>
@@ -20439,6 +20434,10 @@ Größe: {3}; Dreiecke: {4}</translation>
     <message>
         <source>Not assessed: {0}</source>
         <translation>Nicht bewertet: {0}</translation>
+    </message>
+    <message>
+        <source>Not written: {0}</source>
+        <translation>Nicht geschrieben: {0}</translation>
     </message>
     <message>
         <source>Save the draft into this folder</source>

@@ -272,7 +272,7 @@ def test_export_says_why_files_cannot_be_made_and_offers_no_writing(page, contex
     dialog = page.export()
     idle(lambda: dialog.prepared() is not None)
     assert f"Cannot be exported: sortie 1: viewpoint '{lost.id}' is not on the path" in dialog.state_text()
-    assert not dialog._write.isEnabled()
+    assert not dialog._action.isEnabled()
     dialog.close()
 
 
@@ -283,7 +283,7 @@ def test_only_the_last_wish_of_the_export_form_is_made(page, context, planned, i
     for index in (1, 2, 3, 4):
         dialog.form()._format.setCurrentIndex(index)
         assert dialog.prepared() is None
-        assert not dialog._write.isEnabled()
+        assert not dialog._action.isEnabled()
     idle(lambda: dialog.prepared() is not None)
     assert dialog.prepared().encoded.contents[0].startswith(b"sortie,sequence")
     dialog.close()

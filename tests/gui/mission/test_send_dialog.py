@@ -43,11 +43,11 @@ def test_a_route_of_dji_fly_is_replaced_once_the_pilot_agrees(page, context, pla
     assert dialog.state_text() == "Ready to be sent, files: 1. Read the warnings."
     path = devices[0] / FLY_ROUTES / ID / f"{ID}.kmz"
     with clicked(escape) as words:
-        click_on(dialog, dialog._send)
+        click_on(dialog, dialog._action)
     assert f"These files are replaced on RC2: {ID}.kmz" in words[0]
     assert path.read_bytes() == b"old"
     with clicked("Yes"):
-        click_on(dialog, dialog._send)
+        click_on(dialog, dialog._action)
     idle()
     assert sum(mission.n_photos for mission in read_missions(path)) == 10
     assert [message.severity for message in said[-2:]] == [Severity.OK, Severity.NOTE]
@@ -63,7 +63,7 @@ def test_a_card_takes_the_mission_by_name(page, context, planned, idle, said, de
     dialog._name.setText("north")
     idle()
     assert dialog.state_text().startswith("Ready to be sent, files: 1")
-    click_on(dialog, dialog._send)
+    click_on(dialog, dialog._action)
     idle()
     assert [path.name for path in devices[1].iterdir()] == ["north.kmz"]
 
@@ -74,16 +74,16 @@ def test_without_a_device_the_dialog_says_what_to_do_and_a_folder_helps(page, co
     controller = devices.pop()
     dialog = dialog_of(page, idle, context, planned)
     assert "No card or remote controller is connected" in dialog.state_text()
-    assert not dialog._send.isEnabled()
+    assert not dialog._action.isEnabled()
     with clicked(choose(card)):
         press_in(dialog, "Folder ...")
     idle()
     assert dialog.storage() == replace(storage_at(card), free_bytes=dialog.storage().free_bytes)
-    assert dialog._send.isEnabled()
+    assert dialog._action.isEnabled()
     dialog._app.setCurrentIndex(dialog._app.findData(App.DJI_FLY))
     idle()
     assert "has no routes of DJI Fly" in dialog.state_text()
-    assert not dialog._send.isEnabled()
+    assert not dialog._action.isEnabled()
     devices.append(controller)
     press_in(dialog, "Look again")
     idle()

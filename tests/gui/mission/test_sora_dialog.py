@@ -28,7 +28,7 @@ def state(dialog, idle, **values):  # noqa: F811
         row = dialog.form.row(name)
         row.setValue(value)
     dialog.form.valueChanged.emit()
-    dialog._assess_soon.timeout.emit()
+    dialog._ask_soon.timeout.emit()
     idle()
 
 
@@ -45,7 +45,7 @@ def test_a_pilot_states_people_reads_the_class_and_saves_the_draft(page, context
     assert "LBA guidance 1.7" in next(row for row in dialog.table_texts() if row[0] == "S_CV")
     assert len(dialog.findChild(MapView)._volumes) == 3
     with clicked(choose(tmp_path)):
-        click_on(dialog, dialog._save)
+        click_on(dialog, dialog._action)
     idle()
     assert said[-1].severity is Severity.OK
     assert len(json.loads((tmp_path / "sora.geojson").read_text())["features"]) == 3
