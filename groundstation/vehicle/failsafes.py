@@ -37,7 +37,7 @@ FENCE_NAMES = {
 }
 """Parameters that decide it, by autopilot."""
 
-HEIGHT_FENCE, CIRCLE_FENCE = 1, 2
+HEIGHT_FENCE, CIRCLE_FENCE, POLYGON_FENCE = 1, 2, 4
 """Bits of ArduPilot's FENCE_TYPE."""
 
 MARGIN_M = 2.0
@@ -525,13 +525,19 @@ def _gap_of_best_m(orders: SortieOrders, around: Surroundings, found: Return) ->
 
 
 def _fence(autopilot: Autopilot, values: Mapping[str, float], orders: SortieOrders) -> Iterator[PreflightCheck]:
-    if not orders.fences:
+    if not orders.fences.get(autopilot):
         return
     name = "FENCE_ACTION" if autopilot is Autopilot.ARDUPILOT else "GF_ACTION"
     number = values.get(name)
     action = None if number is None else FENCE_ACTIONS[autopilot].get(int(number))
-    is_off = autopilot is Autopilot.ARDUPILOT and not values.get("FENCE_ENABLE", 0.0)
-    switch, value = ("FENCE_ENABLE", 0.0) if is_off else (name, number or 0.0)
+    switch, value = name, number or 0.0
+    is_off = False
+    if autopilot is Autopilot.ARDUPILOT:
+        kinds = int(values.get("FENCE_TYPE", POLYGON_FENCE))
+        if not values.get("FENCE_ENABLE", 0.0):
+            is_off, switch, value = True, "FENCE_ENABLE", 0.0
+        elif not kinds & POLYGON_FENCE:
+            is_off, switch, value = True, "FENCE_TYPE", float(kinds)
     set_so = f"{switch} {value:g}"
     if is_off or action is FailsafeAction.GO_ON:
         verdict = Verdict.WARN

@@ -18,6 +18,7 @@ from missions.mavlink.transfer.wire_items import to_wire
 from missions.mission.export_choices import HeightReference
 from missions.mission.model import GeoPoint, Mission
 from planning.base.errors import InfeasibleError, MissionError
+from planning.base.findings import Finding
 from planning.base.messages import say
 from planning.geo.frames import Vec3
 from planning.insight.flight_profile import LowFlight, low_flight
@@ -26,6 +27,7 @@ from planning.routing.rally import return_height
 from planning.site.free_space import TAKEOFF_CLIMB_M, unchecked_space
 from planning.site.ground import ground_of
 from planning.site.records import Site, SiteModel
+from planning.site.zones.keep_out import no_fly_volumes
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -39,7 +41,9 @@ class SortieOrders:
     items
         Mission items by autopilot, home not among them.
     fences
-        Polygons to stay out of.
+        Polygons to stay out of by autopilot, as their vehicles have room for different numbers of corners.
+    unfenced
+        What the fence of each autopilot cannot say, or says more coarsely.
     rally
         Places to return to where they are nearer than home.
     return_height_m
@@ -61,7 +65,7 @@ class SortieOrders:
     number: int
     mission: Mission
     items: Mapping[Autopilot, tuple[MissionItem, ...]]
-    fences: tuple[Polygon, ...]
+    fences: Mapping[Autopilot, tuple[Polygon, ...]]
     surroundings: Mapping[Autopilot, Surroundings]
     battery_needed: float
     rally: tuple[GeoPoint, ...] = ()
@@ -69,6 +73,7 @@ class SortieOrders:
     raised_m: float = 0.0
     low: LowFlight | None = None
     autopilot_s: Mapping[Autopilot, float] = field(default_factory=dict)
+    unfenced: Mapping[Autopilot, tuple[Finding, ...]] = field(default_factory=dict)
 
     def duration_s(self, autopilot: Autopilot | None) -> float:
         """How long the sortie takes, with the time on the ground: as planned, or longer where the autopilot is slower.
@@ -132,7 +137,11 @@ def sortie_orders(plan: Plan, site_model: SiteModel, mission: Mission, raised_m:
         numbered = enumerate(of_autopilot, first_seq(autopilot))
         trigger_seqs = {item.viewpoint_id: seq for seq, item in numbered if item.viewpoint_id}
         surroundings[autopilot] = Surroundings.of_sortie(site_model, plan, mission.number, trigger_seqs)
-    fences, _ = fence_polygons(mission, site_model.site.airspace.no_fly)
+    rally = rally_points(site_model.site)
+    volumes, ground_z_m = no_fly_volumes(site_model), site_model.site.airspace.ground_z_m
+    fences, unfenced = {}, {}
+    for autopilot in Autopilot:
+        fences[autopilot], unfenced[autopilot] = fence_polygons(mission, volumes, autopilot, ground_z_m, rally)
     needed = plan.rules.battery_reserve + mission.duration_s / plan.aircraft.endurance_s
     site = site_model.site
     space = unchecked_space(site_model, plan.constraints.min_distance_m)
@@ -144,7 +153,8 @@ def sortie_orders(plan: Plan, site_model: SiteModel, mission: Mission, raised_m:
         fences=fences,
         surroundings=surroundings,
         battery_needed=needed,
-        rally=rally_points(site),
+        rally=rally,
+        unfenced=unfenced,
         return_height_m=return_height(space).above_home_m + raised_m,
         raised_m=raised_m,
         low=low_flight(plan, plan.sorties[mission.number - 1], site.home_enu_m, ground_of(site)),

@@ -15,6 +15,7 @@ from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.remote_id import refusal_text
 from missions.mavlink.transfer.exchange import MissionType
 from missions.mission.model import altitude_amsl_m as home_altitude_amsl_m
+from planning.base.findings import Severity
 from planning.base.messages import glue, joined, say
 from planning.geo.frames import Vec3
 from planning.insight.flight_profile import LOW_M
@@ -34,6 +35,9 @@ HEIGHT_ROUNDING_M = 1e-3
 
 REMOTE_ID_S = 3.0
 """The module speaks once a second, and ArduPilot does not arm where it was silent for so long."""
+
+MAX_TOLD = 3
+"""Zones that a line of the list names: the check before has said all."""
 
 FIX_NAMES = {0: "none", 1: "none", 2: "2-D", 3: "3-D", 4: "differential", 5: "RTK float", 6: "RTK fixed", 7: "static"}
 
@@ -128,7 +132,7 @@ def preflight_checks(
         _wind(state, orders),
         *_low_flight(orders),
         _board("mission", "mission", on_board.mission, on_board.reason_to_reread),
-        *([_board("geofence", "geofence", on_board.fence, on_board.reason_to_reread)] if orders.fences else []),
+        *_geofence(state, orders, on_board),
         *(
             [_board("rally", say("list of rally points"), on_board.rally, on_board.reason_to_reread)]
             if orders.rally
@@ -415,6 +419,21 @@ def _low_flight(orders: SortieOrders) -> Iterator[PreflightCheck]:
         return
     text = say("{}, under the usual {:g} m: look for people, cars and cables on the whole way", text, usual_m)
     yield PreflightCheck("low-flight", Verdict.WARN, text, low.lowest_m, usual_m, "m")
+
+
+def _geofence(state: VehicleState, orders: SortieOrders, on_board: OnBoard) -> Iterator[PreflightCheck]:
+    """Whether the fence is on board, and what it does not keep the vehicle out of."""
+    autopilot = state.autopilot if state.autopilot is not None else next(iter(Autopilot))
+    if orders.fences.get(autopilot):
+        yield _board("geofence", "geofence", on_board.fence, on_board.reason_to_reread)
+    found = orders.unfenced.get(autopilot, ())
+    for severity, verdict in ((Severity.WARNING, Verdict.WARN), (Severity.NOTE, Verdict.OK)):
+        told = [finding for finding in found if finding.severity is severity]
+        if told:
+            text = joined("; ", [glue(finding.place, ": ", finding.message) for finding in told[:MAX_TOLD]])
+            if len(told) > MAX_TOLD:
+                text = say("{}; and {} more", text, len(told) - MAX_TOLD)
+            yield PreflightCheck("fence-gaps" if severity is Severity.WARNING else "fence-shape", verdict, text)
 
 
 def _parameters(changes: tuple[ParameterChange, ...] | None) -> Iterator[PreflightCheck]:

@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from missions.formats.options import EncodedFiles, ExportOptions
 from missions.mavlink.autopilots import Autopilot
 from missions.mission.export_choices import HIGHEST_RETURN_M, LOWEST_RETURN_M, FileFormat, HeightReference
-from missions.mission.model import Mission
+from missions.mission.model import GeoPoint, Mission
 from planning.base.errors import MissionError
 from planning.base.findings import Finding, Severity
 from planning.base.messages import glue, say
@@ -20,6 +21,10 @@ from planning.routing.rally import CLEARANCE_M, clear_height_z_m, return_height
 from planning.site.free_space import unchecked_space
 from planning.site.ground import ground_of
 from planning.site.records import MIN_HEIGHT_ABOVE_GROUND_M, Site
+from planning.site.zones.keep_out import no_fly_volumes
+
+if TYPE_CHECKING:
+    from missions.mavlink.items import Polygon
 
 
 def encode_dji(plan: Plan, missions: Sequence[Mission], options: ExportOptions) -> EncodedFiles:
@@ -281,12 +286,18 @@ def encode_mavlink(missions: Sequence[Mission], file_format: FileFormat, options
         found = list(check_items(MavlinkFile(items, mission.takeoff, autopilot), autopilot))
         if file_format is FileFormat.MAVLINK_WPL:
             contents.append(wpl_bytes(items, mission.takeoff))
+            if options.site is not None and no_fly_volumes(options.site):
+                text = say("this file has no fence: only a .plan file tells the vehicle the zones to keep out of")
+                found.append(Finding(Severity.NOTE, "no-fence", text))
         else:
-            zones = options.site.site.airspace.no_fly if options.site is not None else ()
-            fences, on_fences = fence_polygons(mission, zones)
-            found += on_fences
             speed_m_s = mission.speed_m_s
-            rally = rally_points(options.site.site) if options.site is not None else ()
+            fences: tuple[Polygon, ...] = ()
+            rally: tuple[GeoPoint, ...] = ()
+            if (model := options.site) is not None:
+                rally = rally_points(model.site)
+                ground_z_m = model.site.airspace.ground_z_m
+                fences, on_fences = fence_polygons(mission, no_fly_volumes(model), autopilot, ground_z_m, rally)
+                found += on_fences
             contents.append(plan_json_bytes(items, mission.takeoff, autopilot, speed_m_s, reference, fences, rally))
         findings += _in_sortie(found, mission, missions)
     return EncodedFiles(tuple(contents), tuple(findings))

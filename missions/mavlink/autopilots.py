@@ -30,6 +30,7 @@ class AutopilotFacts:
 
     firmware_type: int
     max_items: int
+    max_fence_items: int
     position_frames: frozenset[int]
     commands: frozenset[int]
     rejected: frozenset[int]

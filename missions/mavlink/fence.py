@@ -1,23 +1,28 @@
-"""The fence of a flight: the site's no-fly zones as polygons, and its bounds, as MAVLink fence items.
+"""The fence of a flight: the zones to keep out of as polygons, and its bounds, as MAVLink fence items.
 
 A fence has no height: the vehicle must stay out of its polygon at any altitude. A zone that the mission passes over or
 under can therefore not become a fence, or the vehicle would refuse its own mission; it is left out, and said so.
+
+Vehicles take some dozen corners. Where the zones have more, each is drawn with fewer around its outside, as coarsely as
+it must be and never nearer to the path than `FENCE_CLEARANCE_M`; what still finds no room is left out, the farthest
+first, and said so.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
-import numpy as np
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from missions.mavlink.autopilots import Autopilot, facts
 from missions.mavlink.items import MissionItem, Polygon
 from missions.mission.model import GeoPoint, Mission
 from planning.base.errors import MissionError
 from planning.base.findings import Finding, Severity
 from planning.base.messages import say
-from planning.geo.enu import geodetic_from_enu
+from planning.geo.enu import enu_from_geodetic, geodetic_from_enu
 from planning.site.records import NoFlyZone, Site
 
 # Fences and rally points as mission items, and back: what goes up as mission types 1 and 2.
@@ -103,33 +108,172 @@ def rally_items(points: Sequence[GeoPoint], home: GeoPoint) -> tuple[MissionItem
 FENCE_CLEARANCE_M = 2.0
 """ArduPilot's default FENCE_MARGIN: nearer than this to a fence the vehicle already brakes."""
 
+ABOVE_GROUND_M = 1.0
+"""Zones that begin no higher than this above the level ground reach down to it."""
 
-def fence_polygons(mission: Mission, zones: tuple[NoFlyZone, ...]) -> tuple[tuple[Polygon, ...], tuple[Finding, ...]]:
-    """Polygons of the zones that the mission keeps clear of at every height, and findings on the others."""
+COARSEST = 12
+"""Steps of `STEP_M` doubled, up to 1 km: as far as zones are looked at around a site."""
+
+STEP_M = 0.5
+
+HEADER_ITEMS = 1
+"""Room that each polygon takes beside its corners: 2 bytes and a share of 5 in ArduPilot (AC_PolyFence_loader), whose
+corners have 8; PX4 keeps one item of its list for itself."""
+
+
+def fence_polygons(
+    mission: Mission,
+    zones: Sequence[NoFlyZone],
+    autopilot: Autopilot = Autopilot.ARDUPILOT,
+    ground_z_m: float = 0.0,
+    rally: Sequence[GeoPoint] = (),
+) -> tuple[tuple[Polygon, ...], tuple[Finding, ...]]:
+    """Polygons of the zones that the mission keeps clear of at every height, and findings on the others.
+
+    Parameters
+    ----------
+    zones
+        In the frame of the mission's origin; several of one name are parts of one zone.
+    autopilot
+        Whose vehicles have room for so many corners.
+    ground_z_m
+        Height of the ground, ENU z. A zone that begins above it is closed below itself, too, and said so; where the
+        straight ways home or to `rally` points pass under it, it is left out.
+    """
     import shapely
 
-    from planning.geo.enu import enu_from_geodetic, geodetic_from_enu
+    track, returns = _tracks(mission, rally)
+    findings: list[Finding] = []
+    fenced: list[_Fenced] = []
+    for zone in zones:
+        area = shapely.Polygon(zone.polygon_enu_m)
+        away_m, above_m = float(track.distance(area)), zone.floor_m - ground_z_m
+        is_above = above_m > ABOVE_GROUND_M
+        if away_m < FENCE_CLEARANCE_M:
+            text = say("the mission passes over or under this zone, and fences have no height: it is not in the fence")
+        elif is_above and returns.distance(area) < FENCE_CLEARANCE_M:
+            text = say("a return passes under this zone, and fences have no height: it is not in the fence")
+        else:
+            fenced.append(_Fenced(zone.id, area, away_m))
+            if is_above:
+                text = say(
+                    "the fence has no height: it keeps the vehicle out below this zone, too, which begins {:.0f} m "
+                    "above the ground",
+                    above_m,
+                )
+                findings.append(Finding(Severity.NOTE, "zone-fence-height", text, zone.id, above_m, None, "m"))
+            continue
+        findings.append(Finding(Severity.WARNING, "zone-not-fenced", text, zone.id, away_m, FENCE_CLEARANCE_M, "m"))
+    drawn, on_room = _with_room(fenced, track, autopilot)
+    polygons = tuple(_corners(mission, area) for area in drawn)
+    return polygons, tuple({(each.code, each.place): each for each in (*findings, *on_room)}.values())
 
-    points = [mission.takeoff, *(waypoint.position for waypoint in mission.waypoints)]
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Fenced:
+    """A zone that becomes a polygon, shapely, and how far the mission keeps away from it."""
+
+    id: str
+    area: Any
+    away_m: float
+
+
+def _tracks(mission: Mission, rally: Sequence[GeoPoint]) -> tuple[Any, Any]:
+    """The mission seen from above, and the straight ways from its waypoints to where it may land, shapely."""
+    import shapely
+
+    places = (mission.takeoff, *(waypoint.position for waypoint in mission.waypoints), *rally)
     local = enu_from_geodetic(
         mission.origin,
-        [point.lat_deg for point in points],
-        [point.lon_deg for point in points],
-        [point.height_ellipsoid_m for point in points],
-    )
-    track = shapely.LineString(local[:, :2])
-    polygons: list[Polygon] = []
-    findings: list[Finding] = []
-    for zone in zones:
-        away_m = float(track.distance(shapely.Polygon(zone.polygon_enu_m)))
-        if away_m < FENCE_CLEARANCE_M:
+        [point.lat_deg for point in places],
+        [point.lon_deg for point in places],
+        [point.height_ellipsoid_m for point in places],
+    )[:, :2]
+    flown, landings = local[: len(local) - len(rally)], [local[0], *local[len(local) - len(rally) :]]
+    ways = [(start, end) for start in flown for end in landings if (start != end).any()]
+    track = shapely.LineString(flown) if len(flown) > 1 else shapely.Point(flown[0])
+    return track, shapely.MultiLineString(ways) if ways else track
+
+
+def _with_room(fenced: Sequence[_Fenced], track: Any, autopilot: Autopilot) -> tuple[list[Any], Iterator[Finding]]:
+    """Areas with as few corners as a vehicle takes, and what that costs."""
+    room = facts(autopilot).max_fence_items
+    # What lies inside another needs no corners of its own.
+    outer = [
+        one
+        for number, one in enumerate(fenced)
+        if not any(
+            other.area.covers(one.area) and (position < number or not one.area.covers(other.area))
+            for position, other in enumerate(fenced)
+            if position != number
+        )
+    ]
+    areas = [one.area for one in outer]
+    if sum(map(_items, areas)) <= room:
+        return areas, iter(())
+    nearest = sorted(outer, key=lambda one: one.away_m)
+    ladders = [_ladder(one.area, track) for one in nearest]
+    kept: list[int] = []
+    for number, ladder in enumerate(ladders):
+        if sum(_items(ladders[each][-1]) for each in kept) + _items(ladder[-1]) <= room:
+            kept.append(number)
+    step = next(step for step in range(COARSEST + 1) if sum(_items(ladders[number][step]) for number in kept) <= room)
+    drawn = {number: ladders[number][step] for number in kept}
+    return list(drawn.values()), _room_findings(nearest, drawn, autopilot)
+
+
+def _room_findings(nearest: Sequence[_Fenced], drawn: Mapping[int, Any], autopilot: Autopilot) -> Iterator[Finding]:
+    room, product = facts(autopilot).max_fence_items, autopilot.product
+    for number, one in enumerate(nearest):
+        if number not in drawn:
             text = say(
-                "the mission passes over or under this zone, and fences have no height: it is not in the file's fence"
+                "the fence of {} has room for {} corners, and nearer zones need them: this zone is not in the fence",
+                product,
+                room,
             )
-            findings.append(Finding(Severity.WARNING, "zone-not-fenced", text, zone.id, away_m, FENCE_CLEARANCE_M, "m"))
+            yield Finding(Severity.WARNING, "zone-not-fenced", text, one.id, one.away_m, None, "m")
             continue
-        corners = np.array([(x, y, 0.0) for x, y in zone.polygon_enu_m])
-        lat_deg, lon_deg, _ = geodetic_from_enu(mission.origin, corners)
-        pairs = zip(lat_deg, lon_deg, strict=True)
-        polygons.append(tuple((round(float(lat), 9), round(float(lon), 9)) for lat, lon in pairs))
-    return tuple(polygons), tuple(findings)
+        n_before, n_after = _items(one.area) - HEADER_ITEMS, _items(drawn[number]) - HEADER_ITEMS
+        if n_after < n_before:
+            beyond_m = float(drawn[number].hausdorff_distance(one.area))
+            text = say(
+                "the fence of {} has room for {} corners: this zone is drawn with {} in place of {}, up to {:.0f} m "
+                "around its outside",
+                product,
+                room,
+                n_after,
+                n_before,
+                beyond_m,
+            )
+            yield Finding(Severity.NOTE, "zone-fence-coarse", text, one.id, beyond_m, None, "m")
+
+
+def _items(area: Any) -> int:
+    return len(area.exterior.coords) - 1 + HEADER_ITEMS
+
+
+def _ladder(area: Any, track: Any) -> list[Any]:
+    """An area and ever coarser ones that hold it, none with more corners than the one before."""
+    import shapely
+
+    found = [area]
+    for step in range(COARSEST):
+        # Nothing of the wider border is nearer to the area than the simplified one may move.
+        step_m = STEP_M * 2.0**step
+        wide = area.buffer(step_m, join_style="mitre").simplify(step_m)
+        wide = shapely.Polygon(wide.exterior) if wide.geom_type == "Polygon" else wide
+        is_usable = (
+            wide.geom_type == "Polygon"
+            and _items(wide) < _items(found[-1])
+            and wide.is_valid
+            and wide.covers(area)
+            and track.distance(wide) >= FENCE_CLEARANCE_M
+        )
+        found.append(wide if is_usable else found[-1])
+    return found
+
+
+def _corners(mission: Mission, area: Any) -> Polygon:
+    corners = [(x, y, 0.0) for x, y in area.exterior.coords[:-1]]
+    lat_deg, lon_deg, _ = geodetic_from_enu(mission.origin, corners)
+    return tuple((round(float(lat), 9), round(float(lon), 9)) for lat, lon in zip(lat_deg, lon_deg, strict=True))

@@ -237,6 +237,7 @@ def test_rally_points_count_as_the_parameters_have_it(planned):
         (ARDUPILOT, {}, Verdict.WARN, "nothing keeps the aircraft from leaving it (FENCE_ENABLE 0)"),
         (ARDUPILOT, {"FENCE_ENABLE": 1.0}, Verdict.OK, "it returns (FENCE_ACTION 1)"),
         (ARDUPILOT, {"FENCE_ENABLE": 1.0, "FENCE_ACTION": 0.0}, Verdict.WARN, "nothing keeps"),
+        (ARDUPILOT, {"FENCE_ENABLE": 1.0, "FENCE_TYPE": 3.0}, Verdict.WARN, "(FENCE_TYPE 3)"),
         (PX4, {}, Verdict.OK, "it hovers (GF_ACTION 2)"),
         (PX4, {"GF_ACTION": 4.0}, Verdict.BAD, "falls"),
         (PX4, {"GF_ACTION": 5.0}, Verdict.OK, "it lands"),
@@ -244,11 +245,11 @@ def test_rally_points_count_as_the_parameters_have_it(planned):
 )
 def test_what_happens_at_the_geofence_is_told_where_there_is_one(planned, autopilot, changes, verdict, words):
     orders = orders_of(planned)
-    assert orders.fences
+    assert orders.fences[autopilot]
     check = found(orders, autopilot, "fence-action", **changes)
     assert check.verdict is verdict
     assert words in check.text
-    assert found(replace(orders, fences=()), autopilot, "fence-action", **changes) is None
+    assert found(replace(orders, fences={}), autopilot, "fence-action", **changes) is None
 
 
 def room_m(orders, autopilot):

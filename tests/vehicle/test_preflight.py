@@ -143,7 +143,8 @@ def test_a_mission_that_is_not_the_one_sent_grounds_the_flight(orders):
     for on_board, verdict in ((OnBoard(), Verdict.WAIT), (OnBoard(mission=False), Verdict.BAD)):
         (check,) = [check for check in checks(ready_state(orders), orders, on_board) if check.code == "mission"]
         assert check.verdict is verdict
-    fenced = replace(orders, fences=(((0.0, 0.0), (0.0, 1.0), (1.0, 0.0)),))
+    triangle = ((0.0, 0.0), (0.0, 1.0), (1.0, 0.0))
+    fenced = replace(orders, fences=dict.fromkeys(Autopilot, (triangle,)))
     codes = [c.code for c in checks(ready_state(orders), fenced, OnBoard(mission=True)) if c.verdict is not Verdict.OK]
     assert codes == ["geofence"]
 

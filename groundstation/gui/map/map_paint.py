@@ -12,12 +12,11 @@ from PySide6.QtCore import QLineF, QPointF, QRectF, Qt
 from PySide6.QtGui import QBrush, QColor, QImage, QPainter, QPainterPath, QPen, QPolygonF
 
 from groundstation.gui.map.viewport import Viewport
-from groundstation.gui.widgets.theme import FACADES, SORTIES, Colours
+from groundstation.gui.widgets.theme import FACADES, SORTIES, Colours, zone_colour
 from groundstation.services.map.shapes import PlanShapes, SiteShapes, ZoneArea, round_length
 from groundstation.services.map.tile_source import TileSetInfo
 from groundstation.services.map.web_mercator import TILE_POINTS, Tile
 from groundstation.services.units import UnitSystem, distance_unit, length_unit
-from planning.site.zones.records import Restriction
 
 WEDGE_PX, WEDGE_HALF_RAD = 15.0, math.radians(20.0)
 SCALE_BAR_PX = 140.0
@@ -34,10 +33,6 @@ MAX_OVERZOOM = 6
 """Levels above that a missing tile is taken from; a point then has become 64 pixels."""
 
 BUILDING, OBSTACLE, RALLY, PAPER = (QColor("#8d96a0"), QColor("#b5793f"), QColor("#7a4fa3"), QColor(255, 255, 255, 220))
-
-
-AUTHORISATION, CONDITION, NO_LIMIT = QColor("#c2570c"), QColor("#8a7a00"), QColor("#4f6d7a")
-"""Of geo-zones; what is prohibited or not known has the colour of errors."""
 
 
 def tile_level(viewport: Viewport, min_zoom: int, max_zoom: int, tile_points: int = TILE_POINTS) -> int:
@@ -129,22 +124,11 @@ def paint_site(painter: QPainter, viewport: Viewport, shapes: SiteShapes, found:
         painter.drawPath(path)
 
 
-def zone_colour(restriction: Restriction, found: Colours) -> QColor:
-    """Colour of a geo-zone."""
-    colours = {
-        Restriction.AUTHORISATION: AUTHORISATION,
-        Restriction.U_SPACE: AUTHORISATION,
-        Restriction.CONDITIONAL: CONDITION,
-        Restriction.NONE: NO_LIMIT,
-    }
-    return colours.get(restriction, QColor(found.error))
-
-
 def paint_zones(painter: QPainter, viewport: Viewport, zones: tuple[ZoneArea, ...], found: Colours) -> None:
     """Geo-zones, the largest below: hatched where flights keep out, an outline where they need not."""
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
     for zone in reversed(zones):
-        colour, path = zone_colour(zone.restriction, found), _path(zone.rings, viewport)
+        colour, path = QColor(zone_colour(zone.restriction, found)), _path(zone.rings, viewport)
         fill = QColor(colour)
         fill.setAlpha(38 if zone.is_kept else 12)
         painter.setBrush(fill)

@@ -32,13 +32,12 @@ from groundstation.gui.map.map_paint import (
     paint_text_box,
     paint_volumes,
     paint_zones,
-    zone_colour,
 )
 from groundstation.gui.map.online_dialog import OnlineMapDialog
 from groundstation.gui.map.viewport import MapCanvas, Viewport
 from groundstation.gui.widgets.layer_list import LayerPanel
 from groundstation.gui.widgets.questions import choose_file
-from groundstation.gui.widgets.theme import colours
+from groundstation.gui.widgets.theme import colours, zone_colour
 from groundstation.services.map.coordinates import parse_place
 from groundstation.services.map.online import OnlineMap
 from groundstation.services.map.overlays import OVERLAY_SUFFIXES
@@ -656,7 +655,7 @@ class MapView(MapCanvas):
             text = translated(RESTRICTIONS[zone.restriction], self._units)
             if not zone.is_kept:
                 text = self.tr("{0}: not kept out of").format(text)
-            rows[zone.restriction, zone.is_kept] = zone_colour(zone.restriction, colours()), zone.is_kept, text
+            rows[zone.restriction, zone.is_kept] = QColor(zone_colour(zone.restriction, colours())), zone.is_kept, text
         return [rows[key] for key in sorted(rows, key=lambda key: (list(Restriction).index(key[0]), not key[1]))]
 
     def _choose_map(self) -> None:

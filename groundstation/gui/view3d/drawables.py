@@ -143,6 +143,7 @@ class Layer(StrEnum):
     PANELS = "panels"
     OBSTACLES = "obstacles"
     NO_FLY = "no-fly"
+    ZONES = "zones"
     AIRSPACE = "airspace"
     HOME = "home"
     SHADOWS = "shadows"

@@ -5,6 +5,7 @@ Painted by Qt, so that texts are as sharp and as readable as elsewhere in the wi
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -109,6 +110,9 @@ BAR_WIDTH_PX = 160.0
 
 WIDEST_PART = 0.4
 """Of what is free between things that lie over the view: a wider colour bar would hide what it explains."""
+
+TIP_PX = 420.0
+"""Longest line beside the pointer: what a geo-zone asks for is some lines."""
 
 MAX_LABELS = 60
 """More are unreadable anyway."""
@@ -340,14 +344,17 @@ class Overlay(QWidget):
             painter.drawText(line, Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter, text)
 
     def _paint_tip(self, painter: QPainter, tip: Tip) -> None:
-        size = QFontMetricsF(self.font()).boundingRect(QRectF(0, 0, 400, 400), 0, tip.text).size()
+        limit, wrap = QRectF(0.0, 0.0, TIP_PX, self.height()), Qt.TextFlag.TextWordWrap
+        size = QFontMetricsF(self.font()).boundingRect(limit, wrap, tip.text).size()
         x = tip.x_px + 16.0 if tip.x_px + size.width() + 40.0 < self.width() else tip.x_px - size.width() - 28.0
         y = min(max(0.0, tip.y_px + 14.0), self.height() - size.height() - 10.0)
-        self._paint_box(painter, tip.text, QPointF(x, y), Qt.AlignmentFlag.AlignLeft)
+        self._paint_box(painter, tip.text, QPointF(max(0.0, x), y), Qt.AlignmentFlag.AlignLeft, TIP_PX)
 
-    def _paint_box(self, painter: QPainter, text: str, top: QPointF, align: Qt.AlignmentFlag) -> None:
+    def _paint_box(
+        self, painter: QPainter, text: str, top: QPointF, align: Qt.AlignmentFlag, width_px: float = math.inf
+    ) -> None:
         """A text on a plate; `top` is its upper left corner, or the middle of its upper edge."""
-        limit = QRectF(0.0, 0.0, self.width() - 2.0 * MARGIN_PX, self.height())
+        limit = QRectF(0.0, 0.0, min(width_px, self.width() - 2.0 * MARGIN_PX), self.height())
         size = QFontMetricsF(self.font()).boundingRect(limit, Qt.TextFlag.TextWordWrap, text).size()
         box = QRectF(0.0, 0.0, size.width() + 14.0, size.height() + 8.0)
         box.moveTopLeft(top)

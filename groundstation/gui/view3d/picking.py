@@ -31,11 +31,17 @@ _LAYERS = {
     ItemKind.PANEL: Layer.PANELS,
     ItemKind.OBSTACLE: Layer.OBSTACLES,
     ItemKind.NO_FLY: Layer.NO_FLY,
+    ItemKind.ZONE: Layer.ZONES,
     ItemKind.HOME: Layer.HOME,
     ItemKind.RALLY: Layer.HOME,
     ItemKind.VIEWPOINT: Layer.VIEWPOINTS,
     ItemKind.LEG: Layer.ROUTES,
 }
+
+
+VOLUMES = frozenset((ItemKind.NO_FLY, ItemKind.ZONE))
+SEE_THROUGH = frozenset((Layer.NO_FLY, Layer.ZONES))
+"""Translucent volumes and their layers: they hide nothing."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -69,6 +75,7 @@ class PickIndex:
             parts.append((Item(ItemKind.OBSTACLE, obstacle.id), mesh.corners_enu_m))
         for zone in site.airspace.no_fly:
             parts.append((Item(ItemKind.NO_FLY, zone.id), zone.prism().corners_enu_m))
+        parts += [(zone.item, zone.triangles_enu_m()) for zone in scene.zones]
         parts.append((Item(ItemKind.HOME), landing_pad(site.home_enu_m).corners_enu_m))
         for point in site.rally_points:
             parts.append((Item(ItemKind.RALLY, point.id), landing_pad(point.position_enu_m).corners_enu_m))
@@ -76,6 +83,7 @@ class PickIndex:
         self._items = [item for item, _ in parts]
         self._starts = np.cumsum([0, *(len(corners) for _, corners in parts)])
         self._bvh: Bvh = build_bvh(np.concatenate([corners for _, corners in parts]))
+        self._widths_m2 = {zone.item: zone.width_m2 for zone in scene.zones}
         self._ground_z_m = site.airspace.ground_z_m
         self._terrain = drawn_terrain(site)
 
@@ -83,6 +91,7 @@ class PickIndex:
         """The first thing that a ray from the eye meets.
 
         A no-fly volume is transparent: what lies in it or behind it comes first, unless that is only the building.
+        Geo-zones come last, for a site may lie in one, and the smaller before those around it.
         """
         found = np.empty(MAX_HITS, np.int64)
         end = eye_enu_m + REACH_M * direction
@@ -96,8 +105,14 @@ class PickIndex:
         if not hits:
             return None
         hits.sort(key=lambda hit: hit[0])
-        solid = next((hit for hit in hits if hit[2].kind is not ItemKind.NO_FLY), None)
-        first = hits[0] if solid is None or solid[2].kind is ItemKind.BUILDING else solid
+        solid = next((hit for hit in hits if hit[2].kind not in VOLUMES), None)
+        volume = next((hit for hit in hits if hit[2].kind is ItemKind.NO_FLY), None)
+        if volume is not None and (solid is None or (solid[2].kind is ItemKind.BUILDING and volume[0] < solid[0])):
+            first = volume
+        elif solid is not None:
+            first = solid
+        else:
+            first = min(hits, key=lambda hit: self._widths_m2[hit[2]])
         depth, k, item = first
         corners = self._bvh.corners[k]
         normal = np.cross(corners[1] - corners[0], corners[2] - corners[0])
@@ -187,8 +202,7 @@ def pick(
         Sorties, counted from 0, that are not shown.
     """
     surface = None if index is None else index.surface(view.eye_enu_m, view.ray(x_px, y_px), hidden)
-    # A no-fly volume is transparent and hides nothing.
-    hides = surface is not None and surface.item.kind is not ItemKind.NO_FLY
+    hides = surface is not None and surface.item.kind not in VOLUMES
     depth_m = surface.depth_m + 0.5 if surface is not None and hides else np.inf
     if plan is not None:
         if Layer.VIEWPOINTS not in hidden:
@@ -223,7 +237,7 @@ LIFT_M = 0.06
 MAX_STEP = 0.2
 """Neighbouring rays whose depths differ by a larger part meet different surfaces: no line is drawn between them."""
 
-SEEN_THROUGH = frozenset({Layer.NO_FLY, Layer.HOME})
+SEEN_THROUGH = SEE_THROUGH | {Layer.HOME}
 
 
 def footprint(index: PickIndex, view: Pinhole) -> list[Array]:

@@ -35,7 +35,7 @@ from groundstation.gui.view3d.navigator import Navigator
 from groundstation.gui.view3d.orbit import Orbit, Pinhole, facing, photo_pinhole
 from groundstation.gui.view3d.overlay import Overlay, SceneTexts
 from groundstation.gui.view3d.paint import ColourScale, flat, shaded, sky_colour
-from groundstation.gui.view3d.picking import Hit, PickIndex, footprint, pick
+from groundstation.gui.view3d.picking import SEE_THROUGH, Hit, PickIndex, footprint, pick
 from groundstation.gui.view3d.site_scene import (
     FRUSTUM_M,
     PlanScene,
@@ -113,6 +113,9 @@ def item_shape(item: Item, site: SiteScene | None, plan: PlanScene | None) -> It
             ring = np.array([*zone.polygon_enu_m, zone.polygon_enu_m[0]])
             low, high = (np.c_[ring, np.full(len(ring), z)] for z in (zone.floor_m, zone.ceiling_m))
             return _lines([low, high, *(np.stack(pair) for pair in zip(low[:-1], high[:-1], strict=True))])
+        case ItemKind.ZONE:
+            shape = next((zone.outline() for zone in site.zones if zone.item == item), None)
+            return None if shape is None else ItemShape(shape, shape[0], np.zeros(3))
         case ItemKind.AIRSPACE:
             return _boxed(np.array([model.site.airspace.min_enu_m, model.site.airspace.max_enu_m]))
         case ItemKind.HOME:
@@ -226,6 +229,7 @@ SITE_LAYERS = (
     Layer.BUILDING,
     Layer.OBSTACLES,
     Layer.NO_FLY,
+    Layer.ZONES,
     Layer.AIRSPACE,
     Layer.HOME,
 )
@@ -503,10 +507,12 @@ class ScenePicture(QWidget):
         """The OpenGL widget, for what measures it."""
         return self._canvas
 
-    def pick_at(self, x_px: float, y_px: float) -> Hit | None:
-        """What lies under a pixel of the view."""
+    def pick_at(self, x_px: float, y_px: float, see_through: frozenset[Layer] = frozenset()) -> Hit | None:
+        """What lies under a pixel of the view, through layers that are hidden or seen through."""
         without = frozenset(number for number, (is_shown, _) in self._sorties.items() if not is_shown)
-        return pick(self._pick_index(), self._plan, self._navigator.pinhole(), x_px, y_px, self._hidden, without)
+        return pick(
+            self._pick_index(), self._plan, self._navigator.pinhole(), x_px, y_px, self._hidden | see_through, without
+        )
 
     def photo_border(self, views: ViewpointArrays, number: int, camera: Camera) -> list[Array]:
         """Where the border of a photo falls on the site, polylines of shape (k, 3).
@@ -728,7 +734,7 @@ class ScenePicture(QWidget):
         back /= orbit.distance_m
         # From in front of the item, or the item itself would be what stands there.
         start_m = size_m + 1.0
-        hit = index.surface(np.array(orbit.focus_enu_m) + start_m * back, back, self._hidden | {Layer.NO_FLY})
+        hit = index.surface(np.array(orbit.focus_enu_m) + start_m * back, back, self._hidden | SEE_THROUGH)
         if hit is None or start_m + hit.depth_m >= orbit.distance_m:
             return orbit
         return orbit.zoomed(orbit.distance_m / (start_m + 0.9 * hit.depth_m))

@@ -9,10 +9,12 @@ from PySide6.QtCore import QMargins, QObject, QPointF, Qt, QTimer, Signal
 from PySide6.QtGui import QKeyEvent, QResizeEvent
 from PySide6.QtWidgets import QToolButton, QWidget
 
+from groundstation.gui.application.translate import translated
 from groundstation.gui.view3d.drawables import ON_TOP, Drawable, Layer, joined, polyline
 from groundstation.gui.view3d.navigator import Drag, Gestures
 from groundstation.gui.view3d.overlay import Tip
 from groundstation.gui.view3d.paint import flat
+from groundstation.gui.view3d.picking import SEE_THROUGH
 from groundstation.gui.view3d.scene_picture import ScenePicture, StandardView
 from groundstation.gui.view3d.tools import Hint, Key, Pointer, Preview, Tool, ViewpointTool
 from groundstation.gui.widgets.layer_list import LayerPanel, LayerRow
@@ -344,6 +346,8 @@ class SceneView(ScenePicture):
                 titles[Layer.OBSTACLES] = self.tr("Obstacles")
             if model.site.airspace.no_fly:
                 titles[Layer.NO_FLY] = self.tr("No-fly zones")
+            if self._site.zones:
+                titles[Layer.ZONES] = self.tr("Geo-zones")
             titles |= {
                 Layer.AIRSPACE: self.tr("Airspace"),
                 Layer.HOME: self.tr("Home"),
@@ -416,8 +420,8 @@ class SceneView(ScenePicture):
         ray = view.ray(x_px, y_px)
         if index is None:
             return Pointer(view, x_px, y_px, ray, shift=shift)
-        # No-fly volumes and home are in the way of nothing that is drawn.
-        see_through = self._hidden | {Layer.NO_FLY, Layer.HOME}
+        # No-fly volumes, geo-zones and home are in the way of nothing that is drawn.
+        see_through = self._hidden | SEE_THROUGH | {Layer.HOME}
         hit = index.surface(view.eye_enu_m, ray, see_through)
         return Pointer(view, x_px, y_px, ray, hit, index.ground(view.eye_enu_m, ray), shift)
 
@@ -439,6 +443,9 @@ class SceneView(ScenePicture):
     def _tip_of(self, item: Item) -> str:
         is_counted = item.kind is ItemKind.PANEL and self._plan is not None
         n_views = len(self.views_of_panel(item.id)) if is_counted else None
+        zones = () if self._site is None else self._site.zones
+        if (zone := next((zone for zone in zones if zone.item == item), None)) is not None:
+            return "\n".join(translated(line, self._units) for line in zone.lines)
         return self._texts.name(item, self._plan, n_views)
 
     def _pointer_left(self) -> None:
@@ -455,7 +462,7 @@ class SceneView(ScenePicture):
     def _double_click(self, place: QPointF, _modifiers: Qt.KeyboardModifier) -> None:
         if self._tools.double_click():
             return
-        hit = self.pick_at(place.x(), place.y())
+        hit = self.pick_at(place.x(), place.y(), SEE_THROUGH)
         if hit is not None:
             self._navigator.go(self._navigator.orbit.towards_point(hit.point_enu_m).zoomed(1.5))
 
@@ -480,7 +487,7 @@ class SceneView(ScenePicture):
         self._drag = None
 
     def _zoom(self, factor: float, place: QPointF) -> None:
-        hit = self.pick_at(place.x(), place.y())
+        hit = self.pick_at(place.x(), place.y(), SEE_THROUGH)
         self._navigator.zoom(factor, None if hit is None else hit.point_enu_m)
 
     def _key(self, event: QKeyEvent) -> None:

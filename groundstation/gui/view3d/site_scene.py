@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,9 +12,11 @@ from groundstation.gui.view3d.drawables import (
     Drawable,
     Label,
     Layer,
+    Shape,
     arrows,
     box_edges,
     frusta,
+    joined,
     polyline,
     quads,
     shadow,
@@ -22,14 +25,18 @@ from groundstation.gui.view3d.drawables import (
     triangle_normals,
 )
 from groundstation.gui.view3d.paint import SUN, ColourScale, flat, rgba, shaded
-from groundstation.gui.widgets.theme import FACADES, SORTIES, Colours
+from groundstation.gui.widgets.theme import FACADES, SORTIES, Colours, zone_colour
+from groundstation.services.project.document import Item, ItemKind
+from groundstation.services.site.zones import zone_lines
 from planning.coverage.sections import NOT_SEEN, PanelFrames, SectionGrid, panel_frames, sections_seen
 from planning.geo.frames import Vec3
 from planning.geo.height_field import HeightField
 from planning.geo.mesh import TriangleMesh, box_mesh
 from planning.plan import Plan, ViewpointArrays, viewpoint_arrays
 from planning.site.ground import drawn_terrain
-from planning.site.records import SiteModel, panel_corners
+from planning.site.records import NoFlyZone, SiteModel, panel_corners
+from planning.site.zones.keep_out import NearZone, near_zones
+from planning.site.zones.local import prisms
 
 Array = NDArray[np.float64]
 
@@ -233,6 +240,65 @@ HOME_PAD_M = (1.2, 1.2, 0.25)
 """Half the width and the height of the pad that marks home: room for the aircraft with its propellers."""
 
 
+ZONE_REACH_M = 300.0
+"""Geo-zones are drawn so far beside the airspace: farther ones are on the map, and would only cost depth here."""
+
+ZONE_SKY_M = 60.0
+"""Zones that end higher than this above the airspace, and above where they begin, are drawn open at the top."""
+
+KEPT_OPACITY, FREE_OPACITY = 0.16, 0.05
+"""Of the faces of geo-zones that flights keep out of, and of the others."""
+
+MAX_UPRIGHTS = 24
+"""Outlines with more corners are curves, which have no upright edges."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ZoneShape:
+    """A geo-zone as it is drawn: cut to the surroundings of the airspace, open where it goes on.
+
+    Parameters
+    ----------
+    lines
+        What is said of it beside the pointer.
+    volumes
+        Between the heights that are drawn.
+    """
+
+    near: NearZone
+    item: Item
+    lines: tuple[str, ...]
+    volumes: tuple[NoFlyZone, ...]
+
+    @property
+    def width_m2(self) -> float:
+        """Area that it covers near the site."""
+        return sum(float(each.area.area) for each in self.near.local.volumes)
+
+    def triangles_enu_m(self) -> Array:
+        """Faces, shape (t, 3, 3): walls, and lids where the zone ends."""
+        parts = [np.zeros((0, 3, 3))]
+        ends = {limit_m for each in self.near.local.volumes for limit_m in (each.floor_m, each.ceiling_m)}
+        for volume in self.volumes:
+            corners = volume.prism().corners_enu_m
+            z = corners[..., 2]
+            open_ends = [end_m for end_m in (volume.floor_m, volume.ceiling_m) if end_m not in ends]
+            is_open = np.any([(z == end_m).all(axis=1) for end_m in open_ends], axis=0) if open_ends else False
+            parts.append(corners[~np.broadcast_to(is_open, len(corners))])
+        return np.concatenate(parts)
+
+    def outline(self) -> Shape:
+        """Lines around its volumes where they end or stand on the ground, and upright ones at corners."""
+        pieces, tops = [], {each.ceiling_m for each in self.near.local.volumes}
+        for volume in self.volumes:
+            ring = np.array([*volume.polygon_enu_m, volume.polygon_enu_m[0]])
+            low, high = (np.c_[ring, np.full(len(ring), z)] for z in (volume.floor_m, volume.ceiling_m))
+            pieces += [polyline(low), *([polyline(high)] if volume.ceiling_m in tops else [])]
+            if len(ring) <= MAX_UPRIGHTS:
+                pieces += [polyline(np.stack(pair)) for pair in zip(low[:-1], high[:-1], strict=True)]
+        return joined(pieces)
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class SiteScene:
     """A site ready to be drawn.
@@ -245,6 +311,8 @@ class SiteScene:
         Number of the facade of each panel, shape (m,).
     drawables
         By layer; panels are separate because their colours change.
+    zones
+        Geo-zones that are drawn.
     """
 
     model: SiteModel
@@ -253,6 +321,7 @@ class SiteScene:
     panel_index: dict[str, int]
     drawables: dict[Layer, tuple[Drawable, ...]]
     labels: tuple[Label, ...]
+    zones: tuple[ZoneShape, ...] = ()
 
     def extent(self) -> Array:
         """Points between which everything worth looking at lies, shape (n, 3): panels, building, obstacles, home."""
@@ -269,19 +338,21 @@ class SiteScene:
 def site_scene(model: SiteModel, look: Colours) -> SiteScene:
     """Everything of a site but its panels' colours."""
     site = model.site
-    frames = panel_frames(panel_corners(site))
+    frames, zones = panel_frames(panel_corners(site)), tuple(_zones(model))
     facade = np.repeat(np.arange(len(site.facades)), np.array([len(found.panels) for found in site.facades], np.int64))
     drawables = {
         Layer.GROUND: (_ground(model, look),),
         Layer.BUILDING: _solid(model.building, BUILDING),
         Layer.OBSTACLES: tuple(part for mesh in model.obstacles for part in _solid(mesh, OBSTACLE)),
         Layer.NO_FLY: tuple(_prism(zone.prism()) for zone in site.airspace.no_fly),
+        Layer.ZONES: tuple(part for zone in zones for part in _zone_drawables(zone, look)),
         Layer.AIRSPACE: (_airspace(model, look),),
         Layer.HOME: _home(model),
         Layer.SHADOWS: _shadows(model, look),
     }
     panel_index = {panel.id: i for i, panel in enumerate(site.panels)}
-    return SiteScene(model, frames, facade, panel_index, drawables, _labels(model))
+    labels = (*_labels(model), *(_zone_label(zone, look) for zone in zones))
+    return SiteScene(model, frames, facade, panel_index, drawables, labels, zones)
 
 
 def facade_colours(facade: NDArray[np.int64]) -> NDArray[np.uint8]:
@@ -318,6 +389,49 @@ def _solid(mesh: TriangleMesh, colour: str) -> tuple[Drawable, ...]:
 
 def _prism(mesh: TriangleMesh) -> Drawable:
     return Drawable(mesh.vertices_enu_m, mesh.triangles, flat(NO_FLY, len(mesh.triangles), 0.3))
+
+
+def _zones(model: SiteModel) -> Iterator[ZoneShape]:
+    """Geo-zones around the airspace, with what they are between its ground and its sky."""
+    import shapely
+
+    airspace = model.site.airspace
+    (x0, y0, z0), (x1, y1, z1) = airspace.min_enu_m, airspace.max_enu_m
+    around = shapely.box(x0 - ZONE_REACH_M, y0 - ZONE_REACH_M, x1 + ZONE_REACH_M, y1 + ZONE_REACH_M)
+    ground_z_m = min(z0, airspace.ground_z_m)
+    for near in near_zones(model):
+        cut = []
+        for each in near.local.volumes:
+            area = each.area.intersection(around)
+            floor_m = max(each.floor_m, ground_z_m)
+            ceiling_m = min(each.ceiling_m, max(z1, floor_m) + ZONE_SKY_M)
+            if not area.is_empty and floor_m < ceiling_m:
+                cut.append(replace(each, area=area, floor_m=floor_m, ceiling_m=ceiling_m))
+        volumes = prisms(replace(near.local, volumes=tuple(cut)), airspace)
+        if volumes:
+            yield ZoneShape(near, Item(ItemKind.ZONE, near.key), zone_lines(near, model), volumes)
+
+
+def _zone_drawables(zone: ZoneShape, look: Colours) -> Iterator[Drawable]:
+    colour = zone_colour(zone.near.local.zone.restriction, look)
+    faces = zone.triangles_enu_m()
+    n, opacity = len(faces), KEPT_OPACITY if zone.near.is_kept else FREE_OPACITY
+    if n:
+        yield Drawable(faces.reshape(-1, 3), np.arange(3 * n).reshape(n, 3), flat(colour, n, opacity))
+    points, cells = zone.outline()
+    yield Drawable(points, cells, flat(colour, len(cells)), width_px=2.0 if zone.near.is_kept else 1.0)
+
+
+def _zone_label(zone: ZoneShape, look: Colours) -> Label:
+    """Its name over the part of it that is nearest to the middle of the site."""
+    import shapely
+
+    middle = shapely.Point(0.0, 0.0)
+    nearest = min(zone.volumes, key=lambda volume: float(shapely.Polygon(volume.polygon_enu_m).distance(middle)))
+    area = shapely.Polygon(nearest.polygon_enu_m)
+    place = area.representative_point() if area.area < ZONE_REACH_M**2 else shapely.ops.nearest_points(area, middle)[0]
+    colour = zone_colour(zone.near.local.zone.restriction, look)
+    return Label(zone.near.local.zone.name, (place.x, place.y, nearest.ceiling_m), Layer.ZONES, colour)
 
 
 def _ground(model: SiteModel, look: Colours) -> Drawable:

@@ -13,6 +13,7 @@ from PySide6.QtGui import QColor, QGuiApplication, QPalette
 from PySide6.QtWidgets import QApplication
 
 from groundstation.services.settings import Theme
+from planning.site.zones.records import Restriction
 
 TOUCH_PX = 38
 """Height of what can be pressed: 9 mm at the 106 dpi of a 15-inch laptop, the least that is hit reliably by finger
@@ -26,6 +27,10 @@ GLOVE_PX = 60
 
 SORTIES = ("#d55e00", "#0072b2", "#009e73", "#cc79a7", "#b58900", "#56b4e9")
 FACADES = ("#3f8fd0", "#4aa880", "#8f6fc8", "#c86f9a", "#c8a23f", "#5fa8b8")
+
+
+AUTHORISATION, CONDITION, NO_LIMIT = "#c2570c", "#8a7a00", "#4f6d7a"
+"""Of geo-zones; what is prohibited or not known has the colour of errors."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -220,3 +225,14 @@ def _style_sheet(found: Colours) -> str:
     QLabel[role="ok"] {{ color: {found.ok}; font-weight: bold; }}
     QLabel[role="heading"] {{ font-weight: bold; }}
     """
+
+
+def zone_colour(restriction: Restriction, found: Colours) -> str:
+    """Colour of a geo-zone, `#rrggbb`."""
+    known = {
+        Restriction.AUTHORISATION: AUTHORISATION,
+        Restriction.U_SPACE: AUTHORISATION,
+        Restriction.CONDITIONAL: CONDITION,
+        Restriction.NONE: NO_LIMIT,
+    }
+    return known.get(restriction, found.error)

@@ -303,6 +303,32 @@ def zone_facts(near: NearZone) -> tuple[str, ...]:
     return (*lines, *(say("question: {}", question) for question in questions))
 
 
+def zone_lines(near: NearZone, model: SiteModel) -> tuple[str, ...]:
+    """What a view says of a zone under the pointer: what it is, where it counts here, whether flights keep out."""
+    zone, home_z_m = near.local.zone, model.site.home_enu_m[2]
+    lines = [zone_text(near)]
+    floor_m = min((each.floor_m for each in near.local.volumes), default=-math.inf)
+    ceiling_m = max((each.ceiling_m for each in near.local.volumes), default=math.inf)
+    if math.isfinite(floor_m) and math.isfinite(ceiling_m):
+        lines.append(say("from {:.0f} m to {:.0f} m above home", floor_m - home_z_m, ceiling_m - home_z_m))
+    elif math.isfinite(ceiling_m):
+        lines.append(say("from the ground to {:.0f} m above home", ceiling_m - home_z_m))
+    elif math.isfinite(floor_m):
+        lines.append(say("from {:.0f} m above home upwards", floor_m - home_z_m))
+    else:
+        lines.append(say("from the ground upwards"))
+    lines += [zone.message] if zone.message else []
+    if near.permitted:
+        lines.append(say("permitted by '{}'", near.permitted))
+    elif near.state is State.NOT_THEN:
+        lines.append(say("it does not apply at the planned time"))
+    elif near.is_kept:
+        lines.append(say("plans keep out of it"))
+    else:
+        lines.append(say("plans need not keep out of it"))
+    return tuple(lines)
+
+
 def file_lines(model: SiteModel) -> tuple[str, ...]:
     """A line for each file of zones of a site."""
     lines = []

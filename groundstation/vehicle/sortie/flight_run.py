@@ -516,9 +516,9 @@ def upload(run: SortieRun) -> Steps:
     """Geofence first: a mission is never on board without its fence."""
     autopilot, address = vehicle_of(run)
     run.lists = ()
-    if run.orders.fences:
+    if fences := run.orders.fences.get(autopilot):
         route = Route(run.own, address, MissionType.FENCE)
-        yield from _put(run, BoardList("geofence", route, fence_messages(run.orders.fences, autopilot)))
+        yield from _put(run, BoardList("geofence", route, fence_messages(fences, autopilot)))
     yield from _put_rally_points(run)
     items = to_wire(run.orders.items[autopilot], autopilot)
     yield from _put(run, BoardList("mission", Route(run.own, address), items))

@@ -2,11 +2,13 @@
 
 from datetime import UTC, datetime
 
+import numpy as np
 import pytest
 from PySide6.QtCore import QDateTime, QPoint, Qt
 from PySide6.QtTest import QTest
 
 from groundstation.gui.shared_view import SharedViewPage
+from groundstation.gui.view3d.drawables import Layer
 from groundstation.services.project.document import Item, ItemKind
 from planning.base.findings import Severity
 from planning.site.bundled import ORIGIN
@@ -138,3 +140,51 @@ def test_the_planned_time_decides_which_zones_the_next_plan_keeps_out_of(hands, 
     hands.until(lambda: len(no_fly_volumes(hands.context.document.site)) == 1)
     hands.window.show_tab("site")
     hands.idle()
+
+
+def test_zones_stand_in_the_scene_and_say_beside_the_pointer_what_they_ask_for(hands, tmp_path):
+    ring = square(70.0, -40.0, 12.0, ORIGIN)
+    school = ed269_feature(ed269_volume(polygon(ring), lower=10, upper=60), message="Ask the head of the school.")
+    shelf = ed269_volume(polygon(square(0.0, 0.0, 4000.0, ORIGIN)), lower=0, upper=3000)
+    wide = ed269_feature(shelf, identifier="CTR", name="Control zone", restriction="CONDITIONAL")
+    path = tmp_path / "zones.json"
+    path.write_bytes(ed269(school, wide))
+    add(hands, path)
+    school_item, wide_item = Item(ItemKind.ZONE, "zones.json/Z1"), Item(ItemKind.ZONE, "zones.json/CTR")
+    scene = hands.scene
+    by_item = {zone.item: zone for zone in scene._site.zones}
+    assert set(by_item) == {school_item, wide_item}
+    heights = by_item[school_item].triangles_enu_m()[..., 2]
+    assert (heights.min(), heights.max()) == pytest.approx((10.0, 60.0), abs=0.5)
+    # The other goes on beside and above what is drawn, so it has no lid.
+    walls = by_item[wide_item].triangles_enu_m()
+    assert np.ptp(walls[..., 2], axis=1).max() > 0.0
+    assert not (np.ptp(walls[..., 2], axis=1) == 0.0).any()
+    assert {"School", "Control zone"} <= {label.text for label in scene._site.labels}
+
+    scene.set_orbit(scene.orbit().zoomed(0.1))
+    scene._pick_index()
+    view = scene.orbit().pinhole(scene.canvas().width(), scene.canvas().height())
+    (x, y), *_ = view.project(np.array([[70.0, -40.0, 59.0]]))[0]
+    QTest.mouseMove(scene.canvas(), QPoint(round(x) + 3, round(y) + 3))
+    QTest.mouseMove(scene.canvas(), QPoint(round(x), round(y)))
+    hands.until(lambda: scene._hover == school_item)
+    tip = scene._tip_text.splitlines()
+    assert tip[0] == "School: flights prohibited (SENSITIVE), 10 m AGL - 60 m AGL"
+    assert tip[1].startswith("from 1")
+    assert tip[2:] == ["Ask the head of the school.", "plans keep out of it"]
+    hands.click((70.0, -40.0, 59.0))
+    hands.until(lambda: hands.context.selection == school_item)
+
+    # What stands in a zone is pointed at, not the zone.
+    panel = hands.site.panels[0]
+    hands.click(np.mean(panel.corners_enu_m, axis=0))
+    hands.until(lambda: hands.context.selection == Item(ItemKind.PANEL, panel.id))
+    titles = scene._layer_titles()
+    assert titles[Layer.ZONES] == "Geo-zones"
+    scene.set_layer_visible(Layer.ZONES, False)
+    QTest.mouseMove(scene.canvas(), QPoint(round(x) + 3, round(y) + 3))
+    QTest.mouseMove(scene.canvas(), QPoint(round(x), round(y)))
+    hands.until(lambda: scene._hover != school_item)
+    hands.undo()
+    assert scene._site.zones == ()
