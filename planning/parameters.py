@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from planning.base.effects import EffectSetting
+from planning.base.messages import say
 from planning.base.parameters import Choice, check, parameter
 
 Precision = Literal["f32", "f64"]
@@ -14,6 +15,21 @@ Precision = Literal["f32", "f64"]
 
 Objective = Literal["image-error", "sections"]
 """What views are chosen for: the expected error of a model's pictures, or hemisphere sections (paper Eq. 10)."""
+
+ExposureMode = Literal["auto", "locked", "manual"]
+"""Of the photos of a sortie: each by itself, all as the camera measures before the first, or all as it is stated."""
+
+WhiteBalance = Literal["auto", "sunny", "cloudy", "kelvin"]
+
+FocusMode = Literal["auto", "lock", "infinity", "distance"]
+"""Before each photo; before the first and then no more; at infinity; at a distance that is stated."""
+
+ShutterKind = Literal["mechanical", "electronic"]
+
+SHUTTER_TIMES_S = tuple(
+    1.0 / each for each in (2000, 1600, 1250, 1000, 800, 640, 500, 400, 320, 240, 200, 160, 120, 100)
+)
+"""Third stops, offered in lists; any other time can be typed."""
 
 DEFAULT_PROFILE = "m3e"
 
@@ -37,6 +53,7 @@ DEFAULT_SHARE = 0.99
 """Share of the reachable sections that is covered when no number of views is given."""
 
 GOAL, HOW, WHICH, FLIGHT = "how much (one goal at most)", "how", "which views count", "flight"
+CAMERA = "camera"
 """Headings of the command line's help."""
 
 
@@ -250,6 +267,158 @@ class FlightRules:
 
 
 @dataclass(frozen=True, slots=True)
+class CameraSettings:
+    """How the camera takes the photos of a flight.
+
+    What a model of a facade needs is that a pane has one colour and one sharpness from all sides: so exposure, white
+    balance and focus are held for a whole sortie unless somebody wants otherwise. Values that are not stated are the
+    camera's to choose.
+    """
+
+    exposure: ExposureMode = parameter(
+        "locked",
+        "of the photos of a sortie: each by itself, all as measured before the first, or all as stated",
+        label="Exposure",
+        choices=(
+            Choice("auto", "each photo by itself"),
+            Choice("locked", "measured once, then locked"),
+            Choice("manual", "manual"),
+        ),
+        option="--exposure",
+        group=CAMERA,
+        row="first",
+    )
+    shutter_s: float | None = parameter(
+        None,
+        "shutter time, such as 1/500",
+        label="Shutter time",
+        unit="s",
+        above=0.0,
+        most=60.0,
+        expected="more than 0 s and at most 60 s",
+        option="--shutter",
+        metavar="S",
+        group=CAMERA,
+        unset="the camera chooses",
+        row="first",
+        suggested=SHUTTER_TIMES_S,
+    )
+    aperture: float | None = parameter(
+        None,
+        "f-number, such as 5.6",
+        label="Aperture",
+        least=0.5,
+        most=64.0,
+        option="--aperture",
+        metavar="F",
+        group=CAMERA,
+        unset="wide, but sharp from pane to mirror image",
+        row="first",
+        suggested=(2.8, 3.2, 3.5, 4.0, 4.5, 5.0, 5.6, 6.3, 7.1, 8.0, 9.0, 10.0, 11.0, 13.0, 16.0),
+    )
+    iso: int | None = parameter(
+        None,
+        "sensitivity, such as 100",
+        label="ISO",
+        least=25,
+        most=409_600,
+        option="--iso",
+        metavar="N",
+        group=CAMERA,
+        unset="the camera chooses",
+        row="first",
+        suggested=(100, 200, 400, 800, 1600, 3200, 6400),
+    )
+    compensation_ev: float = parameter(
+        0.0,
+        "brighter (+) or darker (-) than the camera measures, in stops; a manual exposure has none",
+        label="Exposure compensation",
+        unit="EV",
+        least=-5.0,
+        most=5.0,
+        option="--compensation",
+        metavar="EV",
+        group=CAMERA,
+        row="first",
+        step=0.1,
+    )
+    white_balance: WhiteBalance = parameter(
+        "kelvin",
+        "how colours are balanced",
+        label="White balance",
+        choices=(
+            Choice("kelvin", "colour temperature"),
+            Choice("sunny", "sunny"),
+            Choice("cloudy", "cloudy"),
+            Choice("auto", "each photo by itself"),
+        ),
+        option="--white-balance",
+        group=CAMERA,
+        row="first",
+    )
+    white_balance_k: int = parameter(
+        5500,
+        "colour temperature that counts as white; 5500 K is daylight",
+        label="Colour temperature",
+        unit="K",
+        least=1500,
+        most=15_000,
+        option="--kelvin",
+        metavar="K",
+        group=CAMERA,
+        row="first",
+        step=100.0,
+        decimals=0,
+    )
+    focus: FocusMode = parameter(
+        "lock",
+        "automatic before each photo; automatic before the first, then locked; at infinity; or at a distance",
+        label="Focus",
+        choices=(
+            Choice("auto", "automatic, each photo"),
+            Choice("lock", "automatic once, then locked"),
+            Choice("infinity", "infinity"),
+            Choice("distance", "at a distance"),
+        ),
+        option="--focus",
+        group=CAMERA,
+        row="first",
+    )
+    focus_distance_m: float | None = parameter(
+        None,
+        "distance of the focus, where it is set to one",
+        label="Focus distance",
+        unit="m",
+        above=0.0,
+        most=10_000.0,
+        expected="more than 0 m and at most 10 km",
+        option="--focus-distance",
+        metavar="M",
+        group=CAMERA,
+        unset="none",
+        row="first",
+        offered=(0.1, 1000.0),
+        step=0.5,
+    )
+    shutter: ShutterKind = parameter(
+        "mechanical",
+        "shutter; a camera that has no mechanical one uses the electronic one",
+        label="Shutter",
+        choices=(Choice("mechanical", "mechanical"), Choice("electronic", "electronic")),
+        option="--shutter-type",
+        group=CAMERA,
+        row="first",
+    )
+
+    def __post_init__(self) -> None:
+        check(self)
+        if self.exposure == "manual" and (self.shutter_s is None or self.iso is None):
+            raise ValueError(say("manual exposure needs a shutter time and an ISO", place="exposure"))
+        if (self.focus == "distance") != (self.focus_distance_m is not None):
+            raise ValueError(say("a focus at a distance needs that distance, and no other has one", place="focus"))
+
+
+@dataclass(frozen=True, slots=True)
 class GreedyParameters:
     """Settings of the greedy method."""
 
@@ -374,6 +543,7 @@ class PlanParameters:
     )
     constraints: Constraints = Constraints()
     rules: FlightRules = FlightRules()
+    camera: CameraSettings = CameraSettings()
     greedy: GreedyParameters = GreedyParameters()
     precision: Precision = parameter(
         "f32",

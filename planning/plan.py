@@ -19,7 +19,8 @@ from planning.base.files import read_input_file
 from planning.base.json_file import JSON_FILE, expect_format, parse_json, plain_values, to_record, write_atomically
 from planning.base.messages import joined, say
 from planning.geo.frames import Origin, Vec3
-from planning.parameters import Constraints, FlightRules
+from planning.optics import CameraControls, Lens
+from planning.parameters import CameraSettings, Constraints, FlightRules
 from planning.site.records import check_point
 
 PLAN_FORMAT = "reflight-plan/1"
@@ -66,6 +67,15 @@ class Camera:
     def pixel_angle_rad(self) -> float:
         """Angle that one pixel spans at the image centre."""
         return self.sensor_width_mm / (self.focal_length_mm * self.image_width_px)
+
+    @property
+    def pixel_mm(self) -> float:
+        """Width of a pixel on the sensor."""
+        return self.sensor_width_mm / self.image_width_px
+
+    def lens(self, f_number: float) -> Lens:
+        """The lens at an f-number."""
+        return Lens(self.focal_length_mm, f_number, self.pixel_mm)
 
     def gsd_m(self, distance_m: float) -> float:
         """Ground sampling distance across the line of sight at `distance_m`, metres per pixel."""
@@ -297,6 +307,9 @@ class Plan:
     """Identifier of the aircraft-and-camera profile in the catalogue, empty when they were given by hand."""
     worth: FlightWorth | None = None
     """What its photos were expected to bring when it was planned."""
+    camera_settings: CameraSettings = CameraSettings()
+    camera_controls: CameraControls | None = None
+    """What can be set on the camera; None where nobody has stated it."""
 
     def __post_init__(self) -> None:
         if self.format != PLAN_FORMAT:
@@ -381,6 +394,7 @@ def plan_to_json(plan: Plan) -> dict[str, Any]:
     """Content of `plan.json`; optional fields that are not set are left out."""
     content: dict[str, Any] = plain_values(plan)
     content = {"format": content.pop("format"), **content}
+    content["camera_settings"] = {key: value for key, value in content["camera_settings"].items() if value is not None}
     content["coverage"] = {key: value for key, value in content["coverage"].items() if value is not None}
     for viewpoint in content["viewpoints"]:
         if not viewpoint["locked"]:

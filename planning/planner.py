@@ -530,6 +530,8 @@ def _plan(
         rules=request.rules,
         effects=effects,
         profile=chosen_profile.id,
+        camera_settings=request.camera,
+        camera_controls=chosen_profile.controls,
     )
 
 

@@ -126,7 +126,7 @@ def add_parameter(place: Any, each: Declared, *, unset: str = "") -> argparse.Ac
         facts["metavar"] = known.metavar
     elif words:
         facts["choices"] = words
-    kind = {int: int, float: number}.get(each.kind, str)
+    kind = {int: int, float: seconds if known.unit == "s" else number}.get(each.kind, str)
     return cast("argparse.Action", place.add_argument(known.option, type=kind, **facts))
 
 
@@ -163,6 +163,19 @@ def number(text: str) -> float:
     if not math.isfinite(value):
         raise argparse.ArgumentTypeError(worded(say("expected a number, got '{}'", text)))
     return value
+
+
+def seconds(text: str) -> float:
+    """A finite time, also as shutter times are written: `1/500`."""
+    whole, slash, parts = text.partition("/")
+    if not slash:
+        return number(text)
+    try:
+        return number(whole) / number(parts)
+    except (ZeroDivisionError, argparse.ArgumentTypeError):
+        raise argparse.ArgumentTypeError(
+            worded(say("expected a time such as 1/500 or 0.002, got '{}'", text))
+        ) from None
 
 
 def json_file(text: str) -> Path:

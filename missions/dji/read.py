@@ -11,9 +11,11 @@ from missions.dji.check import check_dji, is_on_globe
 from missions.dji.wpml import Action, ActionGroup, DjiParts, Folder, WpmlWaypoint, load_parts
 from missions.mission.export_choices import FileFormat, HeightReference
 from missions.mission.model import (
+    NOTHING_SAID,
     ON_THE_WAY,
     Finish,
     GeoPoint,
+    ReadCamera,
     ReadMission,
     ReadPhoto,
     ReadWaypoint,
@@ -28,9 +30,12 @@ from missions.mission.model import (
     shots_on_leg,
     too_many_shots,
 )
+from planning.aircraft.camera_use import FOCUSES
 from planning.base.errors import MissionError
 from planning.base.findings import Finding, Severity
+from planning.base.messages import say
 from planning.geo.frames import wrap_heading_deg
+from planning.parameters import FocusMode
 
 # What the aircraft would do with a wayline: where it takes photos, and how the camera stands at each.
 #
@@ -369,6 +374,55 @@ def _speed_m_s(waypoint: WpmlWaypoint, folder: Folder) -> float | None:
     return next((v for v in (waypoint.speed_m_s, folder.speed_m_s) if v is not None and 0.0 < v < math.inf), None)
 
 
+# What a mission tells the camera. WPML has actions for focus and zoom, and a template has focusMode and meteringMode,
+# which DJI documents for the M300 and M350 alone. Nothing says exposure, ISO, shutter, aperture or white balance.
+
+WITH_FOCUS_MODE = ((60, 0), (89, 0))
+"""droneEnumValue and droneSubEnumValue of the M300 and M350."""
+
+AIMED_FOCUS = ("orientedShoot", "accurateShoot")
+"""Photos that focus by themselves on a region of their own."""
+
+
+def _camera_of(parts: DjiParts, folder: Folder, place: str) -> tuple[ReadCamera, list[Finding]]:
+    """What a wayline tells the camera, and what there is to say of it."""
+    actions = [*folder.start_actions]
+    actions += [action for waypoint in folder.waypoints for group in waypoint.groups for action in group.actions]
+    focusing = [action.is_on("isInfiniteFocus") for action in actions if action.func == "focus"]
+    infinite = sum(focusing)
+    automatic = len(focusing) - infinite + sum(action.func in AIMED_FOCUS for action in actions)
+    is_held = any(a.func == "setFocusType" and a.params.get("cameraFocusType") == "manual" for a in actions)
+    focus: FocusMode | None = None
+    findings: list[Finding] = []
+
+    def note(text: str, severity: Severity = Severity.NOTE) -> None:
+        findings.append(Finding(severity, "camera", text, place))
+
+    template = parts.template.folders[0] if parts.template is not None and parts.template.folders else None
+    has_mode = template is not None and parts.waylines.config.drone in WITH_FOCUS_MODE
+    mode = template.focus_mode if template is not None and has_mode else ""
+    if automatic and infinite:
+        note(say("it focuses at infinity for some photos and automatically for others, which is not taken over"))
+    elif infinite:
+        focus = "infinity"
+    elif automatic:
+        focus = "lock" if is_held and automatic == 1 else "auto"
+    elif is_held or mode == "custom":
+        note(say("the focus is set by hand before the flight, and the file does not say to which distance"))
+    elif mode == "firstPoint":
+        focus = "lock"
+    if focus is not None:
+        note(say("its camera: {}", FOCUSES[focus]))
+    if template is not None and template.metering_mode == "spot":
+        note(say("its camera measures exposures at a spot; plans do not say that, so set it on the controller"))
+    zooms = {value for a in actions if a.func == "zoom" and (value := _finite(a.number("focalLength"))) is not None}
+    if len(zooms) > 1:
+        lengths = ", ".join(f"{value:g}" for value in sorted(zooms))
+        text = say("it zooms to {} mm (35 mm equivalent), but all photos count with one field of view", lengths)
+        note(text, Severity.WARNING)
+    return (NOTHING_SAID if focus is None else ReadCamera(focus=focus)), findings
+
+
 _FINISH = {"goHome": Finish.RETURN, "autoLand": Finish.LAND}
 
 
@@ -417,6 +471,7 @@ def _read_wayline(path: Path, parts: DjiParts, folder: Folder, findings: tuple[F
     if is_ours:
         flown = [replace(point, stay=None) for point in flown]
     several = len(parts.waylines.folders) > 1
+    camera, on_camera = _camera_of(parts, folder, path.stem)
     return ReadMission(
         name=f"{path.stem}-{(folder.wayline_id or 0) + 1}" if several else path.stem,
         path=path,
@@ -430,7 +485,8 @@ def _read_wayline(path: Path, parts: DjiParts, folder: Folder, findings: tuple[F
         speed_m_s=_possible(folder.speed_m_s),
         transit_speed_m_s=_possible(parts.waylines.config.transitional_speed_m_s),
         stated_s=None if is_ours else folder.duration_s,
-        findings=(*findings, *flight.findings),
+        findings=(*findings, *flight.findings, *on_camera),
+        camera=camera,
     )
 
 

@@ -57,6 +57,8 @@ class DjiProfile:
     lens: str
     focus: bool
     wide_zoom_mm: float
+    infinity: bool = False
+    focus_mode: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,6 +182,8 @@ class Folder:
     image_format: str
     start_actions: tuple[Action, ...]
     waypoints: tuple[WpmlWaypoint, ...]
+    focus_mode: str = ""
+    metering_mode: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -323,6 +327,8 @@ class _Parser:
             image_format=_text(_child(element, "payloadParam"), "imageFormat"),
             start_actions=self.actions(_child(element, "startActionGroup")),
             waypoints=tuple(self.waypoint(placemark) for placemark in placemarks),
+            focus_mode=_text(_child(element, "payloadParam"), "focusMode"),
+            metering_mode=_text(_child(element, "payloadParam"), "meteringMode"),
         )
 
     def waypoint(self, element: Element) -> WpmlWaypoint:

@@ -21,6 +21,7 @@ from missions.dji.wpml import DjiCatalogue, DjiProfile, dji_catalogue, dji_profi
 from missions.mission.export_choices import HIGHEST_RETURN_M, LOWEST_RETURN_M, HeightReference, LinkLoss
 from missions.mission.model import GeoPoint, Mission, Photo, Waypoint, altitude_amsl_m, leg_lengths_m
 from planning.geo.frames import wrap_heading_deg
+from planning.parameters import FocusMode
 from planning.plan import ANGLE_DECIMALS
 from planning.site.records import MIN_HEIGHT_ABOVE_GROUND_M
 
@@ -77,6 +78,15 @@ _CENTRE_FOCUS: list[Node] = [
 ]
 """Autofocus on the middle half of the picture, as Pilot 2 and FlightHub 2 write it."""
 
+_INFINITE_FOCUS: list[Node] = [
+    *((name, "0") for name in ("focusX", "focusY", "focusRegionWidth", "focusRegionHeight", "isPointFocus")),
+    ("isInfiniteFocus", "1"),
+    _POSITION,
+]
+
+_HELD_FOCUS: list[Node] = [("cameraFocusType", "manual"), _POSITION]
+"""From here on nothing focuses any more. FlightHub 2 writes it into facade routes, before the focus at infinity."""
+
 
 def photo_group(
     group_id: int,
@@ -87,6 +97,8 @@ def photo_group(
     settle_s: float,
     *,
     is_template: bool,
+    focus: FocusMode = "auto",
+    is_first: bool = False,
 ) -> Node:
     """The actionGroup of one waypoint.
 
@@ -96,12 +108,16 @@ def photo_group(
         Heading of the aircraft before it; None where that is not known.
     is_template
         Templates name neither focus nor lens: Pilot 2 and FlightHub 2 add them when they make waylines.
+    focus, is_first
+        How the camera focuses, and whether the first of the photos is that of the mission, where a focus is set that
+        is held.
     """
     actions: list[list[Node]] = []
     for photo in photos:
         turn_deg = 0.0 if nose_deg is None else wrap_heading_deg(photo.heading_deg - nose_deg)
-        actions += _photo_actions(photo, turn_deg, profile, settle_s, is_template=is_template)
-        nose_deg = photo.heading_deg
+        focusing = [] if is_template else _focus_actions(profile, focus, is_first=is_first)
+        actions += _photo_actions(photo, turn_deg, profile, settle_s, focusing, is_template=is_template)
+        nose_deg, is_first = photo.heading_deg, False
     return (
         "actionGroup",
         [
@@ -115,8 +131,24 @@ def photo_group(
     )
 
 
+def _focus_actions(profile: DjiProfile, focus: FocusMode, *, is_first: bool) -> list[list[Node]]:
+    """What focuses before a photo; nothing where the camera takes no such actions."""
+    hold, automatic = _action("setFocusType", _HELD_FOCUS), _action("focus", _CENTRE_FOCUS)
+    if not profile.focus or not (is_first or focus == "auto"):
+        return []
+    if focus == "infinity":
+        return [hold, *([_action("focus", _INFINITE_FOCUS)] if profile.infinity else [])]
+    return {"auto": [automatic], "lock": [automatic, hold], "distance": [hold]}[focus]
+
+
 def _photo_actions(
-    photo: Photo, turn_deg: float, profile: DjiProfile, settle_s: float, *, is_template: bool
+    photo: Photo,
+    turn_deg: float,
+    profile: DjiProfile,
+    settle_s: float,
+    focusing: list[list[Node]],
+    *,
+    is_template: bool,
 ) -> Iterator[list[Node]]:
     path_mode = "clockwise" if turn_deg >= 0 else "counterClockwise"
     yield _action(
@@ -126,8 +158,7 @@ def _photo_actions(
     if profile.wide_zoom_mm > 0:
         zoom = number(profile.wide_zoom_mm, 1)
         yield _action("zoom", [("focalLength", zoom), ("isUseFocalFactor", "0"), _POSITION])
-    if profile.focus and not is_template:
-        yield _action("focus", _CENTRE_FOCUS)
+    yield from focusing
     if settle_s > 0:
         yield _action("hover", [("hoverTime", number(settle_s, 2))])
     # The suffix goes into the names of the photos, so that each can be found by its viewpoint afterwards.
@@ -292,7 +323,7 @@ class _Writer:
     def payload_param(self) -> list[Node]:
         return [
             ("payloadPositionIndex", "0"),
-            ("focusMode", "firstPoint"),
+            ("focusMode", "firstPoint" if self.mission.camera_settings.focus in ("auto", "lock") else "custom"),
             ("meteringMode", "average"),
             ("imageFormat", self.profile.lens),
         ]
@@ -308,6 +339,7 @@ class _Writer:
         headings = _headings_at(self.mission.waypoints) if self.mission.rules.turn_in_flight else None
         group_ids = itertools.count()
         nose_deg: float | None = None
+        is_first = True
         for index, waypoint in enumerate(self.mission.waypoints):
             mode, angle_deg = ("fixed", 0.0) if headings is None else ("smoothTransition", headings[index])
             enable = None if is_template else headings is not None
@@ -315,8 +347,9 @@ class _Writer:
             groups: list[Node] = []
             if waypoint.photos:
                 args = (next(group_ids), index, waypoint.photos, nose_deg, self.profile, self.mission.rules.settle_s)
-                groups = [photo_group(*args, is_template=is_template)]
-                nose_deg = waypoint.photos[-1].heading_deg
+                focus = self.mission.camera_settings.focus
+                groups = [photo_group(*args, is_template=is_template, focus=focus, is_first=is_first)]
+                nose_deg, is_first = waypoint.photos[-1].heading_deg, False
             place: list[Node] = [("Point", [("coordinates", _lon_lat(waypoint.position))]), ("index", str(index))]
             if is_template:
                 ellipsoid, height = self.template_heights(waypoint.position)

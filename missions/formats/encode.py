@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from missions.formats.camera_steps import camera_steps
 from missions.formats.options import EncodedFiles, ExportOptions
 from missions.mavlink.autopilots import Autopilot
 from missions.mission.export_choices import HIGHEST_RETURN_M, LOWEST_RETURN_M, FileFormat, HeightReference
@@ -56,6 +57,7 @@ def encode_dji(plan: Plan, missions: Sequence[Mission], options: ExportOptions) 
                 findings += _in_sortie([note], mission, missions)
     for mission, content in zip(missions, contents, strict=True):
         findings += _in_sortie(check_dji(parts_of_kmz(content)), mission, missions)
+    findings += camera_steps(plan, FileFormat.DJI_KMZ).findings()
     return EncodedFiles(tuple(contents), tuple(findings))
 
 
@@ -265,7 +267,9 @@ def default_autopilot(profile_id: str) -> Autopilot:
     return Autopilot.PX4 if profile_id == Autopilot.PX4 else Autopilot.ARDUPILOT
 
 
-def encode_mavlink(missions: Sequence[Mission], file_format: FileFormat, options: ExportOptions) -> EncodedFiles:
+def encode_mavlink(
+    plan: Plan, missions: Sequence[Mission], file_format: FileFormat, options: ExportOptions
+) -> EncodedFiles:
     """A `.plan` or a `.waypoints` file for each sortie."""
     from missions.mavlink.check import check_items
     from missions.mavlink.fence import fence_polygons, rally_points
@@ -300,6 +304,7 @@ def encode_mavlink(missions: Sequence[Mission], file_format: FileFormat, options
                 found += on_fences
             contents.append(plan_json_bytes(items, mission.takeoff, autopilot, speed_m_s, reference, fences, rally))
         findings += _in_sortie(found, mission, missions)
+    findings += camera_steps(plan, file_format, options.autopilot or default_autopilot(plan.profile)).findings()
     return EncodedFiles(tuple(contents), tuple(findings))
 
 

@@ -93,11 +93,11 @@ def _encode_dji(plan: Plan, missions: Sequence[Mission], options: ExportOptions)
 
 
 def _encode_mavlink(
-    file_format: FileFormat, _plan: Plan, missions: Sequence[Mission], options: ExportOptions
+    file_format: FileFormat, plan: Plan, missions: Sequence[Mission], options: ExportOptions
 ) -> EncodedFiles:
     from missions.formats.encode import encode_mavlink
 
-    return encode_mavlink(missions, file_format, options)
+    return encode_mavlink(plan, missions, file_format, options)
 
 
 def _encode_kml(_plan: Plan, missions: Sequence[Mission], _options: ExportOptions) -> EncodedFiles:

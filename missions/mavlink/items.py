@@ -8,6 +8,10 @@ another navigation command that keeps the aircraft in place while the shutter is
 - ArduPilot: DO_MOUNT_CONTROL, CONDITION_YAW, NAV_WAYPOINT (hold), DO_DIGICAM_CONTROL, NAV_DELAY
 - PX4: DO_GIMBAL_MANAGER_PITCHYAW, NAV_WAYPOINT (hold, yaw), IMAGE_START_CAPTURE, the same NAV_WAYPOINT (hold)
 
+What the camera is told stands before the first waypoint, and a focus that is found at the first photo and then held
+between that waypoint and its trigger. ArduPilot's DO_DIGICAM_CONFIGURE has ten times the f-number, as its own records
+of it and the message of the same name do: it stores a whole number.
+
 PX4 gets no NAV_DELAY. From mid 2025 on it corrects the height of home in flight, and until March 2026 it then took the
 height of the item at hand, which a delay does not have: the aircraft flew towards 0 m above the sea (PX4 pull request
 26662; seen in its simulation).
@@ -39,6 +43,7 @@ from planning.base.errors import MissionError
 from planning.base.findings import Finding, Severity
 from planning.base.messages import say
 from planning.geo.frames import wrap_heading_deg
+from planning.parameters import CameraSettings
 from planning.plan import ANGLE_DECIMALS
 
 NAN = math.nan
@@ -56,6 +61,17 @@ SLEW_YAW_DEG_S = 60.0
 TURN_MARGIN_S = 1.0
 MIN_DELAY_S = 1.0
 """Shortest wait behind a trigger: ArduPilot loses a second trigger within 0.1 s, cameras open some tenths late."""
+
+FOCUSING_S = 2.0
+"""Wait for an automatic focus; contrast detection takes one to two seconds."""
+
+RANGE_END = 100.0
+"""FOCUS_TYPE_RANGE in per cent of the range; its far end is infinity."""
+
+MAX_UINT8, MAX_UINT16 = 255, 65535
+
+DIGICAM_MANUAL = 4.0
+"""Shooting mode of DO_DIGICAM_CONFIGURE: 1 program, 2 aperture priority, 3 shutter priority, 4 manual (AP_Mission)."""
 
 PX4_ACCEPTANCE_RADIUS_M = 0.5
 
@@ -148,6 +164,7 @@ class _Sequence:
         if self.autopilot is Autopilot.PX4:
             # PX4's gimbal obeys whoever configured it last: -2 makes that the autopilot itself.
             yield plain(mavlink.MAV_CMD_DO_GIMBAL_MANAGER_CONFIGURE, -2.0, -2.0, -1.0, -1.0)
+        yield from camera_items(mission, self.autopilot)
         for waypoint, leg_m in zip(mission.waypoints, [0.0, *legs_m], strict=True):
             leg_s = float(leg_m) / mission.speed_m_s
             if not waypoint.photos:
@@ -190,6 +207,9 @@ class _Sequence:
             yield plain(mavlink.MAV_CMD_DO_MOUNT_CONTROL, pitch_deg, 0.0, 0.0, 0.0, 0.0, 0.0, mode)
             yield plain(mavlink.MAV_CMD_CONDITION_YAW, heading_deg % 360.0)
             yield self.at(mavlink.MAV_CMD_NAV_WAYPOINT, point, hold_s)
+            if self.is_focused_here:
+                yield plain(mavlink.MAV_CMD_SET_CAMERA_FOCUS, mavlink.FOCUS_TYPE_AUTO_SINGLE)
+                yield plain(mavlink.MAV_CMD_NAV_DELAY, FOCUSING_S, -1.0, -1.0, -1.0)
             yield plain(mavlink.MAV_CMD_DO_DIGICAM_CONTROL, 0.0, 0.0, 0.0, 0.0, 1.0, viewpoint_id=photo.viewpoint_id)
             yield plain(mavlink.MAV_CMD_NAV_DELAY, stay_s, -1.0, -1.0, -1.0)
         else:
@@ -199,10 +219,20 @@ class _Sequence:
             place = (PX4_ACCEPTANCE_RADIUS_M, 0.0, heading_deg)
             yield plain(mavlink.MAV_CMD_DO_GIMBAL_MANAGER_PITCHYAW, pitch_deg, 0.0, NAN, NAN, HOLD_HORIZON)
             yield self.at(mavlink.MAV_CMD_NAV_WAYPOINT, point, round(settled_s, 2), *place)
+            if self.is_focused_here:
+                yield plain(mavlink.MAV_CMD_SET_CAMERA_FOCUS, mavlink.FOCUS_TYPE_AUTO_SINGLE)
+                yield self.at(mavlink.MAV_CMD_NAV_WAYPOINT, point, FOCUSING_S, *place)
             number = float(self.n_photos)
             yield plain(mavlink.MAV_CMD_IMAGE_START_CAPTURE, 0.0, 0.0, 1.0, number, viewpoint_id=photo.viewpoint_id)
             yield self.at(mavlink.MAV_CMD_NAV_WAYPOINT, point, stay_s, *place)
         self.nose_deg, self.pitch_deg = photo.heading_deg, photo.gimbal_pitch_deg
+
+    @property
+    def is_focused_here(self) -> bool:
+        """Whether the focus that is held is found at the photo at hand: the first."""
+        controls = self.mission.camera_controls
+        takes_focus = controls is not None and "focus" in controls.mavlink
+        return takes_focus and self.mission.camera_settings.focus == "lock" and self.n_photos == 1
 
     def turning_s(self, photo: Photo) -> tuple[float, float]:
         """Times that the aircraft and the gimbal need to turn to a photo, from the worst where that is not known."""
@@ -230,6 +260,39 @@ class _Sequence:
             frame, altitude_m = mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT, self.mission.height_above_takeoff_m(point)
         lat_deg, lon_deg = round(point.lat_deg, 9), round(point.lon_deg, 9)
         return MissionItem(command, frame, (p1, p2, p3, p4, lat_deg, lon_deg, round(altitude_m, 4)))
+
+
+def camera_items(mission: Mission, autopilot: Autopilot) -> Iterator[MissionItem]:
+    """What the camera is told before the first waypoint, as far as it takes that; see `CameraControls.mavlink`."""
+    settings, controls = mission.camera_settings, mission.camera_controls
+    obeyed = () if controls is None else controls.mavlink
+    exposure = digicam_exposure(settings, mission.f_number)
+    if "exposure" in obeyed and autopilot is Autopilot.ARDUPILOT and exposure is not None:
+        yield plain(mavlink.MAV_CMD_DO_DIGICAM_CONFIGURE, DIGICAM_MANUAL, *exposure)
+    if "focus" not in obeyed:
+        return
+    if settings.focus == "auto":
+        yield plain(mavlink.MAV_CMD_SET_CAMERA_FOCUS, mavlink.FOCUS_TYPE_AUTO_CONTINUOUS)
+    elif settings.focus == "infinity":
+        yield plain(mavlink.MAV_CMD_SET_CAMERA_FOCUS, mavlink.FOCUS_TYPE_RANGE, RANGE_END)
+    elif settings.focus_distance_m is not None and autopilot is Autopilot.PX4:
+        # ArduPilot refuses metres; PX4 hands the command on to the camera.
+        yield plain(mavlink.MAV_CMD_SET_CAMERA_FOCUS, mavlink.FOCUS_TYPE_METERS, settings.focus_distance_m)
+
+
+def digicam_exposure(settings: CameraSettings, f_number: float | None) -> tuple[float, float, float] | None:
+    """A manual exposure in the whole numbers of DO_DIGICAM_CONFIGURE: parts of a second, f-number times 10, ISO.
+
+    None where it is not manual, or is no such numbers, such as shutter times of half a second and more.
+    """
+    if settings.exposure != "manual" or settings.shutter_s is None or settings.iso is None or f_number is None:
+        return None
+    parts, aperture = 1.0 / settings.shutter_s, 10.0 * f_number
+    if abs(parts - round(parts)) > 0.01 * parts or not (
+        1 <= round(parts) <= MAX_UINT16 and round(aperture) <= MAX_UINT8
+    ):
+        return None
+    return (float(round(parts)), float(round(aperture)), float(settings.iso)) if settings.iso <= MAX_UINT16 else None
 
 
 def plain(command: int, *params: float, viewpoint_id: str = "") -> MissionItem:

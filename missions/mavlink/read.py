@@ -11,11 +11,22 @@ from pymavlink.dialects.v20 import common as mavlink
 
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.check import check_items
-from missions.mavlink.items import RELATIVE_FRAMES, MavlinkFile, MissionItem, has_place, is_same_place, position_of
+from missions.mavlink.items import (
+    DIGICAM_MANUAL,
+    RANGE_END,
+    RELATIVE_FRAMES,
+    MavlinkFile,
+    MissionItem,
+    has_place,
+    is_same_place,
+    position_of,
+)
 from missions.mission.export_choices import HeightReference
 from missions.mission.model import (
+    NOTHING_SAID,
     ON_THE_WAY,
     Finish,
+    ReadCamera,
     ReadMission,
     ReadPhoto,
     ReadWaypoint,
@@ -30,10 +41,13 @@ from missions.mission.model import (
     shots_on_leg,
     too_many_shots,
 )
+from planning.aircraft.camera_use import FOCUSES
 from planning.base.errors import MissionError
 from planning.base.findings import Finding, Severity
 from planning.base.messages import say
 from planning.geo.frames import wrap_heading_deg
+from planning.optics import shutter_text
+from planning.parameters import FocusMode
 
 # What an autopilot would do with mission items: where photos are taken, and how the camera stands at each.
 #
@@ -95,6 +109,7 @@ class MavlinkFlight:
     roi: ReadWaypoint | None = None
     trigger: _Trigger | None = None
     speed_m_s: float | None = None
+    camera: ReadCamera = NOTHING_SAID
 
     def fly(self) -> None:
         """Go through all items, up to the one that ends the flight.
@@ -365,8 +380,67 @@ class MavlinkFlight:
         """IMAGE_STOP_CAPTURE."""
         self.trigger = None
 
+    # What the camera is told ------------------------------------------------------------------------------------------
+
+    def _say_camera(self, text: str, number: int, severity: Severity = Severity.NOTE) -> None:
+        self.findings.append(Finding(severity, "camera", text, say("{}item {}", self.place, number)))
+
+    def digicam_configure(self, item: MissionItem, number: int) -> None:
+        """DO_DIGICAM_CONFIGURE: mode, parts of a second, ten times the f-number (or itself), ISO; 0 says nothing."""
+        mode, parts, aperture, iso = (value if math.isfinite(value) else 0.0 for value in item.params[:4])
+        aperture = aperture / 10.0 if aperture >= 10.0 else aperture
+        found = ReadCamera(
+            "manual" if mode == DIGICAM_MANUAL else None,
+            1.0 / parts if 1.0 / 60.0 <= parts <= 1e5 else None,
+            aperture if 0.5 <= aperture <= 64.0 else None,
+            round(iso) if 25.0 <= iso <= 409_600.0 else None,
+        )
+        said = [] if found.shutter_s is None else [shutter_text(found.shutter_s)]
+        said += [] if found.aperture is None else [f"f/{found.aperture:g}"]
+        said += [] if found.iso is None else [f"ISO {found.iso}"]
+        if not said:
+            self._say_camera(say("DO_DIGICAM_CONFIGURE says nothing that is understood; it is not taken over"), number)
+            return
+        self.camera = replace(found, focus=self.camera.focus, focus_distance_m=self.camera.focus_distance_m)
+        self._say_camera(say("its camera: {}", ", ".join(said)), number)
+
+    def camera_focus(self, item: MissionItem, number: int) -> None:
+        """SET_CAMERA_FOCUS: once, again and again, at infinity, or at a distance in metres."""
+        kind, value = item.params[:2]
+        focus: FocusMode | None = None
+        distance_m = None
+        if kind == mavlink.FOCUS_TYPE_AUTO_CONTINUOUS:
+            focus = "auto"
+        elif kind in (mavlink.FOCUS_TYPE_AUTO, mavlink.FOCUS_TYPE_AUTO_SINGLE):
+            focus = "lock" if self.camera.focus is None else "auto"
+        elif kind == mavlink.FOCUS_TYPE_RANGE and value >= RANGE_END:
+            focus = "infinity"
+        elif kind == mavlink.FOCUS_TYPE_METERS and 0.0 < value <= 10_000.0:
+            focus, distance_m = "distance", value
+        if focus is None:
+            text = say("a focus of type {:g} with {:g} is not taken over; set it on the camera", kind, value)
+            self._say_camera(text, number, Severity.WARNING)
+            return
+        self.camera = replace(self.camera, focus=focus, focus_distance_m=distance_m)
+        told = FOCUSES[focus] if distance_m is None else say("focus at {:g} m", distance_m)
+        self._say_camera(say("its camera: {}", told), number)
+
+    def camera_mode(self, item: MissionItem, number: int) -> None:
+        """SET_CAMERA_MODE: photos, or video, in which most cameras take none."""
+        if item.params[1] == mavlink.CAMERA_MODE_VIDEO:
+            self._say_camera(say("it sets the camera to video: most take no photos then"), number, Severity.WARNING)
+
+    def camera_zoom(self, item: MissionItem, number: int) -> None:
+        """SET_CAMERA_ZOOM: another field of view than the one that photos count with."""
+        text = say("it zooms, but all photos count with the field of view of the camera that is named")
+        self._say_camera(text, number, Severity.WARNING)
+
 
 _HANDLERS: dict[int, Callable[[MavlinkFlight, MissionItem, int], None]] = {
+    mavlink.MAV_CMD_DO_DIGICAM_CONFIGURE: MavlinkFlight.digicam_configure,
+    mavlink.MAV_CMD_SET_CAMERA_FOCUS: MavlinkFlight.camera_focus,
+    mavlink.MAV_CMD_SET_CAMERA_MODE: MavlinkFlight.camera_mode,
+    mavlink.MAV_CMD_SET_CAMERA_ZOOM: MavlinkFlight.camera_zoom,
     mavlink.MAV_CMD_CONDITION_YAW: MavlinkFlight.condition_yaw,
     mavlink.MAV_CMD_NAV_DELAY: MavlinkFlight.delay,
     mavlink.MAV_CMD_DO_CHANGE_SPEED: MavlinkFlight.change_speed,
@@ -433,6 +507,7 @@ def read_mavlink(path: Path, file: MavlinkFile, file_format: str, *, strict: boo
         climb_above_takeoff_m=flight.climb_m,
         speed_m_s=file.cruise_speed_m_s or flight.speed_m_s,
         findings=(*file.findings, *map(as_warning, checks), *flight.findings, *_on_rally(file)),
+        camera=flight.camera,
     )
 
 

@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from typing import TypeVar
 
 from missions.mission.model import GeoPoint, Mission, Photo, Waypoint
+from planning.aircraft.camera_use import camera_use_of, controls_of
 from planning.aircraft.catalogue import profiles
 from planning.base.errors import InputError, MissionError
 from planning.base.messages import say
@@ -53,6 +54,7 @@ def missions_from_plan(plan: Plan, origin: Origin | None = None, home_enu_m: Vec
     by_id = {viewpoint.id: viewpoint for viewpoint in plan.viewpoints}
     profile = _profile_of(plan)
     speed_m_s = min(plan.aircraft.max_speed_m_s, plan.rules.max_speed_m_s or math.inf)
+    f_number = camera_use_of(plan).f_number
     missions = []
     for number, sortie in enumerate(plan.sorties, 1):
         place = say("sortie {}", number)
@@ -75,6 +77,9 @@ def missions_from_plan(plan: Plan, origin: Origin | None = None, home_enu_m: Vec
                 length_m=sortie.length_m,
                 duration_s=sortie.duration_s,
                 origin=origin,
+                camera_settings=plan.camera_settings,
+                camera_controls=controls_of(plan),
+                f_number=f_number,
             )
         )
     return tuple(missions)

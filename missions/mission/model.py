@@ -28,7 +28,8 @@ from planning.base.errors import MissionError
 from planning.base.findings import Finding, Severity
 from planning.base.messages import glue, joined, say
 from planning.geo.frames import Origin
-from planning.parameters import FlightRules
+from planning.optics import CameraControls
+from planning.parameters import CameraSettings, ExposureMode, FlightRules, FocusMode
 from planning.plan import Aircraft, Camera
 
 if TYPE_CHECKING:
@@ -196,6 +197,10 @@ class Mission:
     length_m: float
     duration_s: float
     origin: Origin
+    camera_settings: CameraSettings = CameraSettings()
+    camera_controls: CameraControls | None = None
+    f_number: float | None = None
+    """With which photos are taken, stated or chosen; None where it is not known."""
 
     @property
     def n_photos(self) -> int:
@@ -294,6 +299,32 @@ class Finish(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
+class ReadCamera:
+    """What a file tells the camera besides to take photos, as `CameraSettings`; None where it does not say."""
+
+    exposure: ExposureMode | None = None
+    shutter_s: float | None = None
+    aperture: float | None = None
+    iso: int | None = None
+    focus: FocusMode | None = None
+    focus_distance_m: float | None = None
+
+    def over(self, settings: CameraSettings) -> CameraSettings:
+        """Settings with what the file says; a focus at a distance that the file does not name stays as it was."""
+        said = {name: value for name in self.__slots__ if (value := getattr(self, name)) is not None}
+        if self.focus == "distance" and self.focus_distance_m is None:
+            del said["focus"]
+        elif self.focus is not None:
+            said["focus_distance_m"] = self.focus_distance_m
+        if self.exposure == "manual" and (self.shutter_s is None or self.iso is None):
+            del said["exposure"]
+        return replace(settings, **said)
+
+
+NOTHING_SAID = ReadCamera()
+
+
+@dataclass(frozen=True, slots=True)
 class ReadMission:
     """One sortie as a file describes it.
 
@@ -314,6 +345,8 @@ class ReadMission:
         Time from the first to the last waypoint as the file states it; None where it does not.
     findings
         What the file's checks found and what had to be assumed; never an error, a file with errors is not read.
+    camera
+        What it tells the camera.
     """
 
     name: str
@@ -329,6 +362,7 @@ class ReadMission:
     transit_speed_m_s: float | None = None
     stated_s: float | None = None
     findings: tuple[Finding, ...] = ()
+    camera: ReadCamera = NOTHING_SAID
 
     @property
     def n_photos(self) -> int:

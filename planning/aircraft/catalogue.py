@@ -15,6 +15,7 @@ from planning.base.errors import InputError
 from planning.base.json_file import read_toml
 from planning.base.messages import say
 from planning.base.plugins import NAME, Plugin, PluginGroup, load_plugins
+from planning.optics import CameraControls
 from planning.plan import Aircraft, Camera
 
 PROFILES_PATH = Path(__file__).parent / "data" / "profiles.toml"
@@ -53,7 +54,8 @@ class Body:
 class Profile:
     """One aircraft with the camera it carries, and where the figures come from; `id` is the name of its table.
 
-    `body` is None where nobody has stated it; ground risk then has to be told.
+    `body` is None where nobody has stated it; ground risk then has to be told. `controls` are what can be set on the
+    camera, None likewise.
     """
 
     aircraft: Aircraft
@@ -61,6 +63,7 @@ class Profile:
     source: str = ""
     id: str = ""
     body: Body | None = None
+    controls: CameraControls | None = None
 
 
 @cache

@@ -22,7 +22,7 @@ Value = TypeVar("Value")
 Record = TypeVar("Record")
 Function = TypeVar("Function", bound=Callable[..., Any])
 
-Unit = Literal["", "m", "mm", "m/s", "s", "min", "deg", "px", "share", "bytes"]
+Unit = Literal["", "m", "mm", "m/s", "s", "min", "deg", "px", "share", "bytes", "EV", "K"]
 """Of a value; `share` is a part of 1, which windows show in per cent."""
 
 Row = Literal["", "first", "more"]

@@ -9,13 +9,14 @@ from __future__ import annotations
 from planning.base.findings import Finding
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
+from planning.checks.camera import CAMERA_RULES
 from planning.checks.case import Case
 from planning.checks.rules import FLIGHT_RULES, GEOMETRY_RULES
 from planning.checks.zones import geo_zones
 from planning.plan import Plan
 from planning.site.records import SiteModel
 
-RULES = (*GEOMETRY_RULES, geo_zones, *FLIGHT_RULES)
+RULES = (*GEOMETRY_RULES, geo_zones, *FLIGHT_RULES, *CAMERA_RULES)
 
 
 def check_plan(plan: Plan, site_model: SiteModel, monitor: Monitor = QUIET) -> tuple[Finding, ...]:

@@ -85,6 +85,7 @@ def test_a_good_plan_keeps_every_rule_and_every_measured_value_is_stated() -> No
         *("airspace", "low-flight", "distance", "leg-distance", "no-fly", "altitude", "leg-spacing"),
         *("site", "sorties", "gimbal", "heading", "waypoints", "wind", "endurance", "duration", "length"),
         *("photo-interval", "settle", "gsd", "sharpness", "duplicates", "coverage", "return-height"),
+        *("camera", "motion-blur", "rolling-shutter", "depth-of-field", "mirror-focus"),
     }
     for f in findings:
         if f.value is not None and f.code not in ("site", "sorties"):

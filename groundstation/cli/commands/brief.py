@@ -85,7 +85,7 @@ def run(options: argparse.Namespace) -> int:
         def localize(text: str) -> str:
             return localized(text, words, units)
 
-        brief = replace(brief, sun=tuple(map(localize, brief.sun)))
+        brief = brief.in_words(localize)
         sources = sources_in_page(brief_pictures(site_model, plan, units, titles, found.sun, localize))
         is_letter = None if options.paper is None else options.paper == "letter"
         return brief_html(brief, units, sources, titles, is_letter=is_letter), brief.readiness, len(brief.findings)

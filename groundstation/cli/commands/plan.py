@@ -24,7 +24,7 @@ from groundstation.cli.options import (
 from planning.base.errors import InputError
 from planning.base.messages import glue, joined, say
 from planning.base.parameters import declared, with_values
-from planning.parameters import FLIGHT, GOAL, HOW, METHOD_NAMES, WHICH, PlanParameters
+from planning.parameters import CAMERA, FLIGHT, GOAL, HOW, METHOD_NAMES, WHICH, PlanParameters
 
 if TYPE_CHECKING:
     from planning.planner import Planned
@@ -76,7 +76,7 @@ def add_parser(subparsers: Any) -> None:
 
 def add_request_arguments(parser: argparse.ArgumentParser) -> None:
     """What is wanted of a plan; shared with other commands that plan."""
-    groups = {title: parser.add_argument_group(title) for title in (GOAL, HOW, WHICH, FLIGHT)}
+    groups = {title: parser.add_argument_group(title) for title in (GOAL, HOW, WHICH, FLIGHT, CAMERA)}
     one_of = groups[GOAL].add_mutually_exclusive_group()
     for name, each in declared(PlanParameters).items():
         if name == "profile_id":

@@ -155,7 +155,9 @@ WORDS = (
     QT_TRANSLATE_NOOP("Brief", "Return height on the remote controller is at least {0} above take-off"),
     QT_TRANSLATE_NOOP("Brief", "Wind at flight height is below {0}"),
     QT_TRANSLATE_NOOP("Brief", "The mission on the remote controller is this plan (photos: {0})"),
-    QT_TRANSLATE_NOOP("Brief", "Focus, exposure and white balance are fixed on the facade"),
+    QT_TRANSLATE_NOOP("Brief", "The camera is set as listed, its focus on the facade"),
+    QT_TRANSLATE_NOOP("Brief", "Camera, by hand"),
+    QT_TRANSLATE_NOOP("Brief", "Camera, by the mission"),
     QT_TRANSLATE_NOOP(
         "Brief",
         "Sortie {0}: before any photo the aircraft stops {1}. Where it does not, land: it took off from another height "
@@ -343,9 +345,9 @@ class BriefDialog(QDialog):
         )
         translated_findings = tuple(translated_finding(finding, self._units) for finding in found.findings)
         self._sun = checked.sun
-        sun_lines = tuple(translated(line, self._units) for line in found.sun)
+        found = found.in_words(lambda line: translated(line, self._units))
         zones = tuple(translated_finding(finding, self._units) for finding in found.zones)
-        self._brief = replace(found, findings=translated_findings, sun=sun_lines, zones=zones)
+        self._brief = replace(found, findings=translated_findings, zones=zones)
         self._page, self._paper = QTextBrowser(), ChoiceBox()
         # Paper is white in every theme.
         self._page.setStyleSheet("QTextBrowser { background: #ffffff; color: #000000; }")

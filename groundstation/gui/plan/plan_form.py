@@ -17,7 +17,7 @@ from groundstation.services.units import UnitSystem, length_unit, sampling_unit
 from planning.aircraft.catalogue import Profile, profile, profiles
 from planning.base.errors import GroundStationError
 from planning.base.parameters import declared, with_values
-from planning.parameters import DEFAULT_SHARE, DEFAULT_VIEWS, Constraints, PlanParameters
+from planning.parameters import DEFAULT_SHARE, DEFAULT_VIEWS, CameraSettings, Constraints, PlanParameters
 from planning.plan import usual_gsd_m
 from planning.request import PlanRequest
 
@@ -95,6 +95,9 @@ USUAL_GAIN_DB = 0.5
 OWN = ("profile_id", "method", "constraints.wanted_gsd_mm")
 """Parameters whose boxes depend on more than themselves."""
 
+ELSEWHERE = tuple(f"camera.{name}" for name in declared(CameraSettings))
+"""Parameters with a form of their own."""
+
 FIRST = (
     *("profile_id", "goal", "share", "n_views", "n_batteries", "least_gain_db"),
     *("constraints.min_distance_m", "method"),
@@ -157,7 +160,7 @@ class PlanForm(QWidget):
 
     def _make_boxes(self) -> None:
         known = declared(PlanParameters)
-        self.rows = rows_of(known, but=OWN)
+        self.rows = rows_of(known, but=(*OWN, *ELSEWHERE))
         self._method = ParameterRow(known["method"], method_name)
         self.aircraft = AircraftBox()
         self.aircraft.setToolTip(tip_of(known["profile_id"].parameter))

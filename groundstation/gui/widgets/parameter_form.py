@@ -24,6 +24,7 @@ from groundstation.gui.widgets.inputs import (
 )
 from groundstation.services.units import UnitSystem, sampling_unit
 from planning.base.parameters import Declared, Parameter
+from planning.optics import shutter_text
 
 CONTEXT = "Parameters"
 
@@ -46,6 +47,8 @@ def choice_text(known: Parameter, value: Any) -> str:
     label = next((choice.label for choice in known.choices if choice.value == value and choice.label), "")
     if label:
         return QCoreApplication.translate(CONTEXT, label)
+    if known.unit == "s" and 0.0 < value < 1.0:
+        return shutter_text(value)
     return f"{value:.4g}°" if known.unit == "deg" else str(value)
 
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 from groundstation.services.mission.readiness import UNKNOWN_DAY, FlightDay, Readiness, by_severity, readiness_of
 from groundstation.services.mission.sunlight import SunReport, flight_lines
 from groundstation.services.mission.waypoints import WaypointRow, waypoint_rows
+from missions.formats.camera_steps import camera_steps
 from missions.formats.encode import TakeoffCheck, dji_return_height, takeoff_check
 from missions.formats.options import ExportOptions
 from missions.mission.build import missions_from_plan
@@ -97,6 +98,8 @@ class FlightBrief:
         Of what is covered, by pixels up to `wanted_gsd_mm`; None where the plan does not say.
     coarsest_gsd_mm
         Pixel of the sharpest view of the section that is seen most coarsely.
+    camera_by_hand, camera_by_mission
+        Settings of the camera that the pilot has to make, in the order of the menus, and those that the mission makes.
     ground_risk
         Volumes and class by SORA; None where the pilot stated nothing for it.
     worth
@@ -134,8 +137,19 @@ class FlightBrief:
     obstacles: tuple[str, ...]
     findings: tuple[Finding, ...]
     sun: tuple[str, ...] = ()
+    camera_by_hand: tuple[str, ...] = ()
+    camera_by_mission: tuple[str, ...] = ()
     zones: tuple[Finding, ...] = ()
     ground_risk: GroundRisk | None = None
+
+    def in_words(self, localize: Callable[[str], str]) -> FlightBrief:
+        """The brief with its lines in the pilot's language; findings stay as they are."""
+        return replace(
+            self,
+            sun=tuple(map(localize, self.sun)),
+            camera_by_hand=tuple(map(localize, self.camera_by_hand)),
+            camera_by_mission=tuple(map(localize, self.camera_by_mission)),
+        )
 
     @property
     def readiness(self) -> Readiness:
@@ -184,6 +198,7 @@ def flight_brief(
         except GroundStationError as error:
             text = say("the ground risk cannot be assessed: {}", error)
             objections = (*objections, Finding(Severity.WARNING, "ground-risk", text))
+    camera = camera_steps(plan, autopilot=options.autopilot)
     stated, bound = plan.coverage, plan.coverage.reachable_upper_bound
     return FlightBrief(
         site=site.name,
@@ -215,6 +230,8 @@ def flight_brief(
         obstacles=tuple(obstacle.id for obstacle in site.obstacles),
         findings=by_severity(found for found in (*findings, *objections) if found.severity is not Severity.OK),
         sun=() if sun is None else tuple(flight_lines(sun)),
+        camera_by_hand=camera.by_hand,
+        camera_by_mission=camera.by_mission,
         zones=tuple(found for found in findings if found.code in ("zone", "zone-question", "zones-file")),
         ground_risk=risk,
     )

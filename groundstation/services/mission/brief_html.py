@@ -491,6 +491,10 @@ def _settings(brief: FlightBrief, units: UnitSystem, tr: Translate) -> Iterable[
     yield tr("Battery reserve at landing"), f"{brief.battery_reserve:.0%}"
     yield tr("Highest speed"), speed_unit(units).text(brief.max_speed_m_s)
     yield tr("Hover before each photo"), f"{brief.settle_s:g} s"
+    if brief.camera_by_hand:
+        yield tr("Camera, by hand"), "; ".join(brief.camera_by_hand)
+    if brief.camera_by_mission:
+        yield tr("Camera, by the mission"), "; ".join(brief.camera_by_mission)
 
 
 def _findings(brief: FlightBrief, units: UnitSystem, tr: Translate) -> str:
@@ -541,7 +545,7 @@ def _steps(brief: FlightBrief, units: UnitSystem, tr: Translate) -> Iterable[str
         )
     yield tr("Wind at flight height is below {0}").format(speed.text(brief.max_wind_m_s))
     yield tr("The mission on the remote controller is this plan (photos: {0})").format(brief.n_photos)
-    yield tr("Focus, exposure and white balance are fixed on the facade")
+    yield tr("The camera is set as listed, its focus on the facade")
     for sortie in brief.sorties:
         if sortie.takeoff_check is not None:
             yield _takeoff_check(sortie.takeoff_check, units, tr)

@@ -28,7 +28,7 @@ from planning.coverage.evaluate import coverage
 from planning.geo.frames import Origin
 from planning.geo.geoid import undulation_m
 from planning.geo.mesh import empty_mesh
-from planning.parameters import DEFAULT_PROFILE, Constraints, FlightRules
+from planning.parameters import DEFAULT_PROFILE, CameraSettings, Constraints, FlightRules
 from planning.plan import Coverage, Plan
 from planning.planner import resplit_sorties
 from planning.site.file import is_planned_on, site_sha256
@@ -287,8 +287,12 @@ def plan_of_missions(
         Nothing on this site can be covered under the constraints.
     """
     chosen, rules = profile(profile_id), FlightRules()
+    settings, on_camera = _camera_settings(missions)
     site = site_model.site
     parts = viewpoints_and_sorties(missions, site.origin, site.home_enu_m, rules, chosen.aircraft)
+    speeds_m_s = [mission.speed_m_s for mission in missions if mission.speed_m_s is not None]
+    if speeds_m_s and len(speeds_m_s) == len(missions):
+        rules = replace(rules, max_speed_m_s=max(speeds_m_s))
     plan = Plan(
         site=site.name,
         site_sha256=site_model.sha256,
@@ -304,12 +308,27 @@ def plan_of_missions(
         home_enu_m=site.home_enu_m,
         rules=rules,
         profile=chosen.id,
+        camera_settings=settings,
+        camera_controls=chosen.controls,
     )
+    findings = (*parts.findings, *on_camera)
     if site.n_panels == 0:
-        return plan, parts.findings
+        return plan, findings
     prepared = prepare(site_model, chosen.camera, constraints, monitor=monitor)
     found = coverage(prepared.problem.model, parts.viewpoints, prepared.problem.reachability)
     return (
         replace(plan, constraints=prepared.constraints, coverage=found, effects=prepared.effects),
-        parts.findings,
+        findings,
     )
+
+
+def _camera_settings(missions: Sequence[ReadMission]) -> tuple[CameraSettings, tuple[Finding, ...]]:
+    """What missions tell the camera, over the usual settings; of the first, where they differ, which is told."""
+    cameras = {mission.camera: None for mission in missions}
+    if not cameras:
+        return CameraSettings(), ()
+    first = next(iter(cameras))
+    if len(cameras) == 1:
+        return first.over(CameraSettings()), ()
+    text = say("its missions set the camera differently; what the first says is taken for all")
+    return first.over(CameraSettings()), (Finding(Severity.WARNING, "camera", text),)

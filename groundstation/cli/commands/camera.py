@@ -1,0 +1,75 @@
+"""`camera`: the camera settings of a plan, and what photos come of them."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+from groundstation.cli.console import MARKS, print_json, run_job, show, tell, worded
+from groundstation.cli.options import add_parameter, in_words_of_options, json_file, typed_values
+from planning.base.messages import glue
+from planning.base.parameters import declared
+from planning.parameters import CameraSettings
+
+DESCRIPTION = """\
+Show how a plan takes its photos: exposure, white balance, focus and shutter; what of it the mission file sets, and
+what is left to be set by hand, in the order of the menus; motion blur, rolling shutter and depth of field of its
+photos. With options these settings change, and -o writes the plan with them: nothing else of it changes.
+"""
+
+
+def add_parser(subparsers: Any) -> None:
+    """Describe the command."""
+    parser = subparsers.add_parser(
+        "camera",
+        help="camera settings of a plan: who sets them, blur and depth of field",
+        description=DESCRIPTION,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.set_defaults(run=run)
+    parser.add_argument("plan", type=Path, metavar="PLAN", help="plan file")
+    parser.add_argument("--site", type=Path, metavar="SITE", help="site file (default: the one beside the plan)")
+    parser.add_argument("-o", "--out", type=json_file, metavar="PLAN", help="plan file to write")
+    group = parser.add_argument_group("settings, those of the plan where not given")
+    for each in declared(CameraSettings).values():
+        add_parameter(group, each)
+    parser.add_argument("--json", action="store_true", help="print one JSON object instead of text")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Change and show; returns the exit status."""
+    from groundstation.services.mission.camera import camera_files
+    from groundstation.services.plan.planning import finding_summary
+    from planning.base.json_file import plain_values
+
+    values = typed_values(options, CameraSettings)
+    with in_words_of_options(CameraSettings):
+        report = run_job(
+            "camera", lambda context: camera_files(options.plan, options.site, values, options.out, context)
+        )
+    if options.json:
+        print_json(
+            {
+                "file": None if options.out is None else str(options.out),
+                "settings": plain_values(report.plan.camera_settings),
+                "summary": report.summary,
+                "by_mission": list(report.steps.by_mission),
+                "by_hand": list(report.steps.by_hand),
+                "findings": [finding_summary(finding) for finding in report.findings],
+            }
+        )
+        return 0
+    show(report.summary)
+    for step in report.steps.by_mission:
+        tell("set by the mission: {}", step)
+    for step in report.steps.by_hand:
+        tell("set by hand: {}", step)
+    for finding in report.findings:
+        place = glue(" [", finding.place, "]") if finding.place else ""
+        show(glue(f"{worded(MARKS[finding.severity]):>7}  {finding.code}", place, ": ", finding.message))
+    if not report.findings:
+        tell("what photos come of it is not known without the site: add --site SITE")
+    if options.out is not None:
+        print(options.out)
+    return 0
