@@ -57,6 +57,11 @@ class RasterSettings:
         Side of the squares the picture is worked in; changes time, not the picture.
     threads
         How many to use; 0 stands for all cores. Changes time, not one bit of the result.
+    on_gpu
+        Whether a graphics card draws, by WebGPU, what lies in main memory: see `wgpu_backend`.
+    deterministic
+        Whether a graphics card adds gradients up in a fixed order, or by atomic additions in any: the processor always
+        has one.
     """
 
     low_pass_px: float = parameter(math.sqrt(0.5), above=0.0)
@@ -68,6 +73,8 @@ class RasterSettings:
     min_transmittance: float = parameter(1e-4, least=0.0, below=1.0)
     tile_px: int = parameter(16, choices=tuple(Choice(8 * n) for n in range(1, 9)))
     threads: int = parameter(0, least=0)
+    on_gpu: bool = False
+    deterministic: bool = True
 
     def __post_init__(self) -> None:
         check(self)

@@ -13,8 +13,9 @@ from reconstruction.splats.rasterising.numba_backend import rasterise_numba
 from reconstruction.splats.rasterising.raster_types import FLAT, SOLID, Raster, RasterSettings
 from reconstruction.splats.rasterising.torch_reference import rasterise_torch
 from reconstruction.splats.rasterising.views import View
+from reconstruction.splats.rasterising.wgpu_backend import rasterise_wgpu
 
-Backend = Literal["auto", "numba", "torch", "gsplat"]
+Backend = Literal["auto", "numba", "torch", "gsplat", "wgpu"]
 
 USUAL = RasterSettings()
 
@@ -53,16 +54,19 @@ def rasterise(
     labels
         Shape (n,), int32; -1 where a splat belongs to nothing.
     backend
-        `numba` for float32 in main memory; `gsplat` for float32 on CUDA; `torch` anywhere, for any precision, so slow
-        and hungry that it suits hundreds of splats. `auto` takes the one that fits the tensors.
+        `numba` for float32 in main memory, and `wgpu` for that by a graphics card; `gsplat` for float32 on CUDA;
+        `torch` anywhere, for any precision, so slow and hungry that it suits hundreds of splats. `auto` takes the one
+        that fits the tensors and `settings.on_gpu`.
 
     Raises
     ------
     InputError
         The tensors are on CUDA, and gsplat does not work here.
+    ReconstructionError
+        There is no graphics card, or it fails.
     """
     _check(means, quats_wxyz, scales, opacities, features, screen_offsets, labels)
-    drawing = _DRAWING[_chosen(backend, means)]
+    drawing = _DRAWING[_chosen(backend, means, settings)]
     return drawing(means, quats_wxyz, scales, opacities, features, view, screen_offsets, labels, settings)
 
 
@@ -70,17 +74,20 @@ _DRAWING: dict[str, Callable[..., Raster]] = {
     "numba": rasterise_numba,
     "torch": rasterise_torch,
     "gsplat": rasterise_gsplat,
+    "wgpu": rasterise_wgpu,
 }
 
 
-def _chosen(backend: Backend, means: Tensor) -> str:
+def _chosen(backend: Backend, means: Tensor, settings: RasterSettings) -> str:
     """The backend that fits the tensors."""
     fits_numba = means.device.type == "cpu" and means.dtype == torch.float32
     fits_gsplat = means.device.type == "cuda" and means.dtype == torch.float32
     if backend == "auto":
-        return "numba" if fits_numba else "gsplat" if fits_gsplat else "torch"
-    if backend == "numba" and not fits_numba:
-        raise ValueError(f"numba: expected float32 in main memory, got {means.dtype} on {means.device}")
+        if fits_numba:
+            return "wgpu" if settings.on_gpu else "numba"
+        return "gsplat" if fits_gsplat else "torch"
+    if backend in ("numba", "wgpu") and not fits_numba:
+        raise ValueError(f"{backend}: expected float32 in main memory, got {means.dtype} on {means.device}")
     if backend == "gsplat" and not fits_gsplat:
         raise ValueError(f"gsplat: expected float32 on a CUDA device, got {means.dtype} on {means.device}")
     return backend

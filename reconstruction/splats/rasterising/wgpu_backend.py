@@ -1,0 +1,487 @@
+"""The rasteriser for graphics cards of any maker: WGSL kernels by WebGPU, behind torch's autograd. float32.
+
+Tensors stay in main memory; what a picture needs is written to the card, and what comes back is read from it. Splats
+are projected and sorted by depth; pairs of splats and bins of the picture are listed in that order and sorted by bin,
+which keeps it. Then groups of lanes blend patches of the bins, and go back the same way. Where a picture needs more
+than a buffer or table of the card holds, it is drawn window by window; where there are more channels than lanes can
+keep, some at once.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from torch import Tensor
+from torch.autograd.function import once_differentiable
+
+from planning.base.errors import ReconstructionError
+from planning.base.messages import say
+from reconstruction.gpu.device import Commands, Device, Piece, open_device, rounded_up, uniform
+from reconstruction.gpu.shaders import Constant
+from reconstruction.gpu.sorting import groups_of, run_sums, sort
+from reconstruction.splats.rasterising.gsplat_backend import heaviest_labels
+from reconstruction.splats.rasterising.projection import LEAST_NORM, slope_limits
+from reconstruction.splats.rasterising.raster_types import NO_DOT, SOLID, Raster, RasterSettings, steepest
+from reconstruction.splats.rasterising.torch_reference import LEAST_AREA_PX2, LIMITS_WIDENED, MOST_CHANGE
+from reconstruction.splats.rasterising.views import View
+
+Floats = NDArray[np.float32]
+
+MOST_QUADS = 5
+"""Of channels that lanes keep at once: a row of sums has eight quads, three of which are of geometry."""
+ROW_QUADS = 8
+GEOMETRY_QUADS = 6
+PARAMETER_QUADS = 4
+BIN_PX = 16
+PATCH_COLUMNS, LANE_ROWS = 8, 4
+"""Pixels of a patch in a row, and below each other in a lane."""
+
+KEY_BITS = 28
+"""Of a depth's bits less those of the nearest: all from there to 2^32 times as far have one of their own."""
+LEAST_THROUGH = 1e-30
+"""That a pixel has left before it ends: further back float32 has no numbers."""
+
+MOST_SUMS = 1 << 21
+"""Rows of sums in a table, 128 bytes each: a picture that needs more is drawn in windows."""
+
+CONSTANTS: dict[str, Constant] = {
+    "TEXELS_A_ROW": 8192,
+    "GEOMETRY_QUADS": GEOMETRY_QUADS,
+    "NOT_DRAWN": (1 << KEY_BITS) - 1,
+    "PI": math.pi,
+    "WIDEST_PX": 1e30,
+    "FAR_PX": 1e30,
+    "NOTHING": -1.0,
+    "LARGEST_OUTLINE_PX": 1e4,
+    "ROUNDING": 1e-5,
+    "SLACK_PX": 1e-3,
+    "LIMITS_WIDENED": LIMITS_WIDENED,
+    "MOST_CHANGE": MOST_CHANGE,
+    "EDGE_ON_JACOBIAN": 1e6,
+    "LEAST_NORM": LEAST_NORM,
+    "LEAST_FACING": 1e-15,
+    "SMALLEST": 1e-30,
+    "BIN": BIN_PX,
+    "PATCH_COLUMNS": PATCH_COLUMNS,
+    "PIXELS": tuple(range(LANE_ROWS)),
+    "EIGHT": tuple(range(ROW_QUADS)),
+    "FOUR": tuple(range(PARAMETER_QUADS)),
+}
+
+
+def constants_for(device: Device, settings: RasterSettings, solid: bool) -> dict[str, Constant]:
+    """What all kernels of a picture are compiled with."""
+    rows = device.group // PATCH_COLUMNS * LANE_ROWS
+    across, down = BIN_PX // PATCH_COLUMNS, BIN_PX // rows
+    return CONSTANTS | {
+        "SOLID": int(solid),
+        "ANTIALIASED": int(settings.antialiased),
+        "DETERMINISTIC": int(settings.deterministic),
+        "SUBGROUPS": int(device.has_subgroups),
+        "GROUP": device.group,
+        "STEPS": tuple(1 << bit for bit in range(device.group.bit_length() - 1)),
+        "WIDE_STEPS": tuple(1 << bit for bit in range(3, device.group.bit_length() - 1)),
+        "PATCH_ROWS": rows,
+        "ACROSS": across,
+        "DOWN": down,
+        "PATCHES": across * down,
+    }
+
+
+@dataclass(frozen=True, slots=True)
+class Bins:
+    """A window of a picture's bins."""
+
+    column: int
+    row: int
+    n_columns: int
+    n_rows: int
+
+    def halves(self) -> tuple[Bins, Bins]:
+        """Both, above each other or, of a single row, side by side."""
+        if self.n_rows > 1:
+            upper = self.n_rows // 2
+            return (
+                Bins(self.column, self.row, self.n_columns, upper),
+                Bins(self.column, self.row + upper, self.n_columns, self.n_rows - upper),
+            )
+        left = self.n_columns // 2
+        return (
+            Bins(self.column, self.row, left, 1),
+            Bins(self.column + left, self.row, self.n_columns - left, 1),
+        )
+
+    @property
+    def n(self) -> int:
+        """Bins in all."""
+        return self.n_columns * self.n_rows
+
+    def pixels(self, view: View) -> tuple[slice, slice]:
+        """Rows and columns of a picture that it covers."""
+        top, left = BIN_PX * self.row, BIN_PX * self.column
+        bottom, right = top + BIN_PX * self.n_rows, left + BIN_PX * self.n_columns
+        return slice(top, min(bottom, view.height_px)), slice(left, min(right, view.width_px))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Window:
+    """Lists of a window, and what its pixels came to.
+
+    Parameters
+    ----------
+    numbers, starts
+        Pairs, sorted by bin, and where each bin's begin.
+    firsts
+        Where each splat's patches begin, nearest splat first.
+    n_patches
+        In all.
+    """
+
+    bins: Bins
+    pairs: Piece
+    numbers: Piece
+    starts: Piece
+    firsts: Piece
+    states: Piece
+    n_patches: int
+
+
+class _Drawing:
+    """One picture of splats on a card: its lists, from the way there to the way back."""
+
+    def __init__(self, device: Device, view: View, settings: RasterSettings, parameters: Floats, solid: bool) -> None:
+        self.device, self.view, self.settings = device, view, settings
+        self.n = len(parameters)
+        self.constants = constants_for(device, settings, solid)
+        self.parameters = device.table(PARAMETER_QUADS * self.n)
+        device.write_table(self.parameters, parameters.reshape(-1, 4))
+        self._uniform = _view_uniform(view, settings, self.n, solid)
+        self.windows: list[_Window] = []
+        commands = device.commands()
+        self.geometry = device.table(GEOMETRY_QUADS * self.n)
+        keys, order = device.buffer(4 * self.n), device.buffer(4 * self.n)
+        self.radii = device.buffer(4 * self.n)
+        commands.run(
+            "project", self.constants, groups_of(self.n), self.uniform(),
+            self.parameters, self.geometry, keys, order, self.radii,
+        )  # fmt: skip
+        self.keys, self.order = sort(commands, device, keys, order, self.n, KEY_BITS)
+        whole = Bins(0, 0, rounded_up(view.width_px, BIN_PX), rounded_up(view.height_px, BIN_PX))
+        todo = [whole]
+        while todo:
+            bins = todo.pop()
+            firsts, pairs = device.buffer(4 * (self.n + 1)), device.buffer(4 * (self.n + 1))
+            commands.run(
+                "count_bins", self.constants, groups_of(self.n), self.uniform(bins),
+                self.geometry, self.order, self.keys, pairs, firsts,
+            )  # fmt: skip
+            run_sums(commands, device, pairs, self.n)
+            run_sums(commands, device, firsts, self.n)
+            totals = device.buffer(8)
+            commands.run("ends", {}, 1, uniform(self.n, 0), pairs, firsts, totals)
+            n_pairs, n_patches = commands.read((totals, 8))[0].view(np.uint32).tolist()
+            if self._fits(bins, n_pairs, n_patches):
+                self.windows.append(self._listed(commands, bins, pairs, firsts, n_pairs, n_patches))
+            elif bins.n > 1:
+                todo += reversed(bins.halves())
+            else:
+                raise ReconstructionError(
+                    say(
+                        "{} splats lie over one another in {} pixels, more than the graphics card holds; compute "
+                        "on the processor instead",
+                        n_pairs,
+                        BIN_PX * BIN_PX,
+                    )
+                )
+        commands.submit()
+
+    def uniform(self, bins: Bins | None = None, part: tuple[int, int] = (0, 0)) -> bytes:
+        """What kernels know of the picture, and of a window or a part of the splats."""
+        window = (0, 0, 0, 0) if bins is None else (bins.column, bins.row, bins.n_columns, bins.n_rows)
+        return self._uniform + uniform(*window, *part, 0, 0)
+
+    def _fits(self, bins: Bins, n_pairs: int, n_patches: int) -> bool:
+        rows, columns = bins.pixels(self.view)
+        n_pixels = (rows.stop - rows.start) * (columns.stop - columns.start)
+        most = self.device.most_bytes
+        in_buffers = max(4 * n_pairs, 4 * n_patches, 16 * MOST_QUADS * n_pixels) <= most
+        return in_buffers and n_pairs <= self.device.most_texels and n_patches <= MOST_SUMS
+
+    def _listed(
+        self, commands: Commands, bins: Bins, first_pairs: Piece, firsts: Piece, n_pairs: int, n_patches: int
+    ) -> _Window:
+        device = self.device
+        pairs = device.table(n_pairs, "rgba32uint")
+        of_bins, numbers = device.buffer(4 * n_pairs), device.buffer(4 * n_pairs)
+        commands.run(
+            "list_bins", self.constants, groups_of(self.n), self.uniform(bins),
+            self.geometry, self.order, self.keys, first_pairs, firsts, pairs, of_bins, numbers,
+        )  # fmt: skip
+        of_bins, numbers = sort(commands, device, of_bins, numbers, n_pairs, (bins.n - 1).bit_length())
+        starts = device.buffer(4 * (bins.n + 1))
+        commands.run("find_bins", {}, groups_of(n_pairs + 1), uniform(n_pairs, bins.n), of_bins, starts)
+        rows, columns = bins.pixels(self.view)
+        n_pixels = (rows.stop - rows.start) * (columns.stop - columns.start)
+        return _Window(bins, pairs, numbers, starts, firsts, device.buffer(16 * n_pixels), n_patches)
+
+    def blended(self, features: Floats) -> tuple[Floats, Floats, Floats]:
+        """Pictures of channels, shape (n, c), of alpha and depth, and the splats' weights."""
+        device, view = self.device, self.view
+        shape = view.height_px, view.width_px
+        picture = np.empty((*shape, features.shape[1]), np.float32)
+        states = np.empty((*shape, 4), np.float32)
+        totals = device.buffer(4 * self.n)
+        commands = device.commands()
+        commands.clear(totals, 4 * self.n)
+        for first, table, n_quads in self._tables(features):
+            constants = self.constants | _quads(n_quads)
+            for window in self.windows:
+                rows, columns = window.bins.pixels(view)
+                size = rows.stop - rows.start, columns.stop - columns.start
+                n_bytes = 16 * size[0] * size[1]
+                channels, weights = device.buffer(n_quads * n_bytes), device.buffer(4 * window.n_patches)
+                commands.clear(weights, 4 * window.n_patches)
+                commands.run(
+                    "blend", constants, window.bins.n * int_of(constants, "PATCHES"), self.uniform(window.bins),
+                    self.geometry, table, window.pairs, window.numbers, window.starts,
+                    channels, window.states, weights,
+                )  # fmt: skip
+                if first == 0:
+                    commands.run(
+                        "add_weights", constants, groups_of(self.n), self.uniform(),
+                        self.order, window.firsts, weights, totals,
+                    )  # fmt: skip
+                found, state = commands.read((channels, n_quads * n_bytes), (window.states, n_bytes))
+                part = found.view(np.float32).reshape(*size, 4 * n_quads)
+                picture[rows, columns, first : first + 4 * n_quads] = part[..., : features.shape[1] - first]
+                states[rows, columns] = state.view(np.float32).reshape(*size, 4)
+        weights_of_splats = commands.read((totals, 4 * self.n))[0].view(np.float32)
+        return picture, states, weights_of_splats
+
+    def radii_px(self) -> Floats:
+        """Half the larger side of the box that each splat can touch; 0 where it is not drawn."""
+        return self.device.read((self.radii, 4 * self.n))[0].view(np.float32)
+
+    def _tables(self, features: Floats) -> Iterator[tuple[int, Piece, int]]:
+        """Channels in parts: the first one's number, their table, and its quads for each splat."""
+        for first in range(0, features.shape[1], 4 * MOST_QUADS):
+            part = features[:, first : first + 4 * MOST_QUADS]
+            n_quads = rounded_up(part.shape[1], 4)
+            table = self.device.table(n_quads * self.n)
+            self.device.write_table(table, _padded(part, 4 * n_quads).reshape(-1, 4))
+            yield first, table, n_quads
+
+    def gradients(
+        self, features: Floats, of_picture: Floats, of_alphas: Floats, of_depths: Floats
+    ) -> tuple[Floats, Floats]:
+        """Of the parameters, shape (n, 16), and of the channels, shape (n, c), from those of the pictures."""
+        device, view = self.device, self.view
+        most = device.most_bytes // (16 * ROW_QUADS)
+        parts = [(start, min(most, self.n - start)) for start in range(0, self.n, most)]
+        found = np.zeros((self.n, 4 * PARAMETER_QUADS), np.float32)
+        of_features = np.empty(features.shape, np.float32)
+        # Geometry is moved by all channels, so their parts add up.
+        for first, table, n_quads in self._tables(features):
+            constants = self.constants | _quads(n_quads)
+            totals = [device.buffer(16 * ROW_QUADS * count) for _, count in parts]
+            commands = device.commands()
+            for piece, (_, count) in zip(totals, parts, strict=True):
+                commands.clear(piece, 16 * ROW_QUADS * count)
+            for window in self.windows:
+                rows, columns = window.bins.pixels(view)
+                wanted = np.zeros((rows.stop - rows.start, columns.stop - columns.start, 4 * n_quads + 4), np.float32)
+                n_here = min(4 * n_quads, features.shape[1] - first)
+                wanted[..., :n_here] = of_picture[rows, columns, first : first + n_here]
+                if first == 0:
+                    wanted[..., -4], wanted[..., -3] = of_alphas[rows, columns], of_depths[rows, columns]
+                pixels = device.table(wanted.size // 4)
+                device.write_table(pixels, wanted.reshape(-1, 4))
+                self._back(commands, constants, window, table, pixels, parts, totals)
+            for (start, count), piece in zip(parts, totals, strict=True):
+                of_part = device.buffer(16 * PARAMETER_QUADS * count)
+                commands.run(
+                    "project_back", constants, groups_of(count), self.uniform(part=(start, count)),
+                    self.parameters, piece, self.radii, of_part,
+                )  # fmt: skip
+                sums, own = commands.read((piece, 16 * ROW_QUADS * count), (of_part, 16 * PARAMETER_QUADS * count))
+                rows_of = sums.view(np.float32).reshape(count, 4 * ROW_QUADS)
+                of_features[start : start + count, first : first + 4 * n_quads] = rows_of[:, :n_here]
+                found[start : start + count] += own.view(np.float32).reshape(count, 4 * PARAMETER_QUADS)
+        return found, of_features
+
+    def _back(
+        self,
+        commands: Commands,
+        constants: dict[str, Constant],
+        window: _Window,
+        table: Piece,
+        pixels: Piece,
+        parts: list[tuple[int, int]],
+        totals: list[Piece],
+    ) -> None:
+        """Add to the totals what a window gives."""
+        shared = self.geometry, table, window.pairs, window.numbers, window.starts, window.states, pixels
+        n_groups = window.bins.n * int_of(constants, "PATCHES")
+        if self.settings.deterministic:
+            sums = self.device.table(ROW_QUADS * window.n_patches)
+            commands.run("blend_back", constants, n_groups, self.uniform(window.bins), *shared, sums)
+        for part, piece in zip(parts, totals, strict=True):
+            if self.settings.deterministic:
+                commands.run(
+                    "add_sums", constants, groups_of(self.n), self.uniform(part=part),
+                    self.order, window.firsts, sums, piece,
+                )  # fmt: skip
+            else:
+                commands.run("blend_back", constants, n_groups, self.uniform(window.bins, part), *shared, piece)
+
+
+def _quads(n: int) -> dict[str, Constant]:
+    return {"N_QUADS": n, "QUADS": tuple(range(n))}
+
+
+def int_of(constants: dict[str, Constant], name: str) -> int:
+    """A constant that is a whole number."""
+    value = constants[name]
+    if not isinstance(value, int):
+        raise TypeError(f"{name}: expected a whole number, got {value}")
+    return value
+
+
+def _padded(values: Floats, width: int) -> Floats:
+    """With columns of 0 behind the others."""
+    if values.shape[1] == width:
+        return np.ascontiguousarray(values)
+    wide = np.zeros((len(values), width), np.float32)
+    wide[:, : values.shape[1]] = values
+    return wide
+
+
+def _view_uniform(view: View, settings: RasterSettings, n: int, solid: bool) -> bytes:
+    """The struct View of view.wgsl, up to the window."""
+    matrix = view.cam_from_world.numpy()
+    rotation = matrix[:3, :3]
+    place = -rotation.T @ matrix[:3, 3]
+    near = place.astype(np.float32).astype(np.float64)
+    rows = [number for row in rotation for number in (*row, 0.0)]
+    left, right, top, bottom = slope_limits(view)
+    focal_px, has_blur = min(view.fx_px, view.fy_px), solid or settings.antialiased
+    low_pass2 = NO_DOT if solid else settings.over_low_pass2
+    numbers = [
+        *rows, *near, 0.0, *(place - near), 0.0,
+        view.fx_px, view.fy_px, view.cx_px, view.cy_px,
+        left, right, top, bottom,
+        settings.near_m, settings.min_alpha, settings.max_alpha, max(settings.min_transmittance, LEAST_THROUGH),
+        low_pass2, 0.0 if has_blur else settings.low_pass_px, settings.blur_px, settings.least_depth_change(focal_px),
+        settings.reach, steepest(focal_px), settings.faintest, LEAST_AREA_PX2,
+    ]  # fmt: skip
+    return uniform(*(float(number) for number in numbers)) + uniform(view.width_px, view.height_px, n, 0)
+
+
+class _Rasterise(torch.autograd.Function):
+    """Means, quats, scales, opacities, features and offsets to features, alphas, depths, weights and radii."""
+
+    @staticmethod
+    def forward(
+        ctx: Any, device: Device, view: View, settings: RasterSettings, holder: Any, *inputs: Tensor
+    ) -> tuple[Tensor, ...]:
+        ctx.set_materialize_grads(False)
+        means, quats, scales, opacities, features, offsets = (np.ascontiguousarray(t.detach().numpy()) for t in inputs)
+        n, solid = len(means), scales.shape[1] == SOLID
+        shape = view.height_px, view.width_px
+        if n == 0:
+            out = [np.zeros((*shape, features.shape[1])), np.zeros(shape), np.zeros(shape), np.zeros(0), np.zeros(0)]
+            found = [torch.from_numpy(each.astype(np.float32)) for each in out]
+            ctx.kept = None
+        else:
+            parameters = np.zeros((n, 4 * PARAMETER_QUADS), np.float32)
+            parameters[:, 0:3], parameters[:, 3], parameters[:, 4:8] = means, opacities, quats
+            parameters[:, 8 : 8 + scales.shape[1]] = scales
+            if len(offsets):
+                parameters[:, 12:14] = offsets
+            with device.errors_said():
+                drawing = _Drawing(device, view, settings, parameters, solid)
+                picture, states, weights = drawing.blended(features)
+                radii = drawing.radii_px()
+            ctx.kept = drawing
+            holder.append(drawing)
+            pictures = picture, np.ascontiguousarray(states[..., 0]), np.ascontiguousarray(states[..., 1])
+            found = [torch.from_numpy(each) for each in (*pictures, weights.copy(), radii.copy())]
+        ctx.save_for_backward(*inputs)
+        ctx.mark_non_differentiable(*found[3:])
+        return tuple(found)
+
+    @staticmethod
+    @once_differentiable
+    def backward(ctx: Any, *wanted: Any) -> Any:
+        inputs, drawing = ctx.saved_tensors, ctx.kept
+        if drawing is None:
+            return (None, None, None, None, *(torch.zeros_like(t) for t in inputs))
+        features = np.ascontiguousarray(inputs[4].detach().numpy())
+        shape = drawing.view.height_px, drawing.view.width_px
+        of_picture = _gradient(wanted[0], (*shape, features.shape[1]))
+        of_alphas, of_depths = (_gradient(each, shape) for each in wanted[1:3])
+        with drawing.device.errors_said():
+            found, of_features = drawing.gradients(features, of_picture, of_alphas, of_depths)
+        n_scales = inputs[2].shape[1]
+        parts = (
+            found[:, 0:3], found[:, 4:8], found[:, 8 : 8 + n_scales], found[:, 3], of_features,
+            found[: len(inputs[5]), 12:14],
+        )  # fmt: skip
+        return (None, None, None, None, *(torch.from_numpy(np.ascontiguousarray(each)) for each in parts))
+
+
+def _gradient(wanted: Tensor | None, shape: tuple[int, ...]) -> Floats:
+    if wanted is None:
+        return np.zeros(shape, np.float32)
+    return np.ascontiguousarray(wanted.detach().numpy())
+
+
+def rasterise_wgpu(
+    means: Tensor,
+    quats_wxyz: Tensor,
+    scales: Tensor,
+    opacities: Tensor,
+    features: Tensor,
+    view: View,
+    screen_offsets: Tensor | None,
+    labels: Tensor | None,
+    settings: RasterSettings,
+    device: Device | None = None,
+) -> Raster:
+    """See `rasteriser.rasterise`; all float32 in main memory.
+
+    Labels take one more pass for every 32 different ones.
+
+    Parameters
+    ----------
+    device
+        By default the first card there is.
+
+    Raises
+    ------
+    ReconstructionError
+        There is no card, it fails, or it has too little memory.
+    """
+    opened = device or open_device()
+    offsets = means.new_zeros((0, 2)) if screen_offsets is None else screen_offsets
+    drawings: list[_Drawing] = []
+    apply: Callable[..., tuple[Tensor, ...]] = _Rasterise.apply
+    picture, alphas, depths, weights, radii = apply(
+        opened, view, settings, drawings, means, quats_wxyz, scales, opacities, features, offsets
+    )
+
+    def again(values: Tensor) -> Tensor:
+        with opened.errors_said():
+            return torch.from_numpy(drawings[0].blended(np.ascontiguousarray(values.numpy()))[0])
+
+    found = None
+    if labels is not None:
+        nothing = torch.full(alphas.shape, -1, dtype=torch.int32)
+        found = heaviest_labels(again, labels) if drawings else nothing
+    return Raster(picture, alphas, depths, found, weights, radii)
