@@ -14,6 +14,7 @@ import html
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +29,7 @@ from planning.base.progress import QUIET, Monitor
 from reconstruction.exports.component_parts import Ellipsoids, ellipsoids_of_all
 from reconstruction.exports.compression import whole_file
 from reconstruction.exports.gaussian_blocks import raster_of
+from reconstruction.exports.page_mirrors import PaneMirrors
 from reconstruction.exports.page_records import Row, by_object, columns_of, files_of
 from reconstruction.objects.gs_scene import GsElement, GsScene
 from reconstruction.objects.store import largest, middle_of, outward
@@ -50,6 +52,9 @@ from reconstruction.splats.sky import Sky
 # | 7 | red, green, blue of all directions, and opacity, 8 bits each |
 #
 # Coefficients of higher degrees follow a chunk's words: signed bytes, by Gaussian, coefficient and channel.
+#
+# Where panes mirror, own values of those on panes stand beside: two words, the colour of all directions and R, and F0,
+# 8 bits each, and coefficients as above.
 
 Words = NDArray[np.uint32]
 
@@ -87,11 +92,14 @@ class PackedGaussians:
         Coefficients from degree 1 on, shape (n, (degree + 1)^2 - 1, 3), int8.
     rest_steps
         What 1 stands for in each coefficient, shape ((degree + 1)^2 - 1,).
+    rows
+        Which of the given ones each is, shape (n,).
     """
 
     words: Words
     rest: NDArray[np.int8]
     rest_steps: NDArray[np.float32]
+    rows: NDArray[np.int64]
 
     def __len__(self) -> int:
         return len(self.words)
@@ -100,6 +108,41 @@ class PackedGaussians:
         """Words of up to `N_AT_ONCE` Gaussians, then their coefficients."""
         for start in range(0, len(self), N_AT_ONCE):
             part = slice(start, start + N_AT_ONCE)
+            yield self.words[part].astype("<u4").tobytes() + self.rest[part].tobytes()
+
+    @property
+    def is_on_pane(self) -> NDArray[np.bool_]:
+        """Shape (n,)."""
+        return self.words[:, 6] >> 16 > 0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PackedGlass:
+    """What Gaussians on panes are made of, in the order of the packed ones.
+
+    Parameters
+    ----------
+    words
+        Shape (n, 2), uint32.
+    rest, rest_steps
+        As of `PackedGaussians`.
+    is_on_pane
+        Which of the packed Gaussians these are.
+    """
+
+    words: Words
+    rest: NDArray[np.int8]
+    rest_steps: NDArray[np.float32]
+    is_on_pane: NDArray[np.bool_]
+
+    def __len__(self) -> int:
+        return len(self.words)
+
+    def chunks(self) -> Iterator[bytes]:
+        """Words of those of each chunk of Gaussians, then their coefficients."""
+        ends = np.concatenate([[0], np.cumsum(self.is_on_pane)])
+        for start in range(0, len(self.is_on_pane), N_AT_ONCE):
+            part = slice(ends[start], ends[min(start + N_AT_ONCE, len(self.is_on_pane))])
             yield self.words[part].astype("<u4").tobytes() + self.rest[part].tobytes()
 
 
@@ -127,9 +170,24 @@ def packed(gaussians: Ellipsoids, panes: NDArray[np.int32], degree: int, most: i
     halves[:, 3, 0] = sizes[:, 2]
     halves[:, 3, 1] = panes[order] + 1
     words[:, 3:7] = halves[..., 0] | halves[..., 1].astype(np.uint32) << 16
-    words[:, 7] = _colours(chosen)
+    words[:, 7] = _bytes(_flat_shares(chosen.sh), chosen.opacities)
     rest, steps = _rest(chosen.sh[:, 1 : (degree + 1) ** 2])
-    return PackedGaussians(words, rest, steps)
+    return PackedGaussians(words, rest, steps, order)
+
+
+def packed_glass(mirrors: PaneMirrors, places: NDArray[np.int32], chunks: PackedGaussians, degree: int) -> PackedGlass:
+    """Own values of Gaussians on panes.
+
+    Parameters
+    ----------
+    places
+        Row in the model of each Gaussian that `packed` was given.
+    """
+    is_on_pane = chunks.is_on_pane
+    rows = places[chunks.rows[is_on_pane]]
+    sh, f0 = mirrors.sh[rows], mirrors.f0[rows]
+    words = np.column_stack([_bytes(_flat_shares(sh), mirrors.reflectivity[rows]), _bytes(f0, np.zeros(len(f0)))])
+    return PackedGlass(words, *_rest(sh[:, 1 : (degree + 1) ** 2]), is_on_pane)
 
 
 def _visibilities(gaussians: Ellipsoids) -> NDArray[np.float32]:
@@ -138,10 +196,15 @@ def _visibilities(gaussians: Ellipsoids) -> NDArray[np.float32]:
     return np.asarray(gaussians.opacities * sizes[:, 1] * sizes[:, 2], np.float32)
 
 
-def _colours(gaussians: Ellipsoids) -> Words:
+def _flat_shares(sh: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Colours of all directions, 0 to 1 of `COLOUR_RANGE`."""
     low, high = COLOUR_RANGE
-    shares = (0.5 + np.float32(FLAT) * gaussians.sh[:, 0] - low) / (high - low)
-    values = np.column_stack([shares, gaussians.opacities])
+    return np.asarray((0.5 + np.float32(FLAT) * sh[:, 0] - low) / (high - low), np.float32)
+
+
+def _bytes(three: NDArray[Any], one: NDArray[Any]) -> Words:
+    """Words of four numbers 0 to 1, shapes (n, 3) and (n,), 8 bits each."""
+    values = np.column_stack([three, one])
     bytes_ = np.rint(np.clip(values, 0.0, 1.0) * 255.0).astype(np.uint32)
     return np.asarray((bytes_ << np.array([0, 8, 16, 24], np.uint32)).sum(axis=1, dtype=np.uint32))
 
@@ -328,8 +391,12 @@ SIGN = f'<meta name="generator" content="{FORMAT}">'
 """Of our pages, in their first bytes: no other page is written over."""
 
 SOURCES = Path(__file__).parent / "data"
-SCRIPTS = ("words", "geometry", "order", "shaders", "picture", "colours", "records", "motion", "loading", "page")
+SCRIPTS = (
+    *("words", "geometry", "order", "shaders", "picture", "mirrors", "colours", "records", "motion", "loading", "page"),
+)
 LAST = "scripting"
+SHADERS = ("view", "splats", "mirrors", "overlays")
+"""Of WebGPU, in one piece."""
 
 PAGE_FILE = FileLimit(say("a web page"), 4096 * MIB)
 
@@ -351,6 +418,8 @@ class WebOptions:
         Keep so many of the most visible Gaussians; None: all.
     is_baked
         Whether what panes mirror is in their colours: the page says so in its footnote.
+    mirrors
+        What panes mirror in browsers with WebGPU; None where they mirror nothing.
     sky
         What lies behind everything, see `sky_light`; None: a plain one.
     content_of
@@ -361,6 +430,7 @@ class WebOptions:
     degree: int = 2
     most: int | None = None
     is_baked: bool = True
+    mirrors: PaneMirrors | None = None
     sky: Halves | None = None
     content_of: Callable[[str], bytes | None] = field(default=lambda name: None)
 
@@ -430,6 +500,7 @@ def write_web(
     files = files_of(found, options.content_of, monitor)
     gaussians = _gaussians(scene, elements, options, folder)
     chunks = packed(gaussians, panes_of(gaussians, elements), options.degree, options.most)
+    glass = _glass(scene, chunks, options)
     sky = plain_sky_light() if options.sky is None else options.sky
     described = {
         "title": options.title or scene.name,
@@ -442,6 +513,7 @@ def write_web(
         "degree": options.degree,
         "rest_steps": [float(step) for step in chunks.rest_steps],
         "colour_range": COLOUR_RANGE,
+        "mirrors": None if glass is None else _described_mirrors(options, elements, glass),
         "sky": {"rows": len(sky), "halves": base64.b64encode(sky.astype("<f2").tobytes()).decode()},
         "view": first_view(scene, elements, gaussians),
         **described_panes(scene, elements),
@@ -453,9 +525,16 @@ def write_web(
 
     def parts() -> Iterator[bytes]:
         yield head
+        own = iter(()) if glass is None else glass.chunks()
         for number, chunk in enumerate(chunks.chunks()):
             monitor.report(say("writing the page"), number * N_AT_ONCE, len(chunks))
             yield _block("g", number, chunk)
+            for values in islice(own, 1):
+                yield _block("m", number, values)
+            if number == 0 and glass is not None and options.mirrors is not None:
+                # The first picture waits for neither the light nor the rest.
+                for place, block in enumerate(options.mirrors.blocks()):
+                    yield _block("l", place, block)
         for kind, contents in (("p", files.pictures), ("d", files.documents)):
             for number, content in enumerate(contents.values()):
                 yield _block(kind, number, content)
@@ -518,10 +597,26 @@ def _gaussians(scene: GsScene, elements: Sequence[GsElement], options: WebOption
     return gaussians
 
 
+def _glass(scene: GsScene, chunks: PackedGaussians, options: WebOptions) -> PackedGlass | None:
+    """None where no pane mirrors."""
+    if options.mirrors is None or not chunks.is_on_pane.any():
+        return None
+    places = np.concatenate([component.gaussians.places for component in scene.components])
+    return packed_glass(options.mirrors, places, chunks, options.degree)
+
+
+def _described_mirrors(options: WebOptions, elements: Sequence[GsElement], glass: PackedGlass) -> dict[str, Any]:
+    assert options.mirrors is not None
+    steps = [float(step) for step in glass.rest_steps]
+    described = options.mirrors.described([element.panel for element in elements])
+    return {**described, "n_glass": len(glass), "own_steps": steps}
+
+
 def _head(described: Mapping[str, Any], title: str) -> bytes:
     """The page up to where the Gaussians begin."""
     style = _source("page.css")
-    script = '"use strict";\n(() => {\n' + "\n".join(_source(f"{name}.js") for name in (*SCRIPTS, LAST)) + "})();\n"
+    parts = [f"const WGSL = {json.dumps(wgsl())};", *(_source(f"{name}.js") for name in (*SCRIPTS, LAST))]
+    script = '"use strict";\n(() => {\n' + "\n".join(parts) + "})();\n"
     text = json.dumps(described, ensure_ascii=True, allow_nan=False, separators=(",", ":"))
     for character in "<>&":
         text = text.replace(character, f"\\u{ord(character):04x}")
@@ -529,7 +624,7 @@ def _head(described: Mapping[str, Any], title: str) -> bytes:
         raise InputError(
             say("records and panels: more than {} MiB of text; export one facade", MAX_TEXT_BYTES // 2**20)
         )
-    parts = {
+    blanks = {
         "SIGN": SIGN,
         "SCRIPT_HASH": _hash(script),
         "STYLE_HASH": _hash(style),
@@ -539,9 +634,14 @@ def _head(described: Mapping[str, Any], title: str) -> bytes:
         "MODEL": text,
     }
     pieces = _source("page.html").split("@@")
-    if sorted(pieces[1::2]) != sorted(parts):
-        raise ValueError(f"page.html: expected {sorted(parts)}, got {sorted(pieces[1::2])}")
-    return "".join(parts[piece] if place % 2 else piece for place, piece in enumerate(pieces)).encode()
+    if sorted(pieces[1::2]) != sorted(blanks):
+        raise ValueError(f"page.html: expected {sorted(blanks)}, got {sorted(pieces[1::2])}")
+    return "".join(blanks[piece] if place % 2 else piece for place, piece in enumerate(pieces)).encode()
+
+
+def wgsl() -> str:
+    """The page's programs for WebGPU."""
+    return "".join(_source(f"{name}.wgsl") for name in SHADERS)
 
 
 def _source(name: str) -> str:

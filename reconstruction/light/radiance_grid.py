@@ -388,7 +388,7 @@ class RadianceGrid(nn.Module):
         finer = interpolate(channels, size=(z, y, x), mode="trilinear", align_corners=True)
         self.cells = nn.Parameter(finer[0].permute(1, 2, 3, 0).contiguous())
         if self._far_shape() != tuple(self.far.shape):
-            picture = _edged(self.far)
+            picture = edged(self.far)
             side = self._far_shape()[0]
             finer = interpolate(picture.permute(2, 0, 1)[None], scale_factor=2.0, mode="bilinear")[0]
             self.far = nn.Parameter(finer[:, 2 : 2 + side, 2 : 2 + side].permute(1, 2, 0).contiguous())
@@ -415,7 +415,7 @@ class RadianceGrid(nn.Module):
         self.skips = np.zeros(tuple(n - 1 for n in self.cells.shape[:3]), np.uint8)
 
 
-def _edged(picture: Tensor) -> Tensor:
+def edged(picture: Tensor) -> Tensor:
     """A picture of all directions with a rim of one pixel around it, from where its edges meet themselves."""
     side = len(picture)
     row, column = torch.meshgrid(torch.arange(-1, side + 1), torch.arange(-1, side + 1), indexing="ij")

@@ -40,6 +40,7 @@ from reconstruction.training.model.saved import TrainedModel
 from reconstruction.training.model.score import score_views
 from reconstruction.training.train import train_model
 from tests.benchmarks.harness import Benchmark, Context, Row
+from tests.benchmarks.page_pictures import page_rows
 from tests.reconstruction.exports.sog.reading import read_sog
 from tests.reconstruction.exports.spz.reading import read_spz
 
@@ -99,7 +100,7 @@ def measure(context: Context) -> Iterator[Row]:
             again = pictures(read(done.path), trained.model, views)
             return Found(done.n_bytes / scene.n_gaussians, psnr_db(again, truth), done.n_bytes)
 
-        yield from _baking(trained, scene, read_photo_set(folder))
+        yield from _baking(trained, scene, read_photo_set(folder), Path(place))
         yield _picking(trained, read_photo_set(folder))
         plain = write_ply(scene, Path(place) / "model.ply")
         yield Row(named, "PLY", round(plain.n_bytes / 1e6, 3), "MB")
@@ -119,8 +120,9 @@ def measure(context: Context) -> Iterator[Row]:
         yield from _times(scene, QUICK_MANY if is_quick else MANY, Path(place))
 
 
-def _baking(trained: TrainedModel, scene: GsScene, source: PhotoSet) -> Iterator[Row]:
+def _baking(trained: TrainedModel, scene: GsScene, source: PhotoSet, folder: Path) -> Iterator[Row]:
     """What is lost where mirror images are blurred into colours, or left out: facades of photos not learned from."""
+    psnrs_db = []
     dull = put_together(organised(trained), Path())
     with torch.no_grad():
         dull.model.splats.reflectivity_logits.fill_(ALMOST_NO_LOGIT)
@@ -132,7 +134,9 @@ def _baking(trained: TrainedModel, scene: GsScene, source: PhotoSet) -> Iterator
     ):
         scores = score_views(model, source, unseen)
         known = [score.facade.psnr_db for score in scores if score.facade.psnr_db is not None]
-        yield Row(f"{len(known)} unseen photos", f"facades, model {name}", round(statistics.fmean(known), 2), "dB")
+        psnrs_db.append(statistics.fmean(known))
+        yield Row(f"{len(known)} unseen photos", f"facades, model {name}", round(psnrs_db[-1], 2), "dB")
+    yield from page_rows(trained, scene, source, psnrs_db[0], folder)
 
 
 def _picking(trained: TrainedModel, source: PhotoSet) -> Row:
@@ -259,7 +263,8 @@ BENCHMARK = Benchmark(
     "model-size",
     "Compressed models: size against quality",
     f"A model of {N_VIEWS} rendered photos of the bundled planar scene, its mirrored light baked into colours by "
-    "direction (what that costs comes first), written as SPZ and SOG, read back and rendered: PSNR of whole pictures "
+    "direction (what that costs comes first, also in the web page in headless Chromium), "
+    "written as SPZ and SOG, read back and rendered: PSNR of whole pictures "
     "against those of the baked model as it was. Times are processor times of one thread, of a model of the same "
     "Gaussians many times over, each copy with random changes of all numbers.",
     measure,

@@ -29,6 +29,8 @@ Gaussians = Literal["numbers", "spz", "points"]
 GROUP = "models"
 
 TWO_LAYERS = say("CesiumJS: show gaussians.json and panels.json as two layers")
+MIRRORS = say("browsers with WebGPU show panes that mirror as in the model, others these colours")
+NO_MIRRORS = say("browsers cannot compute mirrored light that is no radiance grid: they show these colours")
 NO_CESIUM = say(
     "CesiumJS stops at Gaussians that are not compressed: for it, show panels.json alone, or write --gaussians spz"
 )
@@ -246,9 +248,15 @@ def _web(export: ModelToExport) -> list[str]:
     from contextlib import nullcontext
 
     from groundstation.services.model.facility_records import open_records, records_path
+    from reconstruction.exports.mesh import needs_baking
+    from reconstruction.exports.page_mirrors import mirrors_of
     from reconstruction.exports.web import WebOptions, sky_light, write_web
     from reconstruction.records.stored_files import DOCUMENT_FILE, stored_path
 
+    mirrors = mirrors_of(export.trained.model) if export.wanted.baked else None
+    notes: list[str] = []
+    if export.wanted.baked and needs_baking(export.trained.model):
+        notes.append(MIRRORS if mirrors is not None else NO_MIRRORS)
     has_records = records_path(export.folder).is_file()
     with open_records(export.folder) if has_records else nullcontext() as book:
 
@@ -261,6 +269,7 @@ def _web(export: ModelToExport) -> list[str]:
         options = WebOptions(
             degree=export.degree(2),
             is_baked=export.wanted.baked,
+            mirrors=mirrors,
             sky=sky_light(export.trained.model.sky),
             content_of=content_of,
         )
@@ -278,7 +287,7 @@ def _web(export: ModelToExport) -> list[str]:
         (damaged, say("{} pictures of records cannot be read: the page says so; attach them again", damaged)),
         (large, say("{} documents are too large for the page, which names them; pass them on by themselves", large)),
     )
-    return [text for n, text in notes_by_count if n]
+    return notes + [text for n, text in notes_by_count if n]
 
 
 def _gltf(export: ModelToExport) -> list[str]:

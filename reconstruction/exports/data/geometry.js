@@ -11,7 +11,7 @@ const clamped = (value, low, high) => Math.min(Math.max(value, low), high);
 
 class Camera {
   constructor() {
-    Object.assign(this, { eye: [0, 0, 0], heading: 0, pitch: 0, distance: 10, width: 1, height: 1 });
+    Object.assign(this, { eye: [0, 0, 0], heading: 0, pitch: 0, distance: 10, width: 1, height: 1, fixedFocal: null });
   }
 
   // Rows: right, down, forward.
@@ -20,9 +20,9 @@ class Camera {
     return [[ch, -sh, 0], [sp * sh, sp * ch, -cp], [cp * sh, cp * ch, sp]];
   }
 
-  // Pixels (of the page) per unit of tangent; the field of view is that of the shorter side.
+  // Pixels (of the page) per unit of tangent; the field of view is that of the shorter side, unless a script fixed it.
   focal() {
-    return Math.min(this.width, this.height) / 2 / Math.tan(FIELD_OF_VIEW / 2);
+    return this.fixedFocal ?? Math.min(this.width, this.height) / 2 / Math.tan(FIELD_OF_VIEW / 2);
   }
 
   target() {

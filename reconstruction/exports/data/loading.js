@@ -17,33 +17,68 @@ async function block(id) {
   }
 }
 
+// Text that is kept where panes mirror, so that the page can go on without WebGPU when the device is lost.
+const MOST_KEPT = 2 ** 26;
+
+// Bytes of a block, which is taken out of the page unless it may be asked for again; none where it is not there.
+async function bytesOfBlock(id) {
+  const held = await block(id);
+  if (held === null) return new Uint8Array(0);
+  const bytes = bytesOf(held.textContent);
+  if (!state.isKeeping) held.remove();
+  return bytes;
+}
+
+// Into the picture that is shown now; false where the page was cut off, undefined where another picture took its place.
 async function load() {
+  const shown = picture;
+  const { n, at_once, degree, mirrors } = model;
+  const nRest = [0, 9, 24, 45][degree];
+  const isWhole = (bytes, rows, fixed) => bytes.length === rows * (fixed + nRest);
+  state.isKeeping = shown.isMirroring && (4 / 3) * n * (40 + 2 * nRest) < MOST_KEPT;
   let nDrawn = 0;
-  for (let first = 0, number_ = 0; first < model.n; first += model.at_once, number_++) {
-    const held = await block(`g${number_}`);
-    const n = Math.min(model.at_once, model.n - first);
-    const nRest = [0, 9, 24, 45][model.degree];
-    if (picture === null) return undefined;
-    const bytes = held ? bytesOf(held.textContent) : new Uint8Array(0);
-    if (bytes.length !== n * (32 + nRest)) return tell("damaged");
-    held.remove();
-    const words = new Uint32Array(bytes.buffer, 0, 8 * n);
-    picture.add(words, bytes.subarray(32 * n));
-    const places = new Float32Array(words.buffer, 0, 8 * n);
-    const means = new Float32Array(3 * n);
-    for (let i = 0; i < n; i++) means.set(places.subarray(8 * i, 8 * i + 3), 3 * i);
+  for (let first = 0, number_ = 0; first < n; first += at_once, number_++) {
+    const rows = Math.min(at_once, n - first);
+    const bytes = await bytesOfBlock(`g${number_}`);
+    const own = shown.isMirroring ? await bytesOfBlock(`m${number_}`) : null;
+    if (picture !== shown) return undefined;
+    if (!isWhole(bytes, rows, 32)) return false;
+    const words = new Uint32Array(bytes.buffer, 0, 8 * rows);
+    if (own && !isWhole(own, countOnPanes(words), 8)) return false;
+    shown.add(words, bytes.subarray(32 * rows), own);
+    const places = new Float32Array(words.buffer, 0, 8 * rows);
+    const means = new Float32Array(3 * rows);
+    for (let i = 0; i < rows; i++) means.set(places.subarray(8 * i, 8 * i + 3), 3 * i);
     sorter.add(means);
-    const isLast = first + n >= model.n;
-    byId("loading").firstElementChild.style.width = `${(100 * (first + n)) / model.n}%`;
-    byId("loading").setAttribute("aria-valuenow", String(Math.round((100 * (first + n)) / model.n)));
-    if (isLast || first + n >= 2 * nDrawn) {
-      nDrawn = first + n;
+    const isLast = first + rows >= n;
+    byId("loading").firstElementChild.style.width = `${(100 * (first + rows)) / n}%`;
+    byId("loading").setAttribute("aria-valuenow", String(Math.round((100 * (first + rows)) / n)));
+    if (isLast || first + rows >= 2 * nDrawn) {
+      nDrawn = first + rows;
       sorter.renew(camera); // and then it is drawn
     }
     await pause(0);
+    if (own && first === 0) {
+      const light = [await bytesOfBlock("l0"), await bytesOfBlock("l1"), await bytesOfBlock("l2")];
+      if (picture !== shown) return undefined;
+      if (!isLight(mirrors, light)) return false;
+      shown.addLight(...light);
+      ask();
+    }
   }
   state.isLoaded = true;
   byId("loading").hidden = true;
   ask();
+  return true;
 }
 
+function countOnPanes(words) {
+  let found = 0;
+  for (let i = 6; i < words.length; i += 8) if (words[i] >>> 16) found++;
+  return found;
+}
+
+function isLight({ counts: [x, y, z], numbers }, [cells, skips, far]) {
+  const side = numbers.far_side + 2;
+  return cells.length === 8 * x * y * z && skips.length === (x - 1) * (y - 1) * (z - 1) && far.length === 8 * side * side;
+}

@@ -61,6 +61,13 @@ function sortWorker(scope) {
 
 const NEAR = 0.2;
 
+// A policy can be made once in a page.
+let policy = null;
+function scriptAddress(address) {
+  policy ??= window.trustedTypes?.createPolicy("reflight", { createScriptURL: (given) => given });
+  return policy ? policy.createScriptURL(address) : address;
+}
+
 class Sorter {
   // found: called with each order, an Uint32Array.
   constructor(found) {
@@ -71,9 +78,7 @@ class Sorter {
     this.done = "";
     const text = `(${sortWorker})(self)`;
     try {
-      const address = URL.createObjectURL(new Blob([text], { type: "text/javascript" }));
-      const policy = window.trustedTypes?.createPolicy("reflight", { createScriptURL: () => address });
-      this.worker = new Worker(policy ? policy.createScriptURL("") : address);
+      this.worker = new Worker(scriptAddress(URL.createObjectURL(new Blob([text], { type: "text/javascript" }))));
     } catch {
       this.worker = this.here();
     }
@@ -132,6 +137,11 @@ class Sorter {
     this.isBusy = false;
     this.found(order);
     this.next();
+  }
+
+  end() {
+    this.found = () => {};
+    this.worker.terminate?.();
   }
 
   get isSettled() {

@@ -5,7 +5,7 @@ const panes = new Panes(model.panes);
 const records = new Records(model);
 const defects = records.defects();
 const camera = new Camera();
-const state = { picked: null, hovered: null, column: null, matches: null, isLoaded: false, isMoving: false, quality: 1 };
+const state = { picked: null, hovered: null, column: null, matches: null, isLoaded: false, isKeeping: false, isMoving: false, quality: 1, note: "", asked: null };
 const scheme = window.matchMedia("(prefers-color-scheme: dark)");
 let picture = null;
 let sorter = null;
@@ -33,11 +33,12 @@ const fullRatio = () => Math.min(window.devicePixelRatio || 1, 2);
 function draw() {
   if (picture === null) return;
   sorter.want(camera);
-  picture.draw(camera, fullRatio() * (state.isMoving ? state.quality : 1), panes, looks());
+  picture.draw(camera, fullRatio() * (state.isMoving ? state.quality : 1), panes, looks(), state.isMoving);
 }
 
 // Frames that take long make the picture coarser while it moves; at rest it is as fine as the screen.
 function frame(now) {
+  if (picture?.isBusy) return void requestAnimationFrame(frame);
   isAsked = false;
   const took = now - lastFrame;
   lastFrame = now;
@@ -101,7 +102,7 @@ function visit(pane) {
 }
 
 // What is picked at a pixel: a mark of a defect, else a pane that no tree or wall hides.
-function seenAt(x, y) {
+async function seenAt(x, y) {
   const hit = panes.hit(camera.eye, camera.ray(x, y));
   const isNear = ({ pane, record }) => {
     const place = panes.place(pane, record.u, record.v);
@@ -111,7 +112,7 @@ function seenAt(x, y) {
   };
   const marked = defects.find(isNear);
   if (marked) return marked.pane;
-  if (hit === null || (picture !== null && picture.hiddenAt(camera, x, y, hit.t) > 0.5)) return null;
+  if (hit === null || (picture !== null && (await picture.hiddenAt(camera, x, y, hit.t)) > 0.5)) return null;
   return hit.pane;
 }
 
@@ -193,7 +194,7 @@ function showWords() {
   byId("search").placeholder = say("search");
   byId("search").setAttribute("aria-label", say("search"));
   byId("colour-label").textContent = say("colour");
-  byId("note").textContent = model.n ? say(model.is_baked ? "baked" : "plain") : "";
+  showNote();
   byId("hint").replaceChildren(...sayLines("helpLines"));
   const options = [["", say("nothing")], ...model.columns.map((column, i) => [String(i), columnName(column)])];
   byId("colour").replaceChildren(...options.map(([value, text]) => Object.assign(make("option", "", text), { value })));
@@ -202,12 +203,17 @@ function showWords() {
   showColours();
 }
 
+// How far what panes mirror can be trusted.
+function showNote() {
+  byId("note").textContent = model.n ? say(state.note || (model.is_baked ? "baked" : "plain")) : "";
+}
+
 const sayLines = (key) => WORDS[language][key].map((line) => make("p", "", line));
 
 const motion = new Motion(byId("picture"), {
   camera, panes, home, changed: () => { goTo.current = null; changed(); },
-  clicked: (x, y) => pick(seenAt(x, y)),
-  visited: (x, y) => { const pane = seenAt(x, y); if (pane !== null) visit(pane); },
+  clicked: (x, y) => { state.asked = seenAt(x, y).then((pane) => pick(pane)); },
+  visited: (x, y) => { state.asked = seenAt(x, y).then((pane) => { if (pane !== null) visit(pane); }); },
   hovered: (place) => {
     const pane = place ? (panes.hit(camera.eye, camera.ray(...place))?.pane ?? null) : null;
     if (pane === state.hovered) return;
@@ -224,18 +230,65 @@ function tell(key) {
   byId("trouble").hidden = false;
 }
 
-function startPicture() {
+// With panes as mirrors, by WebGPU; null where the model has none, or the browser cannot.
+async function mirrorPicture() {
+  if (!model.mirrors) return null;
+  try {
+    return await MirrorPicture.made(byId("mirrors"), model, panes, () => {
+      if (picture?.isMirroring) startAgain();
+    });
+  } catch (error) {
+    state.note = own(WORDS.en, error.message) ? error.message : "noMirrors";
+    console.info(`no mirrors: ${error.message}`);
+    return null;
+  }
+}
+
+// Colours with mirrored light baked in, by WebGL 2; null, and said, where there is none. tries: half a second apart, as
+// browsers need a moment after a graphics card went away.
+async function plainPicture(tries = 1) {
   const canvas = byId("picture");
   try {
-    picture = new Picture(canvas, model, panes);
+    const found = new Picture(canvas, model, panes);
+    canvas.addEventListener("webglcontextlost", (event) => {
+      event.preventDefault();
+      picture = null;
+      tell("lost");
+    });
+    return found;
   } catch (error) {
-    return tell(own(WORDS.en, error.message) ? error.message : "webgl");
+    if (error.message === "webgl" && tries > 1) {
+      await pause(500);
+      return plainPicture(tries - 1);
+    }
+    tell(own(WORDS.en, error.message) ? error.message : "webgl");
+    return null;
   }
-  canvas.addEventListener("webglcontextlost", (event) => {
-    event.preventDefault();
-    picture = null;
-    tell("lost");
-  });
+}
+
+async function startPicture() {
+  const mirrors = await mirrorPicture();
+  if (mirrors) state.note = "mirrors";
+  return begin(mirrors ?? (await plainPicture()));
+}
+
+// The graphics card went away, as laptops' do at times: on with what WebGL 2 can show.
+function startAgain() {
+  picture = null;
+  sorter?.end();
+  sorter = null;
+  if (!state.isKeeping) return tell("lost");
+  state.note = "lostMirrors";
+  loading = plainPicture(20).then(begin);
+  return loading;
+}
+
+async function begin(found) {
+  picture = found;
+  if (picture === null) return;
+  byId("mirrors").hidden = !picture.isMirroring;
+  state.isLoaded = false;
+  showNote();
   sorter = new Sorter((order) => {
     picture?.setOrder(order);
     ask();
@@ -244,10 +297,13 @@ function startPicture() {
     const colour = record.status === "repaired" ? [...REPAIRED, 0] : [...SEVERITIES[levelOf(record) - 1], 1];
     return [panes.place(pane, record.u, record.v), panes.panes[pane].normal, colour];
   }));
-  return load().catch((error) => {
+  showColours();
+  try {
+    if ((await load()) === false) tell("damaged");
+  } catch (error) {
     console.error(error);
     tell("damaged");
-  });
+  }
 }
 
 function listen() {
@@ -300,5 +356,5 @@ function pickOfAddress() {
 
 listen();
 showWords();
-const loading = startPicture();
+let loading = startPicture();
 pickOfAddress();

@@ -8,7 +8,7 @@ class Picture {
     const options = { antialias: false, alpha: false, powerPreference: "high-performance" };
     const gl = canvas.getContext("webgl2", options);
     if (gl === null) throw new Error("webgl");
-    Object.assign(this, { canvas, gl, model, n: 0, nOrdered: 0, size: [0, 0] });
+    Object.assign(this, { canvas, gl, model, isMirroring: false, isBusy: false, n: 0, nOrdered: 0, size: [0, 0] });
     this.nRows = Math.max(1, Math.ceil(model.n / ROW));
     const widest = Math.max(2, model.degree) * ROW;
     if (Math.max(this.nRows, widest) > gl.getParameter(gl.MAX_TEXTURE_SIZE)) throw new Error("large");
@@ -247,12 +247,22 @@ class Picture {
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, found);
     return found[3] / 255;
   }
+
+  // Red, green, blue and opacity from the last row up.
+  pixels() {
+    const { gl, size: [width, height] } = this;
+    const found = new Uint8Array(4 * width * height);
+    gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, found);
+    return found;
+  }
+
+  done() {}
 }
 
 // Two triangles for each pane, and its number + 1, negative where it has Gaussians.
 function paneVertices(panes, records) {
   const vertices = panes.panes.flatMap(({ corners }, pane) =>
-    [0, 1, 2, 0, 2, 3].flatMap((i) => [...corners[i], records[pane].is_bare ? pane + 1 : -1]),
+    [0, 1, 2, 0, 2, 3].flatMap((i) => [...corners[i], records[pane].is_bare ? pane + 1 : -pane - 1]),
   );
   return new Float32Array(vertices);
 }

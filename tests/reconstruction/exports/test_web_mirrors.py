@@ -1,0 +1,139 @@
+"""Web pages whose panes mirror, in Chromium with WebGPU on the processor: picking, colours, and what is without it."""
+
+import time
+
+import numpy as np
+import pytest
+
+from reconstruction.exports.web import WebOptions, write_web
+from tests.reconstruction.exports.test_page_mirrors import made_mirrors
+from tests.reconstruction.exports.test_web_browser import CAMERA, PICKED, inspected, of_pane
+from tests.reconstruction.exports.web_browser import middle, opened, pixel
+from tests.reconstruction.objects.synthetic_scene import synthetic_scene
+
+pytestmark = pytest.mark.slow
+
+STATE = "return reflight.state()"
+WITHOUT_WEBGPU = "delete Navigator.prototype.gpu"
+SMALL = "Object.defineProperty(GPUSupportedLimits.prototype, 'maxBufferSize', { get: () => 64 })"
+
+
+def shown(browser, folder, scene, records=(), **options):
+    """A page that is open, of a scene whose panes mirror."""
+    return opened(browser, folder, scene, records, (900, 400), mirrors=made_mirrors(scene), **options)
+
+
+def test_clicks_pick_what_is_seen_and_not_what_a_wall_hides(browser, tmp_path):
+    scene = synthetic_scene(sizes=((400, 400),), n_background=1)
+    values = scene.components[1].gaussians.values
+    west, east = (middle(scene, element) for element in scene.components[0].elements)
+    values["means"][0] = west + np.array([0, -1.5, 0])
+    values["quats"][0] = (np.sqrt(0.5), np.sqrt(0.5), 0, 0)
+    values["log_scales"][0] = np.log(0.25)
+    values["opacity_logits"][0] = 8.0
+    shown(browser, tmp_path / "page", scene)
+    assert browser.run(STATE)["isMirroring"]
+    browser.run("reflight.look(...arguments)", (west + np.array([0.7, -8, 0])).tolist(), 0, 0)
+    browser.settled()
+    camera = browser.run(CAMERA)
+    names = [element.global_id for element in scene.components[0].elements]
+    beside = west + np.array([0, 0, 0.8])
+    for place, expected in [(east, names[1]), (west, None), (beside, names[0])]:
+        x, y = map(round, pixel(camera, place))
+        browser.mouse(("move", x, y), ("down",), ("up",))
+        browser.settled()
+        assert browser.run(PICKED) == expected
+    assert browser.errors() == []
+
+
+def test_panes_without_splats_show_their_column_and_those_with_them_no_longer_mirror(browser, tmp_path):
+    scene = synthetic_scene(sizes=((0, 0, 600),), n_background=0)
+    panes = [element for _, element in scene.elements]
+    for component in scene.components[:1]:
+        values = component.gaussians.values
+        u, v = np.random.default_rng(0).random((2, 600, 1))
+        corners = np.asarray(panes[2].corners_enu_m) - scene.origin_enu_m
+        values["means"][:] = corners[0] + u * (corners[1] - corners[0]) + v * (corners[3] - corners[0])
+        values["quats"][:] = (np.sqrt(0.5), np.sqrt(0.5), 0, 0)
+        values["opacity_logits"][:] = 4.0
+    rows = [of_pane(pane, "attribute", name="maker", value=maker) for pane, maker in zip(panes, "aba", strict=True)]
+    shown(browser, tmp_path / "page", scene, rows)
+    before = browser.pixels().astype(int)
+    browser.choose("colour", "0")
+    browser.settled()
+    camera = browser.run(CAMERA)
+    after = browser.pixels().astype(int)
+    first, second, third = (after[int(y), int(x)] for x, y in (pixel(camera, middle(scene, pane)) for pane in panes))
+    # Blue and orange, as the legend says; what splats show is a shade of it.
+    assert first[2] > first[0] + 60
+    assert second[0] > second[2] + 60
+    assert third[2] > third[0] + 40
+    x, y = pixel(camera, middle(scene, panes[2]))
+    assert np.abs(before[int(y), int(x)] - third).max() > 20
+    assert browser.errors() == []
+
+
+def test_what_is_picked_and_marked_is_drawn_over_the_mirrors(browser, tmp_path):
+    scene = synthetic_scene(sizes=((50, 50, 50),))
+    shown(browser, tmp_path / "page", scene, inspected(scene))
+    pane = scene.components[0].elements[1]
+    browser.run("reflight.pick(arguments[0])", pane.global_id)
+    browser.settled()
+    picture = browser.pixels().astype(int)
+    camera = browser.run(CAMERA)
+    x, y = (round(value) for value in pixel(camera, middle(scene, pane)))
+    # A mark of severity 5 in the middle, and the outline in the accent's orange around the pane.
+    assert np.abs(picture[y, x] - (0x7D, 0x15, 0x35)).max() < 12
+    corners = np.asarray(pane.corners_enu_m) - scene.origin_enu_m
+    x, y = map(round, np.mean([pixel(camera, corner) for corner in corners[:2]], axis=0))
+    around = picture[y - 3 : y + 4, x]
+    assert np.abs(around - (0xFF, 0x9F, 0x1C)).max(axis=1).min() < 30
+
+
+@pytest.mark.parametrize(("source", "words"), [(WITHOUT_WEBGPU, "no WebGPU"), (SMALL, "too small for mirror images")])
+def test_a_browser_that_cannot_mirror_shows_baked_colours_and_says_so(browser, tmp_path, source, words):
+    scene = synthetic_scene(sizes=((50, 50, 50),))
+    page = write_web(scene, tmp_path / "page", (), WebOptions(mirrors=made_mirrors(scene)))
+    plain = opened(browser, tmp_path / "plain", scene)
+    expected = browser.pixels()
+    added = browser.cdp("Page.addScriptToEvaluateOnNewDocument", source=source)
+    opened(browser, tmp_path / "page", scene, mirrors=made_mirrors(scene))
+    browser.cdp("Page.removeScriptToEvaluateOnNewDocument", **added)
+    assert not browser.run(STATE)["isMirroring"]
+    assert words in browser.texts("#note")[0]
+    assert np.array_equal(browser.pixels(), expected)
+    assert plain.n_gaussians == page.n_gaussians
+    assert browser.errors() == []
+
+
+def test_when_the_device_is_lost_the_page_goes_on_with_baked_colours(browser, tmp_path):
+    scene = synthetic_scene(sizes=((50, 50, 50),))
+    opened(browser, tmp_path / "plain", scene, size=(900, 400))
+    expected = browser.pixels()
+    shown(browser, tmp_path / "page", scene)
+    assert "moves with you" in browser.texts("#note")[0]
+    mirrored = browser.pixels()
+    browser.run("reflight.lose()")
+    for _ in range(100):
+        browser.settled()
+        if browser.run(STATE)["isLoaded"] and "stopped" in browser.texts("#note")[0]:
+            break
+        time.sleep(0.1)
+    assert "stopped computing mirror images" in browser.texts("#note")[0]
+    assert np.array_equal(browser.pixels(), expected)
+    assert not np.array_equal(mirrored, expected)
+    pane = scene.components[0].elements[1]
+    x, y = map(round, pixel(browser.run(CAMERA), middle(scene, pane)))
+    browser.mouse(("move", x, y), ("down",), ("up",))
+    browser.settled()
+    assert browser.run(PICKED) == pane.global_id
+
+
+def test_a_page_that_was_cut_off_in_its_light_says_so(browser, tmp_path):
+    scene = synthetic_scene(sizes=((50, 50, 50),))
+    page = write_web(scene, tmp_path / "page", (), WebOptions(mirrors=made_mirrors(scene)))
+    content = page.path.read_bytes()
+    page.path.write_bytes(content[: content.index(b'id="l0">') + 200])
+    browser.open(page.path)
+    browser.settled()
+    assert "damaged" in browser.texts("#trouble")[0]
