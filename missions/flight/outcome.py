@@ -107,6 +107,11 @@ class SortieOutcome:
         Parts of a full battery; the prediction with what the plan adds.
     least_distance_m, least_distance_time_s, least_distance_enu_m
         Smallest distance to panels, mesh and obstacles along the track, when, and where.
+    least_height_m, least_height_time_s
+        Smallest height above the ground along the track, as far as the ground is known, beside the places of take-off
+        and landing; and when.
+    unknown_ground
+        Share of those ways, 0 to 1, below which the terrain has no heights.
     ending
         How the record left its mission.
     """
@@ -124,6 +129,9 @@ class SortieOutcome:
     least_distance_time_s: float | None = None
     least_distance_enu_m: Vec3 | None = None
     ending: Ending = Ending.UNKNOWN
+    least_height_m: float | None = None
+    least_height_time_s: float | None = None
+    unknown_ground: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,6 +150,8 @@ class Summary:
         From lift-off to touch-down, of all sorties flown; None where a record does not say.
     least_distance_m
         To panels, mesh and obstacles, along all tracks.
+    least_height_m
+        Above the ground, likewise.
     """
 
     n_views: int
@@ -154,6 +164,7 @@ class Summary:
     duration_predicted_s: float | None = None
     duration_flown_s: float | None = None
     least_distance_m: float | None = None
+    least_height_m: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

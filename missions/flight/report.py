@@ -101,6 +101,8 @@ def _sortie_line(outcome: SortieOutcome) -> Message:
         parts.append(say("{:.0%} of a battery{}", outcome.battery_used, predicted))
     if outcome.least_distance_m is not None:
         parts.append(say("{:.2f} m kept at least", outcome.least_distance_m))
+    if outcome.least_height_m is not None:
+        parts.append(say("down to {:.1f} m above the ground", outcome.least_height_m))
     return about(name, joined(", ", parts))
 
 
@@ -242,7 +244,7 @@ def _rate(time_s: Floats, angle_rad: Floats, when_s: float) -> float:
 def _sortie_outcome(case: Case, matching: Matching, index: int, record: FlightRecord) -> SortieOutcome:
     number = matching.sortie_of_record[index]
     of_sortie = [match for match in matching.views if match.sortie == number]
-    least = closest(case.space.solids, record.track)
+    least, low = closest(case.space.solids, record.track), lowest(case, record.track)
     motors_s = case.plan.sorties[number - 1].duration_s if number else None
     return SortieOutcome(
         record=index,
@@ -258,6 +260,9 @@ def _sortie_outcome(case: Case, matching: Matching, index: int, record: FlightRe
         least_distance_time_s=None if least is None else least.time_s,
         least_distance_enu_m=None if least is None else least.position_enu_m,
         ending=_ending(case, record),
+        least_height_m=None if low is None else low.height_m,
+        least_height_time_s=None if low is None else low.time_s,
+        unknown_ground=0.0 if low is None else low.unknown,
     )
 
 
@@ -352,6 +357,47 @@ def closest(solids: Solids, track: Track) -> Closest | None:
     return Closest(distance_m, float(time_s[sample]), (east, north, up))
 
 
+BESIDE_M = 5.0
+"""Around home, rally points, and where a track begins and ends, within which an aircraft climbs and lands."""
+
+
+class Lowest(NamedTuple):
+    """Where a track is lowest above the ground, and when; None where none below it is known.
+
+    `unknown` is the share of its way, 0 to 1, below which the ground is not known.
+    """
+
+    height_m: float | None
+    time_s: float | None
+    unknown: float
+
+
+def lowest(case: Case, track: Track) -> Lowest | None:
+    """How low a track flies beside the places of take-off and landing; None where it does not leave them.
+
+    Between samples the aircraft is taken to fly straight, but not over gaps. Heights are those of whole legs above the
+    upper bound of the terrain where flights are held to one, else above the level ground.
+    """
+    known = np.isfinite(track.position_enu_m).all(axis=1)
+    points, time_s = track.position_enu_m[known], track.time_s[known]
+    if len(points) < 2:
+        return None
+    site = case.site_model.site
+    landings = np.array([points[0], points[-1], site.home_enu_m, *(each.position_enu_m for each in site.rally_points)])
+    away_m = np.linalg.norm(points[:, None, :2] - landings[None, :, :2], axis=2).min(axis=1)
+    legs = np.flatnonzero((np.diff(time_s) <= GAP_S) & (away_m[:-1] > BESIDE_M) & (away_m[1:] > BESIDE_M))
+    if not len(legs):
+        return None
+    heights = case.space.ground.least_m(points[legs], points[legs + 1])
+    length_m = np.linalg.norm(points[legs + 1, :2] - points[legs, :2], axis=1)
+    is_known = np.isfinite(heights)
+    unknown = float(length_m[~is_known].sum() / length_m.sum()) if length_m.sum() > 0.0 else float((~is_known).mean())
+    if not is_known.any():
+        return Lowest(None, None, 1.0)
+    at = int(np.argmin(np.where(is_known, heights, np.inf)))
+    return Lowest(float(heights[at]), float(time_s[legs[at]]), unknown)
+
+
 def _summary(
     case: Case,
     matching: Matching,
@@ -365,6 +411,7 @@ def _summary(
     flights = [outcome for outcome in sorties if outcome.sortie]
     durations = [(outcome.duration_predicted_s, outcome.duration_flown_s) for outcome in flights]
     distances = [outcome.least_distance_m for outcome in sorties if outcome.least_distance_m is not None]
+    heights = [outcome.least_height_m for outcome in sorties if outcome.least_height_m is not None]
     flown_s = [flown_s for _, flown_s in durations if flown_s is not None]
     by_sortie = {outcome.sortie: outcome.duration_predicted_s or 0.0 for outcome in flights}
     return Summary(
@@ -378,4 +425,5 @@ def _summary(
         duration_predicted_s=sum(by_sortie.values()) if flights else None,
         duration_flown_s=sum(flown_s) if flights and len(flown_s) == len(flights) else None,
         least_distance_m=min(distances, default=None),
+        least_height_m=min(heights, default=None),
     )

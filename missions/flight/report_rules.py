@@ -100,6 +100,7 @@ def flight_findings(
         *_poses(views, limits),
         *_coverage(summary, limits),
         *_distances(case, sorties),
+        *_heights(case, sorties),
         *_aircraft_apart(case, records, sorties),
         *_durations(sorties, limits),
         *_batteries(case, records, sorties),
@@ -313,6 +314,31 @@ def _distances(case: Case, sorties: Sequence[SortieOutcome]) -> Iterator[Finding
         judged = subject, outcome.least_distance_m, limit, "m", _place(outcome), advice, severity
         yield judge(short_m <= 0.0, "distance", *judged, least=True)
 
+
+def _heights(case: Case, sorties: Sequence[SortieOutcome]) -> Iterator[Finding]:
+    """The least height above the ground; where the terrain says nothing of it, that is said."""
+    airspace = case.site_model.site.airspace
+    limit = airspace.lowest_height_m(case.plan.constraints.min_height_above_ground_m)
+    over = say("the terrain") if case.space.ground.terrain is not None else say("level ground")
+    for outcome in sorties:
+        if outcome.unknown_ground > 0.0:
+            share = 100.0 * outcome.unknown_ground
+            text = say(
+                "below {:.0f} % of the way the terrain has no heights: how high it was there is not known", share
+            )
+            yield Finding(Severity.WARNING, "height-unknown", text, _place(outcome), share, 0.0, "%")
+        if outcome.least_height_m is None or outcome.least_height_time_s is None:
+            continue
+        short_m = limit - outcome.least_height_m
+        severity = Severity.ERROR if short_m > HEIGHT_TOLERANCE_M else Severity.WARNING
+        subject = say("smallest height above {}, {:.1f} s after the start", over, outcome.least_height_time_s)
+        advice = say("see where, and fly higher")
+        judged = subject, outcome.least_height_m, limit, "m", _place(outcome), advice, severity
+        yield judge(short_m <= 0.0, "height", *judged, least=True)
+
+
+HEIGHT_TOLERANCE_M = 2.0
+"""Barometers and GNSS wander by this much in height during a flight."""
 
 DISTANCE_TOLERANCE_M = 0.5
 """Plans go right up to the minimum distance, and positions may be off by this much at views."""

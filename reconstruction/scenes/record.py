@@ -11,6 +11,7 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
+from planning.base.effects import Decision
 from planning.geo.mesh import TriangleMesh
 from planning.site.records import SiteModel
 
@@ -241,6 +242,8 @@ class Scene:
         Kinds of glass that `panes.glass` counts.
     interiors
         Of the panes; without, each shows the mean light of its room alone.
+    terrain
+        Whether the ground is the site's terrain, and why; None where there is none to decide about.
     """
 
     name: str
@@ -251,3 +254,4 @@ class Scene:
     glasses: tuple[Glass, ...]
     sky: Sky
     interiors: Interiors | None = None
+    terrain: Decision | None = None

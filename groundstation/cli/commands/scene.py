@@ -118,9 +118,9 @@ def run_render(options: argparse.Namespace) -> int:
 
 
 def _request(options: argparse.Namespace) -> SceneRequest:
-    from reconstruction.scenes.effects.registry import EFFECTS
+    from reconstruction.scenes.effects.registry import NAMES
 
-    settings = effect_settings(options.effects, [effect.name for effect in EFFECTS])
+    settings = effect_settings(options.effects, NAMES)
     typed = typed_values(options, SceneRequest)
     rays = ("settings", "mitsuba_rays")
     if options.renderer == "mitsuba":

@@ -198,7 +198,8 @@ class _PreviewScene:
 
         to_decide = [effect for effect in EFFECTS if effect.name not in OF_FILES and effect.name not in LEFT_OUT]
         monitor.report(say("choosing what to simulate"), 0, len(to_decide))
-        probe, decisions = Probe(self._scene, [photo]), []
+        probe = Probe(self._scene, [photo])
+        decisions = [] if self._scene.terrain is None else [self._scene.terrain]
         for done, effect in enumerate(to_decide):
             monitor.report(say("choosing what to simulate"), done, len(to_decide))
             decisions.append(decide(effect, probe))

@@ -40,6 +40,7 @@ from reconstruction.scenes.record import Scene
 from reconstruction.scenes.runs.run_record import RUN_FILE
 from reconstruction.scenes.world.build import build_scene
 from reconstruction.scenes.world.bundled import SCENES, bundled_scene
+from reconstruction.scenes.world.ground import MirroredTerrain
 from reconstruction.scenes.world.look import read_look
 
 # Photos of a flight file: where they were taken and looked, and how the aircraft moved meanwhile.
@@ -167,7 +168,8 @@ def scene_of_request(request: SceneRequest) -> tuple[Scene, dict[str, Any]]:
     model = read_input_site(path)
     look = None if request.look is None else read_look(request.look)
     made_from = {"site": model.site.name, "look": None if look is None else plain_values(look)}
-    return build_scene(model, look, request.seed), made_from
+    terrain = request.settings.effects.get(MirroredTerrain.name, "auto")
+    return build_scene(model, look, request.seed, terrain), made_from
 
 
 def as_written(model: SiteModel) -> tuple[SiteModel, dict[str, bytes]]:

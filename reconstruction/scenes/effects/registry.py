@@ -16,6 +16,7 @@ from reconstruction.scenes.effects.probe import Probe
 from reconstruction.scenes.parameters import RenderSettings
 from reconstruction.scenes.photos.camera_model import USUAL_CAMERA_MODEL, CameraModel, Moment
 from reconstruction.scenes.record import Scene
+from reconstruction.scenes.world.ground import MirroredTerrain
 
 EFFECTS: tuple[Effect[Probe], ...] = (
     *mirror.EFFECTS,
@@ -24,6 +25,9 @@ EFFECTS: tuple[Effect[Probe], ...] = (
     *camera.EFFECTS,
     *flight.EFFECTS,
 )
+
+NAMES = (*(effect.name for effect in EFFECTS), MirroredTerrain.name)
+"""Of all effects; the last one is decided when a scene is built."""
 
 
 def decide_effects(
@@ -35,21 +39,22 @@ def decide_effects(
 ) -> dict[str, Decision]:
     """What is simulated in photographs of a scene, and why, by the effects' names.
 
-    `settings.decided` takes the decisions' values. Without moments, all photos are taken hovering.
+    What was decided when the scene was built comes first. `settings.decided` takes the decisions' values. Without
+    moments, all photos are taken hovering.
 
     Raises
     ------
     InputError
         There are no photos, or the settings name an effect that there is not.
     """
-    names = [effect.name for effect in EFFECTS]
-    unknown = [name for name in settings.effects if name not in names]
+    unknown = [name for name in settings.effects if name not in NAMES]
     if unknown:
-        raise InputError(say("there is no effect '{}'; expected one of {}", unknown[0], ", ".join(names)))
+        raise InputError(say("there is no effect '{}'; expected one of {}", unknown[0], ", ".join(NAMES)))
     if not photos:
         raise InputError(say("effects are decided by the photos of a flight; expected at least one, got none"))
     probe = Probe(scene, photos, camera_model, moments)
-    return {
+    built = {} if scene.terrain is None else {scene.terrain.effect: scene.terrain}
+    return built | {
         effect.name: decide(effect, probe, settings.effects.get(effect.name, "auto"), settings.tolerance)
         for effect in EFFECTS
     }

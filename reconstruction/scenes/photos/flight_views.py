@@ -16,7 +16,8 @@ from planning.geo.frames import Vec3
 from planning.geo.mesh import join
 from planning.geo.solids import Solids
 from planning.plan import Camera, Plan, Viewpoint
-from planning.site.records import Facade
+from planning.site.ground import height_at
+from planning.site.records import Facade, Site
 from reconstruction.base.cameras import Intrinsics, Pose, PosedPhoto
 from reconstruction.photos.write import photo_name
 from reconstruction.scenes.parameters import WIDTHS_PX
@@ -161,7 +162,7 @@ MOST_ASIDE_DEG, MOST_ABOVE_DEG = 20.0, 8.0
 """From square on: so far pilots stray on purpose, lest they mirror in the glass themselves."""
 
 LOWEST_M = 2.0
-"""Of a camera above the foot of the flight's airspace."""
+"""Of a camera above the ground."""
 
 CLEARANCE_M, FARTHEST_M = 2.0, 500.0
 STEP = 1.08
@@ -175,12 +176,11 @@ def square_shots(scene: Scene, lens: Intrinsics, n: int, seed: int = 0) -> tuple
     """
     site, rng = scene.site.site, np.random.default_rng([seed, n])
     solids = Solids.of(join([scene.site.building, *scene.site.obstacles]).corners_enu_m)
-    lowest_m = site.airspace.ground_z_m + LOWEST_M
     shots = []
     for number in range(n):
         facade = site.facades[number % len(site.facades)]
         aside, above = np.radians(rng.uniform(-1.0, 1.0, 2) * (MOST_ASIDE_DEG, MOST_ABOVE_DEG))
-        view = _view(f"s{number:04d}", facade, lens, float(aside), float(above), solids, lowest_m)
+        view = _view(f"s{number:04d}", facade, lens, float(aside), float(above), solids, site)
         shots.append(Shot(view, number * BETWEEN))
     return tuple(shots)
 
@@ -191,7 +191,7 @@ def square_photos(scene: Scene, lens: Intrinsics, n: int, folder: Path, seed: in
 
 
 def _view(
-    name: str, facade: Facade, lens: Intrinsics, aside: float, above: float, solids: Solids, lowest_m: float
+    name: str, facade: Facade, lens: Intrinsics, aside: float, above: float, solids: Solids, site: Site
 ) -> Viewpoint:
     corners = np.array([panel.corners_enu_m for panel in facade.panels], float)
     normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]).sum(axis=0)
@@ -208,7 +208,7 @@ def _view(
 
     def at(distance_m: float) -> Viewpoint:
         position = middle + distance_m * towards
-        position[2] = max(position[2], lowest_m)
+        position[2] = max(position[2], height_at(site, float(position[0]), float(position[1])) + LOWEST_M)
         east, north, up_m = (middle - position).tolist()
         heading, pitch = math.atan2(east, north), math.atan2(up_m, math.hypot(east, north))
         x, y, z = position.tolist()

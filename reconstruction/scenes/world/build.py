@@ -9,10 +9,12 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from planning.base.effects import EffectSetting
 from planning.coverage.sections import PanelFrames, panel_frames
 from planning.geo.mesh import TriangleMesh, empty_mesh, from_corners
 from planning.site.records import Site, SiteModel, panel_corners, panel_triangles, require_panels
 from reconstruction.scenes.record import Body, Glass, Interiors, Layer, Panes, Scene, Sky
+from reconstruction.scenes.world.ground import decide_ground, scene_ground
 from reconstruction.scenes.world.look import Look
 from reconstruction.scenes.world.rooms import furnished, painted, shared_rooms
 from reconstruction.scenes.world.surroundings import surround
@@ -373,7 +375,7 @@ LEAST_AREA_M2 = 1e-10
 """Smaller triangles are left out: 10 micrometres square."""
 
 
-def build_scene(model: SiteModel, look: Look | None = None, seed: int = 0) -> Scene:
+def build_scene(model: SiteModel, look: Look | None = None, seed: int = 0, terrain: EffectSetting = "auto") -> Scene:
     """A site with all that a photo of it shows.
 
     The panes are the site's panels themselves. What of the building's mesh lies in their plane or up to 0.3 m before it
@@ -382,6 +384,11 @@ def build_scene(model: SiteModel, look: Look | None = None, seed: int = 0) -> Sc
 
     Panes, sky and surroundings draw from generators of their own: the panes of a scene are the same with and without
     what is near.
+
+    Parameters
+    ----------
+    terrain
+        Whether the ground is the site's terrain; `auto`: where the glass shows the difference.
 
     Raises
     ------
@@ -400,8 +407,9 @@ def build_scene(model: SiteModel, look: Look | None = None, seed: int = 0) -> Sc
         for obstacle, mesh in zip(model.site.obstacles, model.obstacles, strict=True)
     ]
     bodies = [replace(body, mesh=_with_area(body.mesh)) for body in bodies]
+    decision = decide_ground(model, terrain) if look.near else None
     if look.near:
-        surroundings = surround(model, look, around)
+        surroundings = surround(model, look, around, scene_ground(model, decision))
         model, bodies = surroundings.model, [*bodies, *surroundings.bodies]
     glasses = _glasses(look.glass)
     panes, interiors = _panes(panels, look, glass, inside)
@@ -417,6 +425,7 @@ def build_scene(model: SiteModel, look: Look | None = None, seed: int = 0) -> Sc
         glasses=glasses,
         sky=_sky(look, sky),
         interiors=interiors,
+        terrain=decision,
     )
 
 

@@ -14,6 +14,7 @@ from planning.coverage.sections import panel_frames
 from planning.geo.mesh import TriangleMesh, box_mesh, extrude, from_corners, join
 from planning.site.records import Obstacle, SiteModel, box_geometry, panel_triangles
 from reconstruction.scenes.record import Body, Layer, Rgb, Texture
+from reconstruction.scenes.world.ground import GROUND_HALF_M, SceneGround
 from reconstruction.scenes.world.look import Look
 from reconstruction.scenes.world.textures import grain, paving, windows
 
@@ -241,9 +242,6 @@ def _sphere() -> TriangleMesh:
     return TriangleMesh(points, triangles.reshape(-1, 3).astype(np.int64))
 
 
-GROUND_HALF_M = 1500.0
-"""Seen from 20 m above, its edge is 0.8 degrees below the horizon."""
-
 PAVEMENT_M = 5.0
 """Width of the pavements on both sides of a street."""
 
@@ -271,15 +269,15 @@ class Surroundings:
     bodies: tuple[Body, ...]
 
 
-def surround(model: SiteModel, look: Look, rng: np.random.Generator) -> Surroundings:
-    """Ground below a site and a street before each of its facades.
+def surround(model: SiteModel, look: Look, rng: np.random.Generator, below: SceneGround) -> Surroundings:
+    """Ground below a site and a street before each of its facades; what stands on terrain stands at its height.
 
     Nothing meets the building, the site's own obstacles, home or rally points; a building that would stand in another
     facade's street is left out.
     """
     sides = streets(model)
     ground = FreeGround(model, sides, look.street_m)
-    builder = _Builder(rng, look, ground, model.site.airspace.ground_z_m)
+    builder = _Builder(rng, look, ground, below)
     builder.lay_ground(model, sides)
     for side in sides:
         builder.put_buildings(side)
@@ -293,8 +291,8 @@ def surround(model: SiteModel, look: Look, rng: np.random.Generator) -> Surround
 class _Builder:
     """Collects meshes by what they are made of, so that a scene has few bodies."""
 
-    def __init__(self, rng: np.random.Generator, look: Look, ground: FreeGround, ground_z_m: float) -> None:
-        self._rng, self._look, self._ground, self._z = rng, look, ground, ground_z_m
+    def __init__(self, rng: np.random.Generator, look: Look, ground: FreeGround, below: SceneGround) -> None:
+        self._rng, self._look, self._ground, self._below = rng, look, ground, below
         self._meshes: dict[str, list[TriangleMesh]] = defaultdict(list)
         self._materials: dict[str, tuple[Layer, Rgb, Texture | None]] = {}
         self.high: list[tuple[str, TriangleMesh]] = []
@@ -325,16 +323,16 @@ class _Builder:
         half = GROUND_HALF_M
         west, south, east, north = east - half, north - half, east + half, north + half
         square = np.array([[west, south], [east, south], [east, north], [west, north]])
-        self._add("asphalt", flat(square, self._z), white, grain(rng, (0.13, 0.13, 0.135), 0.25, 40.0), Layer.GROUND)
+        self._add("asphalt", self._below.mesh(square), white, grain(rng, (0.13, 0.13, 0.135), 0.25, 40.0), Layer.GROUND)
         slabs = paving(rng, (0.42, 0.4, 0.37))
         for side in sides:
             way = (-side.half_m - BEYOND_M, side.half_m + BEYOND_M)
             for across in ((0.0, PAVEMENT_M), (width - PAVEMENT_M, width)):
-                strip = flat(side.rectangle(way, across), self._z + RAISED_M)
+                strip = self._below.draped(side.rectangle(way, across), RAISED_M)
                 self._add("pavement", strip, white, slabs, Layer.GROUND)
             for start in np.arange(way[0], way[1] - 3.0, 7.0):
                 dash = side.rectangle((start, start + 3.0), (0.5 * width - 0.08, 0.5 * width + 0.08))
-                self._add("markings", flat(dash, self._z + 2.0 * RAISED_M), MARKING, None, Layer.GROUND)
+                self._add("markings", self._below.draped(dash, 2.0 * RAISED_M), MARKING, None, Layer.GROUND)
 
     def put_buildings(self, side: Street) -> None:
         """A row along the other side of a street."""
@@ -347,10 +345,10 @@ class _Builder:
             outline = side.rectangle((along, along + width), (front, front + depth))
             if self._ground.take(outline, "streets"):
                 name = f"opposite-{len(self.high):02d}"
-                top = self._z + height
-                self._add(name, walls(outline, self._z, top), (shade, shade, shade), self._facings[kind])
+                foot, top = self._below.lowest_m(outline), self._below.highest_m(outline) + height
+                self._add(name, walls(outline, foot, top), (shade, shade, shade), self._facings[kind])
                 self._add("roofs", flat(outline, top), (0.35, 0.33, 0.32))
-                self.high.append((name, extrude(outline, self._z, top)))
+                self.high.append((name, extrude(outline, foot, top)))
             along += width + rng.choice([0.1, 0.1, rng.uniform(1.0, 6.0)])
 
     def _along(self, side: Street, spacing_m: float) -> Array:
@@ -372,6 +370,7 @@ class _Builder:
             leaves = crown(rng, middle, radius)
             if self._ground.take(outline, "fronts"):
                 trunk = boxes(side, along, across, (Part((-0.14, 0.14), (-0.14, 0.14), (0.0, stem + radius)),))
+                trunk, leaves = self._standing(trunk, outline), self._standing(leaves, outline)
                 self._add("trunks", trunk, (0.16, 0.12, 0.09))
                 self._add("crowns", leaves, (1.0, 1.0, 1.0), self._leaves)
                 self.high.append((f"tree-{len(self.high):02d}", join([trunk, leaves])))
@@ -383,8 +382,14 @@ class _Builder:
                 colour = int(self._rng.integers(len(CAR_COLOURS)))
                 outline = side.rectangle((along - 2.4, along + 2.4), (across - 1.0, across + 1.0))
                 if self._ground.take(outline, "fronts"):
-                    self._add(f"cars-{colour}", boxes(side, along, across, CAR_PAINT), CAR_COLOURS[colour])
-                    self._add("dark", boxes(side, along, across, CAR_DARK), DARK)
+                    paint, dark = boxes(side, along, across, CAR_PAINT), boxes(side, along, across, CAR_DARK)
+                    self._add(f"cars-{colour}", self._standing(paint, outline), CAR_COLOURS[colour])
+                    self._add("dark", self._standing(dark, outline), DARK)
+
+    def _standing(self, mesh: TriangleMesh, outline: Array) -> TriangleMesh:
+        """A mesh that was made for level ground, on the ground below the middle of its outline."""
+        up_m = float(self._below.heights_m(outline.mean(axis=0)[None])[0]) - self._below.level_z_m
+        return TriangleMesh(mesh.vertices_enu_m + np.array([0.0, 0.0, up_m]), mesh.triangles)
 
     def put_people(self, side: Street) -> None:
         """On the pavements of both sides."""
@@ -398,9 +403,12 @@ class _Builder:
             outline = side.rectangle((along - 0.25, along + 0.25), (across - 0.2, across + 0.2))
             if not self._ground.take(outline, "walls"):
                 continue
-            self._add(f"clothes-{colour}", boxes(side, along, across, PERSON_CLOTHES, size), CLOTHES[colour])
-            self._add("dark", boxes(side, along, across, PERSON_DARK, size), DARK)
-            self._add("skin", boxes(side, along, across, PERSON_SKIN, size), SKIN)
+            for name, parts, shown in (
+                (f"clothes-{colour}", PERSON_CLOTHES, CLOTHES[colour]),
+                ("dark", PERSON_DARK, DARK),
+                ("skin", PERSON_SKIN, SKIN),
+            ):
+                self._add(name, self._standing(boxes(side, along, across, parts, size), outline), shown)
 
 
 def _with_obstacles(model: SiteModel, high: list[tuple[str, TriangleMesh]]) -> SiteModel:

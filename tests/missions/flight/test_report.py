@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 from missions.flight.outcome import Ending, FlightReport, Reason
 from missions.flight.record import FlightEvent, FlightRecord, TakenPhoto, Track
-from missions.flight.report import Limits, closest, report_case, report_text, report_to_json
+from missions.flight.report import BESIDE_M, Limits, closest, lowest, report_case, report_text, report_to_json
 from missions.flight.report_rules import ENDED_BADLY, ENDINGS, REASONS, nearest_in_time_m
 from planning.base.findings import Finding, Severity
 from planning.checks.case import Case
@@ -27,6 +27,7 @@ from planning.site.records import SiteModel
 from tests.missions.flight.flights import cut_at, flown_as_planned, moved, never_taken, with_durations, with_photos
 from tests.missions.plans import make_plan
 from tests.planning.plan_cases import dense_points, distances, kiosk, seen_by_contract, solid_triangles
+from tests.planning.site.test_terrain import terrain
 
 Records = tuple[FlightRecord, ...]
 
@@ -440,3 +441,88 @@ def test_no_flight_however_bad_gives_nan_or_more_photos_than_there_are(
     assert len(set(used)) == len(used) == made.summary.n_taken <= len(taken)
     assert made.summary.covered <= made.summary.total
     assert math.isfinite(sum(view.position_error_m or 0.0 for view in made.views))
+
+
+def over(function: Callable[[np.ndarray, np.ndarray], np.ndarray], **facts: object) -> Case:
+    """The plan's site on a terrain."""
+    model = site()
+    return Case.of(plan(), replace(model, site=replace(model.site, terrain=terrain(function, **facts))))
+
+
+def test_the_lowest_flight_is_that_of_dense_samples_above_the_terrain() -> None:
+    def bumps(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        return 2.0 * np.sin(x / 5.0) * np.cos(y / 7.0)
+
+    case_, (record,) = over(bumps), flown()
+    low = lowest(case_, record.track)
+    assert low is not None
+    assert low.height_m is not None
+    track = record.track.position_enu_m
+    t = np.linspace(0.0, 1.0, 50)[:, None, None]
+    dense = (track[:-1] + t * (track[1:] - track[:-1])).reshape(-1, 3)
+    home = np.array(site().site.home_enu_m)
+    dense = dense[np.linalg.norm(dense[:, :2] - home[:2], axis=1) > BESIDE_M]
+    heights = dense[:, 2] - case_.space.ground.terrain.upper.heights_m(dense)  # type: ignore[union-attr]
+    assert low.height_m == pytest.approx(heights.min(), abs=0.05)
+    assert low.unknown == 0.0
+    level = lowest(case(), record.track)
+    assert level is not None
+    assert level.height_m == pytest.approx(dense[:, 2].min(), abs=1e-9)
+
+
+def test_the_report_says_how_low_was_flown_above_what_and_judges_it() -> None:
+    fine = report_case(case(), flown())
+    (found,) = [finding for finding in fine.findings if finding.code == "height"]
+    assert found.severity is Severity.OK
+    assert "smallest height above level ground" in found.message
+    assert fine.summary.least_height_m == fine.sorties[0].least_height_m == 5.0
+    assert "down to 5.0 m above the ground" in str(report_text(fine))
+    assert report_to_json(fine)["least_height_m"] == 5.0
+    # A hill of 4 m on the way: 1 m above it is too low, whatever the height above take-off.
+    low = report_case(over(lambda x, y: np.where(y < -7.0, 4.0, 0.0)), flown())
+    (found,) = [finding for finding in low.findings if finding.code == "height"]
+    assert found.severity is Severity.ERROR
+    assert "smallest height above the terrain" in found.message
+    assert found.value == pytest.approx(1.0, abs=0.01)
+    # What barometers wander by is a warning.
+    near = report_case(over(lambda x, y: np.where(y < -7.0, 1.0, 0.0)), flown())
+    (found,) = [finding for finding in near.findings if finding.code == "height"]
+    assert found.severity is Severity.WARNING
+
+
+def test_ground_that_is_not_known_is_told_and_never_counts_as_low_or_high() -> None:
+    half = over(lambda x, y: np.where(x > 0.0, np.nan, 0.0))
+    report = report_case(half, flown())
+    (found,) = [finding for finding in report.findings if finding.code == "height-unknown"]
+    assert found.severity is Severity.WARNING
+    assert found.value is not None
+    assert 20.0 < found.value < 80.0
+    assert report.summary.least_height_m == pytest.approx(5.0)
+    nothing = report_case(over(lambda x, y: np.nan * x), flown())
+    assert nothing.summary.least_height_m is None
+    (found,) = [finding for finding in nothing.findings if finding.code == "height-unknown"]
+    assert found.value == 100.0
+    assert [finding for finding in nothing.findings if finding.code == "height"] == []
+
+
+def test_climbs_and_landings_beside_home_and_gaps_are_no_low_flight() -> None:
+    (record,) = flown()
+    track = record.track
+    up = np.array(site().site.home_enu_m)
+    still = replace(track, position_enu_m=np.tile(up, (len(track.time_s), 1)))
+    assert lowest(case(), still) is None
+    low = track.position_enu_m.copy()
+    middle = len(low) // 2
+    low[middle, 2] = 1.0
+    dipped = lowest(case(), replace(track, position_enu_m=low))
+    assert dipped is not None
+    assert dipped.height_m == 1.0
+    # The same sample between two gaps: nobody knows how it came there, so no leg leads to it.
+    seconds = (
+        track.time_s
+        + np.where(np.arange(len(low)) >= middle, 10.0, 0.0)
+        + np.where(np.arange(len(low)) > middle, 10.0, 0.0)
+    )
+    alone = lowest(case(), replace(track, position_enu_m=low, time_s=seconds))
+    assert alone is not None
+    assert alone.height_m == 5.0
