@@ -231,8 +231,8 @@ def _lines(start_m: float, end_m: float, glass_m: tuple[float, float], step_m: f
         if number == 0 or number - last >= min(stride, every[last]):
             kept.append(number)
             last = number
-    found = nodes[kept]
-    return found if end_m - found[-1] < 1e-9 else np.concatenate([found, [end_m]])
+    found = np.asarray(nodes[kept], np.float64)
+    return found if end_m - found[-1] < 1e-9 else np.asarray(np.append(found, end_m), np.float64)
 
 
 def _around(corners: Array) -> tuple[float, float, float, float]:
