@@ -404,10 +404,15 @@ def _check_place(path: Path) -> None:
         raise InputError.say("cannot be written: the file is write-protected; name another one", place=path)
 
 
-def write_atomically(path: Path, content: bytes) -> None:
+def write_atomically(path: Path, content: bytes, *, is_lasting: bool = True) -> None:
     """Write a file whole or not at all: to a temporary neighbour first, then renamed over the target.
 
     A link is followed. What is no regular file (a device, a pipe) is written into, never replaced.
+
+    Parameters
+    ----------
+    is_lasting
+        Wait until the disk has it, so that it is there after the power fails.
 
     Raises
     ------
@@ -419,7 +424,7 @@ def write_atomically(path: Path, content: bytes) -> None:
         if path.exists() and not path.is_file():
             path.write_bytes(content)
             return
-        with part_file(real_path(path)) as part:
+        with part_file(real_path(path), is_lasting=is_lasting) as part:
             part.write_bytes(content)
     except OSError as error:
         raise InputError.say("cannot be written ({})", error.strerror or error, place=path) from error
@@ -472,7 +477,7 @@ def part_files(targets: Sequence[Path]) -> Iterator[list[Path]]:
 
 
 @contextmanager
-def part_file(target: Path, mode: int = 0o644) -> Iterator[Path]:
+def part_file(target: Path, mode: int = 0o644, *, is_lasting: bool = True) -> Iterator[Path]:
     """A new file beside `target`, of the same ending, which takes its place once all is written.
 
     Where the work fails it is removed, and what was there before stays. Where the process ends, the next one that
@@ -485,7 +490,8 @@ def part_file(target: Path, mode: int = 0o644) -> Iterator[Path]:
     """
     with new_file_beside(target, mode) as part:
         yield part
-        _sync(part)
+        if is_lasting:
+            _sync(part)
         part.replace(target)
 
 

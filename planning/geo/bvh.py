@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.jit import chunks, inline, kernel
+from planning.geo.ray_casting import ray_types
 
 Array = NDArray[np.float64]
 
@@ -141,14 +142,14 @@ class _TrianglesBetween:
     """Line of sight past triangles; to another process go the triangles, which builds the scene anew."""
 
     def __init__(self, corners_enu_m: Array) -> None:
-        from open3d.core import Tensor
-        from open3d.t.geometry import RaycastingScene
-
         self._corners_enu_m = corners_enu_m
         self._centre = corners_enu_m.reshape(-1, 3).mean(axis=0)
-        self._tensor, self._scene = Tensor, RaycastingScene()
+        self._tensor, scene = ray_types()
+        self._scene = scene()
         vertices = (corners_enu_m.reshape(-1, 3) - self._centre).astype(np.float32)
-        self._scene.add_triangles(Tensor(vertices), Tensor(np.arange(len(vertices), dtype=np.uint32).reshape(-1, 3)))
+        self._scene.add_triangles(
+            self._tensor(vertices), self._tensor(np.arange(len(vertices), dtype=np.uint32).reshape(-1, 3))
+        )
 
     def __reduce__(self) -> tuple[type[_TrianglesBetween], tuple[Array]]:
         return _TrianglesBetween, (self._corners_enu_m,)

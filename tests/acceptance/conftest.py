@@ -1,5 +1,7 @@
 """The application on its virtual screen, and the pilot before a new window."""
 
+import gc
+
 import pytest
 
 from groundstation.services.settings import Language
@@ -13,6 +15,14 @@ from tests.gui.conftest import (
 from tests.gui.driving import close_controller, turn_until
 
 __all__ = ["_garbage_stays_in_this_thread", "_no_dialog_waits", "application", "worker"]
+
+
+@pytest.fixture
+def own_garbage():
+    """Garbage as in a process of the window's own: it may leave out of its searches what it has loaded, see `tests`."""
+    gc.unfreeze()
+    yield
+    gc.freeze()
 
 
 @pytest.fixture

@@ -1,4 +1,4 @@
-"""What the window does to Python itself: long imports on another thread, and garbage collected while there is time."""
+"""What the window does to Python itself: imports on another thread, garbage collected while there is time, turns."""
 
 from __future__ import annotations
 
@@ -7,7 +7,9 @@ import gc
 import importlib
 import sys
 import threading
+import time
 from collections.abc import Callable, Sequence
+from typing import Any
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
@@ -90,8 +92,40 @@ LOOK_MS = 10
 """How often it is looked what has been imported. The thread tells nobody itself: its listener may be gone by then."""
 
 
+BUSY_S, REST_S, MOST_RESTS = 0.03, 0.005, 20
+"""The window is busy where it has not looked for so long. Then the thread that imports rests before each module, as
+long as the window is busy, and no more often than so: a page was made in 100 ms instead of 220 ms beside it."""
+
+
+class _GiveWay:
+    """Asked by Python for each module that it imports; finds none, and rests on the one thread while others are busy.
+
+    Parameters
+    ----------
+    is_busy
+        Whether somebody else wants the interpreter more.
+    """
+
+    def __init__(self, is_busy: Callable[[], bool]) -> None:
+        self._is_busy, self._thread = is_busy, threading.get_ident()
+
+    def find_spec(self, _name: str, _path: object = None, _target: object = None) -> None:
+        """Nothing: those that come after find it."""
+        if threading.get_ident() == self._thread:
+            for _ in range(MOST_RESTS):
+                if not self._is_busy():
+                    break
+                time.sleep(REST_S)
+
+
+def _waits_for_import(thread: int) -> bool:
+    """Whether a thread is waiting for a module that another one is importing."""
+    frame = sys._current_frames().get(thread)
+    return frame is not None and frame.f_code.co_filename == "<frozen importlib._bootstrap>"
+
+
 class BackgroundImport(QObject):
-    """Imports modules one after the other.
+    """Imports modules one after the other, with many rests while the thread that made it is busy.
 
     Signals
     -------
@@ -107,6 +141,8 @@ class BackgroundImport(QObject):
         self._modules = tuple(modules)
         self._done: list[str] = []
         self._told = 0
+        self._looked_s = time.perf_counter()
+        self._window = threading.get_ident()
         self._timer = QTimer(self)
         self._timer.timeout.connect(self._look)
 
@@ -115,21 +151,40 @@ class BackgroundImport(QObject):
         modules, done = self._modules, self._done
 
         def work() -> None:
+            gives_way: Any = _GiveWay(self._is_busy)
+            sys.meta_path.insert(0, gives_way)
             for module in modules:
                 # Whoever imports it again, in the window's thread, gets the error and can tell it.
                 with contextlib.suppress(Exception):
                     importlib.import_module(module)
                 done.append(module)
+            sys.meta_path.remove(gives_way)
 
         threading.Thread(target=work, name="import", daemon=True).start()
         self._timer.start(LOOK_MS)
 
+    def _is_busy(self) -> bool:
+        is_late = time.perf_counter() - self._looked_s > BUSY_S
+        return is_late and not _waits_for_import(self._window)
+
     def _look(self) -> None:
+        self._looked_s = time.perf_counter()
         while self._told < len(self._done):
             self._told += 1
             self.imported.emit(self._done[self._told - 1])
         if self._told == len(self._modules):
             self._timer.stop()
+
+
+SWITCH_S = 0.001
+"""For which a thread may keep the interpreter while others wait. The window's thread gives it up in many calls of Qt,
+and then waits so long for each: with Python's own 5 ms a page of widgets took three times its own time to make while
+modules were imported on another thread."""
+
+
+def take_short_turns() -> None:
+    """Let threads take turns often, so that the window's thread gets its own soon."""
+    sys.setswitchinterval(SWITCH_S)
 
 
 def leave_modules_alone() -> None:

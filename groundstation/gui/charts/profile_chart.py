@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QEvent, QPointF, QSignalBlocker, Qt, Signal
+from PySide6.QtGui import QShowEvent
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
 from groundstation.gui.map.map_paint import sortie_colour
@@ -47,6 +48,26 @@ class ClearanceChart(QWidget):
         self._sortie = ChoiceBox()
         self._words = QLabel()
         self._words.setWordWrap(True)
+        self._is_made = False
+        above = QHBoxLayout()
+        above.addWidget(self._sortie)
+        above.addWidget(self._words, 1)
+        self._layout = QVBoxLayout(self)
+        self._layout.setContentsMargins(4, 4, 4, 4)
+        self._layout.addLayout(above)
+        self._sortie.currentIndexChanged.connect(lambda index: self.sortieChosen.emit(index + 1))
+        self._draw()
+
+    def showEvent(self, event: QShowEvent) -> None:  # noqa: N802
+        """Make the chart when it is first wanted: that takes longer than the rest of its tab."""
+        super().showEvent(event)
+        if not self._is_made:
+            self._make_plot()
+            self._dress()
+            self._draw()
+
+    def _make_plot(self) -> None:
+        self._is_made = True
         self._plot = pg.PlotWidget()
         self._plot.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self._plot.setMenuEnabled(False)
@@ -56,17 +77,8 @@ class ClearanceChart(QWidget):
         self._no_fly = self._plot.plot()
         self._limit = pg.InfiniteLine(angle=0, movable=False)
         self._plot.addItem(self._limit, ignoreBounds=True)
-        above = QHBoxLayout()
-        above.addWidget(self._sortie)
-        above.addWidget(self._words, 1)
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(4, 4, 4, 4)
-        layout.addLayout(above)
-        layout.addWidget(self._plot, 1)
-        self._sortie.currentIndexChanged.connect(lambda index: self.sortieChosen.emit(index + 1))
         self._plot.scene().sigMouseClicked.connect(self._clicked)
-        self._dress()
-        self._draw()
+        self._layout.addWidget(self._plot, 1)
 
     def set_sorties(self, n_sorties: int) -> None:
         """How many sorties there are; the chosen one stays where it can."""
@@ -88,7 +100,8 @@ class ClearanceChart(QWidget):
     def set_units(self, units: UnitSystem) -> None:
         """Show lengths in other units."""
         self._units = units
-        self._dress()
+        if self._is_made:
+            self._dress()
         self._draw()
 
     def text(self) -> str:
@@ -98,7 +111,7 @@ class ClearanceChart(QWidget):
     def changeEvent(self, event: QEvent) -> None:  # noqa: N802
         """Follow the theme."""
         super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "_limit"):
+        if event.type() == QEvent.Type.PaletteChange and getattr(self, "_is_made", False):
             self._dress()
 
     def _dress(self) -> None:
@@ -117,14 +130,33 @@ class ClearanceChart(QWidget):
         self._limit.setPen(pg.mkPen(found.error, width=1.5, style=Qt.PenStyle.DashLine))
 
     def _draw(self) -> None:
+        self._words.setText(self._said())
+        if self._is_made:
+            self._draw_curves()
+
+    def _top(self) -> float:
+        """Where curves are cut off, in the chosen unit."""
+        return length_unit(self._units).shown(max(SHOWN_LIMITS * self._limit_m, 10.0))
+
+    def _said(self) -> str:
+        found, unit = self._found, length_unit(self._units)
+        if found is None or len(found.distance_m) == 0:
+            return self.tr("No route to measure yet.")
+        words = self.tr("Smallest clearance {0} (must be {1}); further than {2} is cut off").format(
+            unit.text(found.solids.smallest_m), unit.text(self._limit_m), unit.text(unit.metric(self._top()))
+        )
+        if found.no_fly is not None:
+            words += self.tr("; from no-fly volumes {0} (dotted)").format(unit.text(found.no_fly.smallest_m))
+        return words
+
+    def _draw_curves(self) -> None:
         found, unit = self._found, length_unit(self._units)
         self._limit.setVisible(found is not None)
         if found is None or len(found.distance_m) == 0:
             self._solids.setData([], [])
             self._no_fly.setData([], [])
-            self._words.setText(self.tr("No route to measure yet."))
             return
-        x, top = unit.factor * found.distance_m, unit.shown(max(SHOWN_LIMITS * self._limit_m, 10.0))
+        x, top = unit.factor * found.distance_m, self._top()
         self._solids.setData(x, np.minimum(unit.factor * found.solids.clearance_m, top))
         if found.no_fly is None:
             self._no_fly.setData([], [])
@@ -134,12 +166,6 @@ class ClearanceChart(QWidget):
         self._plot.setXRange(0.0, max(float(x[-1]), 1.0), padding=0.01)
         lowest = min(0.0, unit.shown(found.solids.smallest_m))
         self._plot.setYRange(lowest, top, padding=0.02)
-        words = self.tr("Smallest clearance {0} (must be {1}); further than {2} is cut off").format(
-            unit.text(found.solids.smallest_m), unit.text(self._limit_m), unit.text(unit.metric(top))
-        )
-        if found.no_fly is not None:
-            words += self.tr("; from no-fly volumes {0} (dotted)").format(unit.text(found.no_fly.smallest_m))
-        self._words.setText(words)
 
     def _clicked(self, event: object) -> None:
         found = self._found
@@ -178,6 +204,28 @@ class ProfileChart(QWidget):
         self._over.addItem(self.tr("over time"), TIME)
         self._over.addItem(self.tr("over distance"), DISTANCE)
         self._hover.setProperty("role", "muted")
+        self._marks: list[pg.InfiniteLine] = []
+        self._is_made = False
+        self.bar = QWidget(self)
+        row = QHBoxLayout(self.bar)
+        row.setContentsMargins(0, 0, 0, 0)
+        for widget in (self._hover, self._sortie, self._over):
+            row.addWidget(widget)
+        self._layout = QVBoxLayout(self)
+        self._layout.setContentsMargins(0, 0, 0, 0)
+        self._sortie.currentIndexChanged.connect(self._draw)
+        self._over.currentIndexChanged.connect(self._draw)
+        self._draw()
+
+    def showEvent(self, event: QShowEvent) -> None:  # noqa: N802
+        """Make the charts when they are first wanted: that takes longer than the rest of their tab."""
+        super().showEvent(event)
+        self._make_plots()
+
+    def _make_plots(self) -> None:
+        if self._is_made:
+            return
+        self._is_made = True
         self._charts = pg.GraphicsLayoutWidget()
         self._charts.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self._charts.setAccessibleName(self.tr("Height and speed"))
@@ -193,16 +241,7 @@ class ProfileChart(QWidget):
             plot.hideButtons()
             plot.setMouseEnabled(x=True, y=False)
             plot.getAxis("left").setWidth(AXIS_WIDTH_PX)
-        self.bar = QWidget(self)
-        row = QHBoxLayout(self.bar)
-        row.setContentsMargins(0, 0, 0, 0)
-        for widget in (self._hover, self._sortie, self._over):
-            row.addWidget(widget)
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(self._charts, 1)
-        self._sortie.currentIndexChanged.connect(self._draw)
-        self._over.currentIndexChanged.connect(self._draw)
+        self._layout.addWidget(self._charts, 1)
         self._charts.scene().sigMouseMoved.connect(self._pointed)
         self._charts.scene().sigMouseClicked.connect(lambda event: self._clicked(event.scenePos()))
         self._draw()
@@ -238,12 +277,13 @@ class ProfileChart(QWidget):
 
     def plots(self) -> tuple[pg.PlotItem, pg.PlotItem]:
         """The charts of height and speed."""
+        self._make_plots()
         return self._height, self._speed
 
     def changeEvent(self, event: QEvent) -> None:  # noqa: N802
         """Draw in the colours of another theme."""
         super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange:
+        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "_is_made"):
             self._draw()
 
     def _curve(self) -> ProfileCurves | None:
@@ -256,6 +296,11 @@ class ProfileChart(QWidget):
         return next((number for number, curve in enumerate(self._curves) if item.id in curve.photo_ids), None)
 
     def _draw(self) -> None:
+        self._hover.setText("" if self._curve() else self.tr("No sortie to show: plan a flight first."))
+        if self._is_made:
+            self._draw_curves()
+
+    def _draw_curves(self) -> None:
         found, curve = colours(), self._curve()
         length, speed = length_unit(self._units), speed_unit(self._units)
         self._charts.setBackground(found.base)
@@ -277,8 +322,7 @@ class ProfileChart(QWidget):
             # Only under the wider chart is there room for it.
             text = self.tr("Time [min]; take-off and landing add {0:.0f} s").format(curve.takeoff_landing_s)
             self._height.setLabel("bottom", text)
-        self._hover.setText("" if curve else self.tr("No sortie to show: plan a flight first."))
-        self._marks: list[pg.InfiniteLine] = []
+        self._marks = []
         if curve is not None:
             x, photo_x = self._x(curve), self._photo_x(curve)
             pen = pg.mkPen(sortie_colour(curve.sortie), width=2)

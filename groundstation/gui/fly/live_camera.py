@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 from PySide6.QtCore import QRect, Qt, QTimer, Signal
@@ -29,7 +30,7 @@ from groundstation.services.units import UnitSystem
 from groundstation.vehicle.state import VehicleState
 from planning.coverage.sections import panel_frames
 from planning.plan import Camera
-from planning.site.records import panel_corners
+from planning.site.records import SiteModel, panel_corners
 
 CAPTION_PX, CAPTION_TEXT_PX = 24, 15
 VIDEO_MS = 90
@@ -63,6 +64,10 @@ class LiveCamera(QFrame):
         self._sortie: LiveSortie | None = None
         self._canvas: Canvas | None = None
         self._drawn: LiveSortie | None = None
+        self._parts: Iterator[Layer] | None = None
+        self._awaited: VehicleState | None = None
+        self._make_soon = QTimer(self, interval=0)
+        self._make_soon.timeout.connect(self._make_part)
         self._pose: Pose | None = None
         self._stream: VideoStream | None = None
         self._url = ""
@@ -160,6 +165,9 @@ class LiveCamera(QFrame):
         if self._is_same(pose):
             return
         canvas = self._made()
+        if canvas is None:
+            self._awaited = state
+            return
         self._pose = pose
         eye = np.array(pose[:3])
         canvas.look_through(photo_pinhole(eye, pose[3], pose[4], self._camera, float(canvas.width())))
@@ -167,6 +175,7 @@ class LiveCamera(QFrame):
     def close_view(self) -> None:
         """Free the OpenGL context, end the video; call before the widget goes away."""
         self._stop_video()
+        self._make_soon.stop()
         self._url = ""
         if self._canvas is not None:
             self._canvas.close()
@@ -201,24 +210,44 @@ class LiveCamera(QFrame):
         is_near = max(abs(a - b) for a, b in zip(pose[:3], before[:3], strict=True)) < MOVED_M
         return is_near and max(abs(a - b) for a, b in zip(pose[3:], before[3:], strict=True)) < TURNED_RAD
 
-    def _made(self) -> Canvas:
-        """The canvas, with the site in it; made when it is first looked at."""
+    def _made(self) -> Canvas | None:
+        """The canvas, with the site in it; None while it is made, each part in a turn of its own.
+
+        All of it at once, while the vehicle reports for the first time, held the window for more than a tenth of a
+        second.
+        """
+        if self._drawn is not self._sortie and self._sortie is not None:
+            self._drawn = self._sortie
+            self._parts = self._make_parts(self._sortie.case.site_model)
+            self._make_soon.start()
+        return self._canvas if self._parts is None else None
+
+    def _make_part(self) -> None:
+        if self._parts is not None and next(self._parts, None) is None:
+            self._parts = None
+            self._make_soon.stop()
+            if self._awaited is not None:
+                self.look(self._awaited)
+                self._awaited = None
+
+    def _make_parts(self, model: SiteModel) -> Iterator[Layer]:
+        """Make the canvas where there is none, and draw a site in it; yields the layer that comes next."""
         if self._canvas is None:
             self._canvas = Canvas(self)
             self._canvas.setFocusPolicy(Qt.FocusPolicy.NoFocus)
             self._canvas.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
             self._lay_out()
+            yield Layer.GROUND
             self._canvas.show()
             self._canvas.stackUnder(self._film)
-        if self._drawn is not self._sortie and self._sortie is not None:
-            self._drawn = self._sortie
-            canvas, model = self._canvas, self._sortie.case.site_model
-            scene = site_scene(model, colours())
-            canvas.set_background_colour(SKY_DARK if colours().is_dark else SKY_LIGHT)
-            for layer in BACKDROP:
-                canvas.draw(layer, scene.drawables[layer])
-            frames = panel_frames(panel_corners(model.site))
-            covered = np.zeros(len(frames), bool)
-            canvas.draw(Layer.PANELS, (panel_faces(frames, panel_colours(frames, covered, colours())),))
-            canvas.draw("outlines", (panel_outlines(frames),))
-        return self._canvas
+            yield Layer.GROUND
+        canvas, scene = self._canvas, site_scene(model, colours())
+        canvas.set_background_colour(SKY_DARK if colours().is_dark else SKY_LIGHT)
+        for layer in BACKDROP:
+            yield layer
+            canvas.draw(layer, scene.drawables[layer])
+        yield Layer.PANELS
+        frames = panel_frames(panel_corners(model.site))
+        covered = np.zeros(len(frames), bool)
+        canvas.draw(Layer.PANELS, (panel_faces(frames, panel_colours(frames, covered, colours())),))
+        canvas.draw("outlines", (panel_outlines(frames),))

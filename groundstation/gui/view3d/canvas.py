@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pyvista as pv
 from numpy.typing import NDArray
-from PySide6.QtCore import Qt
-from PySide6.QtGui import QColor, QImage
+from PySide6.QtCore import Qt, QTimer
+from PySide6.QtGui import QColor, QImage, QShowEvent
 from PySide6.QtWidgets import QWidget
 from pyvistaqt import QtInteractor
 from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper
@@ -212,6 +212,12 @@ class Canvas(QtInteractor):  # type: ignore[misc]  # pyvistaqt has no types
         camera.SetUseExplicitAspectRatio(True)
         camera.SetExplicitAspectRatio(pinhole.half_width / pinhole.half_height)
         self._detail_changed()
+
+    def showEvent(self, event: QShowEvent) -> None:  # noqa: N802
+        """Paint in a turn of its own: in this one a whole tab is laid out and painted with it."""
+        super().showEvent(event)
+        self.setUpdatesEnabled(False)
+        QTimer.singleShot(0, self, lambda: self.setUpdatesEnabled(True))
 
     def initializeGL(self) -> None:  # noqa: N802
         """Smooth edges where a graphics card draws; a processor in its place takes 50 ms for that: see `set_smooth`."""

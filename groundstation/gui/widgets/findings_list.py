@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import lru_cache
 
 from PySide6.QtCore import QEvent, QModelIndex, QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import (
     QColor,
     QIcon,
+    QImage,
     QPainter,
     QPaintEvent,
     QPen,
@@ -39,8 +41,14 @@ def severity_colour(severity: Severity, found: Colours) -> QColor:
 
 def severity_icon(severity: Severity, found: Colours) -> QIcon:
     """An octagon with a cross, a triangle with a bar, a circle with an i, or a tick."""
+    return QIcon(QPixmap.fromImage(_drawn(severity, found)))
+
+
+@lru_cache(maxsize=16)
+def _drawn(severity: Severity, found: Colours) -> QImage:
+    """An image and no pixmap: it may outlive the application."""
     ratio = 2.0  # sharp on screens with two pixels to the point
-    picture = QPixmap(int(SIZE_PX * ratio), int(SIZE_PX * ratio))
+    picture = QImage(int(SIZE_PX * ratio), int(SIZE_PX * ratio), QImage.Format.Format_ARGB32_Premultiplied)
     picture.setDevicePixelRatio(ratio)
     picture.fill(Qt.GlobalColor.transparent)
     painter = QPainter(picture)
@@ -72,7 +80,7 @@ def severity_icon(severity: Severity, found: Colours) -> QIcon:
                 painter.setPen(QPen(ink, width, Qt.PenStyle.SolidLine, Qt.PenCapStyle.RoundCap))
                 painter.drawPolyline(QPolygonF([QPointF(4.0, 12.0), QPointF(9.0, 17.0), QPointF(18.0, 5.0)]))
     painter.end()
-    return QIcon(picture)
+    return picture
 
 
 def _polygon(corners: int, centre_y: float, radius: float, first_rad: float) -> QPolygonF:

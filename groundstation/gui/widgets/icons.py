@@ -10,7 +10,7 @@ from functools import lru_cache
 from pathlib import Path
 
 from PySide6.QtCore import QByteArray, QSize, Qt
-from PySide6.QtGui import QIcon, QPainter, QPixmap
+from PySide6.QtGui import QIcon, QImage, QPainter, QPixmap
 from PySide6.QtWidgets import QAbstractButton, QApplication
 
 from groundstation.gui.widgets.theme import colours
@@ -40,14 +40,21 @@ def icon(name: str, colour: str = "", size_px: int = ICON_PX) -> QIcon:
 
 def picture(name: str, colour: str, size_px: int = ICON_PX, ratio: float = 1.0) -> QPixmap:
     """An icon as a picture of a size, for a screen with so many pixels for one."""
+    found = QPixmap.fromImage(_drawn(name, colour, round(size_px * ratio)))
+    found.setDevicePixelRatio(ratio)
+    return found
+
+
+@lru_cache(maxsize=512)
+def _drawn(name: str, colour: str, size_px: int) -> QImage:
+    """An image and no pixmap: it may outlive the application."""
     from PySide6.QtSvg import QSvgRenderer
 
-    drawn = QPixmap(QSize(round(size_px * ratio), round(size_px * ratio)))
+    drawn = QImage(QSize(size_px, size_px), QImage.Format.Format_ARGB32_Premultiplied)
     drawn.fill(Qt.GlobalColor.transparent)
     painter = QPainter(drawn)
     QSvgRenderer(QByteArray(_source(name).replace(b"currentColor", colour.encode()))).render(painter)
     painter.end()
-    drawn.setDevicePixelRatio(ratio)
     return drawn
 
 

@@ -19,7 +19,7 @@ def next_in_order(regions: Sequence[QWidget], current: QWidget | None, *, forwar
     regions
         Of one window, none inside another.
     """
-    stops = [widget for region in regions for widget in _stops_in(region)]
+    stops = _stops(regions)
     if not stops:
         return None
     if current not in stops:
@@ -56,16 +56,40 @@ def _beside(stops: Sequence[QWidget], current: QWidget | None, forward: bool) ->
     return None
 
 
+def _stops(regions: Sequence[QWidget]) -> list[QWidget]:
+    """All stops in order. The window's chain of widgets is walked once: it is long, and most of it is hidden."""
+    if not regions:
+        return []
+    chain = list(_chain(regions[0]))
+    reached = [(place, widget) for place, widget in enumerate(chain) if _takes_tab(widget)]
+    found: list[QWidget] = []
+    for region in regions:
+        first = chain.index(region)
+        inside = [(place < first, place, widget) for place, widget in reached if _is_in(region, widget)]
+        found += [widget for _is_before, _place, widget in sorted(inside, key=lambda stop: stop[:2])]
+    return found
+
+
 def _stops_in(region: QWidget) -> Iterator[QWidget]:
-    widget: QWidget | None = region
+    return (widget for widget in _chain(region) if _takes_tab(widget) and _is_in(region, widget))
+
+
+def _chain(first: QWidget) -> Iterator[QWidget]:
+    """The widgets of a window in Qt's own order, from one of them on."""
+    widget: QWidget | None = first
     while widget is not None:
-        if (region is widget or region.isAncestorOf(widget)) and _takes_tab(widget):
-            yield widget
+        yield widget
         widget = widget.nextInFocusChain()
-        if widget is region:
+        if widget is first:
             return
 
 
+def _is_in(region: QWidget, widget: QWidget) -> bool:
+    return region is widget or region.isAncestorOf(widget)
+
+
 def _takes_tab(widget: QWidget) -> bool:
-    is_reached = bool(widget.focusPolicy() & Qt.FocusPolicy.TabFocus)
-    return is_reached and widget.isVisible() and widget.isEnabled() and widget.focusProxy() is None
+    # What most widgets fail at first: they are in tabs that are not shown.
+    if not (widget.isVisible() and widget.isEnabled()):
+        return False
+    return bool(widget.focusPolicy() & Qt.FocusPolicy.TabFocus) and widget.focusProxy() is None

@@ -30,7 +30,7 @@ from groundstation.gui.widgets.icons import NAME, icon
 from groundstation.gui.widgets.job_bar import JobBar
 from groundstation.gui.widgets.scrolling import CurrentStack, scrolled, split
 from groundstation.gui.widgets.tab_order import first_in, next_in_order
-from groundstation.gui.widgets.theme import colours
+from groundstation.gui.widgets.theme import Colours, colours
 from groundstation.gui.window.message_area import MessageArea
 from groundstation.gui.window.next_step import NextStepBar
 from groundstation.services.project.document import Document
@@ -74,10 +74,12 @@ class MainWindow(QMainWindow):
         self._context = context
         self._tabs: dict[str, Tab] = {}
         self._shown: TabSpec | None = None
+        self._made_tabs: dict[str, Tab] = {}
         self._was_shown = False
         self._ready: set[str] = set()
         self._manual: ManualWindow | None = None
         self._quick_buttons: list[QToolButton] = []
+        self._ticks: dict[str, tuple[bool, Colours]] = {}
         self.shared_view = SharedView(context)
         self.shared_view.tabRequested.connect(self.show_tab)
         self.shared_view.aloneRequested.connect(self._set_view_alone)
@@ -139,7 +141,12 @@ class MainWindow(QMainWindow):
             button.setAccessibleName(action.iconText())
             self._top.addWidget(button)
             self._quick_buttons.append(button)
-        self._show_steps()
+        self._tint_quick_buttons()
+
+    def _tint_quick_buttons(self) -> None:
+        for button in self._quick_buttons:
+            action = button.defaultAction()
+            action.setIcon(icon(str(action.property(NAME))))
 
     def tab_bar(self) -> QTabBar:
         """The row of tabs."""
@@ -169,7 +176,7 @@ class MainWindow(QMainWindow):
         """A tab by its name; made when it was not yet."""
         if name not in self._tabs:
             spec = next(spec for spec in TABS if spec.name == name)
-            page = self._tabs[name] = spec.make(self._context, self.shared_view)
+            page = self._tabs[name] = self._made(spec)
             if spec.place is Place.WHOLE_PAGE:
                 self._pages.addWidget(page.left)
             else:
@@ -179,6 +186,12 @@ class MainWindow(QMainWindow):
                 if page.bottom is not None:
                     self._bottom.addWidget(page.bottom)
         return self._tabs[name]
+
+    def _made(self, spec: TabSpec) -> Tab:
+        """A tab, whether it has its place in the window or not yet."""
+        if spec.name not in self._made_tabs:
+            self._made_tabs[spec.name] = spec.make(self._context, self.shared_view)
+        return self._made_tabs[spec.name]
 
     def show_tab(self, name: str) -> None:
         """Bring a tab to the front, and the keyboard to its first widget."""
@@ -205,10 +218,12 @@ class MainWindow(QMainWindow):
             self._make_soon.start()
         elif self._shown is not None and not self._bar.signalsBlocked():
             following = TABS[min(TABS.index(self._shown) + 1, len(TABS) - 1)]
-            if following.module in self._ready:
-                self.tab(following.name)
-            else:
+            if following.module not in self._ready:
                 self._make_soon.start()
+            elif following.name not in self._tabs:
+                # It gets its place, which takes half as long again, in a turn of its own.
+                self._made(following)
+                QTimer.singleShot(0, self, lambda: self.tab(following.name))
 
     def _leave_start(self, before: Document, after: Document) -> None:
         """Show a site that was opened from the start page; a window that has made room for another stays as it is."""
@@ -226,12 +241,12 @@ class MainWindow(QMainWindow):
         now, look = self._context.milestones, colours()
         for number, spec in enumerate(TABS):
             is_behind = spec.name in STEPS and is_done(Step(spec.name), now)
+            if self._ticks.get(spec.name) == (is_behind, look):
+                continue
+            self._ticks[spec.name] = is_behind, look
             self._bar.setTabIcon(number, icon("done", look.ok) if is_behind else icon(spec.name, look.muted))
             tip = self.tr("{0} (Ctrl+{1})").format(spec.shown_tip(), number)
             self._bar.setTabToolTip(number, self.tr("Done. {0}").format(tip) if is_behind else tip)
-        for button in self._quick_buttons:
-            action = button.defaultAction()
-            action.setIcon(icon(str(action.property(NAME))))
         shown = self._shown
         self.next_step.setVisible(shown is not None and shown.name in STEPS)
         if shown is not None and shown.name in STEPS:
@@ -244,6 +259,7 @@ class MainWindow(QMainWindow):
         super().changeEvent(event)
         if event.type() == QEvent.Type.PaletteChange and hasattr(self, "next_step"):
             self._show_steps()
+            self._tint_quick_buttons()
 
     def _tab_chosen(self, index: int) -> None:
         spec = TABS[index]

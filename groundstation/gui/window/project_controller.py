@@ -13,12 +13,13 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from PySide6.QtCore import QCoreApplication, QEvent, QObject, QTimer, Signal
 from PySide6.QtGui import QCloseEvent
 from PySide6.QtWidgets import QApplication
 
 from groundstation.gui.application.context import ApplicationContext
-from groundstation.gui.application.interpreter import GarbageCollector, leave_modules_alone
+from groundstation.gui.application.interpreter import GarbageCollector, leave_modules_alone, take_short_turns
 from groundstation.gui.application.translate import Translations
 from groundstation.gui.start_page import StartPage
 from groundstation.gui.widgets.icons import tint_all
@@ -41,6 +42,9 @@ from groundstation.services.settings import Settings, settings_at_start, setting
 from planning.aircraft.catalogue import profiles
 from planning.base.errors import GroundStationError, InputError
 from planning.base.findings import Severity
+from planning.geo.enu import geodetic_from_enu
+from planning.geo.frames import Origin
+from planning.geo.geoid import undulation_m
 from planning.request import PlanRequest
 
 
@@ -62,6 +66,7 @@ class ProjectController(QObject):
     ) -> None:
         super().__init__()
         leave_modules_alone()
+        take_short_turns()
         self._application = application
         self._questions = Questions() if questions is None else questions
         self._settings_problems: list[str] = []
@@ -79,6 +84,7 @@ class ProjectController(QObject):
         self._timer.timeout.connect(self.autosave_now)
         self.autosaveFailed.connect(lambda text: self._warn(text, "project.copy"))
         self.context.documentChanged.connect(lambda *_: self._show_title())
+        self.context.documentChanged.connect(self._site_came)
         self._start_timer()
 
     # The window
@@ -167,9 +173,15 @@ class ProjectController(QObject):
         threading.Thread(target=self._make_ready, name="make-ready", daemon=True).start()
 
     def _make_ready(self) -> None:
-        """On another thread: start the process that plans, and read what plug-ins there are; both take a while."""
-        self._worker.start()
+        """On another thread: read what the window's thread would stand still for when it first wants it."""
         profiles()
+        undulation_m(0.0, 0.0)
+        geodetic_from_enu(Origin(0.0, 0.0, 0.0), np.zeros((1, 3)))
+
+    def _site_came(self, before: Document, after: Document) -> None:
+        """On another thread: start the process that plans; a start page can do without it, and without its memory."""
+        if before.site is None and after.site is not None:
+            threading.Thread(target=self._worker.start, name="start-worker", daemon=True).start()
 
     def _after_first_paint(self) -> None:
         for problem in self._settings_problems:

@@ -117,7 +117,8 @@ def lock_project(folder: Path) -> ProjectLock:
         ) from error
     holder = Holder(os.getpid(), platform.node(), datetime.now(UTC).isoformat(timespec="seconds"))
     with contextlib.suppress(InputError):  # a full disk: the lock is held, others only cannot tell by whom
-        write_atomically(folder / HOLDER_FILE, json_bytes(plain_values(holder), HOLDER_FILE))
+        # After the power has failed nobody holds it any more: the window's thread need not wait for the disk.
+        write_atomically(folder / HOLDER_FILE, json_bytes(plain_values(holder), HOLDER_FILE), is_lasting=False)
     return ProjectLock(folder, lock)
 
 

@@ -23,6 +23,7 @@ from missions.simulator.scene import FlightScene
 from planning.base.effects import Assessment
 from planning.base.messages import say
 from planning.geo.frames import Vec3
+from planning.geo.ray_casting import ray_types
 from planning.site.records import SiteModel, panel_corners, panel_triangles
 
 Floats = NDArray[np.float64]
@@ -78,9 +79,6 @@ class GlassSky:
     """Counts the sky of places on a site."""
 
     def __init__(self, model: SiteModel, facts: MultipathFacts) -> None:
-        from open3d.core import Tensor
-        from open3d.t.geometry import RaycastingScene
-
         corners = panel_corners(model.site)
         across = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
         self._normals = across / np.linalg.norm(across, axis=1, keepdims=True)
@@ -89,8 +87,11 @@ class GlassSky:
         triangles = np.concatenate([glass, *walls])
         self._centre = triangles.reshape(-1, 3).mean(axis=0)
         vertices = (triangles.reshape(-1, 3) - self._centre).astype(np.float32)
-        self._tensor, self._scene = Tensor, RaycastingScene()
-        self._scene.add_triangles(Tensor(vertices), Tensor(np.arange(len(vertices), dtype=np.uint32).reshape(-1, 3)))
+        self._tensor, scene = ray_types()
+        self._scene = scene()
+        self._scene.add_triangles(
+            self._tensor(vertices), self._tensor(np.arange(len(vertices), dtype=np.uint32).reshape(-1, 3))
+        )
         self._facts, self._rays = facts, sphere(N_RAYS)
         self._is_sky = self._rays[:, 2] > math.sin(math.radians(facts.mask_deg))
 

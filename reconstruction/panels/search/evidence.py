@@ -7,7 +7,6 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import find_peaks
 
 from reconstruction.panels.search.record import GridLine
 
@@ -204,6 +203,9 @@ def local_maxima(values: Array, prominence: float, distance_px: float = 1.0) -> 
     distance_px
         Least distance of two maxima; the higher one stays.
     """
+    # Here, not on top: with it comes all of scipy's statistics, a second that a window without photos can do without.
+    from scipy.signal import find_peaks
+
     padded = np.concatenate([[-np.inf], values, [-np.inf]])  # the ends may be maxima, too
     padded[[0, -1]] = values.min(initial=0.0) - 1.0
     index, _ = find_peaks(padded, prominence=prominence, distance=max(1.0, distance_px))

@@ -40,6 +40,8 @@ def test_the_site_is_drawn_from_the_pose_that_the_vehicle_reports(application, c
     camera.look(VehicleState())
     assert camera.pose() is None
     camera.look(looking((x, y, z)))
+    # Each part of the site is drawn in a turn of its own.
+    turn_until(application, lambda: camera.pose() is not None)
     application.processEvents()
     first = camera._canvas.picture()
     assert len(np.unique(first.reshape(-1, 3), axis=0)) > 3

@@ -76,6 +76,13 @@ def test_the_file_is_json_without_nan(tmp_path: Path) -> None:
     assert content["sorties"][0]["track"]["battery"][0] is None
 
 
+def test_the_file_is_written_in_pieces_as_it_would_be_at_once(tmp_path: Path) -> None:
+    written = flight(flown_as_planned(example_plan())[0].track)
+    write_flight(tmp_path / "flight.json", written)
+    at_once = json.dumps(flight_to_json(written), allow_nan=False, separators=(",", ":"))
+    assert (tmp_path / "flight.json").read_text() == at_once
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [

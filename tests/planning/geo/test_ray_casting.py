@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+
 import numpy as np
+import pytest
 
 from planning.geo.mesh import box_mesh, empty_mesh
 from planning.geo.ray_casting import RayCaster
@@ -38,3 +42,13 @@ def test_nothing_to_hit_and_nothing_to_cast() -> None:
     assert np.isinf(hits.distance_m).all()
     box = RayCaster(box_mesh(np.zeros(3), np.ones(3)))
     assert len(box.cast(np.zeros((0, 3)), np.zeros((0, 3))).distance_m) == 0
+
+
+@pytest.mark.slow
+def test_what_open3d_draws_with_is_not_loaded() -> None:
+    script = (
+        "import sys; from planning.geo.ray_casting import ray_types; ray_types()[1]();"
+        "print(sorted({'open3d', 'dash', 'plotly', 'IPython'} & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "['open3d']"
