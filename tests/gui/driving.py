@@ -378,9 +378,9 @@ class TurnGaps:
 
     TAKEN_AWAY = 4.0
 
-    SHARED = 1.6
-    """Work takes longer where others use the caches: a frame of the flight took 65 ms of this process alone, and 100 ms
-    beside seven others on two processors."""
+    SHARED = 0.25
+    """Work takes so much longer for each other one that wants a processor, and uses its caches: a frame of the flight
+    took 65 ms of this process alone, and 100 ms beside seven others on two processors."""
 
     def __init__(self) -> None:
         self._ticks: list[tuple[float, float]] = []
@@ -402,7 +402,7 @@ class TurnGaps:
 
     def allowed_ms(self, limit_ms: float) -> float:
         """A limit for a machine of one's own, on this one now."""
-        return limit_ms * (self.SHARED if self._load() > 1.0 else 1.0)
+        return limit_ms * (1.0 + self.SHARED * max(0.0, self._load() - 1.0))
 
     @staticmethod
     def _load() -> float:
