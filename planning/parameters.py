@@ -356,8 +356,8 @@ class CameraSettings:
         group=CAMERA,
         row="first",
     )
-    white_balance_k: int = parameter(
-        5500,
+    white_balance_k: float = parameter(
+        5500.0,
         "colour temperature that counts as white; 5500 K is daylight",
         label="Colour temperature",
         unit="K",

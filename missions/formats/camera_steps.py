@@ -110,7 +110,7 @@ def _steps(use: CameraUse) -> list[tuple[str, str]]:
         focus = say("automatic focus (AF)")
     steps.append(("focus", focus))
     if settings.white_balance == "kelvin":
-        steps.append(("white balance", say("white balance manual, {} K", settings.white_balance_k)))
+        steps.append(("white balance", say("white balance manual, {:g} K", settings.white_balance_k)))
     else:
         words = {"sunny": say("white balance sunny"), "cloudy": say("white balance cloudy")}
         steps.append(("white balance", words.get(settings.white_balance, say("white balance automatic"))))

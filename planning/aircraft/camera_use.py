@@ -112,7 +112,7 @@ def white_balance_text(settings: CameraSettings) -> str:
     """The white balance in words."""
     match settings.white_balance:
         case "kelvin":
-            return say("white balance {} K", settings.white_balance_k)
+            return say("white balance {:g} K", settings.white_balance_k)
         case "sunny":
             return say("white balance for sun")
         case "cloudy":

@@ -10,6 +10,7 @@ from PySide6.QtCore import QCoreApplication, QObject, QTimer, Signal
 
 from groundstation.gui.application.context import ApplicationContext
 from groundstation.services.jobs.runner import Job, JobContext, JobState
+from groundstation.services.mission.camera import with_camera
 from groundstation.services.plan.editing import KEEPING_METHODS, edit_effect, has_same_panels, with_edited_plan
 from groundstation.services.plan.effects import EffectChoice, SceneEffects, plan_effects, scene_effects
 from groundstation.services.plan.places import item_of_place
@@ -21,6 +22,7 @@ from planning import revision as edits
 from planning.base.errors import GroundStationError
 from planning.base.findings import Severity
 from planning.base.messages import say
+from planning.parameters import CameraSettings
 from planning.plan import Plan, Viewpoint
 from planning.planner import Planned
 from planning.request import PlanRequest
@@ -172,6 +174,26 @@ class PlanController(QObject):
         """What the next plan is wanted to be."""
         self._context.amend(replace(self._context.document, request=request))
 
+    @property
+    def camera_settings(self) -> CameraSettings:
+        """Those of the current plan; without one those that the next will have."""
+        current = self._context.document.current
+        return self._context.document.request.camera if current is None else current.plan.camera_settings
+
+    def set_camera(self, settings: CameraSettings) -> None:
+        """Take photos otherwise: of the current plan, which stays as it is, and of the next ones."""
+        document = self._context.document
+        changed = replace(document, request=replace(document.request, camera=settings))
+        entry, active = document.current, self._active
+        if entry is None:
+            self._context.amend(changed)
+            return
+        plan = with_camera(entry.plan, settings)
+        if active is not None:
+            revision = edits.revise(plan, active.revision.prepared, active.revision)
+            self._plan_cache.keep(plan, active.with_revision(revision))
+        self._context.change(self.tr("Camera settings"), changed.with_plan(replace(entry, plan=plan)))
+
     def plan(self) -> None:
         """Plan the site with what is wanted; locked viewpoints of the current plan are kept."""
         document = self._context.document
@@ -186,7 +208,7 @@ class PlanController(QObject):
             self.refused.emit(text.format(names))
             return
         try:
-            request = replace(document.request, locked=locked)
+            request = replace(document.request, locked=locked, camera=self.camera_settings)
         except ValueError as error:
             self.refused.emit(
                 self.tr("{0}; release some, or ask for more views").format(self._context.localized(str(error)))

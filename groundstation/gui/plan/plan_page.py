@@ -11,11 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QCoreApplication, QObject, Signal
 from PySide6.QtGui import QAction, QKeySequence
-from PySide6.QtWidgets import QLabel, QPushButton, QTabWidget, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QLabel, QPushButton, QTabWidget, QToolButton, QVBoxLayout, QWidget
 
 from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.charts.axes import Line, LinesPlot
 from groundstation.gui.charts.quality_chart import QualityChart
+from groundstation.gui.plan.camera_page import CameraPage
 from groundstation.gui.plan.plan_controller import EffectsController, PlanController
 from groundstation.gui.plan.plan_form import PlanForm
 from groundstation.gui.plan.plan_lists import PlanLists
@@ -29,7 +30,9 @@ from groundstation.gui.widgets.effects_panel import EffectsPanel
 from groundstation.gui.widgets.inputs import ChoiceBox
 from groundstation.gui.widgets.scrolling import WrappingRow, labelled, scrolled
 from groundstation.services.jobs.runner import Job, JobBounded, JobImproved
+from groundstation.services.mission.camera import report_of_findings, settable
 from groundstation.services.mission.readiness import additional_findings
+from groundstation.services.plan.places import item_of_place
 from groundstation.services.plan.plan_cache import ActivePlan
 from groundstation.services.project.document import Document, Item, ItemKind
 from groundstation.services.project.steps import Act
@@ -176,10 +179,11 @@ class PlanPage(QObject):
         super().__init__(shared_view)
         self._context, self._shared_view = context, shared_view
         self._planning_id: int | None = None
+        self._camera_of: tuple[object, ...] = ()
         self.controller = PlanController(context, self)
         self.form, self.chart = PlanForm(), QualityChart(time.perf_counter)
         self.effects, self.panel, self.paint = EffectsPanel(), PanelDetail(), PaintBar()
-        self.sun = SunPanel()
+        self.sun, self.camera = SunPanel(), CameraPage()
         self.sun_controller = SunController(context, self.sun, lambda: self.controller.is_planning)
         self.effects_controller = EffectsController(
             context, self.effects.isVisible, lambda: self.controller.is_planning, self
@@ -196,7 +200,7 @@ class PlanPage(QObject):
         # Below the shared view there is width, which a bar over a day needs.
         self.lists.addTab(self.sun, self.tr("Sun"))
         self._result, self._verdict = QLabel(), QLabel()
-        self._plan_button = QPushButton(self.tr("Plan"))
+        self._plan_button, self.camera_button = QPushButton(self.tr("Plan")), QToolButton()
         self._make_actions()
         self.left = self._make_left()
         self.right: QWidget | None = self._make_right()
@@ -229,7 +233,18 @@ class PlanPage(QObject):
         self._verdict.setWordWrap(True)
         for label in (self._result, self._verdict):
             label.setContentsMargins(8, 0, 8, 0)
-        for widget in (self.form, self._plan_button, self._verdict, self._result):
+        self.camera_button.setCheckable(True)
+        self.camera_button.setText(self.tr("Camera settings"))
+        self.camera_button.setToolTip(self.tr("How photos are taken: of this plan at once, and of the next"))
+        self.camera_button.toggled.connect(self.camera.setVisible)
+        self.camera.hide()
+        beside = QVBoxLayout()
+        beside.setContentsMargins(8, 0, 8, 8)
+        beside.addWidget(self.camera_button)
+        beside.addWidget(self.camera)
+        layout.addWidget(self.form)
+        layout.addLayout(beside)
+        for widget in (self._plan_button, self._verdict, self._result):
             layout.addWidget(widget)
         layout.addStretch(1)
         return left
@@ -249,6 +264,8 @@ class PlanPage(QObject):
         self._plan_button.clicked.connect(self._plan)
         self.chart.enough.clicked.connect(controller.stop_here)
         self.effects.settingChanged.connect(self._setting_changed)
+        self.camera.valueChanged.connect(controller.set_camera)
+        self.camera.placePicked.connect(self._show_place)
         self.panel.viewpointPicked.connect(lambda viewpoint_id: context.jump_to(Item(ItemKind.VIEWPOINT, viewpoint_id)))
         self.lists.sectionPicked.connect(self._show_section)
         self.paint.valueChanged.connect(lambda *_: self._paint())
@@ -299,6 +316,7 @@ class PlanPage(QObject):
     def _show_document(self, document: Document) -> None:
         if self.form.value() != document.request:
             self.form.setValue(document.request)
+        self._show_camera(document)
         has_panels = document.site is not None and document.site.site.n_panels > 0
         can_plan = has_panels and not self.controller.is_planning
         self._plan_button.setEnabled(can_plan)
@@ -320,6 +338,19 @@ class PlanPage(QObject):
         if not self.controller.is_planning:
             self._show_history(None if entry is None else entry.plan)
 
+    def _show_camera(self, document: Document) -> None:
+        plan, request = None if document.current is None else document.current.plan, document.request
+        for_camera = (plan, request.profile_id) if plan is None else (plan.camera, plan.camera_controls, plan.profile)
+        if for_camera != self._camera_of:
+            self._camera_of = for_camera
+            self.camera.set_controls(settable(plan, request.profile_id))
+        self.camera.setValue(self.controller.camera_settings)
+
+    def _show_place(self, place: str) -> None:
+        item = item_of_place(place, self._context.document)
+        if item is not None:
+            self._context.jump_to(item)
+
     def _show_history(self, plan: Plan | None) -> None:
         if plan is None:
             self.chart.show_history((), None)
@@ -329,6 +360,7 @@ class PlanPage(QObject):
 
     def _show_active(self, active: ActivePlan | None) -> None:
         self.panel.set_plan(None if active is None else active.insight, None if active is None else active.plan)
+        self.camera.set_report(None if active is None else report_of_findings(active.plan, active.revision.findings))
         self._paint()
         self.worth.set_lines(() if active is None else self._worth_lines(active.plan.present_worth))
         if active is None:
@@ -445,7 +477,7 @@ class PlanPage(QObject):
             self.controller.set_request(replace(request, constraints=replace(request.constraints, occlusion=setting)))
 
     def _show_units(self, units: UnitSystem) -> None:
-        for widget in (self.form, self.panel, self.lists, self.effects, self.sun):
+        for widget in (self.form, self.panel, self.lists, self.effects, self.sun, self.camera):
             widget.set_units(units)
         if self.controller.active is not None:
             self._show_result(self.controller.active)

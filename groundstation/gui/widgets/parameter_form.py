@@ -43,10 +43,15 @@ def tip_of(known: Parameter) -> str:
 
 
 def choice_text(known: Parameter, value: Any) -> str:
-    """What one of the values of a parameter is called in the user's language; its value where it has no name."""
+    """What one of the values of a parameter is called in the user's language; its value where it has no name.
+
+    None is called what it stands for.
+    """
     label = next((choice.label for choice in known.choices if choice.value == value and choice.label), "")
     if label:
         return QCoreApplication.translate(CONTEXT, label)
+    if value is None:
+        return QCoreApplication.translate(CONTEXT, known.unset)
     if known.unit == "s" and 0.0 < value < 1.0:
         return shutter_text(value)
     return f"{value:.4g}°" if known.unit == "deg" else str(value)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -12,15 +12,21 @@ from groundstation.services.project.input_files import read_input_plan
 from groundstation.services.project.project_file import check_not_index
 from missions.formats.camera_steps import CameraSteps, camera_steps
 from planning.aircraft.camera_use import camera_use_of, controls_of
+from planning.aircraft.catalogue import profile
+from planning.base.errors import GroundStationError
 from planning.base.findings import Finding
 from planning.base.json_file import check_output
 from planning.base.parameters import with_values
 from planning.base.progress import QUIET, Monitor
 from planning.checks.camera import CAMERA_RULES
 from planning.checks.case import Case
+from planning.optics import CameraControls
 from planning.parameters import CameraSettings
 from planning.plan import Plan, write_plan
 from planning.site.records import SiteModel
+
+CODES = frozenset(("camera", "motion-blur", "rolling-shutter", "depth-of-field", "mirror-focus"))
+"""Of the findings of `CAMERA_RULES`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +76,22 @@ def camera_report(plan: Plan, site_model: SiteModel | None, monitor: Monitor = Q
         case = Case.of(plan, site_model)
         findings = tuple(finding for rule in CAMERA_RULES for finding in rule(case))
     return CameraReport(plan, camera_use_of(plan).summary(), camera_steps(plan), findings)
+
+
+def report_of_findings(plan: Plan, findings: Iterable[Finding]) -> CameraReport:
+    """What a plan's camera settings mean, of findings of all rules that were made already."""
+    found = tuple(finding for finding in findings if finding.code in CODES)
+    return CameraReport(plan, camera_use_of(plan).summary(), camera_steps(plan), found)
+
+
+def settable(plan: Plan | None, profile_id: str) -> CameraControls | None:
+    """What can be set on the camera of a plan; without one, on that of a profile. None where nobody knows."""
+    if plan is not None:
+        return controls_of(plan)
+    try:
+        return profile(profile_id).controls
+    except GroundStationError:  # its file is gone, as the form of the plan says
+        return None
 
 
 def camera_files(
