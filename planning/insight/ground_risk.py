@@ -32,6 +32,7 @@ from planning.base.findings import Finding, Severity
 from planning.base.json_file import read_toml
 from planning.base.messages import joined, say
 from planning.insight.ground_risk_request import Band, GroundRiskRequest, Robustness
+from planning.insight.population import People, open_population, people_below
 from planning.plan import Plan
 from planning.site.ground import ground_of
 from planning.site.records import Site
@@ -170,6 +171,8 @@ class GroundRisk:
         None where nobody stated how many people there are.
     intrinsic_class, final_class
         Ground risk class before and after mitigations; None where it is not known, or beyond SORA.
+    people
+        What a population raster says of the buffer; None without one. It makes the band where nobody stated people.
     """
 
     request: GroundRiskRequest
@@ -184,6 +187,7 @@ class GroundRisk:
     intrinsic_class: int | None
     final_class: int | None
     findings: tuple[Finding, ...]
+    people: People | None = None
 
     def value_of(self, symbol: str) -> float:
         """One of the numbers.
@@ -351,7 +355,10 @@ def path_geometry(plan: Plan, request: GroundRiskRequest) -> Geometry:
 
 
 def assess_ground_risk(
-    plan: Plan, site: Site, request: GroundRiskRequest | None = None, return_height_m: float | None = None
+    plan: Plan,
+    site: Site,
+    request: GroundRiskRequest | None = None,
+    return_height_m: float | None = None,
 ) -> GroundRisk:
     """Volumes and ground risk class of a plan's flown paths.
 
@@ -365,7 +372,7 @@ def assess_ground_risk(
     InfeasibleError
         The plan has no sorties, the wind is more than the aircraft may fly in, or the ground falls away without end.
     InputError
-        Something of the aircraft is neither known nor stated; the message lists all of that.
+        Something of the aircraft is neither known nor stated; the message lists all of that. The raster cannot be read.
     """
     request = request or GroundRiskRequest()
     body = _body(plan, request)
@@ -384,7 +391,15 @@ def assess_ground_risk(
         ground_z_m = lower_z_m
     else:
         raise InfeasibleError.say("the ground falls away as far as the buffer is widened; limit speed or wind")
+    people = None
+    if request.population_raster is not None:
+        raster = open_population(Path(request.population_raster), request.population_counts)
+        people = people_below(raster, buffer, site.origin)
     band = None if request.population is None else band_of(request.population)
+    if band is None and people is not None and people.most_per_km2 is not None and people.unknown <= 0.0:
+        band = band_of(f"{people.most_per_km2}")
+    if people is not None:
+        quantities = (*quantities, *_people_quantities(people))
     column = ground_risk_tables().column_of(body.characteristic_dimension_m, body.full_speed_m_s)
     intrinsic, final = _classes(band, column, request)
     return GroundRisk(
@@ -402,7 +417,9 @@ def assess_ground_risk(
         findings=(
             *_findings(request, plan, value, band, column, intrinsic, final, is_known),
             *_zone_findings(site, contingency, buffer),
+            *(() if people is None else _people_findings(people, request.population, buffer)),
         ),
+        people=people,
     )
 
 
@@ -685,6 +702,75 @@ def _findings(
             slow_m_s,
         )
         yield found(Severity.NOTE, "sora-speed", text)
+
+
+def raster_text(people: People) -> str:
+    """A raster by its file and product, and what its values count."""
+    counted = say("people in a cell") if people.counts == "cell" else say("people per square kilometre")
+    by = say("as stated") if people.is_stated else say("as its name says")
+    return say("'{}' ({}{}, {})", people.file, f"{people.product}, " if people.product else "", counted, by)
+
+
+def _people_quantities(people: People) -> Iterator[Quantity]:
+    source = say("raster {}, cells of {:.0f} m", raster_text(people), people.cell_m)
+    if people.most_per_km2 is not None and people.mean_per_km2 is not None:
+        yield Quantity("D_max", say("most people in a cell below the buffer"), people.most_per_km2, "/km²", "", source)
+        yield Quantity("D_mean", say("people below the buffer, in the mean"), people.mean_per_km2, "/km²", "", source)
+    yield Quantity(
+        "D_?", say("part of the buffer of which the raster knows nothing"), 100.0 * people.unknown, "%", "", source
+    )
+
+
+MOST_PER_KM2 = 1e6
+"""No place has more residents: the densest blocks of Hong Kong and Dhaka have some 200 000."""
+
+
+def _people_findings(people: People, stated: str | None, buffer: Polygon) -> Iterator[Finding]:
+    """What a raster says, against what was stated; what it does not know is not nobody."""
+    code, most = "sora-raster", people.most_per_km2
+    if people.unknown > 0.0:
+        text = say(
+            "of {:.0f} % of the buffer the raster has no number, which does not mean nobody: state how many people "
+            "are below",
+            max(1.0, 100.0 * people.unknown),
+        )
+        yield Finding(Severity.WARNING, code, text, people.file, 100.0 * people.unknown, 0.0, "%")
+    if most is None or people.mean_per_km2 is None:
+        return
+    if most > MOST_PER_KM2:
+        text = say("{:.3g} people per square kilometre live nowhere: does it count people per km² or in a cell?", most)
+        yield Finding(Severity.ERROR, code, text, people.file, most, MOST_PER_KM2, "/km²")
+    word = band_of(f"{most}").word
+    if stated is None:
+        text = say(
+            "people are those of the raster: {:.0f} per square kilometre in its fullest cell ('{}'), {:.0f} in the "
+            "mean; it counts who lives there, so state more where people work, shop or gather",
+            most,
+            word,
+            people.mean_per_km2,
+        )
+        yield Finding(Severity.NOTE, code, text, people.file, most, None, "/km²")
+    elif stated == "controlled":
+        text = say(
+            "the raster has {:.0f} people per square kilometre in its fullest cell: see that all of them stay out", most
+        )
+        yield Finding(Severity.NOTE, code, text, people.file, most, None, "/km²")
+    elif most >= (band := band_of(stated)).below_per_km2:
+        text = say(
+            "the raster has {:.0f} people per square kilometre in its fullest cell ('{}'), more than the '{}' stated",
+            most,
+            word,
+            stated,
+        )
+        yield Finding(Severity.WARNING, code, text, people.file, most, band.below_per_km2, "/km²")
+    else:
+        text = say("the raster has no more people than stated: {:.0f} per square kilometre in its fullest cell", most)
+        yield Finding(Severity.OK, code, text, people.file, most, band.below_per_km2, "/km²")
+    if people.cell_m**2 > buffer.area:
+        text = say(
+            "a cell of the raster ({:.0f} m) is larger than the whole buffer, and evens out crowds in it", people.cell_m
+        )
+        yield Finding(Severity.NOTE, code, text, people.file)
 
 
 def _zone_findings(site: Site, contingency: Polygon, buffer: Polygon) -> Iterator[Finding]:

@@ -13,6 +13,8 @@ Band = Literal["controlled", "remote", "lightly", "sparsely", "suburban", "city"
 BANDS: tuple[Band, ...] = ("controlled", "remote", "lightly", "sparsely", "suburban", "city", "assembly")
 """From few people to many; `data/ground_risk.toml` says how many."""
 
+Counts = Literal["auto", "cell", "km2"]
+
 Robustness = Literal["none", "low", "medium", "high"]
 
 ABOUT = "what is known"
@@ -34,6 +36,28 @@ class GroundRiskRequest:
         group=PEOPLE,
         unset="not stated",
         row="first",
+    )
+    population_raster: str | None = parameter(
+        None,
+        "GeoTIFF of people (GHS-POP, WorldPop, ...), beside the word or in its place",
+        label="People from a raster",
+        option="--population-raster",
+        metavar="FILE",
+        group=PEOPLE,
+        unset="none",
+    )
+    population_counts: Counts = parameter(
+        "auto",
+        "what a population raster counts people in; of known products the name of the file says it",
+        label="Raster counts people",
+        choices=(
+            Choice("auto", "as its name says"),
+            Choice("cell", "in a cell"),
+            Choice("km2", "per km²"),
+        ),
+        option="--population-counts",
+        group=PEOPLE,
+        row="more",
     )
     wind_m_s: float | None = parameter(
         None,

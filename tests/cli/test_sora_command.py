@@ -2,7 +2,10 @@
 
 import json
 
+import numpy as np
 import pytest
+
+from tests.planning.insight.test_population import raster
 
 
 def sora(reflight, pane, out, *arguments):
@@ -50,3 +53,21 @@ def test_an_aircraft_nobody_described_has_to_be_described(reflight, pane, change
     plan = changed(pane / "plan.json", "profile", "")
     done = reflight("sora", plan, pane / "site.json", "-o", tmp_path / "out")
     assert "state largest dimension, take-off mass, full speed through the air, braking tilt" in done.error
+
+
+def test_people_of_a_raster_make_the_class_and_a_raster_that_does_not_say_what_it_counts_is_refused(
+    reflight, pane, tmp_path
+):
+    path = raster(tmp_path / "hkg_ppp_2020.tif", np.full((60, 60), 9.0))
+    done = sora(reflight, pane, tmp_path / "out", "--population-raster", path, "--json")
+    # 9 people on 86 m x 93 m.
+    assert done.json["raster"]["most_per_km2"] == pytest.approx(1133.0, rel=0.02)
+    assert (done.json["raster"]["product"], done.json["raster"]["counts"]) == ("WorldPop", "cell")
+    assert done.json["population"] == "suburban"
+    stated = sora(reflight, pane, tmp_path / "out", "--population-raster", path, "--population-counts", "km2", "--json")
+    assert stated.json["raster"]["most_per_km2"] == 9.0
+    unnamed = path.rename(tmp_path / "people.tif")
+    refused = sora(reflight, pane, tmp_path / "no", "--population-raster", unnamed)
+    assert refused.status == 1
+    assert "people.tif: does not say whether it counts people in a cell" in refused.error
+    assert not (tmp_path / "no").exists()

@@ -21,6 +21,7 @@ EPILOG = """people below (--population), as SORA 2.5 counts them per square kilo
 examples:
   sora office.plan.json office.site.json -o sora --population controlled --wind 8
   sora office.plan.json office.site.json -o sora --population 1200 --speed 5 --reaction 2
+  sora office.plan.json office.site.json -o sora --population-raster GHS_POP_E2020_R5_C19.tif
 """
 
 
@@ -67,7 +68,9 @@ def run(options: argparse.Namespace) -> int:
     plan, site_model = read_input_plan(options.plan), read_input_site(options.site)
     n, name = options.fly_aways or N_FLY_AWAYS, options.plan.name
     draft = run_job("sora", lambda context: sora_draft(plan, site_model, request, name, None, n, context))
-    paths = write_sora(draft, options.out, worded, [options.plan, options.site])
+    raster = [] if request.population_raster is None else [Path(request.population_raster)]
+    sources = [options.plan, options.site, *raster]
+    paths = write_sora(draft, options.out, worded, sources)
     if options.json:
         print_json({"files": [str(path) for path in paths], **sora_summary(draft)})
         return 0

@@ -35,6 +35,7 @@ from planning.insight.ground_risk import (
     Quantity,
     assess_ground_risk,
     ground_risk_tables,
+    raster_text,
     scope_text,
     source_texts,
 )
@@ -154,6 +155,7 @@ def sora_summary(draft: SoraDraft) -> dict[str, Any]:
     return {
         "quantities": [plain_values(each) for each in risk.quantities],
         "population": None if risk.band is None else risk.band.word,
+        "raster": None if risk.people is None else plain_values(risk.people),
         "intrinsic_grc": risk.intrinsic_class,
         "final_grc": risk.final_class,
         "people": str(risk.people_allowed),
@@ -212,7 +214,9 @@ def table_rows(risk: GroundRisk, words: Words = str) -> Iterator[tuple[str, ...]
     if risk.band is not None:
         below = "∞" if risk.band.below_per_km2 == math.inf else f"{risk.band.below_per_km2:g}"
         people = words(say("people below: {}", risk.band.word))
-        yield "D_pop", people, f"< {below} /km²", "", words(say("stated by the pilot"))
+        is_counted = request.population is None and risk.people is not None
+        source = raster_text(risk.people) if is_counted and risk.people is not None else say("stated by the pilot")
+        yield "D_pop", people, f"< {below} /km²", "", words(source)
     if risk.intrinsic_class is not None and risk.final_class is not None:
         yield "iGRC", words(say("intrinsic ground risk class")), str(risk.intrinsic_class), "", tables.source
         taken = [f"{name} {level}" for name, level in request.mitigations if level != "none"]

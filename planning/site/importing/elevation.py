@@ -428,7 +428,7 @@ def _open_tiff(path: Path, options: HeightOptions) -> Raster:
     from rasterio.errors import RasterioError
 
     try:
-        with _quiet(), rasterio.Env(**GDAL_OPTIONS), rasterio.open(path, driver="GTiff") as source:
+        with quiet(), rasterio.Env(**GDAL_OPTIONS), rasterio.open(path, driver="GTiff") as source:
             if source.count != 1:
                 raise InputError.say(
                     "has {} bands, as pictures have; expected one band of heights", source.count, place=path
@@ -446,7 +446,7 @@ def _open_tiff(path: Path, options: HeightOptions) -> Raster:
             wkt = None if source.crs is None else source.crs.to_wkt(version="WKT2_2019")
             unit = str(source.units[0] or "").lower().replace("_", " ")
     except (RasterioError, OSError, ValueError, AttributeError) as error:
-        raise _damaged(path, error) from error
+        raise damaged(path, error) from error
     if not is_placed or not all(map(math.isfinite, (a, b, c, d, e, f))) or abs(a * e - b * d) < 1e-18:
         raise InputError.say("does not say where it lies; give a GeoTIFF with its georeference", place=path)
     if options.crs is None and not wkt:
@@ -476,19 +476,19 @@ def _read_tiff(raster: Raster, first_row: int, last_row: int, first_column: int,
 
     window = Window(first_column, first_row, last_column - first_column, last_row - first_row)
     try:
-        with _quiet(), rasterio.Env(**GDAL_OPTIONS), rasterio.open(raster.path, driver="GTiff") as source:
+        with quiet(), rasterio.Env(**GDAL_OPTIONS), rasterio.open(raster.path, driver="GTiff") as source:
             if (source.width, source.height) != (raster.width, raster.height):
                 raise InputError.say("has changed while it was read", place=raster.path)
             heights = source.read(1, window=window, masked=True).astype(np.float64).filled(np.nan)
             heights = heights * source.scales[0] + source.offsets[0]
             if source.nodata is None:
-                _forget_unwritten(source, heights, first_row, first_column)
+                forget_unwritten(source, heights, first_row, first_column)
     except (RasterioError, OSError, ValueError, AttributeError) as error:
-        raise _damaged(raster.path, error) from error
+        raise damaged(raster.path, error) from error
     return np.asarray(heights)
 
 
-def _forget_unwritten(source: Any, heights: Array, first_row: int, first_column: int) -> None:
+def forget_unwritten(source: Any, heights: Array, first_row: int, first_column: int) -> None:
     """Set posts of blocks that the file leaves out to NaN: GDAL reads them as zero."""
     rows, columns = heights.shape
     block_rows, block_columns = source.block_shapes[0]
@@ -500,14 +500,15 @@ def _forget_unwritten(source: Any, heights: Array, first_row: int, first_column:
 
 
 @contextmanager
-def _quiet() -> Iterator[None]:
+def quiet() -> Iterator[None]:
     """Without rasterio's warnings, of which each is looked for here and said in words."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         yield
 
 
-def _damaged(path: Path, error: Exception) -> InputError:
+def damaged(path: Path, error: Exception) -> InputError:
+    """What reading a raster ran into, in words; errors that are in words already stay as they are."""
     if isinstance(error, InputError):
         return error
     reason = str(error).splitlines()[0] if str(error) else type(error).__name__

@@ -3,6 +3,7 @@
 import json
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from PySide6.QtWidgets import QPushButton
 
@@ -11,6 +12,7 @@ from planning.base.findings import Severity
 from planning.insight.ground_risk_request import GroundRiskRequest
 from tests.gui.driving import choose, click_on, clicked, press_in
 from tests.gui.mission.test_mission_page import context, idle, opened, page, planned, said  # noqa: F401
+from tests.planning.insight.test_population import raster
 
 
 def dialog_of(page, idle, context, planned):  # noqa: F811
@@ -74,4 +76,26 @@ def test_an_aircraft_nobody_described_is_asked_for(page, context, planned, idle)
     assert "state largest dimension, take-off mass, full speed through the air, braking tilt" in dialog.state_text()
     state(dialog, idle, dimension_m=0.8, mass_kg=1.5, speed_m_s=10.0, tilt_deg=30.0)
     assert dialog.draft() is not None
+    dialog.close()
+
+
+@pytest.mark.slow
+def test_people_come_from_a_raster_that_is_chosen_and_counts_for_the_brief_too(page, context, planned, idle, tmp_path):  # noqa: F811
+    path = raster(tmp_path / "hkg_pd_2020_1km.tif", np.full((60, 60), 1200.0))
+    dialog = dialog_of(page, idle, context, planned)
+    with clicked(choose(path)):
+        click_on(dialog, dialog.form._raster_button)
+    dialog._ask_soon.timeout.emit()
+    idle()
+    assert dialog.form.value() == GroundRiskRequest(population_raster=str(path))
+    assert "Ground risk class: 5 intrinsic" in dialog.state_text()
+    assert dialog.form._raster_button.text().startswith("hkg_pd")
+    row = next(row for row in dialog.table_texts() if row[0] == "D_pop")
+    assert path.name in row[-1]
+    assert page._ground_risk.population_raster == str(path)
+    click_on(dialog, dialog.form._no_raster)
+    dialog._ask_soon.timeout.emit()
+    idle()
+    assert dialog.form.value() == GroundRiskRequest()
+    assert "Ground risk class: not known" in dialog.state_text()
     dialog.close()
