@@ -1,7 +1,8 @@
 """Panes of a web page as mirrors: what its shaders need to render the model's Eq. 19, besides splats and panes.
 
-That is the radiance grid as half floats, how panes lean and are bowed, and what splats on panes are made of: their own
-colour c, R and F0. A browser without WebGPU leaves all of it aside and shows colours with mirrored light baked in.
+That is the radiance grid or environment map as half floats, how panes lean and are bowed, and what splats on panes are
+made of: their own colour c, R and F0. A browser without WebGPU leaves all of it aside and shows colours with mirrored
+light baked in.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
+from reconstruction.light.environment_map import EnvironmentMap
 from reconstruction.light.radiance_grid import DENSITY_SCALE, FAR_TIMES, OPAQUE, RadianceGrid, edged
 from reconstruction.splats.ply import ODD
 from reconstruction.training.model.joint_model import SceneModel
@@ -37,11 +39,12 @@ class PaneMirrors:
     tilts, bows
         Of the model's panels, radians, shape (m, 2).
     cells
-        Density and square roots of light, shape (nz, ny, nx, 4), float16.
+        Density and square roots of light, shape (nz, ny, nx, 4), float16; empty beside an environment map.
     skips
         Cells that a ray may leap, shape (nz - 1, ny - 1, nx - 1), uint8.
     far
-        Square roots of light by direction with a rim of one pixel, shape (side + 2, side + 2, 4), float16.
+        Square roots of light by direction with a rim of one pixel, shape (side + 2, side + 2, 4), float16; or an
+        environment map's pictures, shapes (h, 2 h, 4), finer ones first, whose sum is logits of light.
     sh, reflectivity, f0
         Of all splats, in the model's order: coefficients as `Ellipsoids` has them, shape (n, 16, 3), R, shape (n,), and
         F0, shape (n, 3).
@@ -53,7 +56,7 @@ class PaneMirrors:
     bows: Array
     cells: NDArray[np.float16]
     skips: NDArray[np.uint8]
-    far: NDArray[np.float16]
+    far: tuple[NDArray[np.float16], ...]
     sh: Array
     reflectivity: Array
     f0: Array
@@ -64,53 +67,104 @@ class PaneMirrors:
             "numbers": self.numbers,
             "rays": self.rays,
             "counts": list(self.cells.shape[2::-1]),
+            "far": list(self.far[0].shape[1::-1]),
+            "far_levels": len(self.far),
             "tilts": _told(self.tilts[list(panels)]),
             "bows": _told(self.bows[list(panels)]),
         }
 
     def blocks(self) -> tuple[bytes, bytes, bytes]:
         """`cells`, `skips` and `far`, little-endian."""
-        return self.cells.astype("<f2").tobytes(), self.skips.tobytes(), self.far.astype("<f2").tobytes()
+        far = b"".join(picture.astype("<f2").tobytes() for picture in self.far)
+        return self.cells.astype("<f2").tobytes(), self.skips.tobytes(), far
+
+
+OF_PAGE = {"tilts", "bows", "moves"}
+"""What is learned of panes and photos that the page has a use for, or that is for learning alone."""
+
+OF_LIGHT: dict[type[torch.nn.Module], set[str]] = {RadianceGrid: {"cells", "far"}, EnvironmentMap: {"levels", "mean"}}
+"""Models of light that the page computes, and what is learned of each: one that has more has light of another kind."""
 
 
 @torch.no_grad()
 def mirrors_of(model: SceneModel) -> PaneMirrors | None:
-    """Of a model whose panels' planes mirror a radiance grid; None of others, whose light the page cannot march."""
-    if model.light is None or model.geometry != "panels" or not isinstance(model.light.light, RadianceGrid):
+    """Of a model whose panels' planes mirror a radiance grid or an environment map.
+
+    None of others: a network takes a graphics card in a browser some tenths of a second for each picture.
+    """
+    if model.light is None or model.geometry != "panels":
         return None
-    glass, grid = model.light, model.light.light
-    n_panels = len(model.corners_m)
-    bows = np.zeros((n_panels, 2), np.float32) if glass.bows is None else glass.bows.cpu().numpy()
-    box = grid.box
-    x, y, z, over_x, over_y, over_z, outer, cell = grid.numbers.tolist()
+    glass, found = model.light, model.light.light
+    learned = {name.removeprefix("light.").split(".")[0] for name, _ in glass.named_parameters()}
+    if learned - OF_PAGE != OF_LIGHT.get(type(found)):
+        return None
+    bows = np.zeros((len(model.corners_m), 2), np.float32) if glass.bows is None else glass.bows.cpu().numpy()
     numbers: dict[str, float | list[float]] = {
         "middle": (model.planes.middle_enu_m - model.origin_enu_m).tolist(),
         "half_side": model.planes.half_side_m,
-        "inner": [x, y, z],
-        "cell": cell,
-        "over": [over_x, over_y, over_z],
-        "outer": outer,
-        "turn": [math.cos(box.heading_rad), math.sin(box.heading_rad)],
-        "reach": box.reach,
-        "unit": grid.unit,
-        "far_side": len(grid.far),
         "far_times": FAR_TIMES,
         "density_scale": DENSITY_SCALE,
         "opaque": OPAQUE,
+        "environment": float(isinstance(found, EnvironmentMap)),
     }
+    light: tuple[NDArray[np.float16], NDArray[np.uint8], tuple[NDArray[np.float16], ...]]
+    if isinstance(found, RadianceGrid):
+        numbers |= _grid_numbers(found)
+        light = _halves(found.cells), found.skips, (_texels(edged(found.far)),)
+    else:
+        assert isinstance(found, EnvironmentMap)
+        numbers |= NO_GRID
+        light = np.zeros((2, 2, 2, 4), np.float16), np.zeros((1, 1, 1), np.uint8), _pictures(found)
     splats = model.splats
     return PaneMirrors(
         numbers,
         math.isqrt(glass.rays),
         glass.true_tilts().cpu().numpy(),
         bows,
-        _halves(grid.cells),
-        grid.skips,
-        _halves(torch.nn.functional.pad(edged(grid.far), (0, 1))),
+        *light,
         splats.sh.cpu().numpy() * ODD[:, None],
         torch.sigmoid(splats.reflectivity_logits).cpu().numpy(),
         torch.sigmoid(splats.f0_logits).cpu().numpy(),
     )
+
+
+NO_GRID: dict[str, float | list[float]] = {
+    "inner": [0.0, 0.0, 0.0],
+    "cell": 1.0,
+    "over": [1.0, 1.0, 1.0],
+    "outer": 1.0,
+    "turn": [1.0, 0.0],
+    "reach": 1.0,
+    "unit": 1.0,
+    "far_side": 1.0,
+}
+
+
+def _grid_numbers(grid: RadianceGrid) -> dict[str, float | list[float]]:
+    x, y, z, over_x, over_y, over_z, outer, cell = grid.numbers.tolist()
+    heading = grid.box.heading_rad
+    return {
+        "inner": [x, y, z],
+        "cell": cell,
+        "over": [over_x, over_y, over_z],
+        "outer": outer,
+        "turn": [math.cos(heading), math.sin(heading)],
+        "reach": grid.box.reach,
+        "unit": grid.unit,
+        "far_side": len(grid.far),
+    }
+
+
+def _pictures(environment: EnvironmentMap) -> tuple[NDArray[np.float16], ...]:
+    """The finest first; what light is on average is in the coarsest."""
+    levels = [level.reshape(math.isqrt(len(level) // 2), -1, 3) for level in environment.levels]
+    levels[0] = levels[0] + environment.mean
+    return tuple(_texels(level) for level in reversed(levels))
+
+
+def _texels(colours: torch.Tensor) -> NDArray[np.float16]:
+    """Of four numbers, the last of which is nothing."""
+    return _halves(torch.nn.functional.pad(colours, (0, 1)))
 
 
 def _halves(values: torch.Tensor) -> NDArray[np.float16]:

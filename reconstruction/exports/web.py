@@ -58,8 +58,9 @@ from reconstruction.splats.sky import Sky
 
 Words = NDArray[np.uint32]
 
-N_AT_ONCE = 16_384
-"""Gaussians of a chunk: 16 rows of the page's texture, some 0.7 MB of text."""
+N_AT_ONCE = 8_192
+"""Gaussians of a chunk: 8 rows of the page's texture, 0.6 MB of text, and up to 0.4 MB more of those on panes. With the
+first chunk the first picture is there."""
 
 MAX_GAUSSIANS = 4_000_000
 """Textures of 4096 rows of 1024 Gaussians are what nearly every device bears."""

@@ -30,7 +30,9 @@ GROUP = "models"
 
 TWO_LAYERS = say("CesiumJS: show gaussians.json and panels.json as two layers")
 MIRRORS = say("browsers with WebGPU show panes that mirror as in the model, others these colours")
-NO_MIRRORS = say("browsers cannot compute mirrored light that is no radiance grid: they show these colours")
+NO_MIRRORS = say(
+    "browsers cannot mirror as this model does, by a network or by normals of splats: they show these colours"
+)
 NO_CESIUM = say(
     "CesiumJS stops at Gaussians that are not compressed: for it, show panels.json alone, or write --gaussians spz"
 )

@@ -29,18 +29,25 @@ async function bytesOfBlock(id) {
   return bytes;
 }
 
+// Blocks that are not asked for take memory, too.
+async function drop(...ids) {
+  for (const id of state.isKeeping ? [] : ids.filter((each) => model.mirrors || each.startsWith("g"))) (await block(id))?.remove();
+}
+
 // Into the picture that is shown now; false where the page was cut off, undefined where another picture took its place.
 async function load() {
   const shown = picture;
-  const { n, at_once, degree, mirrors } = model;
+  const { at_once, degree, mirrors } = model;
+  const n = Math.min(model.n, shown.most);
   const nRest = [0, 9, 24, 45][degree];
   const isWhole = (bytes, rows, fixed) => bytes.length === rows * (fixed + nRest);
-  state.isKeeping = shown.isMirroring && (4 / 3) * n * (40 + 2 * nRest) < MOST_KEPT;
+  state.isKeeping = shown.isMirroring && (4 / 3) * model.n * (40 + 2 * nRest) < MOST_KEPT;
   let nDrawn = 0;
   for (let first = 0, number_ = 0; first < n; first += at_once, number_++) {
     const rows = Math.min(at_once, n - first);
     const bytes = await bytesOfBlock(`g${number_}`);
     const own = shown.isMirroring ? await bytesOfBlock(`m${number_}`) : null;
+    if (!own) await drop(`m${number_}`);
     if (picture !== shown) return undefined;
     if (!isWhole(bytes, rows, 32)) return false;
     const words = new Uint32Array(bytes.buffer, 0, 8 * rows);
@@ -64,11 +71,14 @@ async function load() {
       if (!isLight(mirrors, light)) return false;
       shown.addLight(...light);
       ask();
+    } else if (first === 0) {
+      await drop("l0", "l1", "l2");
     }
   }
   state.isLoaded = true;
   byId("loading").hidden = true;
   ask();
+  for (let number_ = Math.ceil(n / at_once); number_ * at_once < model.n; number_++) await drop(`g${number_}`, `m${number_}`);
   return true;
 }
 
@@ -78,7 +88,7 @@ function countOnPanes(words) {
   return found;
 }
 
-function isLight({ counts: [x, y, z], numbers }, [cells, skips, far]) {
-  const side = numbers.far_side + 2;
-  return cells.length === 8 * x * y * z && skips.length === (x - 1) * (y - 1) * (z - 1) && far.length === 8 * side * side;
+function isLight({ counts: [x, y, z], far: [width, height], far_levels }, [cells, skips, far]) {
+  const ofLevels = Array.from({ length: far_levels }, (_, level) => 8 * (width >> level) * (height >> level));
+  return cells.length === 8 * x * y * z && skips.length === (x - 1) * (y - 1) * (z - 1) && far.length === ofLevels.reduce((a, b) => a + b);
 }

@@ -7,25 +7,25 @@ const WORDS_OF_DEGREE = [0, 3, 6, 12];
 const MOST_RAYS = 4; // through a pixel, along each side
 
 class MirrorPicture {
-  // Throws an Error where this browser or device cannot show the model so; its message is a key of WORDS where that is
-  // known. lost: called when the device is.
-  static async made(canvas, model, panes, lost) {
+  // Of the `most` most visible Gaussians. Throws an Error where this browser or device cannot show them so; its message is
+  // a key of WORDS where that is known. lost: called when the device is.
+  static async made(canvas, model, panes, most, lost) {
     const adapter = await navigator.gpu?.requestAdapter({ powerPreference: "high-performance" });
     if (!adapter) throw new Error("noMirrors");
-    const bytes = Math.max(32, 4 * (2 + WORDS_OF_DEGREE[model.degree])) * Math.max(model.n, 1);
+    const bytes = Math.max(32, 4 * (2 + WORDS_OF_DEGREE[model.degree])) * most;
     const sizes = { maxStorageBufferBindingSize: bytes, maxBufferSize: bytes };
     const requiredLimits = {};
     for (const [name, wanted] of Object.entries(sizes)) {
-      if (wanted > adapter.limits[name]) throw new Error("smallMirrors");
+      if (wanted > adapter.limits[name]) throw new Error("large");
       if (wanted > 2 ** 27) requiredLimits[name] = wanted;
     }
     const device = await adapter.requestDevice({ requiredLimits });
     for (const filter of ["validation", "out-of-memory"]) device.pushErrorScope(filter);
-    const picture = new MirrorPicture(device, canvas, model, panes);
+    const picture = new MirrorPicture(device, canvas, model, panes, most);
     const problems = [await device.popErrorScope(), await device.popErrorScope()].filter(Boolean);
     if (problems.length) {
       device.destroy();
-      throw new Error(problems[0].message);
+      throw new Error(problems[0] instanceof GPUOutOfMemoryError ? "large" : problems[0].message);
     }
     device.lost.then(({ message }) => {
       console.info(`WebGPU: ${message}`);
@@ -34,8 +34,8 @@ class MirrorPicture {
     return picture;
   }
 
-  constructor(device, canvas, model, panes) {
-    Object.assign(this, { device, canvas, model, n: 0, nGlass: 0, nOrdered: 0, size: [0, 0], isMirroring: true, isBusy: false, hasLight: false });
+  constructor(device, canvas, model, panes, most) {
+    Object.assign(this, { device, canvas, model, most, n: 0, nGlass: 0, nOrdered: 0, size: [0, 0], isMirroring: true, isBusy: false, hasLight: false, version: 0, shownKey: "" });
     this.context = canvas.getContext("webgpu");
     this.format = navigator.gpu.getPreferredCanvasFormat();
     this.context.configure({ device, format: this.format, alphaMode: "opaque" });
@@ -53,17 +53,17 @@ class MirrorPicture {
   }
 
   makeBuffers(panes) {
-    const { model } = this;
+    const { model, most } = this;
     const { STORAGE, UNIFORM, VERTEX } = GPUBufferUsage;
     const nRest = WORDS_OF_DEGREE[model.degree];
     this.view = this.buffer(128, UNIFORM);
     this.pixelView = this.buffer(128, UNIFORM);
-    this.words = this.buffer(32 * model.n, STORAGE);
-    this.rest = this.buffer(4 * nRest * model.n, STORAGE);
-    this.rows = this.buffer(4 * model.n, STORAGE);
-    this.glass = this.buffer(4 * (2 + nRest) * model.mirrors.n_glass, STORAGE);
-    this.shown = this.buffer(16 * model.n, STORAGE);
-    this.order = this.buffer(4 * model.n, STORAGE);
+    this.words = this.buffer(32 * most, STORAGE);
+    this.rest = this.buffer(4 * nRest * most, STORAGE);
+    this.rows = this.buffer(4 * most, STORAGE);
+    this.glass = this.buffer(4 * (2 + nRest) * Math.min(model.mirrors.n_glass, most), STORAGE);
+    this.shown = this.buffer(16 * most, STORAGE);
+    this.order = this.buffer(4 * most, STORAGE);
     this.tints = this.buffer(4 * (panes.panes.length + 1), STORAGE);
     this.steps = this.filled(new Float32Array([...padded(model.rest_steps), ...padded(model.mirrors.own_steps)]), UNIFORM);
     this.light = this.filled(lightNumbers(model.mirrors), UNIFORM);
@@ -81,16 +81,21 @@ class MirrorPicture {
     return buffer;
   }
 
-  texture(format, width, height, depth = 1, dimension = "2d") {
+  texture(format, width, height, depth = 1, dimension = "2d", mipLevelCount = 1) {
     const usage = GPUTextureUsage.TEXTURE_BINDING | GPUTextureUsage.COPY_DST | GPUTextureUsage.COPY_SRC
       | (dimension === "2d" ? GPUTextureUsage.RENDER_ATTACHMENT : 0);
-    return this.device.createTexture({ format, dimension, size: [width, height, depth], usage });
+    return this.device.createTexture({ format, dimension, mipLevelCount, size: [width, height, depth], usage });
   }
 
+  // All of a texture, each level half as large as the one before.
   write(texture, data, bytesPerTexel) {
-    const { width, height, depthOrArrayLayers } = texture;
-    const layout = { bytesPerRow: width * bytesPerTexel, rowsPerImage: height };
-    this.device.queue.writeTexture({ texture }, data, layout, [width, height, depthOrArrayLayers]);
+    let offset = 0;
+    for (let mipLevel = 0; mipLevel < texture.mipLevelCount; mipLevel++) {
+      const [width, height] = [texture.width >> mipLevel, texture.height >> mipLevel];
+      const layout = { offset, bytesPerRow: width * bytesPerTexel, rowsPerImage: height };
+      this.device.queue.writeTexture({ texture, mipLevel }, data, layout, [width, height, texture.depthOrArrayLayers]);
+      offset += width * height * bytesPerTexel;
+    }
   }
 
   makeTextures() {
@@ -98,10 +103,9 @@ class MirrorPicture {
     this.sky = this.texture(HALF, 2 * sky.rows, sky.rows);
     this.write(this.sky, withAlpha(new Uint16Array(bytesOf(sky.halves).buffer)), 8);
     const [x, y, z] = mirrors.counts;
-    const far = mirrors.numbers.far_side + 2;
     this.cells = this.texture(HALF, x, y, z, "3d");
     this.skips = this.texture("r8uint", x - 1, y - 1, z - 1, "3d");
-    this.far = this.texture(HALF, far, far);
+    this.far = this.texture(HALF, ...mirrors.far, 1, "2d", mirrors.far_levels);
     const linear = { magFilter: "linear", minFilter: "linear" };
     this.between = this.device.createSampler({ ...linear, addressModeU: "clamp-to-edge", addressModeV: "clamp-to-edge", addressModeW: "clamp-to-edge" });
     this.around = this.device.createSampler({ ...linear, addressModeU: "repeat", addressModeV: "clamp-to-edge" });
@@ -153,7 +157,7 @@ class MirrorPicture {
   }
 
   targets(width, height) {
-    const names = ["light", "mirrored", "reflectivity", "whole"];
+    const names = ["light", "mirrored", "reflectivity", "shaded", "whole"];
     const found = Object.fromEntries(names.map((name) => [name, this.texture(HALF, width, height)]));
     found.numbers = this.texture("r32uint", width, height);
     found.depth = this.device.createTexture({ format: "depth32float", size: [width, height], usage: GPUTextureUsage.RENDER_ATTACHMENT });
@@ -164,6 +168,7 @@ class MirrorPicture {
     if (this.size[0] === width && this.size[1] === height) return;
     for (const texture of Object.values(this.target ?? {})) texture.destroy();
     this.size = [this.canvas.width, this.canvas.height] = [width, height];
+    this.version++;
     const found = (this.target = this.targets(width, height));
     this.groups.shade = this.group(this.pipelines.shade, {
       0: this.view, 10: this.light, 11: this.panes, 12: this.cells, 13: this.skips, 14: this.far, 15: this.between, 16: this.sky,
@@ -187,7 +192,7 @@ class MirrorPicture {
     if (nGlass) queue.writeBuffer(this.glass, (8 + held) * this.nGlass, spaced(glass, nGlass, 8, held));
     this.n += n;
     this.nGlass += nGlass;
-    this.seenFrom = null;
+    this.haveChanged();
   }
 
   // What panes mirror: density and light of the grid, what may be leapt over, and what is far away.
@@ -196,17 +201,24 @@ class MirrorPicture {
     this.write(this.skips, skips, 1);
     this.write(this.far, far, 8);
     this.hasLight = true;
-    this.seenFrom = null;
+    this.haveChanged();
   }
 
   setOrder(order) {
     this.device.queue.writeBuffer(this.order, 0, order);
     this.nOrdered = order.length;
+    this.version++;
   }
 
   setTints(tints) {
     this.device.queue.writeBuffer(this.tints, 0, tints);
+    this.haveChanged();
+  }
+
+  // Of colours: they are worked out anew.
+  haveChanged() {
     this.seenFrom = null;
+    this.version++;
   }
 
   setMarks(marks) {
@@ -256,7 +268,7 @@ class MirrorPicture {
   }
 
   shade(encoder) {
-    const pass = encoder.beginRenderPass({ colorAttachments: [cleared(this.target.whole)] });
+    const pass = encoder.beginRenderPass({ colorAttachments: [cleared(this.target.shaded)] });
     pass.setPipeline(this.pipelines.shade);
     pass.setBindGroup(0, this.groups.shade);
     pass.draw(3);
@@ -290,14 +302,21 @@ class MirrorPicture {
     this.resize(Math.max(1, Math.round(camera.width * ratio)), Math.max(1, Math.round(camera.height * ratio)));
     const { queue } = this.device;
     const rays = isMoving ? 1 : Math.min(this.model.mirrors.rays, MOST_RAYS);
-    queue.writeBuffer(this.view, 0, this.viewNumbers(camera, ratio, this.size, [0, 0], 0, rays, looks.markWidth * ratio));
+    const view = this.viewNumbers(camera, ratio, this.size, [0, 0], 0, rays, looks.markWidth * ratio);
+    queue.writeBuffer(this.view, 0, view);
     const edges = looks.outlines.flatMap(({ pane, colour, width }) => edgesOf(panes.panes[pane].corners, colour, width * ratio));
     queue.writeBuffer(this.lines, 0, new Float32Array(edges));
     const encoder = this.device.createCommandEncoder();
-    this.colourSplats(encoder, camera);
-    this.drawSplats(encoder, this.target, this.groups.splats);
-    this.drawNumbers(encoder);
-    this.shade(encoder);
+    // Where only outlines are new, what mirrors is as it was.
+    const key = `${view.join()} ${this.version}`;
+    if (key !== this.shownKey) {
+      this.shownKey = key;
+      this.colourSplats(encoder, camera);
+      this.drawSplats(encoder, this.target, this.groups.splats);
+      this.drawNumbers(encoder);
+      this.shade(encoder);
+    }
+    encoder.copyTextureToTexture({ texture: this.target.shaded }, { texture: this.target.whole }, this.size);
     this.drawOver(encoder, edges.length / 11);
     this.show(encoder, this.context.getCurrentTexture(), "show");
     queue.submit([encoder.finish()]);
@@ -384,8 +403,8 @@ function halfNumber(bits) {
 
 // As `Light` in mirrors.wgsl has them.
 function lightNumbers({ numbers }) {
-  const { middle, half_side, inner, cell, over, outer, turn, reach, unit, far_side, far_times, density_scale, opaque } = numbers;
-  return new Float32Array([...middle, half_side, ...inner, cell, ...over, outer, ...turn, reach, unit, far_side, far_times, density_scale, opaque]);
+  const { middle, half_side, inner, cell, over, outer, turn, reach, unit, far_side, far_times, density_scale, opaque, environment } = numbers;
+  return new Float32Array([...middle, half_side, ...inner, cell, ...over, outer, ...turn, reach, unit, far_side, far_times, density_scale, opaque, environment, 0, 0, 0]);
 }
 
 // As `Pane` in mirrors.wgsl has them.

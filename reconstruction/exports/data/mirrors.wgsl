@@ -1,8 +1,9 @@
 // Panes as mirrors (paper Eqs. 19 to 21): each pixel's ray meets its pane's plane, is mirrored by the pane's normal, which
 // leans and is bowed a little, and marches through the radiance grid; what is left of its light comes from far away.
+// Where the model has an environment map, all light does.
 //
 // The formulas are those of `reconstruction.light`: `ray_table` (rays and planes), `glass_light` (tilts, bows, several
-// rays for a pixel), `radiance_grid` (the march) and `joint_model` (the sum). Cost: some tens of places for each ray,
+// rays for a pixel), `radiance_grid` (the march), `environment_map`, and `joint_model` (the sum). Cost: some tens of places for each ray,
 // as empty cells are leapt over.
 struct Light {
   middle: vec3f,    // of the cube that places are rescaled by, metres
@@ -18,6 +19,7 @@ struct Light {
   far_times: f32,   // times `reach`, to where rays are followed
   density_scale: f32,
   opaque_share: f32,
+  environment: f32, // 1 where there is no grid, but a picture of all directions
 }
 @group(0) @binding(10) var<uniform> light: Light;
 
@@ -30,7 +32,8 @@ struct Pane {
 @group(0) @binding(11) var<storage, read> panes: array<Pane>;
 @group(0) @binding(12) var cells: texture_3d<f32>; // density, and square roots of light
 @group(0) @binding(13) var skips: texture_3d<u32>; // cells that a ray may leap
-@group(0) @binding(14) var far: texture_2d<f32>;   // square roots of light by direction, an octahedron folded out
+@group(0) @binding(14) var far: texture_2d<f32>;   // square roots of light by direction, an octahedron folded out; or an
+                                                   // environment map's pictures, whose sum is logits of light
 @group(0) @binding(15) var between: sampler;       // linear, clamped
 @group(0) @binding(16) var sky: texture_2d<f32>;   // linear light of all directions
 @group(0) @binding(17) var around: sampler;        // linear, round without a seam
@@ -102,6 +105,23 @@ fn marched(place: vec3f, direction: vec3f) -> vec3f {
   return found + through * far_light(turned_direction);
 }
 
+// Where a picture of all directions shows one: turns clockwise from north, and 0 at the zenith to 1 at the nadir. A unit
+// direction: east, north, up.
+fn map_place(d: vec3f) -> vec2f {
+  let north = select(1.0, d.y, abs(d.x) + abs(d.y) > 1e-6);
+  return vec2f(atan2(d.x, north) / 6.2831853, 0.5 - asin(clamp(d.z, -1.0, 1.0)) / 3.1415927);
+}
+
+fn arriving(place: vec3f, direction: vec3f) -> vec3f {
+  if (light.environment == 0.0) { return marched(place, direction); }
+  let at = map_place(direction);
+  var logits = vec3f(0.0);
+  for (var level = 0u; level < textureNumLevels(far); level++) {
+    logits += textureSampleLevel(far, around, at, f32(level)).rgb;
+  }
+  return 1.0 / (1.0 + exp(-logits));
+}
+
 struct Mirrored { light: vec3f, cosine: f32 }
 
 // What a pane shows of its surroundings to a pixel, on average over the rays that meet it inside its edges; where none
@@ -125,7 +145,7 @@ fn mirrored_by(number: u32, pixel: vec2f) -> Mirrored {
     let lean = vec2f(pane.corner.w, pane.normal.w) + vec2f(pane.right.w, pane.up.w) * off_middle;
     let normal = normalize(pane.normal.xyz + lean.x * lower + lean.y * upward);
     let along = dot(d, normal);
-    let found = marched((met - light.middle) / light.half_side, d - 2.0 * along * normal);
+    let found = arriving((met - light.middle) / light.half_side, d - 2.0 * along * normal);
     let cosine = min(abs(along), 1.0);
     every = Mirrored(every.light + found, every.cosine + cosine);
     if (all(shares >= vec2f(0.0)) && all(shares <= vec2f(1.0))) {
@@ -154,13 +174,6 @@ fn pane_at(at: vec2i) -> u32 {
   return found;
 }
 
-// Where a picture of all directions shows one, as `reconstruction.splats.sky` reads it: rows from the zenith to the
-// nadir, columns clockwise from south, so that north is in the middle. A unit direction: east, north, up.
-fn sky_place(d: vec3f) -> vec2f {
-  let north = select(1.0, d.y, abs(d.x) + abs(d.y) > 1e-6);
-  return vec2f(0.5 + atan2(d.x, north) / 6.2831853, 0.5 - asin(clamp(d.z, -1.0, 1.0)) / 3.1415927);
-}
-
 @vertex
 fn shade_corner(@builtin(vertex_index) number: u32) -> @builtin(position) vec4f { return corner_of_all(number); }
 
@@ -182,7 +195,8 @@ fn shade_pixel(@builtin(position) position: vec4f) -> @location(0) vec4f {
   }
   if (1.0 - own.a > SKY_SEEN) {
     let d = normalize(view.forward + (pixel.x * view.right + pixel.y * view.down) / view.focal);
-    sum += (1.0 - own.a) * textureSampleLevel(sky, around, sky_place(d), 0.0).rgb;
+    // The sky's columns begin in the south (`reconstruction.splats.sky`).
+    sum += (1.0 - own.a) * textureSampleLevel(sky, around, map_place(d) + vec2f(0.5, 0.0), 0.0).rgb;
   }
   return vec4f(sum, 1.0);
 }

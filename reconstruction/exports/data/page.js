@@ -205,7 +205,9 @@ function showWords() {
 
 // How far what panes mirror can be trusted.
 function showNote() {
-  byId("note").textContent = model.n ? say(state.note || (model.is_baked ? "baked" : "plain")) : "";
+  const texts = model.n ? [say(state.note || (model.is_baked ? "baked" : "plain"))] : [];
+  if (picture !== null && picture.most < model.n) texts.push(say("partly", { n: picture.most, all: model.n }));
+  byId("note").textContent = texts.join(" ");
 }
 
 const sayLines = (key) => WORDS[language][key].map((line) => make("p", "", line));
@@ -230,15 +232,28 @@ function tell(key) {
   byId("trouble").hidden = false;
 }
 
+// A picture of as many Gaussians as the device has memory for, the most visible ones: all, half of them, and so on.
+async function fitting(make) {
+  const least = 100000;
+  for (let most = Math.max(model.n, 1); ; most = Math.ceil(most / 2 / model.at_once) * model.at_once) {
+    try {
+      return await make(most);
+    } catch (error) {
+      if (error.message !== "large" || most <= least) throw error;
+    }
+  }
+}
+
 // With panes as mirrors, by WebGPU; null where the model has none, or the browser cannot.
 async function mirrorPicture() {
   if (!model.mirrors) return null;
+  const lost = () => {
+    if (picture?.isMirroring) startAgain();
+  };
   try {
-    return await MirrorPicture.made(byId("mirrors"), model, panes, () => {
-      if (picture?.isMirroring) startAgain();
-    });
+    return await fitting((most) => MirrorPicture.made(byId("mirrors"), model, panes, most, lost));
   } catch (error) {
-    state.note = own(WORDS.en, error.message) ? error.message : "noMirrors";
+    state.note = error.message === "large" ? "smallMirrors" : "noMirrors";
     console.info(`no mirrors: ${error.message}`);
     return null;
   }
@@ -249,7 +264,7 @@ async function mirrorPicture() {
 async function plainPicture(tries = 1) {
   const canvas = byId("picture");
   try {
-    const found = new Picture(canvas, model, panes);
+    const found = await fitting((most) => new Picture(canvas, model, panes, most));
     canvas.addEventListener("webglcontextlost", (event) => {
       event.preventDefault();
       picture = null;

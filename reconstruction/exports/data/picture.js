@@ -3,13 +3,14 @@ const ROW = 1024;
 const TINTS_WIDTH = 256;
 
 class Picture {
-  // Throws an Error whose message is a key of WORDS where this device cannot show the model.
-  constructor(canvas, model, panes) {
+  // Of the `most` most visible Gaussians. Throws an Error whose message is a key of WORDS where this device cannot show
+  // them.
+  constructor(canvas, model, panes, most) {
     const options = { antialias: false, alpha: false, powerPreference: "high-performance" };
     const gl = canvas.getContext("webgl2", options);
     if (gl === null) throw new Error("webgl");
-    Object.assign(this, { canvas, gl, model, isMirroring: false, isBusy: false, n: 0, nOrdered: 0, size: [0, 0] });
-    this.nRows = Math.max(1, Math.ceil(model.n / ROW));
+    Object.assign(this, { canvas, gl, model, most, isMirroring: false, isBusy: false, n: 0, nOrdered: 0, size: [0, 0] });
+    this.nRows = Math.max(1, Math.ceil(most / ROW));
     const widest = Math.max(2, model.degree) * ROW;
     if (Math.max(this.nRows, widest) > gl.getParameter(gl.MAX_TEXTURE_SIZE)) throw new Error("large");
     const program = (vertex, fragment) => new Program(gl, vertex, fragment);
@@ -27,7 +28,10 @@ class Picture {
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.colourTarget);
     gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, this.colours, 0);
     this.sky = this.skyTexture(model.sky);
-    if (gl.getError() === gl.OUT_OF_MEMORY) throw new Error("large");
+    if (gl.getError() === gl.OUT_OF_MEMORY) {
+      for (const texture of [this.data, this.rest, this.colours]) gl.deleteTexture(texture);
+      throw new Error("large");
+    }
     this.empty = gl.createVertexArray();
     this.order = this.buffers([[null, 1, gl.UNSIGNED_INT, 4, 0, 1]]);
     this.paneBuffers = this.buffers([[paneVertices(panes, model.panes), 3, gl.FLOAT, 16, 0, 0], [null, 1, gl.FLOAT, 16, 12, 0]]);

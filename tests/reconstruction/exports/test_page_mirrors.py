@@ -13,11 +13,13 @@ from reconstruction.base.cameras import Intrinsics, Pose, PosedPhoto
 from reconstruction.exports.page_mirrors import mirrors_of
 from reconstruction.exports.web import WebOptions, wgsl, write_web
 from reconstruction.light.config import GlassLearned
+from reconstruction.light.environment_map import EnvironmentMap
 from reconstruction.light.glass_light import GlassLight
 from reconstruction.light.glass_rays import rays_of_pixels
 from reconstruction.light.photo_set import PanelPlanes
 from reconstruction.light.radiance_grid import GridBox, RadianceGrid
 from reconstruction.light.ray_table import RayTable
+from reconstruction.light.reflection_mlp import MlpShape, ReflectionMlp
 from reconstruction.splats.sky import Sky
 from reconstruction.splats.splats import Splats
 from reconstruction.training.model.joint_model import SceneModel
@@ -45,22 +47,37 @@ def leaning_panes(rng):
     return square + middles[:, None] + rng.uniform(-0.1, 0.1, (4, 1, 3)) * (1.0, 0.0, 1.0) + ORIGIN_ENU_M
 
 
-def model_of(rng, rays=4):
-    """Panes that lean and are bowed, and a grid with dense and empty places, as none that was trained is."""
-    planes = PanelPlanes(leaning_panes(rng))
+def grid_of(rng):
+    """With dense and empty places, as none that was trained is."""
     box = GridBox(0.4, (0.1, 0.8, 0.2), (1.5, 1.1, 1.3), (17, 13, 15), 0.5, 2.0)
     grid = RadianceGrid(box, 0.3, 0, 16)
-    light = GlassLight(grid, planes, GlassLearned(rays=rays, tilts=True, bows=True))
     with torch.no_grad():
         density = rng.normal(-0.6, 0.35, grid.cells.shape[:3])
         density[:, :, :7] = -0.5
         grid.cells[..., 0] = torch.from_numpy(density).float()
         grid.cells[..., 1:] = torch.from_numpy(rng.uniform(0.2, 1.0, (*density.shape, 3))).float()
         grid.far.copy_(torch.from_numpy(rng.uniform(0.2, 1.2, grid.far.shape)).float())
-        light.tilts.copy_(torch.from_numpy(rng.normal(0.0, 0.02, light.tilts.shape)).float())
-        light.bows.copy_(torch.from_numpy(rng.normal(0.0, 0.02, light.bows.shape)).float())
     grid.refresh()
     assert 0.1 < (grid.skips > 0).mean() < 0.9
+    return grid
+
+
+def environment_of(rng):
+    """With detail of all sizes."""
+    found = EnvironmentMap(16, 0.3)
+    with torch.no_grad():
+        for level in found.levels:
+            level.copy_(torch.from_numpy(rng.normal(0.0, 0.5, level.shape)).float())
+    return found
+
+
+def model_of(rng, rays=4, make=grid_of):
+    """Panes that lean and are bowed, and any light."""
+    planes = PanelPlanes(leaning_panes(rng))
+    light = GlassLight(make(rng), planes, GlassLearned(rays=rays, tilts=True, bows=True))
+    with torch.no_grad():
+        light.tilts.copy_(torch.from_numpy(rng.normal(0.0, 0.02, light.tilts.shape)).float())
+        light.bows.copy_(torch.from_numpy(rng.normal(0.0, 0.02, light.bows.shape)).float())
     splats = Splats(
         {
             "means": torch.zeros(1, 3),
@@ -76,13 +93,13 @@ def model_of(rng, rays=4):
     return SceneModel(splats, Sky(), light, planes, ORIGIN_ENU_M, 1.0).eval()
 
 
-def made_mirrors(scene, n_panels=None):
-    """Of a scene that was not trained: any grid, and random values of all of its Gaussians."""
+def made_mirrors(scene, n_panels=None, make=grid_of):
+    """Of a scene that was not trained: any light, and random values of all of its Gaussians."""
     rng = np.random.default_rng(0)
     n = scene.n_gaussians
     m = len(list(scene.elements)) if n_panels is None else n_panels
     return replace(
-        mirrors_of(model_of(rng)),
+        mirrors_of(model_of(rng, make=make)),
         tilts=rng.normal(0.0, 0.01, (m, 2)).astype(np.float32),
         bows=rng.normal(0.0, 0.01, (m, 2)).astype(np.float32),
         sh=rng.normal(0.0, 0.05, (n, 16, 3)).astype(np.float32),
@@ -106,9 +123,9 @@ def numbers_of(mirrors, corners_m):
     n = mirrors.numbers
     names = (
         *("middle", "half_side", "inner", "cell", "over", "outer", "turn", "reach", "unit", "far_side", "far_times"),
-        *("density_scale", "opaque"),
+        *("density_scale", "opaque", "environment"),
     )
-    light = np.concatenate([np.atleast_1d(n[name]) for name in names]).astype(np.float32)
+    light = np.concatenate([*(np.atleast_1d(n[name]) for name in names), np.zeros(3)]).astype(np.float32)
     normals = np.cross(corners_m[:, 2] - corners_m[:, 0], corners_m[:, 3] - corners_m[:, 1])
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     edges = [corners_m[:, i] - corners_m[:, 0] for i in (1, 3)]
@@ -137,11 +154,17 @@ class Shaders:
     def buffer(self, values, usage):
         return self.device.create_buffer_with_data(data=np.ascontiguousarray(values), usage=usage)
 
-    def texture(self, values, kind, size, texel_bytes, dimension):
+    def texture(self, levels, kind, texel_bytes, dimension):
+        """Of arrays (depth, height, width, ...) or (height, width, ...), each half as large as the one before."""
+        sizes = [(*level.shape[2::-1],) if dimension == "3d" else (*level.shape[1::-1], 1) for level in levels]
         usage = self.wgpu.TextureUsage.TEXTURE_BINDING | self.wgpu.TextureUsage.COPY_DST
-        found = self.device.create_texture(size=size, format=kind, usage=usage, dimension=dimension)
-        layout = {"bytes_per_row": size[0] * texel_bytes, "rows_per_image": size[1]}
-        self.device.queue.write_texture({"texture": found}, np.ascontiguousarray(values), layout, size)
+        found = self.device.create_texture(
+            size=sizes[0], format=kind, usage=usage, dimension=dimension, mip_level_count=len(levels)
+        )
+        for number, (level, size) in enumerate(zip(levels, sizes, strict=True)):
+            layout = {"bytes_per_row": size[0] * texel_bytes, "rows_per_image": size[1]}
+            place = {"texture": found, "mip_level": number}
+            self.device.queue.write_texture(place, np.ascontiguousarray(level), layout, size)
         return found.create_view()
 
     def mirrored(self, mirrors, corners_m, eye_m, axes, asked):
@@ -152,18 +175,19 @@ class Shaders:
         for row, axis in zip((4, 8, 12), axes, strict=True):
             view[row : row + 3] = axis
         light, panes = numbers_of(mirrors, corners_m)
-        z, y, x, _ = mirrors.cells.shape
-        side = len(mirrors.far)
         found = device.create_buffer(size=16 * len(asked), usage=usage.STORAGE | usage.COPY_SRC)
         linear = dict.fromkeys(("address_mode_u", "address_mode_v", "address_mode_w"), "clamp-to-edge")
         own = {
             0: {"buffer": self.buffer(view, usage.UNIFORM)},
             10: {"buffer": self.buffer(light, usage.UNIFORM)},
             11: {"buffer": self.buffer(panes, usage.STORAGE)},
-            12: self.texture(mirrors.cells, "rgba16float", (x, y, z), 8, "3d"),
-            13: self.texture(mirrors.skips, "r8uint", (x - 1, y - 1, z - 1), 1, "3d"),
-            14: self.texture(mirrors.far, "rgba16float", (side, side, 1), 8, "2d"),
+            12: self.texture([mirrors.cells], "rgba16float", 8, "3d"),
+            13: self.texture([mirrors.skips], "r8uint", 1, "3d"),
+            14: self.texture(mirrors.far, "rgba16float", 8, "2d"),
             15: device.create_sampler(mag_filter="linear", min_filter="linear", **linear),
+            17: device.create_sampler(
+                mag_filter="linear", min_filter="linear", **{**linear, "address_mode_u": "repeat"}
+            ),
         }
         questions = np.column_stack([asked, np.zeros(len(asked))]).astype(np.float32)
         answers = {0: {"buffer": self.buffer(questions, usage.STORAGE)}, 1: {"buffer": found}}
@@ -185,10 +209,10 @@ def shaders():
     return Shaders()
 
 
-@pytest.mark.parametrize("rays", [1, 4])
-def test_panes_mirror_to_pixels_what_the_model_mirrors(shaders, rays):
+@pytest.mark.parametrize(("rays", "make"), [(1, grid_of), (4, grid_of), (4, environment_of)])
+def test_panes_mirror_to_pixels_what_the_model_mirrors(shaders, rays, make):
     rng = np.random.default_rng(rays)
-    model = model_of(rng, rays)
+    model = model_of(rng, rays, make)
     for eye, heading, pitch in [((0.3, -4.0, 0.5), 2.0, -3.0), ((3.0, -2.0, -1.0), -50.0, 10.0)]:
         photo, axes = looking(eye, heading, pitch)
         columns, rows = rng.integers(0, WIDTH, 500), rng.integers(0, HEIGHT, 500)
@@ -236,6 +260,13 @@ def test_pages_carry_what_panes_are_made_of_beside_what_is_baked(tmp_path):
     assert distances.min(axis=1).max() < 0.5 / 255.0 + 1e-6
 
 
+def test_the_first_picture_of_a_large_model_is_within_2_mb(tmp_path):
+    scene = synthetic_scene(sizes=((9000,) * 2,), n_background=2000)
+    page = write_web(scene, tmp_path, (), WebOptions(mirrors=made_mirrors(scene))).path.read_bytes()
+    assert page.index(b'id="g1"') > page.index(b'id="l0"') > page.index(b'id="m0"') > page.index(b'id="g0"')
+    assert page.index(b'id="l0"') < 2_000_000
+
+
 def test_pages_whose_panes_cannot_mirror_carry_nothing_of_it(tmp_path):
     for number, sizes in enumerate([((0, 0),), ()]):
         scene = synthetic_scene(sizes=sizes, n_background=5)
@@ -246,10 +277,18 @@ def test_pages_whose_panes_cannot_mirror_carry_nothing_of_it(tmp_path):
         assert 'id="l0"' not in page
 
 
-def test_only_a_grid_that_planes_mirror_is_marched_by_the_page():
+def test_only_light_that_the_page_can_compute_is_given_to_it():
     model = model_of(np.random.default_rng(0))
     assert mirrors_of(model).rays == 2
     model.geometry = "splats"
+    assert mirrors_of(model) is None
+    model.geometry = "panels"
+    # A kind of light that learns more than the page knows of must not be shown without that.
+    model.light.light.detail = torch.nn.Parameter(torch.zeros(1))
+    assert mirrors_of(model) is None
+    shape = MlpShape(width=8, layers=2, position_order=2, direction_order=2)
+    network = ReflectionMlp(shape, 0.3, torch.Generator().manual_seed(0))
+    model.light.light = network
     assert mirrors_of(model) is None
     model.light = None
     assert mirrors_of(model) is None

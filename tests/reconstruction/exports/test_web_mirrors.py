@@ -4,8 +4,10 @@ import time
 
 import numpy as np
 import pytest
+import torch
 
 from reconstruction.exports.web import WebOptions, write_web
+from reconstruction.light.environment_map import EnvironmentMap
 from tests.reconstruction.exports.test_page_mirrors import made_mirrors
 from tests.reconstruction.exports.test_web_browser import CAMERA, PICKED, inspected, of_pane
 from tests.reconstruction.exports.web_browser import middle, opened, pixel
@@ -21,6 +23,20 @@ SMALL = "Object.defineProperty(GPUSupportedLimits.prototype, 'maxBufferSize', { 
 def shown(browser, folder, scene, records=(), **options):
     """A page that is open, of a scene whose panes mirror."""
     return opened(browser, folder, scene, records, (900, 400), mirrors=made_mirrors(scene), **options)
+
+
+def glazed(scene):
+    """The scene with the splats of each pane of its first facade all over it, and nearly opaque."""
+    rng, facade = np.random.default_rng(0), scene.components[0]
+    values = facade.gaussians.values
+    for pane in facade.elements:
+        corners = np.asarray(pane.corners_enu_m) - scene.origin_enu_m
+        u, v = rng.random((2, pane.n_gaussians, 1))
+        places = corners[0] + u * (corners[1] - corners[0]) + v * (corners[3] - corners[0])
+        values["means"][pane.start : pane.stop] = places
+    values["quats"][:] = (np.sqrt(0.5), np.sqrt(0.5), 0, 0)
+    values["opacity_logits"][:] = 4.0
+    return scene
 
 
 def test_clicks_pick_what_is_seen_and_not_what_a_wall_hides(browser, tmp_path):
@@ -49,13 +65,7 @@ def test_clicks_pick_what_is_seen_and_not_what_a_wall_hides(browser, tmp_path):
 def test_panes_without_splats_show_their_column_and_those_with_them_no_longer_mirror(browser, tmp_path):
     scene = synthetic_scene(sizes=((0, 0, 600),), n_background=0)
     panes = [element for _, element in scene.elements]
-    for component in scene.components[:1]:
-        values = component.gaussians.values
-        u, v = np.random.default_rng(0).random((2, 600, 1))
-        corners = np.asarray(panes[2].corners_enu_m) - scene.origin_enu_m
-        values["means"][:] = corners[0] + u * (corners[1] - corners[0]) + v * (corners[3] - corners[0])
-        values["quats"][:] = (np.sqrt(0.5), np.sqrt(0.5), 0, 0)
-        values["opacity_logits"][:] = 4.0
+    glazed(scene)
     rows = [of_pane(pane, "attribute", name="maker", value=maker) for pane, maker in zip(panes, "aba", strict=True)]
     shown(browser, tmp_path / "page", scene, rows)
     before = browser.pixels().astype(int)
@@ -127,6 +137,42 @@ def test_when_the_device_is_lost_the_page_goes_on_with_baked_colours(browser, tm
     browser.mouse(("move", x, y), ("down",), ("up",))
     browser.settled()
     assert browser.run(PICKED) == pane.global_id
+
+
+ROOM_FOR_HALF = "Object.defineProperty(GPUSupportedLimits.prototype, 'maxBufferSize', { get: () => 32 * 70000 })"
+
+
+def test_a_device_with_little_memory_shows_the_most_visible_and_says_of_how_many(browser, tmp_path):
+    scene = synthetic_scene(sizes=((200,),), n_background=130_000)
+    for component in scene.components:
+        component.gaussians.values["log_scales"][:] -= 1.0
+    added = browser.cdp("Page.addScriptToEvaluateOnNewDocument", source=ROOM_FOR_HALF)
+    page = opened(browser, tmp_path / "page", scene, (), (600, 400), mirrors=made_mirrors(scene), degree=0)
+    browser.cdp("Page.removeScriptToEvaluateOnNewDocument", **added)
+    state = browser.run(STATE)
+    assert (state["isMirroring"], state["isLoaded"], state["n"]) == (True, True, 65_536)
+    assert page.n_gaussians > 2 * 60_000
+    assert f"65,536 most visible of {page.n_gaussians:,}" in browser.texts("#note")[0]
+    left = "return document.querySelectorAll('script[type=\"text/plain\"]').length"
+    assert browser.run(left) > 0  # for when the device is lost
+    assert browser.errors() == []
+
+
+@pytest.mark.parametrize("brightest", [0, 1])
+def test_panes_mirror_an_environment_map(browser, tmp_path, brightest):
+    def make(_rng):
+        found = EnvironmentMap(16, 0.05)
+        with torch.no_grad():
+            found.mean[brightest] = 6.0
+        return found
+
+    scene = glazed(synthetic_scene(sizes=((600,),), n_background=0))
+    opened(browser, tmp_path / "page", scene, (), (600, 400), mirrors=made_mirrors(scene, make=make))
+    assert browser.run(STATE)["isMirroring"]
+    (pane,) = (element for _, element in scene.elements)
+    x, y = map(round, pixel(browser.run(CAMERA), middle(scene, pane)))
+    found = browser.pixels()[y, x].astype(int)
+    assert found[brightest] > found[1 - brightest] + 20
 
 
 def test_a_page_that_was_cut_off_in_its_light_says_so(browser, tmp_path):
