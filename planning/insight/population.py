@@ -20,12 +20,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InputError
-from planning.base.files import ANY_FILE, open_input_file
+from planning.base.messages import say
 from planning.geo.crs import parse_crs
 from planning.geo.enu import enu_from_geodetic, geodetic_from_enu
 from planning.geo.frames import Origin
 from planning.insight.ground_risk_request import Counts
-from planning.site.importing.elevation import GDAL_OPTIONS, TIFF_STARTS, damaged, forget_unwritten, quiet
+from planning.site.importing.elevation import read_band, tiff_facts
 
 if TYPE_CHECKING:
     from shapely import Geometry
@@ -123,32 +123,13 @@ def open_population(path: Path, counts: Counts = "auto") -> PopulationRaster:
     InputError
         It is no such file, is damaged, or does not say what its values count.
     """
-    with open_input_file(path, ANY_FILE) as file:
-        if file.read(4) not in TIFF_STARTS:
-            raise InputError.say("is no GeoTIFF; expected a population raster as .tif", place=path)
-    import rasterio
-    from rasterio.errors import RasterioError
-
-    try:
-        with quiet(), rasterio.Env(**GDAL_OPTIONS), rasterio.open(path, driver="GTiff") as source:
-            if source.count != 1:
-                raise InputError.say(
-                    "has {} bands, as pictures have; expected one band of people", source.count, place=path
-                )
-            if np.dtype(source.dtypes[0]).kind not in "iuf":
-                raise InputError.say("holds values of the type {}; expected numbers", source.dtypes[0], place=path)
-            size, transform = (int(source.width), int(source.height)), source.transform
-            from_pixel = tuple(float(value) for value in transform[:6])
-            wkt = "" if source.crs is None else str(source.crs.to_wkt(version="WKT2_2019"))
-    except (RasterioError, OSError, ValueError, AttributeError) as error:
-        raise damaged(path, error) from error
-    a, b, c, d, e, f = from_pixel
-    if transform.is_identity or not all(map(math.isfinite, from_pixel)) or abs(a * e - b * d) < 1e-18:
-        raise InputError.say("does not say where it lies; give a GeoTIFF with its georeference", place=path)
-    if not wkt:
+    facts = tiff_facts(path, say("people"))
+    if facts.kind.kind not in "iuf":
+        raise InputError.say("holds values of the type {}; expected numbers", facts.kind.name, place=path)
+    if not facts.wkt:
         raise InputError.say("names no coordinate reference system; take the file as its maker gives it", place=path)
     try:
-        parse_crs(wkt)
+        parse_crs(facts.wkt)
     except InputError as error:
         raise InputError.say("names a coordinate reference system that is not known here", place=path) from error
     known = next(((name, counted) for pattern, name, counted in PRODUCTS if pattern.search(path.name)), None)
@@ -165,9 +146,9 @@ def open_population(path: Path, counts: Counts = "auto") -> PopulationRaster:
         product,
         counts if counts != "auto" else counted,
         is_stated,
-        *size,
-        (a, b, c, d, e, f),
-        wkt,
+        *facts.size,
+        facts.corners,
+        facts.wkt,
     )
 
 
@@ -269,33 +250,19 @@ def _corners_enu(raster: PopulationRaster, columns: tuple[int, int], rows: tuple
 
 def _read(raster: PopulationRaster, columns: tuple[int, int], rows: tuple[int, int]) -> Array:
     """Values of a window, NaN where the raster knows none; a raster all around the earth goes on at its other end."""
-    import rasterio
-    from rasterio.errors import RasterioError
-    from rasterio.windows import Window
-
     found = np.full((rows[1] - rows[0], columns[1] - columns[0]), np.nan)
     wanted = np.arange(*columns)
     turn = 360.0 / abs(raster.from_pixel[0])
     if _is_round(raster) and abs(turn - raster.width) < 0.5:
         wanted = wanted % raster.width
     first_row, last_row = max(rows[0], 0), min(rows[1], raster.height)
-    try:
-        with quiet(), rasterio.Env(**GDAL_OPTIONS), rasterio.open(raster.path, driver="GTiff") as source:
-            if (source.width, source.height) != (raster.width, raster.height):
-                raise InputError.say("has changed while it was read", place=raster.path)
-            # Runs of columns that follow one another in the file.
-            for run in np.split(np.arange(len(wanted)), np.flatnonzero(np.diff(wanted) != 1) + 1):
-                inside = run[(wanted[run] >= 0) & (wanted[run] < raster.width)]
-                if len(inside) and first_row < last_row:
-                    low = int(wanted[inside[0]])
-                    window = Window(low, first_row, len(inside), last_row - first_row)
-                    part = source.read(1, window=window, masked=True).astype(np.float64).filled(np.nan)
-                    part = part * source.scales[0] + source.offsets[0]
-                    if source.nodata is None:
-                        forget_unwritten(source, part, first_row, low)
-                    found[first_row - rows[0] : last_row - rows[0], inside[0] : inside[-1] + 1] = part
-    except (RasterioError, OSError, ValueError, AttributeError) as error:
-        raise damaged(raster.path, error) from error
+    # Runs of columns that follow one another in the file.
+    for run in np.split(np.arange(len(wanted)), np.flatnonzero(np.diff(wanted) != 1) + 1):
+        inside = run[(wanted[run] >= 0) & (wanted[run] < raster.width)]
+        if len(inside) and first_row < last_row:
+            low = int(wanted[inside[0]])
+            part = read_band(raster.path, (raster.width, raster.height), first_row, last_row, low, low + len(inside))
+            found[first_row - rows[0] : last_row - rows[0], inside[0] : inside[-1] + 1] = part
     with np.errstate(invalid="ignore"):
         return np.where((found >= 0.0) & np.isfinite(found), found, np.nan)
 

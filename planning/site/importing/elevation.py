@@ -420,39 +420,70 @@ TIFF_STARTS = (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")
 GDAL_OPTIONS = {"GDAL_CACHEMAX": 64, "GDAL_NUM_THREADS": 1, "GTIFF_POINT_GEO_IGNORE": "FALSE"}
 
 
-def _open_tiff(path: Path, options: HeightOptions) -> Raster:
+class TiffFacts(NamedTuple):
+    """What a GeoTIFF of one band says of itself.
+
+    `corners` places corners of pixels as `Raster.from_pixel` places posts; `wkt` and `unit` are empty where it names no
+    reference system and no unit of its values.
+    """
+
+    size: tuple[int, int]
+    corners: tuple[float, float, float, float, float, float]
+    wkt: str
+    kind: np.dtype[Any]
+    unit: str
+
+
+def tiff_facts(path: Path, what: str) -> TiffFacts:
+    """What a GeoTIFF of one band says of itself; no value is read.
+
+    Parameters
+    ----------
+    what
+        Its values, in words.
+
+    Raises
+    ------
+    InputError
+        It is none, has several bands, is damaged, or does not say where it lies.
+    """
     with open_input_file(path, ANY_FILE) as file:
         if file.read(4) not in TIFF_STARTS:
-            raise InputError.say("is no GeoTIFF; expected heights as .tif or .hgt", place=path)
+            raise InputError.say("is no GeoTIFF; expected {} as .tif", what, place=path)
     import rasterio
     from rasterio.errors import RasterioError
 
     try:
-        with quiet(), rasterio.Env(**GDAL_OPTIONS), rasterio.open(path, driver="GTiff") as source:
+        with _quiet(), rasterio.Env(**GDAL_OPTIONS), rasterio.open(path, driver="GTiff") as source:
             if source.count != 1:
                 raise InputError.say(
-                    "has {} bands, as pictures have; expected one band of heights", source.count, place=path
+                    "has {} bands, as pictures have; expected one band of {}", source.count, what, place=path
                 )
             kind = np.dtype(source.dtypes[0])
-            if kind.kind not in "iuf" or kind.itemsize == 1:
-                raise InputError.say(
-                    "holds values of the type {}, as shaded pictures do; expected heights as 16 or 32 bit",
-                    source.dtypes[0],
-                    place=path,
-                )
             size, transform = (int(source.width), int(source.height)), source.transform
             a, b, c, d, e, f = (float(value) for value in transform[:6])
             is_placed = not transform.is_identity
-            wkt = None if source.crs is None else source.crs.to_wkt(version="WKT2_2019")
+            wkt = "" if source.crs is None else str(source.crs.to_wkt(version="WKT2_2019"))
             unit = str(source.units[0] or "").lower().replace("_", " ")
     except (RasterioError, OSError, ValueError, AttributeError) as error:
-        raise damaged(path, error) from error
+        raise _damaged(path, error) from error
     if not is_placed or not all(map(math.isfinite, (a, b, c, d, e, f))) or abs(a * e - b * d) < 1e-18:
         raise InputError.say("does not say where it lies; give a GeoTIFF with its georeference", place=path)
+    return TiffFacts(size, (a, b, c, d, e, f), wkt, kind, unit)
+
+
+def _open_tiff(path: Path, options: HeightOptions) -> Raster:
+    size, (a, b, c, d, e, f), wkt, kind, unit = tiff_facts(path, say("heights"))
+    if kind.kind not in "iuf" or kind.itemsize == 1:
+        raise InputError.say(
+            "holds values of the type {}, as shaded pictures do; expected heights as 16 or 32 bit",
+            kind.name,
+            place=path,
+        )
     if options.crs is None and not wkt:
         raise InputError.say("names no coordinate reference system; name it with --crs", place=path)
     try:
-        crs = parse_crs(options.crs or str(wkt))
+        crs = parse_crs(options.crs or wkt)
     except InputError as error:
         if options.crs is not None:
             raise
@@ -470,25 +501,39 @@ def _open_tiff(path: Path, options: HeightOptions) -> Raster:
 
 
 def _read_tiff(raster: Raster, first_row: int, last_row: int, first_column: int, last_column: int) -> Array:
+    size = (raster.width, raster.height)
+    return read_band(raster.path, size, first_row, last_row, first_column, last_column)
+
+
+def read_band(
+    path: Path, size: tuple[int, int], first_row: int, last_row: int, first_column: int, last_column: int
+) -> Array:
+    """Values of the only band of a GeoTIFF within a window, ends excluded; NaN where it knows none.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, is damaged, or is no longer of the size, columns and rows, that it had.
+    """
     import rasterio
     from rasterio.errors import RasterioError
     from rasterio.windows import Window
 
     window = Window(first_column, first_row, last_column - first_column, last_row - first_row)
     try:
-        with quiet(), rasterio.Env(**GDAL_OPTIONS), rasterio.open(raster.path, driver="GTiff") as source:
-            if (source.width, source.height) != (raster.width, raster.height):
-                raise InputError.say("has changed while it was read", place=raster.path)
-            heights = source.read(1, window=window, masked=True).astype(np.float64).filled(np.nan)
-            heights = heights * source.scales[0] + source.offsets[0]
+        with _quiet(), rasterio.Env(**GDAL_OPTIONS), rasterio.open(path, driver="GTiff") as source:
+            if (source.width, source.height) != size:
+                raise InputError.say("has changed while it was read", place=path)
+            values = source.read(1, window=window, masked=True).astype(np.float64).filled(np.nan)
+            values = values * source.scales[0] + source.offsets[0]
             if source.nodata is None:
-                forget_unwritten(source, heights, first_row, first_column)
+                _forget_unwritten(source, values, first_row, first_column)
     except (RasterioError, OSError, ValueError, AttributeError) as error:
-        raise damaged(raster.path, error) from error
-    return np.asarray(heights)
+        raise _damaged(path, error) from error
+    return np.asarray(values)
 
 
-def forget_unwritten(source: Any, heights: Array, first_row: int, first_column: int) -> None:
+def _forget_unwritten(source: Any, heights: Array, first_row: int, first_column: int) -> None:
     """Set posts of blocks that the file leaves out to NaN: GDAL reads them as zero."""
     rows, columns = heights.shape
     block_rows, block_columns = source.block_shapes[0]
@@ -500,15 +545,14 @@ def forget_unwritten(source: Any, heights: Array, first_row: int, first_column: 
 
 
 @contextmanager
-def quiet() -> Iterator[None]:
+def _quiet() -> Iterator[None]:
     """Without rasterio's warnings, of which each is looked for here and said in words."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         yield
 
 
-def damaged(path: Path, error: Exception) -> InputError:
-    """What reading a raster ran into, in words; errors that are in words already stay as they are."""
+def _damaged(path: Path, error: Exception) -> InputError:
     if isinstance(error, InputError):
         return error
     reason = str(error).splitlines()[0] if str(error) else type(error).__name__

@@ -18,7 +18,7 @@ from planning.insight.ground_risk import assess_ground_risk
 from planning.insight.ground_risk_request import GroundRiskRequest
 from planning.insight.population import open_population, people_below
 from planning.site.bundled import ORIGIN
-from planning.site.importing.elevation import quiet
+from planning.site.importing.elevation import _quiet
 from tests.planning.insight.ground_risk_cases import ROUND, flown, place
 
 MOLLWEIDE = "ESRI:54009"
@@ -175,7 +175,7 @@ def test_products_are_known_by_the_names_of_their_files_and_what_is_stated_count
 def test_files_that_do_not_say_what_has_to_be_known_are_refused_in_words(tmp_path, name, profile, words):
     options = {"driver": "GTiff", "dtype": "float32", "count": 1, "width": 4, "height": 4, "crs": "EPSG:4326"}
     options |= {"transform": Affine(0.1, 0.0, 8.0, 0.0, -0.1, 47.0), **profile}
-    with quiet(), rasterio.open(tmp_path / name, "w", **options) as target:
+    with _quiet(), rasterio.open(tmp_path / name, "w", **options) as target:
         for band in range(1, options["count"] + 1):
             target.write(np.ones((4, 4), "float32"), band)
     with pytest.raises(InputError) as caught:
