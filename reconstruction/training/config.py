@@ -26,7 +26,8 @@ GeometrySource = Literal["panels", "splats"]
 StartFrom = Literal["surfaces", "points"]
 """What splats begin on: panels and mesh, or points of photogrammetry, as published methods do."""
 
-Device = Literal["cpu", "cuda"]
+Device = Literal["auto", "cpu", "gpu", "cuda"]
+"""What splats are drawn on, and with `cuda` all else, too; `auto` measures a step: `devices.SplatsByCard`."""
 
 DensifySetting = Literal["adaptive", "mcmc", "none"]
 
@@ -233,7 +234,7 @@ class TrainConfig:
     held_out: float = parameter(0.15, above=0.0, below=1.0)
     seed: int = like(TrainRequest, "seed", 0)
     memory_bytes: int = like(TrainRequest, "memory_bytes", 1 << 30)
-    device: Device = like(TrainRequest, "device", "cpu")
+    device: Device = like(TrainRequest, "device", "auto")
     threads: int = parameter(1, least=1)
     checkpoint_every_s: float = parameter(120.0, above=0.0)
     score_every_s: float = parameter(20.0, above=0.0)
@@ -243,6 +244,11 @@ class TrainConfig:
         check(self)
         if self.max_splats < self.n_splats:
             raise ValueError(f"max_splats: expected n_splats ({self.n_splats}) or more, got {self.max_splats}")
+
+    @property
+    def tensors_on(self) -> Literal["cpu", "cuda"]:
+        """Where parameters lie: kernels by WebGPU take them from main memory."""
+        return "cuda" if self.device == "cuda" else "cpu"
 
     @property
     def trained_by(self) -> Method:

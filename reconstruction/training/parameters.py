@@ -119,9 +119,16 @@ class TrainRequest:
     start: Path | None = None
     device: str | None = parameter(
         None,
-        "what to compute on; cuda needs the extra of that name",
+        "what splats are drawn on; auto measures a step, gpu is a card of any maker, cuda needs the extra of that name",
         label="Compute on",
-        choices=(Choice("cpu", "the processor"), Choice("cuda")),
+        choices=(
+            Choice("auto", "whatever is fastest"),
+            Choice("cpu", "the processor"),
+            Choice("gpu", "the graphics card"),
+            Choice("cuda"),
+        ),
+        option="--device",
+        unset="auto",
         row="first",
     )
     memory_bytes: int | None = parameter(

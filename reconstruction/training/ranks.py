@@ -18,6 +18,7 @@ from torch import Tensor
 
 from planning.base.errors import InputError
 from planning.base.messages import say
+from reconstruction.gpu.device import adapters
 
 # What torch finds to compute on besides the processor.
 
@@ -28,6 +29,11 @@ def cuda_devices() -> tuple[str, ...]:
         return ()
     found = [torch.cuda.get_device_properties(number) for number in range(torch.cuda.device_count())]
     return tuple(f"{each.name}, {each.total_memory / 2**30:.0f} GiB" for each in found)
+
+
+def graphics_cards() -> tuple[str, ...]:
+    """Names of graphics cards that WebGPU finds, without programs that stand in for one."""
+    return tuple(str(each) for each in adapters() if not each.is_software)
 
 
 def use_threads(number: int) -> None:

@@ -684,7 +684,7 @@ def _learned_light(
             name, decisions = "harmonics", (decide(SeparateLight(), None, "off"),)
         elif name == "auto":
             quick = replace(settings, transients="off", time_limit_s=_light_limit_s(config, watch))
-            tried = try_lights(rays, source.panels, quick, monitor, device=config.device)
+            tried = try_lights(rays, source.panels, quick, monitor, device=config.tensors_on)
             name, decisions = ("environment-map", no_decisions) if tried is None else chosen(tried.trials)
             if config.light_apart == "on":
                 decisions = (*decisions, decide(SeparateLight(), None, "on"))
@@ -727,7 +727,7 @@ def _learned_light(
             source.exposure,
             monitor=monitor,
             keeping=keeping,
-            device=config.device,
+            device=config.tensors_on,
             clock=watch.clock,
         )
     except ValueError as error:

@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import torch
 from numpy.typing import NDArray
 
 from planning.base.errors import InputError, OperationCancelled
@@ -20,8 +19,10 @@ from planning.base.messages import say
 from planning.base.progress import QualityPoint
 from reconstruction.light.photo_set import PhotoSet, read_photo_set
 from reconstruction.metrics.image_metrics import Quality
+from reconstruction.splats.rasterising.views import View
 from reconstruction.training.callbacks import Callbacks, HeldOut
 from reconstruction.training.config import TrainConfig
+from reconstruction.training.devices import check_device, drawn_by_card
 from reconstruction.training.model.record import ModelRecord, empty_model, light_record, site_record
 from reconstruction.training.model.saved import TrainedModel
 from reconstruction.training.model.score import quality_of, score_views
@@ -111,7 +112,7 @@ def train_model(
         From the monitor.
     """
     watching, watch = watching or Callbacks(), watch or Timer()
-    _check_device(config)
+    check_device(config)
     if not ranks.is_first:
         if checkpoint is None:
             raise ValueError("checkpoint: expected one where several processes train together")
@@ -131,6 +132,8 @@ def _started(
 ) -> TrainedModel:
     """The joint training after its start."""
     config = start.config
+    view = View.of(start.learned[0], start.model.origin_enu_m)
+    on_gpu, by_card = drawn_by_card(config, start.model.splats, view)
     record = ModelRecord(
         config,
         light_record(start.model, start.light_name),
@@ -141,7 +144,7 @@ def _started(
         tuple(photo.name for photo in start.learned),
         start.held_out,
         start.extent_m,
-        start.decisions,
+        start.decisions if by_card is None else (*start.decisions, by_card),
         start.moves,
         tuple(tuple(photo.pose.position_enu_m.tolist()) for photo in moved(start.learned, start.moves)),
     )
@@ -163,6 +166,7 @@ def _started(
             ranks=ranks,
             watch=watch,
             last_px=_pixels(source, record.held_out),
+            on_gpu=on_gpu,
         )
         trainer.save()
         ranks.wait()
@@ -240,6 +244,8 @@ def _resumed(
         model, exposures = empty_model(record, state["model"])
     except ValueError as error:
         raise InputError(say("is damaged ({}); begin the training anew", error, place=checkpoint)) from error
+    view = View.of(source.named(record.learned)[0], np.array(record.origin_enu_m))
+    on_gpu, _ = drawn_by_card(record.config, model.splats, view)
     with ExitStack() as closing:
         photos, shown = _photos(source, record, closing)
         trainer = Trainer(
@@ -257,6 +263,7 @@ def _resumed(
             ranks=ranks,
             watch=watch,
             last_px=_pixels(source, record.held_out),
+            on_gpu=on_gpu,
         )
         trainer.restore(state)
         watch.before_s += trainer.at.spent_s
@@ -264,14 +271,9 @@ def _resumed(
 
 
 def _check_method(config: TrainConfig, method: str | None, checkpoint: Path) -> None:
-    _check_device(config)
+    check_device(config)
     if method not in (None, config.method):
         raise InputError(say("is of a training of {}; resume with that method", config.method, place=checkpoint))
-
-
-def _check_device(config: TrainConfig) -> None:
-    if config.device == "cuda" and not torch.cuda.is_available():
-        raise InputError(say("device: 'cuda' is asked for, and torch finds no CUDA device; leave it out"))
 
 
 def _photos(source: PhotoSet, record: ModelRecord, closing: ExitStack) -> tuple[PhotoStream, tuple[HeldOut, ...]]:

@@ -22,6 +22,7 @@ from torch import Tensor
 from planning.base.errors import OperationCancelled
 from planning.base.messages import say
 from reconstruction.base.out_of_memory import NotFinite, is_out_of_memory, require_finite
+from reconstruction.gpu.device import DeviceFailed
 from reconstruction.splats.densification.adaptive import AdaptiveControl, AdaptiveParameters
 from reconstruction.splats.densification.mcmc import MarkovChain, McmcParameters
 from reconstruction.splats.densification.strategy import Densification, FixedNumber, Limits
@@ -167,6 +168,8 @@ class Trainer(TrainingState):
         Of all that counts for the time limit, what went before included.
     last_px
         Pixels of all held-out views, which are looked at when it has ended.
+    on_gpu
+        Whether splats are drawn by the graphics card, until it fails.
     """
 
     def __init__(
@@ -187,12 +190,13 @@ class Trainer(TrainingState):
         ranks: Ranks = ALONE,
         watch: Timer | None = None,
         last_px: int = 0,
+        on_gpu: bool = False,
     ) -> None:
         at = Progress(window_px=photos.window_px or config.window_px, notes=[*notes])
         super().__init__(model, exposures, poses, transients, photos, strategy, config, extent_m, checkpoint, at)
         self.shown, self._record, self._watch = tuple(shown), record or {}, watch or Timer()
         self.at.spent_s = self.at.saved_at_s = self.at.began_s = self._watch()
-        self._settings = replace(config.raster, threads=config.threads)
+        self._settings = replace(config.raster, threads=config.threads, on_gpu=on_gpu)
         self._no_more, self._ranks = FixedNumber(), ranks
         self._reserve_s = 0.0
         self._last_px = last_px
@@ -329,6 +333,8 @@ class Trainer(TrainingState):
             self.step()
         except NotFinite as error:
             self.undo(str(error))
+        except DeviceFailed as error:
+            self._leave_card(error)
         except (MemoryError, RuntimeError) as error:
             # One process alone cannot take a step again.
             if not is_out_of_memory(error) or self._ranks.n > 1:
@@ -392,6 +398,19 @@ class Trainer(TrainingState):
         self, sample: Sample, gain: Tensor | float, offsets: Tensor | None = None, move: Tensor | None = None
     ) -> Picture:
         """What the model shows where a photo was taken, or is found to be; with `offsets` as a step looks at it."""
+        try:
+            return self._drawn(sample, gain, offsets, move)
+        except DeviceFailed as error:
+            self._leave_card(error)
+            return self._drawn(sample, gain, offsets, move)
+
+    def _leave_card(self, error: DeviceFailed) -> None:
+        """Go on with the processor: nothing of the step was taken yet."""
+        self._settings = replace(self._settings, on_gpu=False)
+        self.optimiser.zero_grad(set_to_none=True)
+        self.at.notes.append(say("from step {} on splats were drawn by the processor: {}", self.at.step + 1, error))
+
+    def _drawn(self, sample: Sample, gain: Tensor | float, offsets: Tensor | None, move: Tensor | None) -> Picture:
         picture: Picture = self.model(
             sample.view,
             gain,

@@ -283,7 +283,7 @@ class TrainingState:
         path: Path | None,
         at: Progress,
     ) -> None:
-        self.device = torch.device(config.device)
+        self.device = torch.device(config.tensors_on)
         self.model, self.exposures = model.to(self.device), exposures.to(self.device)
         self.poses, self.transients = poses.to(self.device), transients
         self.photos, self.strategy, self.config = photos, strategy, config

@@ -40,7 +40,7 @@ class MachineTexts(QObject):
         """Lines, what is most in the way first."""
         machine, forecast = controller.machine, controller.forecast()
         lines = self._lacking(machine, forecast, controller.standing)
-        lines += self._computer(machine, controller.cuda, controller.choice)
+        lines += self._computer(machine, controller.cuda, controller.cards, controller.choice)
         if controller.card is not None and forecast is not None:
             lines += self._photos(controller.card, forecast)
         return lines
@@ -69,7 +69,9 @@ class MachineTexts(QObject):
             )
         return lines
 
-    def _computer(self, machine: Machine, cuda: tuple[str, ...] | None, choice: TrainChoice) -> list[StatusLine]:
+    def _computer(
+        self, machine: Machine, cuda: tuple[str, ...] | None, cards: tuple[str, ...], choice: TrainChoice
+    ) -> list[StatusLine]:
         words = self.tr("{0} cores").format(machine.cores)
         if machine.memory_bytes is not None:
             words += self.tr(", {0} of memory").format(size_text(machine.memory_bytes))
@@ -77,12 +79,21 @@ class MachineTexts(QObject):
             words += self.tr(", {0} of it free").format(size_text(machine.free_bytes))
         lines: list[StatusLine] = [("", words)]
         if cuda is None:
-            lines.append(("", self.tr("Looking for a CUDA device ...")))
+            lines.append(("", self.tr("Looking for a graphics card ...")))
+        elif cards and not cuda:
+            lines.append(
+                (
+                    "",
+                    self.tr("Graphics card: {0}. It draws splats where a step takes less time.").format(
+                        "; ".join(cards)
+                    ),
+                )
+            )
         elif not cuda:
             lines.append(
                 (
                     "warning",
-                    self.tr("No CUDA device: models are learned by one core of the processor."),
+                    self.tr("No graphics card: models are learned by one core of the processor."),
                 )
             )
             lines.append(
@@ -97,7 +108,7 @@ class MachineTexts(QObject):
         else:
             lines.append(("", self.tr("CUDA device: {0}").format("; ".join(cuda))))
             if not choice.on_cuda:
-                lines.append(("", self.tr("It is not used: the processor is chosen.")))
+                lines.append(("", self.tr("It is not used, since it is not chosen.")))
         return lines
 
     def _photos(self, card: DataSetCard, forecast: Forecast) -> list[StatusLine]:
@@ -237,7 +248,7 @@ class ChoiceForm(QWidget):
             tip = translated(PRESETS[preset].what, UnitSystem.METRIC)
             self.time.setItemData(number, tip, Qt.ItemDataRole.ToolTipRole)
         self.time.addItem(self.tr("Custom time"), OWN)
-        self.device.addItem(choice_text(declared(TrainRequest)["device"].parameter, "cpu"))
+        self.device.addItem(choice_text(declared(TrainRequest)["device"].parameter, "auto"))
 
     def _changed(self) -> None:
         preset = str(self.time.currentData())

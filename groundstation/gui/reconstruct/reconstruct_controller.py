@@ -287,6 +287,7 @@ class ReconstructController(FolderController):
         self._came.connect(self._take)
         self.dataSetChanged.connect(self._forget_scene)
         self.cuda: tuple[str, ...] | None = None
+        self.cards: tuple[str, ...] = ()
         self.phase, self.is_paused = Phase.IDLE, False
         self.training = ActiveTraining()
         self.light, self.decisions = "", tuple[Decision, ...]()
@@ -414,8 +415,8 @@ class ReconstructController(FolderController):
             case Chosen(light, decisions):
                 self.light, self.decisions = light or "harmonics", decisions
                 self.lightChanged.emit()
-            case Devices(cuda):
-                self.cuda = cuda
+            case Devices(cuda, cards):
+                self.cuda, self.cards = cuda, cards
                 self.stateChanged.emit()
             case Ended():
                 self._take_end(message)

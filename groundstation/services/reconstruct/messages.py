@@ -242,9 +242,10 @@ class WatchErrors:
 
 @dataclass(frozen=True, slots=True)
 class Devices:
-    """What torch finds to compute on besides the processor."""
+    """What there is to compute on besides the processor: what torch finds, and graphics cards by WebGPU."""
 
     cuda: tuple[str, ...]
+    cards: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -112,9 +112,9 @@ class _Server:
 
     def run(self) -> None:
         """Work until the window has gone."""
-        from reconstruction.training.ranks import cuda_devices, use_threads
+        from reconstruction.training.ranks import cuda_devices, graphics_cards, use_threads
 
-        self._tell(Devices(cuda_devices()))
+        self._tell(Devices(cuda_devices(), graphics_cards()))
         while not self._requests.gone.is_set():
             use_threads(max(1, (os.cpu_count() or 1) - 1))
             has_more = (

@@ -171,7 +171,7 @@ def light_of_scene(dataset: Path, request: TrainRequest, monitor: Monitor = QUIE
             )
         )
     tried = replace(config.reflections, seed=config.seed, threads=config.threads, memory_bytes=config.memory_bytes)
-    return choose_light(rays, source.panels, tried, monitor, device=config.device)
+    return choose_light(rays, source.panels, tried, monitor, device=config.tensors_on)
 
 
 def _trained(

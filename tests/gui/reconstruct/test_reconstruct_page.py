@@ -202,9 +202,12 @@ def test_the_computer_page_says_what_is_there_and_what_follows(chosen):
     take(chosen, Devices(()))
     texts = [label.text() for label in chosen._machine_lines if not label.isHidden()]
     assert any("cores" in text for text in texts)
-    assert any("No CUDA device" in text for text in texts)
+    assert any("No graphics card" in text for text in texts)
     assert any("6 photos of 40 x 30 pixels" in text for text in texts)
     assert not chosen.side.form._form.isRowVisible(chosen.side.form.device)
+    take(chosen, Devices((), ("Intel UHD 620 (Vulkan)",)))
+    texts = [label.text() for label in chosen._machine_lines if not label.isHidden()]
+    assert any("Graphics card: Intel UHD 620 (Vulkan). It draws splats where" in text for text in texts)
     take(chosen, Devices(("H200, 141 GiB",)))
     assert chosen.side.form._form.isRowVisible(chosen.side.form.device)
     chosen.side.form.device.setCurrentIndex(1)

@@ -15,6 +15,7 @@ from reconstruction.light.photo_set import read_photo_set
 from reconstruction.light.reflection_mlp import MlpShape
 from reconstruction.splats.ply import read_splats
 from reconstruction.training.config import TrainConfig
+from reconstruction.training.devices import SplatsByCard
 from reconstruction.training.model.record import site_record
 from reconstruction.training.model.saved import FORMAT, read_model, save_model
 from reconstruction.training.photos.photo_stream import PhotoStream
@@ -67,7 +68,7 @@ def test_auto_light_is_chosen_by_trial_and_says_why(data_set):
     by_effect = {decision.effect: decision.on for decision in trained.record.decisions}
     usual = {"overexposed photos", "near-field light", "mirrored surroundings"}
     # Where the gain is clear, nobody asks whether light apart is worth it.
-    assert usual <= by_effect.keys() <= usual | {"light apart from the splats"}
+    assert usual <= by_effect.keys() <= usual | {"light apart from the splats", SplatsByCard().name}
     name = "harmonics" if trained.record.light is None else trained.record.light.name
     expected = "environment-map" if by_effect["mirrored surroundings"] else "harmonics"
     expected = "radiance-grid" if by_effect["near-field light"] else expected

@@ -1,0 +1,158 @@
+"""What splats are drawn on in a training: the processor, or a graphics card where that takes less time for a step.
+
+A card is asked by one step of the training's own splats, forward and backward, and its picture and gradients are
+compared with the processor's: what drivers and cards make of the kernels is not known beforehand. Everything else of a
+training stays on the processor. Programs that stand in for a card are never chosen by themselves.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import dataclass, replace
+
+import torch
+from torch import Tensor
+
+from planning.base.effects import Assessment, Decision, EffectSetting, decide
+from planning.base.errors import InputError, ReconstructionError
+from planning.base.messages import say
+from reconstruction.gpu.device import adapters, why_no_gpu
+from reconstruction.splats.rasterising.raster_types import RasterSettings
+from reconstruction.splats.rasterising.rasteriser import rasterise
+from reconstruction.splats.rasterising.views import View
+from reconstruction.splats.splats import Splats
+from reconstruction.training.config import TrainConfig
+
+MOST_APART = 0.02
+"""Of a picture or gradients, relative, from the processor's: 1e-3 was measured, of splats equally deep in float32."""
+
+BYTES_A_SPLAT = 1024
+"""Of a card's memory for each splat, about, with its lists, features and gradients."""
+BYTES_FOR_ALL = 256 << 20
+
+
+@dataclass(frozen=True, slots=True)
+class CardTrial:
+    """What one step takes on a card and on the processor.
+
+    Parameters
+    ----------
+    card
+        Its name.
+    lacking
+        Why it was not tried or did not work; empty where it did.
+    processor_s, card_s
+        Of a step of splats, kernels compiled.
+    first_s
+        Of the first one on the card.
+    needed_bytes
+        Of its memory, by the end of the training.
+    """
+
+    card: str
+    lacking: str = ""
+    processor_s: float = 0.0
+    card_s: float = math.inf
+    first_s: float = 0.0
+    needed_bytes: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class SplatsByCard:
+    """Draw splats, forward and backward, on a graphics card."""
+
+    name: str = say("splats drawn by the graphics card")
+    unit: str = say("of a step's time for splats saved")
+    tolerance: float = 0.1
+
+    def assess(self, trial: CardTrial) -> Assessment:
+        """Share of the time that a step takes less."""
+        if trial.lacking:
+            return Assessment(0.0, trial.lacking, 0.0)
+        reason = say(
+            "{} takes {:.0f} ms, the processor {:.0f} ms; about {:.1f} GB of its memory are needed",
+            *(trial.card, 1e3 * trial.card_s, 1e3 * trial.processor_s, trial.needed_bytes / 1e9),
+        )
+        return Assessment(max(0.0, 1.0 - trial.card_s / max(trial.processor_s, 1e-9)), reason, trial.first_s)
+
+
+def device_setting(config: TrainConfig) -> EffectSetting:
+    """The effect's setting by the device that is asked for."""
+    return "auto" if config.device == "auto" else "on" if config.device == "gpu" else "off"
+
+
+def check_device(config: TrainConfig) -> None:
+    """Refuse a device that is not there.
+
+    Raises
+    ------
+    InputError
+        It is asked for by name.
+    """
+    if config.device == "cuda" and not torch.cuda.is_available():
+        raise InputError(say("device: 'cuda' is asked for, and torch finds no CUDA device; leave it out"))
+    if config.device == "gpu" and (reason := why_no_gpu()):
+        raise InputError(say("device: 'gpu' is asked for, and {}; leave it out", reason))
+
+
+def drawn_by_card(config: TrainConfig, splats: Splats, view: View) -> tuple[bool, Decision | None]:
+    """Whether a training draws its splats on a graphics card, and the decision; None where there is none to be made.
+
+    Parameters
+    ----------
+    view
+        Of a photo that is learned from; a window of it is drawn.
+
+    Raises
+    ------
+    ReconstructionError
+        It was asked for, and fails.
+    """
+    setting = device_setting(config)
+    if setting == "off":
+        return False, None
+    found = decide(SplatsByCard(), _tried(config, splats, view), setting)
+    return found.on, found
+
+
+def _tried(config: TrainConfig, splats: Splats, view: View) -> CardTrial:
+    """A step on the first card, or why there is none."""
+    reason = why_no_gpu()
+    if reason:
+        return CardTrial("", say("no graphics card: {}", reason))
+    card = adapters()[0]
+    if card.is_software and config.device == "auto":
+        return CardTrial(card.name, say("there is no graphics card but {}, which the processor runs", card.name))
+    scale = math.sqrt(min(1.0, config.window_px / (view.width_px * view.height_px)))
+    size = max(1, round(scale * view.width_px)), max(1, round(scale * view.height_px))
+    window = view.cropped((view.width_px - size[0]) // 2, (view.height_px - size[1]) // 2, *size)
+    settings = replace(config.raster, threads=config.threads)
+    here_s, expected = _step(splats, window, settings)
+    here_s = min(here_s, _step(splats, window, settings)[0])
+    try:
+        first_s, found = _step(splats, window, replace(settings, on_gpu=True))
+        there_s = _step(splats, window, replace(settings, on_gpu=True))[0]
+    except ReconstructionError as error:
+        if config.device == "gpu":
+            raise
+        return CardTrial(card.name, say("it was tried, and {}", error))
+    apart = max(float((a - b).norm() / b.norm().clamp(min=1e-12)) for a, b in zip(found, expected, strict=True))
+    if not apart < MOST_APART and config.device == "auto":
+        return CardTrial(card.name, say("{} does not draw what the processor draws (apart: {:.2g})", card.name, apart))
+    needed = BYTES_FOR_ALL + BYTES_A_SPLAT * max(config.max_splats, len(splats))
+    return CardTrial(card.name, "", here_s, there_s, first_s, needed)
+
+
+def _step(splats: Splats, view: View, settings: RasterSettings) -> tuple[float, list[Tensor]]:
+    """Seconds of a picture of splats and its gradients, and what comes of it."""
+    given = splats.means, splats.quats, splats.scales, splats.opacities, splats.features(view.position_m, 0)
+    means, quats, scales, opacities, features = (values.detach().cpu().requires_grad_() for values in given)
+    generator = torch.Generator().manual_seed(0)
+    pull = torch.rand((view.height_px, view.width_px, features.shape[1]), generator=generator)
+    began = time.perf_counter()
+    raster = rasterise(means, quats, scales, opacities, features, view, settings=settings)
+    (raster.features * pull).sum().backward()  # type: ignore[no-untyped-call]
+    seconds = time.perf_counter() - began
+    gradients = [values.grad for values in (means, scales, opacities, features) if values.grad is not None]
+    return seconds, [raster.features.detach(), *gradients]
