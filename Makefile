@@ -1,4 +1,4 @@
-# make setup | demo | test | test-all | check | docs | coverage | benchmark | tables | translations | pictures: each does all the set-up it needs.
+# make setup | demo | test | test-all | check | docs | coverage | benchmark | benchmark-gpu | tables | translations | pictures: each does all the set-up it needs.
 PYTHON ?= python3
 VENV := .venv
 ifeq ($(OS),Windows_NT)
@@ -22,7 +22,7 @@ TEXTS := $(wildcard groundstation/gui/translations/reflight_*.ts)
 # Compiled Python is kept also where the environment says not to: every test process would compile all of it again.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: setup demo test test-all check check-style check-types check-imports check-sources check-docs docs coverage ready-to-test compiled-tests alone benchmark tables format
+.PHONY: setup demo test test-all check check-style check-types check-imports check-sources check-docs docs coverage ready-to-test compiled-tests alone benchmark benchmark-gpu tables format
 .PHONY: translations pictures foreign clean
 
 setup: $(VENV)/.ready $(WARM)
@@ -120,6 +120,10 @@ alone:
 
 benchmark: setup
 	$(PY) -m tests.benchmarks
+
+# On a computer with a graphics card: a minute, and docs/benchmarks.md has it by its name.
+benchmark-gpu: setup
+	$(PY) -m tests.benchmarks --only gpu
 
 # Hours: docs/tables.md says how to run a part.
 tables: setup

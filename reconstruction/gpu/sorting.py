@@ -12,7 +12,7 @@ CHUNK = 128
 """Numbers that a thread adds up."""
 DIGIT_BITS = 8
 """At most: a thread keeps a count for each digit."""
-KEYS_A_DIGIT = 1
+KEYS_A_DIGIT = 4
 """Keys that a thread sorts, over the number of digits."""
 
 

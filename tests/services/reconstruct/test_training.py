@@ -20,7 +20,7 @@ def data(tmp_path_factory):
 def test_device_and_memory_are_those_of_the_wish():
     config = config_of_request(TrainRequest("smoke", memory_bytes=1 << 28, device="cuda"))
     assert (config.memory_bytes, config.device) == (1 << 28, "cuda")
-    assert config_of_request(TrainRequest("smoke")).device == "cpu"
+    assert config_of_request(TrainRequest("smoke")).device == "auto"
     with pytest.raises(ValueError, match="memory_bytes: expected 1 or more"):
         config_of_request(TrainRequest("smoke", memory_bytes=0))
 

@@ -1,0 +1,135 @@
+"""A graphics card by WebGPU against the processor: splats to pictures and back, and a training by step."""
+
+from __future__ import annotations
+
+import statistics
+import tempfile
+import time
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
+
+import torch
+
+from reconstruction.gpu.device import Adapter, adapters, why_no_gpu
+from reconstruction.splats.rasterising.raster_types import RasterSettings
+from reconstruction.splats.rasterising.rasteriser import rasterise
+from reconstruction.training.callbacks import Callbacks, TrainingSnapshot
+from reconstruction.training.config import ANTIALIASED, TrainConfig
+from reconstruction.training.train import train_model
+from tests.benchmarks.experiments import rendered
+from tests.benchmarks.harness import Benchmark, Context, Row, Skipped
+from tests.benchmarks.rasteriser import N_CHANNELS, Scene, synthetic_scene
+
+CASES = (((256, 192), 20_000), ((1024, 768), 100_000), ((2048, 1536), 1_000_000))
+SOFTWARE_CASES, QUICK_CASES = CASES[:2], (((64, 48), 1_000),)
+MAIN = CASES[0]
+REPEATS, MOST_S = 9, 4.0
+
+MOST_STEP = 3.0
+"""Times as much of the processor as without a card, of a step of training, where the card is a program on it."""
+MOST_APART_DB = 0.2
+
+N_VIEWS, WIDTH_PX = 12, 256
+STEPS, QUICK_STEPS = 30, 5
+
+
+def measure(context: Context) -> Iterator[Row]:
+    """Calls of both rasterisers, and trainings with both.
+
+    Raises
+    ------
+    Skipped
+        There is neither a card nor a program that stands in for one.
+    """
+    if reason := why_no_gpu():
+        raise Skipped(reason)
+    card = adapters()[0]
+    kind = "software: a program on the processor" if card.is_software else f"{card.kind} card"
+    yield Row(card.name, f"{card.backend}, {card.driver}", kind)
+    cases = QUICK_CASES if context.is_quick else SOFTWARE_CASES if card.is_software else CASES
+    for size, n in cases:
+        yield from _of_rasterisers(synthetic_scene(size, n), f"{size[0]} x {size[1]}, {n} splats")
+    with tempfile.TemporaryDirectory() as place:
+        folder = rendered("planar", Path(place) / "planar", N_VIEWS, WIDTH_PX)
+        yield from _of_trainings(folder, card, QUICK_STEPS if context.is_quick else STEPS)
+
+
+def _of_rasterisers(scene: Scene, name: str) -> Iterator[Row]:
+    """Least time of a call, forward and backward, and how far gradients are apart."""
+    here = _both(scene, ANTIALIASED)
+    yield Row(name, "forward and backward, processor, all cores", round(1e3 * here[0], 1), "ms")
+    yield Row(name, "forward and backward, processor, time of all cores", round(1e3 * here[1], 1), "ms")
+    expected = _gradients(scene)
+    for what, settings in (
+        ("sums in a fixed order", replace(ANTIALIASED, on_gpu=True)),
+        ("atomic sums", replace(ANTIALIASED, on_gpu=True, deterministic=False)),
+    ):
+        there = _both(scene, settings)
+        for number, kind in enumerate(("", ", time of the processor")):
+            yield Row(
+                name, f"forward and backward, card, {what}{kind}", round(1e3 * there[number], 1), "ms",
+                there[number] / here[number], "as long as the processor",
+            )  # fmt: skip
+        apart = max(float((a - b).norm() / b.norm()) for a, b in zip(_gradients(scene), expected, strict=True))
+        yield Row(name, f"gradients, card, {what}, from the processor's, at most", f"{apart:.1e}", "of 1")
+
+
+def _gradients(scene: Scene) -> list[torch.Tensor]:
+    return [values.grad.clone() for values in scene.inputs if values.grad is not None]
+
+
+def _both(scene: Scene, settings: RasterSettings) -> tuple[float, float]:
+    """Seconds by the clock and of the processor, the least of some calls after one that compiles."""
+    runs, began = [], time.perf_counter()
+    while len(runs) < 3 or (len(runs) < REPEATS and time.perf_counter() - began < MOST_S):
+        for values in scene.inputs:
+            values.grad = None
+        started, processor = time.perf_counter(), time.process_time()
+        raster = rasterise(*scene.inputs, scene.view, settings=settings)
+        torch.autograd.backward((raster.features, raster.alphas, raster.depths), scene.wanted)
+        runs.append((time.perf_counter() - started, time.process_time() - processor))
+    return min(run[0] for run in runs[1:]), min(run[1] for run in runs[1:])
+
+
+def _of_trainings(folder: Path, card: Adapter, steps: int) -> Iterator[Row]:
+    """A training of as many steps by both: what they take, and how good the models are."""
+    n = MAIN[1]
+    config = TrainConfig(
+        method="2dgs", iterations=steps, n_splats=n, max_splats=n, densification="none", score_every_s=1e9
+    )
+    name, spent, quality = f"planar, 2dgs, {n} splats, {steps} steps", {}, {}
+    for device in ("cpu", "gpu"):
+        seen: list[float] = []
+
+        def visit(_: TrainingSnapshot, seen: list[float] = seen) -> None:
+            seen.append(time.process_time())
+
+        trained = train_model(folder, replace(config, device=device), Callbacks(visit=visit))
+        spent[device] = statistics.median(later - earlier for earlier, later in pairwise(seen[2:]))
+        quality[device] = trained.quality.psnr_db if trained.quality is not None else float("nan")
+    ratio = spent["gpu"] / spent["cpu"]
+    yield Row(name, "a step, processor, its time", round(1e3 * spent["cpu"], 1), "ms")
+    target = (f"{MOST_STEP:g} times at most", ratio <= MOST_STEP) if card.is_software else ("", None)
+    yield Row(
+        name, "a step, card, time of the processor", round(1e3 * spent["gpu"], 1), "ms", ratio,
+        "that without a card", *target,
+    )  # fmt: skip
+    yield Row(name, "unseen views, processor", round(quality["cpu"], 2), "dB")
+    apart = quality["gpu"] - quality["cpu"]
+    yield Row(
+        name, "unseen views, card", round(quality["gpu"], 2), "dB", None, "",
+        f"{MOST_APART_DB:g} dB apart at most", abs(apart) <= MOST_APART_DB,
+    )  # fmt: skip
+
+
+BENCHMARK = Benchmark(
+    "gpu",
+    "A graphics card by WebGPU",
+    f"One call of the rasteriser with {N_CHANNELS} channels, antialiased, and its gradients, on the first adapter that "
+    "WebGPU finds and on the processor; then a training on both. Where the adapter is software (lavapipe), the figures "
+    "say that the kernels are right and not too slow to be tested: speed on cards has not been measured. "
+    "`make benchmark-gpu` on a computer with a card records it here with its name.",
+    measure,
+)
