@@ -68,7 +68,8 @@ def test_auto_light_is_chosen_by_trial_and_says_why(data_set):
     by_effect = {decision.effect: decision.on for decision in trained.record.decisions}
     usual = {"overexposed photos", "near-field light", "mirrored surroundings"}
     # Where the gain is clear, nobody asks whether light apart is worth it.
-    assert usual <= by_effect.keys() <= usual | {"light apart from the splats", SplatsByCard().name}
+    of_photos = {"exposure of each photo", "pose of each photo"}
+    assert usual <= by_effect.keys() <= usual | of_photos | {"light apart from the splats", SplatsByCard().name}
     name = "harmonics" if trained.record.light is None else trained.record.light.name
     expected = "environment-map" if by_effect["mirrored surroundings"] else "harmonics"
     expected = "radiance-grid" if by_effect["near-field light"] else expected
