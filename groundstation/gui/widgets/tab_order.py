@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QWidget
+from PySide6.QtGui import QPainter, QPaintEvent, QPen
+from PySide6.QtWidgets import QApplication, QFocusFrame, QWidget
+
+FRAME_PX = 2
 
 
 def next_in_order(regions: Sequence[QWidget], current: QWidget | None, *, forward: bool) -> QWidget | None:
@@ -32,6 +35,30 @@ def next_in_order(regions: Sequence[QWidget], current: QWidget | None, *, forwar
 def first_in(region: QWidget) -> QWidget | None:
     """The first widget of a region that Tab reaches."""
     return next(_stops_in(region), None)
+
+
+class FocusFrame(QFocusFrame):
+    """Shows which frame has the keyboard, where no widget has it: see `set_enabled`. Widgets show it by themselves."""
+
+    def __init__(self, window: QWidget) -> None:
+        super().__init__(window)
+        self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
+        application = QApplication.instance()
+        assert isinstance(application, QApplication)
+        application.focusChanged.connect(self._follow)
+
+    def _follow(self, _before: QWidget | None, now: QWidget | None) -> None:
+        is_ours = now is not None and now.window() is self.window()
+        is_frame = is_ours and now is not None and not now.focusPolicy() & Qt.FocusPolicy.TabFocus
+        self.setWidget(now if is_frame and now is not self.window() else None)  # type: ignore[arg-type]
+
+    def paintEvent(self, _event: QPaintEvent) -> None:  # noqa: N802
+        """A line around it, as around a button; inside, for what scrolls shows nothing beside it."""
+        painter = QPainter(self)
+        painter.setPen(QPen(self.palette().highlight(), FRAME_PX))
+        inset = 2 * FRAME_PX
+        painter.drawRect(self.rect().adjusted(inset, inset, -inset, -inset))
+        painter.end()
 
 
 def set_enabled(widget: QWidget, is_enabled: bool) -> None:

@@ -9,8 +9,9 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QEvent, Qt, QTimer, Signal
-from PySide6.QtGui import QAction, QCloseEvent, QShowEvent, QWhatsThisClickedEvent
+from PySide6.QtGui import QAction, QCloseEvent, QKeyEvent, QShowEvent, QWhatsThisClickedEvent
 from PySide6.QtWidgets import (
+    QAbstractButton,
     QHBoxLayout,
     QMainWindow,
     QScrollArea,
@@ -29,7 +30,7 @@ from groundstation.gui.tabs import TABS, Place, Tab, TabSpec
 from groundstation.gui.widgets.icons import NAME, icon
 from groundstation.gui.widgets.job_bar import JobBar
 from groundstation.gui.widgets.scrolling import CurrentStack, scrolled, split
-from groundstation.gui.widgets.tab_order import first_in, next_in_order
+from groundstation.gui.widgets.tab_order import FocusFrame, first_in, next_in_order
 from groundstation.gui.widgets.theme import Colours, colours
 from groundstation.gui.window.message_area import MessageArea
 from groundstation.gui.window.next_step import NextStepBar
@@ -87,6 +88,7 @@ class MainWindow(QMainWindow):
         self.job_bar = JobBar(context)
         self.next_step = NextStepBar()
         self._make_layout()
+        self._focus_frame = FocusFrame(self)
         self._bar.currentChanged.connect(self._tab_chosen)
         self.next_step.wanted.connect(self.take_step)
         self.next_step.helpRequested.connect(lambda: self.open_manual(f"guide/{self.shown_tab()}.md"))
@@ -295,6 +297,15 @@ class MainWindow(QMainWindow):
             tab = self._tabs[self._shown.name]
             self._right.setVisible(tab.right is not None and not is_alone)
             self._bottom.setVisible(tab.bottom is not None and not is_alone)
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802
+        """Let Enter press the button that has the keyboard, as in dialogs; Qt lets only Space do it."""
+        button, is_enter = self.focusWidget(), Qt.Key(event.key()) in (Qt.Key.Key_Return, Qt.Key.Key_Enter)
+        is_alone = not event.modifiers() & ~Qt.KeyboardModifier.KeypadModifier and not event.isAutoRepeat()
+        if is_enter and is_alone and isinstance(button, QAbstractButton):
+            button.animateClick()
+        else:
+            super().keyPressEvent(event)
 
     def focusNextPrevChild(self, next: bool) -> bool:  # noqa: A002, N802
         """Take Tab through the window as it is read: tabs, form, view, details, lists, messages, jobs."""

@@ -18,6 +18,7 @@ from groundstation.gui.shared_view import SharedViewPage
 from groundstation.gui.tabs import TABS
 from groundstation.gui.widgets.icons import NAME
 from groundstation.gui.window.main_window import MainWindow
+from groundstation.gui.window.next_step import NEXT_STEP_KEY
 from groundstation.services.plugins import plugin_rows
 from groundstation.services.settings import Language, Settings, Theme
 from groundstation.services.units import UnitSystem
@@ -62,6 +63,9 @@ def sections(window: MainWindow) -> list[tuple[str, list[Row]]]:
     always = [action for menu in menus if isinstance(menu, QMenu) for action in _all_of(menu) if action not in shown]
     found = [(translate("Shortcuts", "Everywhere"), _rows(always))]
     found[0][1].append(("Tab", translate("Shortcuts", "To the next part of the window; with Shift to the one before")))
+    found[0][1].append(
+        (translate("Shortcuts", "Enter"), translate("Shortcuts", "Press the button that has the keyboard"))
+    )
     for spec in TABS:
         rows = _rows(window.tab(spec.name).actions())
         if rows:
@@ -316,6 +320,8 @@ class Menus(QObject):
         for number, spec in enumerate(TABS):
             name = spec.name
             self._add(menu, spec.shown_title(), f"Ctrl+{number}", partial(self._window.show_tab, name))
+        menu.addSeparator()
+        self._add(menu, self.tr("Next &step"), NEXT_STEP_KEY, self._window.next_step.take)
 
     def _help_menu(self, menu: QMenu) -> None:
         self._add(menu, self.tr("&Manual"), "Ctrl+F1", self._window.open_manual)

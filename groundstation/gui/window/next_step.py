@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from PySide6.QtCore import Signal
-from PySide6.QtGui import QPixmap
+from PySide6.QtGui import QKeySequence, QPixmap
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QToolButton, QWidget
 
+from groundstation.gui.application.translate import shown_keys
 from groundstation.gui.widgets.icons import ICON_PX, picture, set_icon
 from groundstation.gui.widgets.scrolling import ShortText
 from groundstation.gui.widgets.theme import TOUCH_PX, colours
 from groundstation.services.project.steps import Act, Guidance
+
+NEXT_STEP_KEY = "F8"
 
 
 class NextStepBar(QWidget):
@@ -49,6 +52,7 @@ class NextStepBar(QWidget):
         # Without a button, too: nothing below moves.
         self.setMinimumHeight(TOUCH_PX)
         self.button.clicked.connect(self._pressed)
+        self.button.setToolTip(self.tr("What comes next ({0})").format(shown_keys(QKeySequence(NEXT_STEP_KEY))))
 
     def set_guidance(self, found: Guidance, done: str, following: str, label: str) -> None:
         """Show what a step says, in the user's language."""
@@ -66,6 +70,11 @@ class NextStepBar(QWidget):
     def text(self) -> str:
         """What it says."""
         return self._text.text()
+
+    def take(self) -> None:
+        """Press the button, where there is one."""
+        if self.button.isVisible():
+            self.button.click()
 
     def _pressed(self) -> None:
         if self._act is not None:
