@@ -50,7 +50,8 @@ class Keys:
             if now is not None and set(_names(now)) & set(words):
                 return now
             before = self._screen()
-            self.press(key, Qt.KeyboardModifier.ShiftModifier if key == Qt.Key.Key_Backtab else Qt.KeyboardModifier.NoModifier)
+            shift = Qt.KeyboardModifier.ShiftModifier
+            self.press(key, shift if key == Qt.Key.Key_Backtab else Qt.KeyboardModifier.NoModifier)
             came = QApplication.focusWidget()
             assert came is not None, f"after {ways} the keyboard is nowhere"
             ways.append(_names(came))

@@ -63,9 +63,6 @@ def sections(window: MainWindow) -> list[tuple[str, list[Row]]]:
     always = [action for menu in menus if isinstance(menu, QMenu) for action in _all_of(menu) if action not in shown]
     found = [(translate("Shortcuts", "Everywhere"), _rows(always))]
     found[0][1].append(("Tab", translate("Shortcuts", "To the next part of the window; with Shift to the one before")))
-    found[0][1].append(
-        (translate("Shortcuts", "Enter"), translate("Shortcuts", "Press the button that has the keyboard"))
-    )
     for spec in TABS:
         rows = _rows(window.tab(spec.name).actions())
         if rows:
@@ -81,6 +78,10 @@ def view_keys() -> list[tuple[str, list[Row]]]:
     ins, gone, bar, page_up, page_down, back, home = (shown_keys(QKeySequence(name)) for name in names)
     shift = translate("Shortcuts", "with Shift")
     return [
+        (
+            translate("Shortcuts", "Buttons"),
+            [(f"{enter}, {bar}", translate("Shortcuts", "Press the button that has the keyboard"))],
+        ),
         (
             translate("Shortcuts", "3-D view"),
             [

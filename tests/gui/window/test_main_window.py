@@ -240,6 +240,7 @@ SECTIONS = {
     "photos/grid_picture.py": ("Photos",),
     "photos/grid_view.py": ("Photos",),
     "reconstruct/model_view.py": ("Models",),
+    "window/main_window.py": ("Buttons",),
     "window/message_area.py": ("Messages",),
     "window/tour.py": ("Tour",),
 }
