@@ -407,6 +407,11 @@ def plan_to_json(plan: Plan) -> dict[str, Any]:
     return {key: value for key, value in content.items() if value is not None}
 
 
+def plan_bytes(plan: Plan) -> bytes:
+    """The plan file of a plan, as `write_plan` writes it."""
+    return json.dumps(plan_to_json(plan), indent=1, allow_nan=False).encode()
+
+
 def write_plan(path: Path, plan: Plan) -> None:
     """Write a plan, whole or not at all."""
-    write_atomically(path, json.dumps(plan_to_json(plan), indent=1, allow_nan=False).encode())
+    write_atomically(path, plan_bytes(plan))

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from groundstation.services.fly.flying import FlightRequest, Flown, fly_files
 from groundstation.services.mission.export import export_plan
+from groundstation.services.mission.proof import VERIFIER
 from groundstation.services.mission.readiness import preflight
 from groundstation.services.plan.planning import plan_site
 from missions.formats.registry import FORMATS
@@ -33,6 +34,7 @@ class Demonstration:
     planned: Planned
     findings: tuple[Finding, ...]
     mission_paths: tuple[Path, ...]
+    proof_paths: tuple[Path, ...]
     export_findings: tuple[Finding, ...]
     flight_path: Path | None
     flown: Flown | None
@@ -64,5 +66,6 @@ def demonstrate(
     if is_flyable(findings):
         flight_path = folder / f"{scene}.flight.json"
         flown = fly_files(plan_path, site_path, flight_path, FlightRequest(), monitor=monitor)
-    checked = findings, tuple(missions), tuple(export_findings)
+    proofs = (*sorted(folder.glob("*.proof")), *sorted(folder.glob("*.plan.json"))[1:], folder / VERIFIER.name)
+    checked = findings, tuple(missions), proofs, tuple(export_findings)
     return Demonstration(site_path, plan_path, planned, *checked, flight_path, flown)

@@ -56,6 +56,7 @@ def run(options: argparse.Namespace) -> int:
         of = sum(finding.severity is not Severity.NOTE for finding in result.findings)
         tell("check:    {} of {} rules kept, {}", n_kept_rules, of, verdict_text(result.findings))
         tell("missions: {}", ", ".join(map(str, result.mission_paths)))
+        tell("proofs:   {}", ", ".join(map(str, result.proof_paths)))
         if result.flown is not None and result.flown.flight.report is not None:
             tell(
                 "flight:   {} ({}, {:.1f} s)",

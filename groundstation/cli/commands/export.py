@@ -134,5 +134,5 @@ def _export_plan(options: argparse.Namespace) -> int:
     else:
         for path in paths:
             print(path)
-        print_findings(finding for finding in findings if finding.severity is not Severity.OK)
+        print_findings(each for each in findings if each.severity is not Severity.OK or each.code == "proof")
     return 0

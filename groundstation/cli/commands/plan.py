@@ -148,6 +148,7 @@ def run(options: argparse.Namespace) -> int:
     """Plan and write; returns the exit status."""
     started = time.perf_counter()  # Loading what planning needs is part of the time budget.
     from groundstation.services.plan.planning import locked_viewpoints, plan_site, planned_summary
+    from planning.proof.make import proof_path
 
     request, at = request_of(options), planned_time(options)
     if options.keep is not None:
@@ -171,6 +172,7 @@ def run(options: argparse.Namespace) -> int:
         print_json(planned_summary(planned, seconds))
     else:
         print_summary(planned, options.out, seconds)
+        tell("its proof for an independent check: {}", proof_path(options.out).name)
         print_findings(planned.findings)
         print_next("check", options.out, options.site)
     return 0

@@ -15,10 +15,14 @@ from groundstation.services.mission.files import (
     readiness,
     within_item_limit,
 )
+from groundstation.services.mission.proof import write_mission_proof
 from groundstation.services.project.input_files import read_input_plan, read_input_site
 from groundstation.services.project.project_file import SITE_FOLDER, check_not_index
+from missions.formats.encode import dji_return_height
 from missions.formats.options import DEFAULT_OPTIONS, ExportOptions
 from missions.formats.registry import encode, mission_format, sortie_path, write_files
+from missions.mission.build import missions_from_plan
+from missions.mission.export_choices import FileFormat
 from planning.base.errors import InputError
 from planning.base.files import check_ending, real_path, sha256_of_file
 from planning.base.findings import Finding, Severity
@@ -31,6 +35,9 @@ from planning.site.file import read_site, write_site
 from planning.site.records import SiteModel
 
 __all__ = ["export_plan", "find_site", "import_missions"]
+
+PROVED_FORMATS = (FileFormat.DJI_KMZ, FileFormat.MAVLINK_PLAN, FileFormat.MAVLINK_WPL)
+"""That the verifier reads."""
 
 
 def find_site(plan: Plan, plan_path: Path, site_path: Path | None = None) -> SiteModel | None:
@@ -84,14 +91,14 @@ def export_plan(
     """Write a plan as mission files: the files, and what their checks found.
 
     Plans that do not say where their site lies take it from the site file. A plan that is not ready to fly on its site
-    is written all the same, with a warning.
+    is written all the same, with a warning. Where the site is known, the proof goes along, with the verifier.
 
     Raises
     ------
     InputError, MissionError
         A file cannot be read or written, the site is another one, or an aircraft would refuse the mission.
     """
-    plan = read_input_plan(plan_path)
+    plan = planned = read_input_plan(plan_path)
     site_path = _site_beside(plan, plan_path) if site_path is None else site_path
     sources = [path for path in (plan_path, site_path) if path is not None]
     check_not_index(out)
@@ -109,10 +116,19 @@ def export_plan(
     if file_format in MAVLINK_FORMATS and site_model is not None:
         plan, split_to_fit = within_item_limit(plan, site_model, options)
         findings += split_to_fit
-    encoded = encode(plan, origin, home, file_format, replace(options, site=site_model))
+    with_site = replace(options, site=site_model)
+    encoded = encode(plan, origin, home, file_format, with_site)
     for number in range(2, len(encoded.contents) + 1):
         check_output(sortie_path(out, number), sources)
-    return write_files(encoded, out), (*findings, *encoded.findings)
+    paths = write_files(encoded, out)
+    findings += encoded.findings
+    if site_path is not None and site_model is not None and file_format in PROVED_FORMATS:
+        return_height_m = None
+        if file_format == FileFormat.DJI_KMZ:
+            return_height_m, _ = dji_return_height(plan, missions_from_plan(plan, origin, home), with_site)
+        flown = None if plan == planned else plan
+        findings.append(write_mission_proof(plan_path, flown, site_path, site_model, paths, return_height_m))
+    return paths, tuple(findings)
 
 
 def _name_findings(out: Path, file_format: str) -> Iterator[Finding]:

@@ -9,6 +9,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
+from groundstation.services.mission.proof import no_proof, proof_of_files, refused_unless_proved, write_plan_proof
 from groundstation.services.mission.readiness import UNKNOWN_DAY, FlightDay, preflight
 from groundstation.services.project.input_files import read_input_plan, read_input_site
 from groundstation.services.project.project_file import check_not_index
@@ -23,6 +24,7 @@ from planning.checks.zones import source_text
 from planning.insight.flight_profile import lowest_flight
 from planning.plan import Plan, Viewpoint, write_plan
 from planning.planner import OpenReason, Planned, plan_flight
+from planning.proof.make import proof_path
 from planning.request import PlanRequest
 from planning.routing.tour import kick
 from planning.site.ground import ground_of
@@ -46,7 +48,7 @@ def plan_site(
     trace: Trace | None = None,
     monitor: Monitor = QUIET,
 ) -> Planned:
-    """Plan a flight over the site in a file, and write the plan where `out` says.
+    """Plan a flight over the site in a file, and write the plan where `out` says, with its proof beside it.
 
     A finding says so where the plan has less than was asked for. `started_s` is as in `planning.planner.plan_flight`.
 
@@ -67,6 +69,7 @@ def plan_site(
     planned = plan_document_site(site_model, request, started_s=started_s, stop=stop, trace=trace, monitor=monitor)
     if out is not None:
         write_plan(out, planned.plan)
+        write_plan_proof(out, site_path, site_model, planned.prepared.problem.reachability, monitor)
     return planned
 
 
@@ -249,10 +252,24 @@ def why_open(planned: Planned) -> Iterator[Finding]:
 
 
 def check_files(
-    plan_path: Path, site_path: Path, day: FlightDay = UNKNOWN_DAY, monitor: Monitor = QUIET
+    plan_path: Path,
+    site_path: Path,
+    day: FlightDay = UNKNOWN_DAY,
+    monitor: Monitor = QUIET,
+    *,
+    is_to_be_proved: bool = False,
 ) -> tuple[Finding, ...]:
-    """All findings on a plan file and its site file, for a day of which something is known or not."""
-    return preflight(read_input_plan(plan_path), read_input_site(site_path), day, monitor).findings
+    """All findings on a plan file and its site file, for a day of which something is known or not.
+
+    Where a proof lies beside the plan, an independent check says of what it is one. `is_to_be_proved` makes an error of
+    what is not proved.
+    """
+    findings = preflight(read_input_plan(plan_path), read_input_site(site_path), day, monitor).findings
+    monitor.report(say("checking the proof"), 0, 1)
+    proved = proof_of_files(plan_path, site_path)
+    if is_to_be_proved:
+        proved = refused_unless_proved(no_proof(proof_path(plan_path)) if proved is None else proved)
+    return findings if proved is None else (*findings, proved)
 
 
 def planned_summary(planned: Planned, seconds: float) -> dict[str, Any]:

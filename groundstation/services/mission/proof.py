@@ -1,0 +1,164 @@
+"""Plans that carry their proof: written beside plans and missions, and judged by the independent verifier.
+
+The verifier is one file that knows nothing of this program (`planning.proof.reflight_verify`). It goes along with each
+mission, so that anybody can run it on what will be flown.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from planning.base.errors import InputError
+from planning.base.files import read_input_file
+from planning.base.findings import Finding, Severity
+from planning.base.json_file import JSON_FILE, parse_json, write_atomically, write_together
+from planning.base.messages import joined, say
+from planning.base.progress import QUIET, Monitor
+from planning.coverage.reachability import Reachability
+from planning.geo.mesh import MESH_FILE
+from planning.plan import Plan, plan_bytes
+from planning.proof import reflight_verify
+from planning.proof.make import proof_of, proof_path
+from planning.site.records import SiteModel
+
+PROVED, FALSE = reflight_verify.PROVED, reflight_verify.FALSE
+
+VERIFIER = Path(reflight_verify.__file__)
+
+
+@dataclass(frozen=True, slots=True)
+class Claim:
+    """What the verifier says of one claim: `proved`, `false` or `not proved`, and in words what or why."""
+
+    id: str
+    verdict: str
+    text: str
+
+
+def verified(site: Path, plan: Path, proof: Path, missions: Sequence[Path] = ()) -> tuple[Claim, ...]:
+    """All claims of a plan, as the verifier judges them."""
+    return tuple(Claim(**each) for each in reflight_verify.verify(site, plan, proof, list(missions)))
+
+
+def proof_finding(claims: Sequence[Claim]) -> Finding:
+    """The verdict of the verifier in one line: proved, or what is not."""
+    wrong = [each for each in claims if each.verdict == FALSE]
+    missing = [each for each in claims if each.verdict not in (PROVED, FALSE)]
+    n_proved = len(claims) - len(wrong) - len(missing)
+    if not wrong and not missing:
+        text = say("proved by an independent check: all {} claims on this plan", n_proved)
+        return Finding(Severity.OK, "proof", text, "", float(n_proved), float(len(claims)), "claims")
+    names = joined("; ", (say("{}: {}", each.id, each.text) for each in (*wrong, *missing)))
+    if wrong:
+        text = say("an independent check finds that claims are false ({} of {}): {}", len(wrong), len(claims), names)
+        return Finding(Severity.WARNING, "proof", text, wrong[0].id, float(n_proved), float(len(claims)), "claims")
+    text = say("an independent check proves {} of {} claims; not proved: {}", n_proved, len(claims), names)
+    return Finding(Severity.NOTE, "proof", text, missing[0].id, float(n_proved), float(len(claims)), "claims")
+
+
+def no_proof(path: Path) -> Finding:
+    """That a plan comes without its proof."""
+    text = say("the plan has no proof beside it ({}); plan it again, or leave --proved out", path.name)
+    return Finding(Severity.ERROR, "proof", text)
+
+
+def refused_unless_proved(finding: Finding) -> Finding:
+    """The finding as an error where anything is not proved."""
+    if finding.severity is Severity.OK:
+        return finding
+    return Finding(Severity.ERROR, *(getattr(finding, name) for name in Finding.__slots__[1:]))
+
+
+def write_plan_proof(
+    plan_path: Path,
+    site_path: Path,
+    site_model: SiteModel,
+    reachability: Reachability | None,
+    monitor: Monitor = QUIET,
+) -> Path:
+    """Write the proof beside a plan's file; returns its path.
+
+    Raises
+    ------
+    InputError
+        A file cannot be read or written.
+    """
+    path = proof_path(plan_path)
+    written = read_input_file(plan_path, JSON_FILE)
+    write_atomically(path, proof_of(site_path, plan_path, written, site_model, reachability, monitor=monitor))
+    return path
+
+
+def proof_of_files(plan_path: Path, site_path: Path) -> Finding | None:
+    """What the verifier says of a plan with the proof beside it; None where there is none."""
+    path = proof_path(plan_path)
+    return proof_finding(verified(site_path, plan_path, path)) if path.is_file() else None
+
+
+def write_mission_proof(
+    plan_path: Path,
+    plan: Plan | None,
+    site_path: Path,
+    site_model: SiteModel,
+    missions: Sequence[Path],
+    return_height_m: float | None,
+) -> Finding:
+    """Write the proof beside mission files, with what it speaks of and the verifier, and judge it.
+
+    Parameters
+    ----------
+    plan
+        What is flown where that is another plan than in the file: the same views, shared out among more sorties.
+    return_height_m
+        Above take-off, as the mission says it; None where it does not.
+
+    Raises
+    ------
+    InputError
+        A file cannot be read or written.
+    """
+    folder, first = missions[0].parent, missions[0].name
+    written = read_input_file(plan_path, JSON_FILE)
+    flown_path = folder / plan_path.name
+    if plan is not None:
+        flown_path = folder / f"{first}.plan.json"
+        written = plan_bytes(plan)
+    path = folder / f"{first}.proof"
+    known = _known_proof(proof_path(plan_path))
+    proof = proof_of(site_path, flown_path, written, site_model, None, known=known, return_height_m=return_height_m)
+    beside = dict(_copies(site_path, site_model, folder))
+    if not _is_same(flown_path, plan_path):
+        beside[flown_path] = written
+    write_together({path: proof, **beside, folder / VERIFIER.name: VERIFIER.read_bytes()})
+    return proof_finding(verified(folder / site_path.name, flown_path, path, missions))
+
+
+def _known_proof(path: Path) -> dict[str, Any] | None:
+    """The proof of a plan as it was written; None where there is none that can be read."""
+    try:
+        content = parse_json(read_input_file(path, JSON_FILE), path) if path.is_file() else None
+    except InputError:
+        return None
+    return content if isinstance(content, dict) else None
+
+
+def _copies(site_path: Path, site_model: SiteModel, folder: Path) -> Iterator[tuple[Path, bytes]]:
+    """The site's file and meshes, where a folder does not hold them."""
+    if _is_same(folder, site_path.parent):
+        return
+    site = site_model.site
+    meshes = [site.building_mesh, *(obstacle.mesh for obstacle in site.obstacles)]
+    for name in (site_path.name, *dict.fromkeys(mesh for mesh in meshes if mesh is not None)):
+        target, content = folder / name, read_input_file(site_path.parent / name, MESH_FILE)
+        if target.exists() and read_input_file(target, MESH_FILE) != content:
+            raise InputError.say(
+                "expected the site's own '{}' here, or none; write the mission into another folder", name, place=folder
+            )
+        yield target, content
+
+
+def _is_same(one: Path, other: Path) -> bool:
+    return one.resolve() == other.resolve()

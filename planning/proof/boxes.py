@@ -1,0 +1,265 @@
+"""Trees of boxes that leave no place from which a hemisphere section is seen, in the words of `plan.proof`.
+
+The airspace is halved again and again, as in `planning.coverage.reach_kernel`, until each box is excluded for one
+of the reasons that the verifier knows. Each test here keeps more slack than its own:
+
+- a plane has the section on one side and the box on the other: behind the panel, beside the section's wedge, outside
+  its outer cone, or beyond the largest distance;
+- the box lies in a convex cone where no place of the section is: below its ring, or out of the gimbal's reach;
+- each corner is nearer than the minimum distance to one triangle, and so is then every place of the box;
+- the box lies in the shadow of a patch of triangles, as seen from where lines of sight end.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.base.jit import inline, kernel
+from planning.geo.bvh import Bvh
+
+Array = NDArray[np.float64]
+
+SLACK_M = 4e-7
+RATIO_SLACK = 4e-9
+
+PLANE, CONE, CUT_X = -1, -2, -5
+"""Codes of leaves and cuts (X, Y, Z: -5, -4, -3); triangle k is 2 k, patch k is 2 k + 1."""
+
+SMALLEST_M = 0.01
+"""Boxes with a smaller half diagonal are not halved."""
+
+
+class Panel(NamedTuple):
+    """What a section is to the search: rows as in the verifier.
+
+    `sides` has the three vectors along which places of the section have no negative part; `outer` the sine and cosine
+    of its outer cone, `cones` the axes (k, 3) and cosines (k,) of those in which it has no place.
+    """
+
+    centroid: Array
+    axes: Array
+    sides: Array
+    outer: Array
+    cone_axes: Array
+    cone_cosines: Array
+
+
+class Shadows(NamedTuple):
+    """Patches as seen from one target.
+
+    `faces` (f, 6) are inward normals and a corner, `edges` (e, 3) normals of the planes through the target and the
+    silhouette, `rims` (r, 3) corners; the starts of each patch in them have shape (p + 1,).
+    """
+
+    eye: Array
+    faces: Array
+    face_starts: NDArray[np.int64]
+    edges: Array
+    edge_starts: NDArray[np.int64]
+    rims: Array
+    rim_starts: NDArray[np.int64]
+    numbers: NDArray[np.int64]
+
+
+@inline
+def _most(m: Array, offset: Array, half: Array) -> float:
+    """Largest part along m of a box with half sizes `half`, centre at `offset`."""
+    return float(
+        m[0] * offset[0] + m[1] * offset[1] + m[2] * offset[2]
+        + abs(m[0]) * half[0] + abs(m[1]) * half[1] + abs(m[2]) * half[2]
+    )  # fmt: skip
+
+
+@kernel
+def _is_beyond_plane(offset: Array, half: Array, panel: Panel, far: float) -> bool:
+    for i in range(3):
+        if _most(panel.sides[i], offset, half) <= -SLACK_M:
+            return True
+    u = offset[0] * panel.axes[1, 0] + offset[1] * panel.axes[1, 1] + offset[2] * panel.axes[1, 2]
+    v = offset[0] * panel.axes[2, 0] + offset[1] * panel.axes[2, 1] + offset[2] * panel.axes[2, 2]
+    side = np.sqrt(u * u + v * v)
+    if not side > 10.0 * SLACK_M:
+        return False
+    sine, cosine = panel.outer[0], panel.outer[1]
+    form = np.empty(3)
+    for k in range(3):
+        radial = panel.axes[1, k] * (u / side) + panel.axes[2, k] * (v / side)
+        form[k] = sine * panel.axes[0, k] - cosine * radial
+    if _most(form, offset, half) <= -SLACK_M:
+        return True
+    away = np.sqrt(offset[0] ** 2 + offset[1] ** 2 + offset[2] ** 2)
+    for k in range(3):
+        form[k] = -offset[k] / away
+    return bool(_most(form, offset, half) <= -far - SLACK_M)
+
+
+@kernel
+def _is_in_cone(offset: Array, half: Array, panel: Panel) -> bool:
+    for i in range(len(panel.cone_cosines)):
+        inside = True
+        for corner in range(8):
+            along, norm = 0.0, 0.0
+            for k in range(3):
+                x = offset[k] + (half[k] if corner >> k & 1 else -half[k])
+                along += x * panel.cone_axes[i, k]
+                norm += x * x
+            if not along >= panel.cone_cosines[i] * np.sqrt(norm) + SLACK_M:
+                inside = False
+                break
+        if inside:
+            return True
+    return False
+
+
+@kernel
+def _nearest_point(p: Array, triangle: Array, q: Array) -> float:
+    """Distance of a point and a triangle, whose nearest point is filled into q."""
+    a, b, c = triangle[0], triangle[1], triangle[2]
+    ab, ac, ap = b - a, c - a, p - a
+    normal = np.cross(ab, ac)
+    area2 = (normal * normal).sum()
+    if area2 > 0.0:
+        s = (np.cross(ap, ac) * normal).sum() / area2
+        t = (np.cross(ab, ap) * normal).sum() / area2
+        if s >= 0.0 and t >= 0.0 and s + t <= 1.0:
+            for k in range(3):
+                q[k] = a[k] + s * ab[k] + t * ac[k]
+            return float(np.sqrt(((p - q) ** 2).sum()))
+    best = np.inf
+    for i in range(3):
+        start, way = triangle[i], triangle[(i + 1) % 3] - triangle[i]
+        square = (way * way).sum()
+        s = min(max(((p - start) * way).sum() / square, 0.0), 1.0) if square > 0.0 else 0.0
+        d2 = 0.0
+        for k in range(3):
+            d2 += (p[k] - start[k] - s * way[k]) ** 2
+        if d2 < best:
+            best = d2
+            for k in range(3):
+                q[k] = start[k] + s * way[k]
+    return float(np.sqrt(best))
+
+
+@kernel
+def _is_near(centre: Array, half: Array, triangle: Array, near: float) -> bool:
+    """Whether all corners of a box are nearer to a triangle; first what its centre says of the farthest of them."""
+    q, corner = np.empty(3), np.empty(3)
+    away = _nearest_point(centre, triangle, q)
+    farthest = away
+    if away > 0.0:
+        for k in range(3):
+            farthest += abs(centre[k] - q[k]) / away * half[k]
+    if not farthest <= near - SLACK_M:
+        return False
+    for i in range(8):
+        for k in range(3):
+            corner[k] = centre[k] + (half[k] if i >> k & 1 else -half[k])
+        if not _nearest_point(corner, triangle, q) <= near - SLACK_M:
+            return False
+    return True
+
+
+@kernel
+def _near_triangle(centre: Array, half: Array, bvh: Bvh, near: float) -> int:
+    """A triangle to which the whole box is nearer than `near`, by its number in the source; -1 for none."""
+    if len(bvh.corners) == 0:
+        return -1
+    stack = np.empty(64, np.int64)
+    stack[0], depth = 0, 1
+    while depth > 0:
+        depth -= 1
+        node = stack[depth]
+        d2 = 0.0
+        for k in range(3):
+            # As far as the farthest place of the box along each axis: no triangle of the node is nearer to that.
+            gap = max(bvh.low[node, k] - centre[k], centre[k] - bvh.high[node, k])
+            gap = max(gap + half[k], 0.0) if gap > 0.0 else 0.0
+            d2 += gap * gap
+        if d2 > near * near:
+            continue
+        child = bvh.child[node]
+        if child < 0:
+            for i in range(bvh.first[node], bvh.first[node] + bvh.size[node]):
+                if _is_near(centre, half, bvh.corners[i], near):
+                    return int(bvh.source[i])
+        else:
+            stack[depth], stack[depth + 1] = child, child + 1
+            depth += 2
+    return -1
+
+
+@kernel
+def _shadow(centre: Array, half: Array, shadows: Shadows) -> int:
+    """A patch whose shadow holds the box, by its number; -1 for none."""
+    eye = shadows.eye
+    offset = centre - eye
+    reach = np.sqrt((offset * offset).sum()) + np.sqrt((half * half).sum())
+    if not _most(-offset, offset, half) < -SLACK_M:
+        return -1
+    for p in range(len(shadows.numbers)):
+        hidden = True
+        for i in range(shadows.edge_starts[p], shadows.edge_starts[p + 1]):
+            if not _most(-shadows.edges[i], offset, half) < -RATIO_SLACK * reach:
+                hidden = False
+                break
+        if not hidden:
+            continue
+        for i in range(shadows.face_starts[p], shadows.face_starts[p + 1]):
+            normal, corner = shadows.faces[i, :3], shadows.faces[i, 3:]
+            if not _most(-normal, centre - corner, half) < -RATIO_SLACK * (reach + 1.0):
+                hidden = False
+                break
+        if not hidden:
+            continue
+        for i in range(shadows.rim_starts[p], shadows.rim_starts[p + 1]):
+            if not (offset * shadows.rims[i]).sum() > 10.0 * SLACK_M:
+                hidden = False
+                break
+        if hidden:
+            return int(shadows.numbers[p])
+    return -1
+
+
+@kernel
+def exclude(
+    panel: Panel, shadows: Shadows, bvh: Bvh, low: Array, high: Array, near: float, far: float, codes: NDArray[np.int64]
+) -> int:
+    """Codes of a tree in `codes`, in the order of the text; how many, or 0 where no tree was found."""
+    lows, highs = np.empty((256, 3)), np.empty((256, 3))
+    lows[0], highs[0] = low, high
+    waiting, n = 1, 0
+    offset, half, centre = np.empty(3), np.empty(3), np.empty(3)
+    while waiting > 0:
+        waiting -= 1
+        if n == len(codes):
+            return 0
+        for k in range(3):
+            centre[k] = (lows[waiting, k] + highs[waiting, k]) * 0.5
+            half[k] = (highs[waiting, k] - lows[waiting, k]) * 0.5
+            offset[k] = centre[k] - panel.centroid[k]
+        codes[n] = 0
+        if _is_beyond_plane(offset, half, panel, far):
+            codes[n] = PLANE
+        elif _is_in_cone(offset, half, panel):
+            codes[n] = CONE
+        else:
+            triangle = _near_triangle(centre, half, bvh, near)
+            patch = _shadow(centre, half, shadows) if triangle < 0 and len(shadows.numbers) else -1
+            if triangle >= 0:
+                codes[n] = 2 * triangle
+            elif patch >= 0:
+                codes[n] = 2 * patch + 1
+            else:
+                if half[0] ** 2 + half[1] ** 2 + half[2] ** 2 < SMALLEST_M**2 or waiting + 2 > len(lows):
+                    return 0
+                axis = 0 if half[0] >= half[1] and half[0] >= half[2] else (1 if half[1] >= half[2] else 2)
+                codes[n] = CUT_X + axis
+                lows[waiting + 1], highs[waiting + 1] = lows[waiting], highs[waiting]
+                highs[waiting + 1, axis] = centre[axis]
+                lows[waiting, axis] = centre[axis]
+                waiting += 2
+        n += 1
+    return n

@@ -1,0 +1,416 @@
+"""Making `plan.proof`: for each claim of the verifier where it has to look, from what planning found out already.
+
+The site and the plan are read with the verifier's own code, so that both speak of the same numbers. What cannot be
+proved is left out, and the verifier then says so.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from collections import defaultdict
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.base.files import read_input_file
+from planning.base.jit import chunks, run_parallel
+from planning.base.json_file import JSON_FILE
+from planning.base.messages import say
+from planning.base.progress import QUIET, Monitor
+from planning.coverage.reach_kernel import REACHABLE, UNREACHABLE
+from planning.coverage.reachability import Reachability, convex_groups
+from planning.geo.bvh import Bvh, build_bvh
+from planning.proof.boxes import CONE, CUT_X, PLANE, Panel, Shadows, exclude
+from planning.proof.reflight_verify import Case, Pane, Refused
+from planning.proof.separation import DirectionTable, Separator
+from planning.routing.rally import return_height
+from planning.site.free_space import unchecked_space
+from planning.site.records import SiteModel
+
+Array = NDArray[np.float64]
+
+PROOF_FORMAT = "reflight-proof/1"
+
+SLACK_M = 1e-6
+"""Views that see a section by less than this are left to others: the verifier keeps 1e-7 m."""
+
+MOST_CODES = 20_000
+"""Boxes of one section; more would not be read in time."""
+
+MOST_PATCHES = 32
+"""Patches that are looked at for the shadows of one panel: those that are seen largest."""
+
+RETURN_SHARES = (1.0, 0.95, 0.9, 0.8, 0.7, 0.6, 0.5)
+"""Parts of the minimum distance that returns are tried to keep, the largest first."""
+
+SECTIONS_PER_CHUNK = 16
+TRIED_VIEWS = 4
+"""Views of one section that are tried for a free line of sight."""
+
+
+def proof_path(plan_path: Path) -> Path:
+    """Where the proof of a plan stands: beside it, with the ending `.proof`."""
+    return plan_path.with_suffix(".proof")
+
+
+def proof_of(
+    site_path: Path,
+    plan_path: Path,
+    plan_bytes: bytes,
+    site_model: SiteModel,
+    reachability: Reachability | None = None,
+    *,
+    known: Mapping[str, Any] | None = None,
+    return_height_m: float | None = None,
+    monitor: Monitor = QUIET,
+) -> bytes:
+    """Content of the proof of a plan.
+
+    Parameters
+    ----------
+    site_path
+        The site's file, beside which its meshes lie.
+    plan_path, plan_bytes
+        Where the plan's file stands, or will stand, and what it holds.
+    reachability
+        What planning found out of it; None where it did not look.
+    known
+        A proof of the same viewpoints on the same site, from which what it says of them is taken over.
+    return_height_m
+        Above home, of aircraft that return by themselves; None: as high as clears everything.
+
+    Raises
+    ------
+    InputError
+        The site cannot be read.
+    """
+    monitor.report(say("writing the proof"), 0, 1)
+    contents = [read_input_file(site_path, JSON_FILE), plan_bytes]
+    content: dict[str, Any] = {"format": PROOF_FORMAT, "directions": []}
+    for name, path, written in zip(("site", "plan"), (site_path, plan_path), contents, strict=True):
+        content[name] = {"name": path.name, "sha256": hashlib.sha256(written).hexdigest()}
+    content["meshes"] = []
+    try:
+        case = Case(site_path.parent, [*contents, _encoded(content)])
+    except (Refused, ValueError, LookupError, TypeError, OSError):  # such as meshes that the verifier does not read
+        return _encoded(content)
+    hashes = {name: hashlib.sha256(mesh).hexdigest() for name, mesh in case.meshes.items()}
+    content["meshes"] = [{"name": name, "sha256": sha256} for name, sha256 in hashes.items()]
+    maker = _Maker.of(case, known)
+    if return_height_m is None:
+        return_height_m = return_height(unchecked_space(site_model, case.near_m)).above_home_m
+    content |= maker.legs(return_height_m)
+    if known is None:
+        content |= maker.coverage(reachability)
+        content |= maker.boxes(reachability, monitor)
+    else:
+        content |= {name: known[name] for name in OF_VIEWS if name in known}
+    content["directions"] = maker.table.rows
+    return _encoded(content)
+
+
+OF_VIEWS = ("seen", "sights", "witnesses", "boxes", "patches")
+"""Parts of a proof that depend on the site, the limits and the viewpoints alone."""
+
+
+def _encoded(content: Mapping[str, Any]) -> bytes:
+    return json.dumps(content, separators=(",", ":"), allow_nan=False).encode()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Maker:
+    case: Case
+    table: DirectionTable
+    solids: Separator
+    no_fly: Separator
+
+    @classmethod
+    def of(cls, case: Case, known: Mapping[str, Any] | None) -> _Maker:
+        table = DirectionTable(() if known is None else known.get("directions", ()))
+        solids, no_fly = (np.array(each.triangles).reshape(-1, 3, 3) for each in (case.solids, case.no_fly))
+        return cls(case, table, Separator(table, solids), Separator(table, no_fly))
+
+    def legs(self, return_height_m: float) -> dict[str, Any]:
+        """What separates legs, and returns from them, from everything; and the way from home to outside."""
+        case = self.case
+        ends = [np.array([a, b]) for _, _, a, b in case.legs]
+        returns, kept_m = self._returns(case.home[2] + return_height_m)
+        outside, outside_directions = self._outside()
+        return {
+            "legs": self._by_leg(self.solids.directions(ends, case.near_m)),
+            "no_fly": self._by_leg(self.no_fly.directions(ends, 0.0)),
+            "return_height_m": return_height_m,
+            "return_kept_m": kept_m,
+            "returns": self._by_leg(returns),
+            "outside": outside,
+            "outside_directions": outside_directions,
+        }
+
+    def _by_leg(self, found: list[list[int] | None]) -> list[list[list[int]]]:
+        by_sortie: list[list[list[int]]] = [[] for _ in self.case.paths]
+        for (s, _, _, _), each in zip(self.case.legs, found, strict=True):
+            by_sortie[s].append(each or [])
+        return by_sortie
+
+    def _returns(self, level_m: float) -> tuple[list[list[int] | None], float]:
+        """Directions for the sets that the verifier's `return_` looks at, and the distance that all of them keep."""
+        case = self.case
+        sets = []
+        for _, _, a, b in case.legs:
+            tops = max(a[2], level_m), max(b[2], level_m)
+            sets.append(np.array([a, b, (*a[:2], tops[0]), (*b[:2], tops[1])]))
+            sets.append(np.array([(*p[:2], top) for p in (a, b, case.home) for top in tops]))
+            sets.append(np.array([case.home, (*case.home[:2], max(tops))]))
+        kept_m, by_solids = 0.0, list[list[int] | None]()
+        for share in RETURN_SHARES:
+            kept_m = round(share * case.near_m, 3)
+            by_solids = self.solids.directions(sets, kept_m)
+            if None not in by_solids:
+                break
+        found = list(zip(by_solids, self.no_fly.directions(sets, 0.0), strict=True))
+        joined = [_union([each for pair in found[i : i + 3] for each in pair]) for i in range(0, len(found), 3)]
+        return joined, kept_m
+
+    def _outside(self) -> tuple[list[Any], list[list[int]]]:
+        """A straight way from home to outside of everything."""
+        case, home = self.case, np.array(self.case.home)
+        corners = np.concatenate([self.solids.triangles, self.no_fly.triangles]).reshape(-1, 3)
+        far = float(np.abs(corners - home).max(initial=1.0)) + 10.0
+        ways = [(0.0, 0.0, 1.0), *((math.cos(k * 0.5), math.sin(k * 0.5), h) for h in (0.0, 0.7) for k in range(13))]
+        for way in ways:
+            end = home + 1.01 * far * np.array(way)
+            found = _union([each.directions([np.array([home, end])], 0.0)[0] for each in (self.solids, self.no_fly)])
+            is_far = any(abs(value) > far for value in end - home)
+            if found is not None and is_far:
+                return [list(case.home), end.tolist()], [found]
+        return [list(case.home)], []
+
+    def coverage(self, reachability: Reachability | None) -> dict[str, Any]:
+        """A view for each section that is covered, and places for others that can be."""
+        case = self.case
+        n_elements = len(case.panes) * case.n
+        seen = np.full(n_elements, -1, np.int64)
+        sights: list[list[int]] = [[] for _ in range(n_elements)] if case.occlusion == "on" else []
+        waiting = _best_views(case)
+        for _ in range(TRIED_VIEWS):
+            elements, views = (
+                zip(*((e, found.pop(0)) for e, found in waiting.items()), strict=True) if waiting else ((), ())
+            )
+            if case.occlusion == "on":
+                lines = [
+                    np.array([case.views[v][1], case.panes[e // case.n].target])
+                    for e, v in zip(elements, views, strict=True)
+                ]
+                free = self.solids.directions(lines, 0.0)
+            else:
+                free = [[] for _ in elements]
+            for e, v, directions in zip(elements, views, free, strict=True):
+                if directions is not None:
+                    seen[e] = v
+                    if sights:
+                        sights[e] = directions
+            waiting = {e: found for e, found in waiting.items() if seen[e] < 0 and found}
+        return {"seen": seen.tolist(), "sights": sights, "witnesses": self._witnesses(reachability, seen)}
+
+    def _witnesses(self, reachability: Reachability | None, seen: NDArray[np.int64]) -> list[list[Any]]:
+        if reachability is None:
+            return []
+        case = self.case
+        elements = np.flatnonzero((reachability.verdicts.reshape(-1) == REACHABLE) & (seen < 0))
+        places = reachability.witnesses_enu_m.reshape(-1, 3)[elements]
+        by = [_union([each]) for each in self.solids.directions([place[None] for place in places], case.near_m)]
+        if case.occlusion == "on":
+            lines = [
+                np.array([place, case.panes[e // case.n].target]) for e, place in zip(elements, places, strict=True)
+            ]
+            by = [_union(pair) for pair in zip(by, self.solids.directions(lines, 0.0), strict=True)]
+        found = zip(elements.tolist(), places.tolist(), by, strict=True)
+        return [[e, *place, directions] for e, place, directions in found if directions is not None]
+
+    def boxes(self, reachability: Reachability | None, monitor: Monitor) -> dict[str, Any]:
+        """Trees of boxes for all sections out of reach, and the patches that cast their shadows."""
+        if reachability is None:
+            return {"boxes": [], "patches": []}
+        case = self.case
+        elements = np.flatnonzero(reachability.verdicts.reshape(-1) == UNREACHABLE)
+        patches = _Patches(self.solids.triangles) if case.occlusion == "on" else None
+        bvh = build_bvh(self.solids.triangles)
+        shadows = {panel: _shadows(case.panes[panel], patches) for panel in set((elements // case.n).tolist())}
+        texts: list[str] = []
+        parts = chunks(len(elements), SECTIONS_PER_CHUNK)
+        for start, stop in chunks(len(parts), 8):
+            monitor.report(say("writing the proof"), start, len(parts))
+            work = [(case, elements[a:b], shadows, bvh) for a, b in parts[start:stop]]
+            texts += [text for part in run_parallel(_trees, work) for text in part]
+        found = [[e, text] for e, text in zip(elements.tolist(), texts, strict=True) if text]
+        return {"boxes": found, "patches": [] if patches is None else patches.rows}
+
+
+def _union(parts: Iterable[list[int] | None]) -> list[int] | None:
+    """All directions of several lists; None where one is missing."""
+    parts = list(parts)
+    if any(part is None for part in parts):
+        return None
+    return list(dict.fromkeys(each for part in parts for each in part or []))
+
+
+def _best_views(case: Case) -> dict[int, list[int]]:
+    """For each section that is surely in the picture of any view, the views with most to spare, best first."""
+    panes, n, rings = case.panes, case.n, case.rings
+    c, normal, t, b = (np.array([getattr(pane, name) for pane in panes]) for name in ("c", "n", "t", "b"))
+    corners = np.array([pane.corners for pane in panes])
+    sines, cosines = np.array(case.angles).T
+    best: dict[int, list[tuple[float, int]]] = defaultdict(list)
+    for number, (_, place, heading_deg, pitch_deg) in enumerate(case.views):
+        heading, pitch = math.radians(heading_deg), math.radians(pitch_deg)
+        forward = np.array([math.cos(pitch) * math.sin(heading), math.cos(pitch) * math.cos(heading), math.sin(pitch)])
+        right = np.array([math.cos(heading), -math.sin(heading), 0.0])
+        d = np.array(place) - c
+        away = np.linalg.norm(d, axis=1)
+        along, u, v = ((d * axis).sum(axis=1) for axis in (normal, t, b))
+        theta = np.arccos(np.clip(along / np.maximum(away, 1e-12), -1.0, 1.0))
+        ring = np.clip((theta / (0.5 * math.pi) * rings).astype(int), 0, rings - 1)
+        sector = np.clip(
+            (np.mod(np.arctan2(v, u), 2 * math.pi) / (0.5 * math.pi) * rings).astype(int), 0, 4 * rings - 1
+        )
+        slack = np.minimum(along, case.far_m - away)
+        slack = np.minimum(slack, cosines[sector] * v - sines[sector] * u)
+        slack = np.minimum(slack, sines[sector + 1] * u - cosines[sector + 1] * v)
+        slack = np.where(ring > 0, np.minimum(slack, cosines[ring] * away - along), slack)
+        slack = np.minimum(slack, along - cosines[ring + 1] * away)
+        points = np.concatenate([c[:, None], corners], axis=1) if case.whole else c[:, None]
+        for ray in np.moveaxis(points - np.array(place), 1, 0):
+            depth, across, upwards = ray @ forward, ray @ right, ray @ np.cross(right, forward)
+            slack = np.minimum(slack, depth)
+            slack = np.minimum(slack, case.half[0] * depth - np.abs(across))
+            slack = np.minimum(slack, case.half[1] * depth - np.abs(upwards))
+        for panel in np.flatnonzero(slack > SLACK_M).tolist():
+            best[panel * n + int(ring[panel]) * 4 * rings + int(sector[panel])].append((-float(slack[panel]), number))
+    return {e: [view for _, view in sorted(found)] for e, found in sorted(best.items())}
+
+
+class _Patches:
+    """Groups of triangles that may cast shadows, and the table of their parts that were used."""
+
+    def __init__(self, triangles: Array) -> None:
+        self.triangles = triangles
+        label = convex_groups(triangles)
+        self.groups = [np.flatnonzero(label == each) for each in np.unique(label)]
+        self.means = [triangles[group].reshape(-1, 3).mean(axis=0) for group in self.groups]
+        self._numbers: dict[tuple[int, ...], int] = {}
+
+    def number(self, patch: tuple[int, ...]) -> int:
+        """Of a patch in the table."""
+        return self._numbers.setdefault(patch, len(self._numbers))
+
+    @property
+    def rows(self) -> list[list[int]]:
+        """The table."""
+        return [list(patch) for patch in self._numbers]
+
+    def seen_from(self, pane: Pane) -> list[tuple[int, ...]]:
+        """Parts of groups that face a panel's target and stand in front of it, the largest seen first."""
+        eye, normal = np.array(pane.target), np.array(pane.n)
+        found = []
+        for group, mean in zip(self.groups, self.means, strict=True):
+            corners = self.triangles[group]
+            if not ((corners - eye) @ normal).max() > 0.0:
+                continue
+            across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+            area = np.maximum(np.linalg.norm(across, axis=1), 1e-30)
+            of_eye = ((eye - corners[:, 0]) * across).sum(axis=1) / area
+            of_mean = ((mean - corners[:, 0]) * across).sum(axis=1) / area
+            facing = (np.abs(of_eye) > 1e-3) & ((of_eye * of_mean < 0.0) | (np.abs(of_mean) < 1e-4))
+            if facing.any():
+                reach = np.linalg.norm(corners[facing] - eye, axis=2).min()
+                found.append((float(area[facing].sum() / max(reach, 1e-3) ** 2), tuple(group[facing].tolist())))
+        return [patch for _, patch in sorted(found, reverse=True)[:MOST_PATCHES]]
+
+
+_NO_ROWS = np.zeros((0, 3))
+_NO_STARTS = np.zeros(1, np.int64)
+
+
+def _shadows(pane: Pane, patches: _Patches | None) -> Shadows:
+    """Shadows of all patches as seen from a panel."""
+    eye = np.array(pane.target)
+    if patches is None:
+        return Shadows(eye, np.zeros((0, 6)), _NO_STARTS, _NO_ROWS, _NO_STARTS, _NO_ROWS, _NO_STARTS, _NO_STARTS[:0])
+    faces: list[Any] = []
+    edges: list[Any] = []
+    rims: list[Any] = []
+    starts = [[0], [0], [0]]
+    numbers = []
+    for patch in patches.seen_from(pane):
+        found = _silhouette(eye, patches.triangles[list(patch)])
+        if found is None:
+            continue
+        for rows, start, more in zip((faces, edges, rims), starts, found, strict=True):
+            rows.extend(more)
+            start.append(len(rows))
+        numbers.append(patches.number(patch))
+    arrays = [np.array(rows, np.float64).reshape(-1, n) for rows, n in ((faces, 6), (edges, 3), (rims, 3))]
+    of_patches = [np.array(each, np.int64) for each in starts]
+    return Shadows(
+        eye, arrays[0], of_patches[0], arrays[1], of_patches[1], arrays[2], of_patches[2], np.array(numbers, np.int64)
+    )
+
+
+def _silhouette(eye: Array, triangles: Array) -> tuple[list[Any], list[Any], list[Any]] | None:
+    """Faces, silhouette and corners of a patch, as the verifier finds them; None where it would refuse it."""
+    faces, rims = [], []
+    edges: set[tuple[tuple[float, ...], tuple[float, ...]]] = set()
+    for triangle in triangles:
+        a, b, c = (tuple(corner) for corner in triangle.tolist())
+        rays = triangle - eye
+        volume = float(np.cross(rays[0], rays[1]) @ rays[2])
+        if abs(volume) < 1e-8 * float(np.prod(np.linalg.norm(rays, axis=1))):
+            return None
+        ring = (a, b, c) if volume > 0.0 else (a, c, b)
+        normal = np.cross(np.subtract(ring[1], ring[0]), np.subtract(ring[2], ring[0]))
+        faces.append([*(normal / np.linalg.norm(normal)).tolist(), *ring[0]])
+        for edge in ((ring[0], ring[1]), (ring[1], ring[2]), (ring[2], ring[0])):
+            if edge in edges:
+                return None
+            edges ^= {edge} if edge[::-1] not in edges else {edge[::-1]}
+        rims += rays.tolist()
+    normals = [np.cross(np.subtract(a, eye), np.subtract(b, eye)) for a, b in edges]
+    lengths = [math.dist(a, eye) * math.dist(b, eye) for a, b in edges]
+    return faces, [normal / size for normal, size in zip(normals, lengths, strict=True)], rims
+
+
+def _trees(case: Case, elements: NDArray[np.int64], shadows: dict[int, Shadows], bvh: Bvh) -> list[str]:
+    """Trees of some sections; an empty text where none was found."""
+    low, high = np.array(case.low), np.array(case.high)
+    codes = np.empty(MOST_CODES, np.int64)
+    texts = []
+    for element in elements.tolist():
+        panel = element // case.n
+        n = exclude(_panel(case, element), shadows[panel], bvh, low, high, case.near_m, case.far_m, codes)
+        texts.append("".join(map(_letter, codes[:n].tolist())))
+    return texts
+
+
+def _letter(code: int) -> str:
+    if code >= 0:
+        return f"{'dq'[code % 2]}{code // 2}."
+    return {PLANE: "p", CONE: "c", CUT_X: "X", CUT_X + 1: "Y", CUT_X + 2: "Z"}[code]
+
+
+def _panel(case: Case, element: int) -> Panel:
+    """A section as the search takes it."""
+    pane, ring, sector = case._section(element)
+    n, t, b = (np.array(axis) for axis in (pane.n, pane.t, pane.b))
+    (s0, c0), (s1, c1) = case.angles[sector : sector + 2]
+    axes, cosines = [[0.0, 0.0, -1.0], [0.0, 0.0, 1.0]], list(case.steepest)
+    if ring > 0:
+        axes, cosines = [*axes, n.tolist()], [*cosines, case.angles[ring][1]]
+    sides = np.array([n, c0 * b - s0 * t, s1 * t - c1 * b])
+    outer = np.array(case.angles[ring + 1])
+    return Panel(np.array(pane.c), np.array([n, t, b]), sides, outer, np.array(axes), np.array(cosines))
