@@ -584,13 +584,14 @@ def enu(origin: Vec, lat_deg: float, lon_deg: float, height_m: float) -> Vec:
 
 N, B = "(-?[0-9]+(?:[.][0-9]+)?)", r"[^\[\]]*"
 ACTION = r"action\[actionId=[0-9]+;actionActuatorFunc={};actionActuatorFuncParam\[{}\]\]"
+HELD = ACTION.format("setFocusType", "cameraFocusType=manual;payloadPositionIndex=0;")
 PHOTO = "".join([
     ACTION.format("rotateYaw", f"aircraftHeading={N};aircraftPathMode=(?:clockwise|counterClockwise);"),
     ACTION.format("gimbalRotate", "gimbalHeadingYawBase=north;gimbalRotateMode=absoluteAngle;gimbalPitchRotateEnable=1;gimbalPitchRotateAngle"
                   f"={N};gimbalRollRotateEnable=0;gimbalRollRotateAngle=0;gimbalYawRotateEnable=0;gimbalYawRotateAngle=0;gimbalRotateTimeEnable"
                   "=0;gimbalRotateTime=0;payloadPositionIndex=0;"),
     f"(?:{ACTION.format('zoom', f'focalLength={N};isUseFocalFactor=0;payloadPositionIndex=0;')})?",
-    f"(?:{ACTION.format('focus', B)})?(?:{ACTION.format('hover', f'hoverTime={N};')})?",
+    f"(?:{HELD})?(?:{ACTION.format('focus', B)})?(?:{HELD})?(?:{ACTION.format('hover', f'hoverTime={N};')})?",
     ACTION.format("takePhoto", "fileSuffix=[^;]*;payloadPositionIndex=0;useGlobalPayloadLensIndex=1;(?:payloadLensIndex=(?:visable|wide);)?")])
 STOP = "toPointAndStopWithDiscontinuityCurvature"
 PLACEMARK = "".join([
@@ -610,8 +611,10 @@ HEADS = (r"Document\[author=[^;]*;createTime=[0-9]*;updateTime=[0-9]*;" + CONFIG
 PROLOG = '<?xml version="1.0" encoding="UTF-8"?>\n<kml xmlns="http://www.opengis.net/kml/2.2" xmlns:wpml="http://www.dji.com/wpmz/1.0.6">\n'
 BLOCKS = [[row.split(" ") for row in block.split("/")] for block in (
     "2 205 p 0 0 0 0 0 2/2 115 h 0 0 0 0 0 0/3 16 s 0 0 0 y x z/2 203 0 0 0 0 1 0 0/2 93 w -1 -1 -1 0 0 0",
+    "2 205 p 0 0 0 0 0 2/2 115 h 0 0 0 0 0 0/3 16 s 0 0 0 y x z/2 532 5 0 0 0 0 0 0/2 93 f -1 -1 -1 0 0 0/2 203 0 0 0 0 1 0 0/2 93 w -1 -1 -1 0 0 0",
+    "2 1000 p 0 - - 12 0 0/3 16 s 0.5 0 h y x z/2 532 5 0 0 0 0 0 0/3 16 f 0.5 0 h y x z/2 2000 0 0 1 n 0 0 0/3 16 w 0.5 0 h y x z",
     "2 1000 p 0 - - 12 0 0/3 16 s 0.5 0 h y x z/2 2000 0 0 1 n 0 0 0/3 16 w 0.5 0 h y x z",
-    "3 16 1 0 0 0 y x z", "3 16 1 0.5 0 - y x z", "2 178 1 v -1 0 0 0 0", "2 1001 -2 -2 -1 -1 0 0 0")]
+    "3 16 1 0 0 0 y x z", "3 16 1 0.5 0 - y x z", "2 178 1 v -1 0 0 0 0", "2 1001 -2 -2 -1 -1 0 0 0", "2 202 4 e a i 0 0 0", "2 532 m f 0 0 0 0 0")]
 ENDS = [["3 22 0 0 0 0 y x z".split(" "), "3 21 0 0 0 0 y x z".split(" ")], ["3 22 0 0 0 - y x z".split(" "), "3 21 0 0 0 - y x z".split(" ")]]
 
 class Mission:
@@ -664,7 +667,7 @@ class Mission:
                 self.zooms += [float(photo[3])] if photo[3] else []
                 photos = photos[photo.end() :]
             demand(not photos, "an action of a waypoint is not as Reflight writes it")
-        rest = r"(?:payloadParam\[payloadPositionIndex=0;focusMode=firstPoint;meteringMode=average;imageFormat=(?:visable|wide);\])?\]\]"
+        rest = r"(?:payloadParam\[payloadPositionIndex=0;focusMode=(?:firstPoint|custom);meteringMode=average;imageFormat=(?:visable|wide);\])?\]\]"
         demand(re.fullmatch(rest, text[at:]) is not None, f"what follows waypoint {len(self.places)} is not as Reflight writes it")
         return self.places, self.photos, self.is_relative, self.return_m
 
@@ -706,7 +709,7 @@ class Mission:
             found = match(rules, rows)
             if found is None:
                 return False
-            demand(0.0 <= found.get("s", 1.0) <= 60.0 and 0.0 <= found.get("w", 1.0) <= 60.0, "a wait is too long")
+            demand(all([0.0 <= found.get(wait, 0.0) <= 600.0 for wait in "sw"]), "a wait is too long")
             if "x" in found:
                 self._fly(found["y"], found["x"], found["z"])
             self.photos += [(len(self.places) - 1.0, found["h"], found["p"])] if "h" in found else []

@@ -61,7 +61,7 @@ def proof_finding(claims: Sequence[Claim]) -> Finding:
 
 def no_proof(path: Path) -> Finding:
     """That a plan comes without its proof."""
-    text = say("the plan has no proof beside it ({}); plan it again, or leave --proved out", path.name)
+    text = say("the plan has no proof beside it ({}); plan it again", path.name)
     return Finding(Severity.ERROR, "proof", text)
 
 
