@@ -15,10 +15,10 @@ from __future__ import annotations
 import re
 import warnings
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from planning.base.errors import InputError
 from planning.base.messages import joined, say
@@ -110,6 +110,13 @@ what a 15-minute grid cannot show: 2.0 m in the Alps against swisstopo's example
 EGM96_HEIGHT_EPSG = 5773
 
 
+class Geoid(Protocol):
+    """Heights of a geoid above the WGS 84 ellipsoid."""
+
+    def undulation_m(self, lat_deg: ArrayLike, lon_deg: ArrayLike) -> NDArray[np.float64]:
+        """As `planning.geo.geoid.undulation_m`."""
+
+
 @dataclass(frozen=True, slots=True)
 class CrsConversion:
     """How to bring coordinates of one file to WGS 84, decided once for the whole file.
@@ -133,6 +140,8 @@ class CrsConversion:
         Of the horizontal operation as EPSG states it; 0 where no datum is shifted.
     notes
         What was decided and what it may cost, for the user.
+    geoid
+        A grid in the place of EGM96.
     """
 
     name: str
@@ -143,6 +152,7 @@ class CrsConversion:
     is_orthometric: bool
     accuracy_m: float
     notes: tuple[str, ...]
+    geoid: Geoid | None = None
 
     def geodetic(self, coordinates: NDArray[np.float64]) -> Geodetic:
         """WGS 84 positions of file coordinates, shape (n, 3).
@@ -169,7 +179,7 @@ class CrsConversion:
                 "the point {} has no position in {}; is this the system the file is in?", bad, self.name
             )
         if self.is_orthometric:
-            height_m = height_m + undulation_m(lat, lon)
+            height_m = height_m + (undulation_m if self.geoid is None else self.geoid.undulation_m)(lat, lon)
         return Geodetic(np.asarray(lat), wrap_longitude_deg(lon), np.asarray(height_m))
 
 

@@ -94,6 +94,7 @@ def _add_terrain(actions: Any) -> None:
     add("-o", "--out", type=json_file, required=True, metavar="SITE", help="site file to write; obstacles go beside it")
     add("--surface", type=Path, nargs="+", default=[], metavar="FILE", help="the same with roofs and trees in it")
     add("--vertical", metavar="SYSTEM", help="heights are above: ellipsoid, egm96, egm2008, or a code as EPSG:7837")
+    add("--geoid", type=Path, metavar="FILE", help="grid of the geoid below sea level's heights: .pgm, .gtx or .tif")
     add("--height-unit", choices=("auto", "m", "ft", "us-ft"), default="auto", help="of the heights (default auto)")
     add("--crs", help="coordinate reference system of the files, where they name none or a wrong one")
     add("--resolution", type=number, metavar="M", help="step of the grid (default: half that of the files)")
@@ -430,7 +431,8 @@ def run_terrain(options: argparse.Namespace) -> int:
     from planning.site.importing.elevation import HeightOptions
 
     check_not_index(options.out)
-    check_output(options.out, [options.site, *options.files, *options.surface])
+    geoid = [] if options.geoid is None else [options.geoid]
+    check_output(options.out, [options.site, *options.files, *options.surface, *geoid])
     if options.remove == bool(options.files):
         raise InputError.say("expected files of heights, or --remove, and not both")
     model = read_input_site(options.site)
@@ -442,7 +444,7 @@ def run_terrain(options: argparse.Namespace) -> int:
         request = TerrainRequest(
             ground=tuple(options.files),
             surface=tuple(options.surface),
-            options=HeightOptions(options.crs, options.vertical, options.height_unit),
+            options=HeightOptions(options.crs, options.vertical, options.height_unit, options.geoid),
             step_m=options.resolution,
             accuracy_m=options.accuracy,
             shift_m=options.shift,

@@ -213,6 +213,7 @@ OPTION_FIELDS = {
     "--units": ("ImportForm", QT_TRANSLATE_NOOP("ImportForm", "Unit of lengths")),
     "--up": ("ImportForm", QT_TRANSLATE_NOOP("ImportForm", "Axis that points up")),
     "--accuracy": ("TerrainForm", QT_TRANSLATE_NOOP("TerrainForm", "Accuracy")),
+    "--geoid": ("TerrainForm", QT_TRANSLATE_NOOP("TerrainForm", "Grid of the geoid")),
     "--height-unit": ("TerrainForm", QT_TRANSLATE_NOOP("TerrainForm", "Unit of heights")),
     "--resolution": ("TerrainForm", QT_TRANSLATE_NOOP("TerrainForm", "Step of the grid")),
     "--taller-than": ("TerrainForm", QT_TRANSLATE_NOOP("TerrainForm", "Obstacles taller than")),

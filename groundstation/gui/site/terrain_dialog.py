@@ -22,6 +22,7 @@ from planning.base.errors import InputError
 from planning.base.findings import Severity
 from planning.site.importing.attach_terrain import Attached, TerrainRequest, attach_terrain, without_terrain
 from planning.site.importing.elevation import HEIGHT_FILES, HeightOptions, HeightUnit
+from planning.site.importing.geoid_file import GEOID_FILES
 from planning.site.records import SiteModel
 
 OTHER = "other"
@@ -43,8 +44,9 @@ class FilesBox(QWidget):
 
     valueChanged = Signal(object)  # noqa: N815  (Qt's own way of naming)
 
-    def __init__(self, title: str, parent: QWidget | None = None) -> None:
+    def __init__(self, title: str, endings: tuple[str, ...] = HEIGHT_FILES, parent: QWidget | None = None) -> None:
         super().__init__(parent)
+        self._endings = endings
         self._title, self._files = title, tuple[Path, ...]()
         self._names = QLabel()
         self._names.setWordWrap(True)
@@ -70,7 +72,7 @@ class FilesBox(QWidget):
         self.valueChanged.emit(files)
 
     def _ask(self) -> None:
-        kinds = " ".join(f"*{ending}" for ending in HEIGHT_FILES)
+        kinds = " ".join(f"*{ending}" for ending in self._endings)
         folder = self._files[0].parent if self._files else Path.home()
         files = choose_files(self.window(), self._title, self.tr("Heights ({0});;All files (*)").format(kinds), folder)
         if files:
@@ -92,6 +94,10 @@ class TerrainForm(QWidget):
         length = length_unit(units)
         self.ground, self.surface = FilesBox(self.tr("Heights of the ground")), FilesBox(self.tr("Heights with trees"))
         self.vertical, self.unit, self.step, self.accuracy = ChoiceBox(), ChoiceBox(), ChoiceBox(), ChoiceBox()
+        self.geoid = FilesBox(self.tr("Grid of the geoid"), GEOID_FILES)
+        self.geoid.setToolTip(
+            self.tr("EGM2008 of GeographicLib (.pgm) or PROJ (.gtx, .tif); without one EGM96 stands in")
+        )
         self.system, self.crs = NameBox(), NameBox()
         for text, value in (
             (self.tr("As the files say"), ""),
@@ -127,12 +133,13 @@ class TerrainForm(QWidget):
         self._form.addRow(self.tr("Obstacles taller than"), self.taller)
         self._form.addRow(self.tr("Heights are above"), self.vertical)
         self._form.addRow(self.tr("Code of the system"), self.system)
+        self._form.addRow(self.tr("Grid of the geoid"), self.geoid)
         self._form.addRow(self.tr("Unit of heights"), self.unit)
         self._form.addRow(self.tr("Coordinate system"), self.crs)
         self._form.addRow(self.tr("Step of the grid"), self.step)
         self._form.addRow(self.tr("Accuracy"), self.accuracy)
         self._form.addRow(self.to_home)
-        for files in (self.ground, self.surface):
+        for files in (self.ground, self.surface, self.geoid):
             files.valueChanged.connect(self._edited)
         self.vertical.currentIndexChanged.connect(self._edited)
         self._edited()
@@ -147,6 +154,7 @@ class TerrainForm(QWidget):
                 self.crs.value().strip() or None,
                 (self.system.value().strip() if vertical == OTHER else vertical) or None,
                 cast("HeightUnit", self.unit.currentData()),
+                next(iter(self.geoid.value()), None),
             ),
             step_m=self.step.currentData(),
             accuracy_m=self.accuracy.currentData(),
@@ -156,6 +164,7 @@ class TerrainForm(QWidget):
 
     def _edited(self, _value: object = None) -> None:
         self._form.setRowVisible(self.taller, bool(self.surface.value()))
+        self._form.setRowVisible(self.geoid, self.vertical.currentData() != "ellipsoid")
         self._form.setRowVisible(self.system, self.vertical.currentData() == OTHER)
         self.valueChanged.emit(self.value())
 

@@ -94,11 +94,14 @@ class HeightOptions:
         What heights are above: `ellipsoid`, `egm96`, `egm2008`, or the code of a height system such as `EPSG:7837`.
     unit
         Of the heights.
+    geoid
+        Grid of the geoid that heights above sea level are above (`geoid_file`).
     """
 
     crs: str | None = None
     vertical: str | None = None
     unit: HeightUnit = "auto"
+    geoid: Path | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -117,6 +120,8 @@ class Raster:
         In words.
     is_round
         Coordinates are longitudes and latitudes, so that x comes back after 360 degrees.
+    geoid_note
+        Which geoid stands for what its heights are above; empty where that is said already.
     """
 
     path: Path
@@ -128,6 +133,7 @@ class Raster:
     is_round: bool
     product: Product | None = None
     notes: tuple[str, ...] = ()
+    geoid_note: str = ""
 
     def coordinates(self, column: Array, row: Array) -> tuple[Array, Array]:
         """Coordinates of posts, x and y, in the raster's system."""
@@ -262,23 +268,24 @@ def _signed(letter: str, digits: str) -> int:
 class _Vertical(NamedTuple):
     is_orthometric: bool
     label: str
-    notes: tuple[str, ...]
+    note: str = ""
 
 
 def _vertical(name: str, place: Path) -> _Vertical:
     """What heights are above, from `HeightOptions.vertical`."""
     wanted = name.strip().lower()
     if wanted == "ellipsoid":
-        return _Vertical(False, say("the ellipsoid"), ())
+        return _Vertical(False, say("the ellipsoid"))
     if wanted in ("egm96", "epsg:5773"):
-        return _Vertical(True, "EGM96", ())
+        return _Vertical(True, "EGM96")
     if wanted in ("egm2008", "epsg:3855"):
         # Root mean square and largest difference: Guth, help of MICRODEM, "EGM96 and EGM2008 geoids".
         text = say(
             "EGM96 stands in for EGM2008: both differ by 0.5 m in the mean, at few places by several metres; home "
-            "stands on the same terrain, so heights above take-off do not change"
+            "stands on the same terrain, so heights above take-off do not change; a grid of EGM2008 (--geoid) brings "
+            "them nearer"
         )
-        return _Vertical(True, "EGM2008", (text,))
+        return _Vertical(True, "EGM2008", text)
     from pyproj import CRS
     from pyproj.exceptions import CRSError
 
@@ -305,7 +312,7 @@ def _of_system(system: CRS) -> _Vertical:
         "heights above take-off do not change",
         system.name,
     )
-    return _Vertical(True, system.name, (text,))
+    return _Vertical(True, system.name, text)
 
 
 def _described(
@@ -357,10 +364,9 @@ def _described(
         keeps_height=False,
     )
     is_round = bool(horizontal.is_geographic)
-    notes = vertical.notes
-    if conversion.accuracy_m > 0.0:
-        notes += conversion.notes[-2:-1]  # of the datum shift; the last is on heights
-    return Raster(path, width, height, from_pixel, conversion, vertical.label, is_round, product, notes)
+    # Of the datum shift; the last note is on heights.
+    notes = conversion.notes[-2:-1] if conversion.accuracy_m > 0.0 else ()
+    return Raster(path, width, height, from_pixel, conversion, vertical.label, is_round, product, notes, vertical.note)
 
 
 def _unit_m(of_file: str, of_system_m: float | None, stated: HeightUnit, path: Path) -> float:
@@ -566,4 +572,5 @@ def same_grid(one: Raster, other: Raster) -> bool:
 
 def unique_notes(rasters: Sequence[Raster]) -> tuple[str, ...]:
     """What is worth knowing about files, each thing once."""
-    return tuple(dict.fromkeys(note for raster in rasters for note in raster.notes))
+    told = (note for raster in rasters for note in (raster.geoid_note, *raster.notes) if note)
+    return tuple(dict.fromkeys(told))

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from planning.base.errors import InputError
 from planning.base.files import ANY_FILE, sha256_of_file
 from planning.base.jit import chunks
-from planning.base.messages import say
+from planning.base.messages import glue, say
 from planning.base.progress import QUIET, Monitor
 from planning.geo.enu import enu_from_geodetic, geodetic_from_enu
 from planning.geo.frames import Origin
@@ -37,6 +37,7 @@ from planning.site.importing.elevation import (
     tile_names,
     unique_notes,
 )
+from planning.site.importing.geoid_file import found_geoid, geoid_text, open_geoid
 from planning.site.terrain import MAX_NODES, TerrainSource
 
 Array = NDArray[np.float64]
@@ -152,7 +153,7 @@ def sample_heights(
         A file is damaged or says too little, or none covers any of the area.
     """
     monitor.report(say("looking for heights"), 0, 1)
-    rasters = _rasters(origin, area, places, options)
+    rasters = _with_geoid(_rasters(origin, area, places, options), origin, options.geoid)
     spacing_m = min(_spacing_m(raster, origin, area) for raster in rasters)
     width_m, depth_m = (float(value) for value in area.high_xy_m - area.low_xy_m)
     if step_m is None:
@@ -240,6 +241,37 @@ def _nothing_there(origin: Origin, area: Area, places: Sequence[Path]) -> InputE
         tile_names(south_west, north_east),
         place=", ".join(str(place) for place in places),
     )
+
+
+def _with_geoid(rasters: list[Raster], origin: Origin, path: Path | None) -> list[Raster]:
+    """Rasters with the grid of the geoid that their heights are above, where the user or the machine has it."""
+    is_stated = path is not None
+    if path is None and any(raster.vertical == "EGM2008" for raster in rasters):
+        path = found_geoid()
+    if path is None:
+        return rasters
+    window = open_geoid(path, origin.lat_deg, origin.lon_deg)
+    found = []
+    for raster in rasters:
+        is_meant = raster.conversion.is_orthometric and (is_stated or raster.vertical == window.model)
+        if is_meant and window.model and raster.vertical in ("EGM96", "EGM2008") and raster.vertical != window.model:
+            raise InputError.say(
+                "this grid is of {}, and heights of '{}' are above {}; take the grid of that",
+                window.model,
+                raster.path.name,
+                raster.vertical,
+                place=path,
+            )
+        if is_meant:
+            text = glue(raster.vertical, " ", geoid_text(window, origin.lat_deg, origin.lon_deg))
+            raster = replace(
+                raster,
+                conversion=replace(raster.conversion, geoid=window),
+                vertical=f"{raster.vertical} ({window.file})",
+                geoid_note=text,
+            )
+        found.append(raster)
+    return found
 
 
 def _spacing_m(raster: Raster, origin: Origin, area: Area) -> float:
