@@ -214,6 +214,22 @@ def exposure_value(f_number: float, shutter_s: float, iso: float) -> float:
     return 2.0 * math.log2(f_number) - math.log2(shutter_s) - math.log2(_positive(iso, "iso") / 100.0)
 
 
+CLEAR_W_M2, CLEAR_LOSS_W_M2 = 910.0, 30.0
+"""Irradiance of the ground under a clear sky: 910 sin(h) - 30 W/m2 (Kasten and Czeplak, Solar Energy 24, 1980, 177)."""
+
+DAYLIGHT_LM_W = 110.0
+"""Luminous efficacy of sun and clear sky together (Littlefair, Lighting Research and Technology 20, 1988, 177)."""
+
+INCIDENT_LUX = 2.5
+"""Illuminance of EV 0 at ISO 100: the constant of incident light meters, 250, over 100 (ISO 2720)."""
+
+
+def clear_sky_ev(sun_elevation_rad: float) -> float:
+    """Exposure value at ISO 100 of things in the sun under a clear sky; minus infinity where the sun gives no light."""
+    power = CLEAR_W_M2 * math.sin(sun_elevation_rad) - CLEAR_LOSS_W_M2
+    return math.log2(DAYLIGHT_LM_W * power / INCIDENT_LUX) if power > 0.0 else -math.inf
+
+
 def shutter_text(shutter_s: float) -> str:
     """A shutter time as cameras show it: `1/500 s`, `0.5 s`."""
     parts = 1.0 / _positive(shutter_s, "shutter_s")

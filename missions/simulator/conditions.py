@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from planning.base.messages import say
@@ -12,6 +12,9 @@ from planning.parameters import FlightRules
 
 FixKind = Literal["rtk-fixed", "rtk-float", "single"]
 HeightSource = Literal["auto", "gnss", "barometer"]
+
+
+BRIGHT_DAY_S = 0.002
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +68,10 @@ class Conditions:
         choices=(Choice("auto"), Choice("gnss"), Choice("barometer")),
     )
     exposure_s: float = parameter(
-        0.002, "1/500 s is what automatic exposure chooses on a bright day", unit="s", least=0.0
+        BRIGHT_DAY_S,
+        "1/500 s is what automatic exposure chooses on a bright day; a plan that states a shutter time has that",
+        unit="s",
+        least=0.0,
     )
     photo_latency_s: float = parameter(
         0.1,
@@ -84,6 +90,12 @@ class Conditions:
         for begin_s, end_s in self.outages_s:
             if not 0.0 <= begin_s < end_s:
                 raise ValueError(f"outages_s: expected begin before end, got {begin_s} and {end_s}")
+
+    def with_shutter(self, shutter_s: float | None) -> Conditions:
+        """With the shutter time of a plan, where it states one and nobody asked for another."""
+        if shutter_s is None or self.exposure_s != BRIGHT_DAY_S:
+            return self
+        return replace(self, exposure_s=shutter_s)
 
     @property
     def height_by_gnss(self) -> bool:

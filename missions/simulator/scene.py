@@ -101,7 +101,7 @@ def flight_scene(
         camera=plan.camera,
         aircraft=plan.aircraft,
         rules=plan.rules,
-        conditions=conditions,
+        conditions=conditions.with_shutter(plan.camera_settings.shutter_s),
         site_model=site_model,
         duration_s=sum(one.duration_s for one in flown),
         length_m=sum(one.length_m for one in flown),

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from planning.optics import (
     CameraControls,
     Lens,
+    clear_sky_ev,
     exposure_value,
     sharpest_f_number,
     shutter_text,
@@ -132,6 +133,15 @@ def test_sunny_sixteen_is_an_exposure_value_of_fifteen() -> None:
     assert exposure_value(16.0, 1 / 128, 100) == pytest.approx(15.0)
     assert exposure_value(1.0, 1.0, 100) == 0.0
     assert exposure_value(8.0, 1 / 500, 400) == pytest.approx(exposure_value(8.0, 1 / 125, 100))
+
+
+def test_a_clear_sky_gives_the_exposure_values_that_photographers_know() -> None:
+    """Sunny 16 holds with the sun high; low sun takes two to three stops."""
+    assert clear_sky_ev(math.radians(60.0)) == pytest.approx(15.0, abs=0.1)
+    assert clear_sky_ev(math.radians(10.0)) == pytest.approx(12.5, abs=0.2)
+    assert clear_sky_ev(math.radians(1.0)) == clear_sky_ev(-0.5) == -math.inf
+    values = [clear_sky_ev(math.radians(each)) for each in range(3, 91)]
+    assert values == sorted(values)
 
 
 def test_the_disc_of_airy_is_three_pixels_where_stopping_down_ends() -> None:

@@ -21,6 +21,7 @@ from groundstation.services.mission.sunlight import SunReport, flight_report
 from groundstation.services.units import UnitSystem, length_unit, minutes_text, sampling_unit, speed_unit
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.items import photos_that_fit
+from planning.aircraft.camera_use import camera_use_of
 from planning.base.findings import Finding, Severity, is_flyable
 from planning.base.messages import Message, glue, say
 from planning.base.progress import QUIET, Monitor
@@ -30,6 +31,7 @@ from planning.checks.zones import source_ages
 from planning.geo.sun import is_within, sun_place_deg
 from planning.insight.sun_times import PAUSE_S, flown_from
 from planning.insight.sunlight import BLINDING_RAD
+from planning.optics import clear_sky_ev, exposure_value, shutter_text
 from planning.plan import Plan
 from planning.planner import resplit_sorties
 from planning.revision.top_up import METHOD as TOP_UP
@@ -183,6 +185,7 @@ def readiness_findings(
         *check_case(case, monitor),
         *additional_findings(case),
         *_sun(case, day.at, sun),
+        *_light(case, day.at),
         *_cold(case, day.temperature_c),
         *source_ages(case.site_model, day.at or datetime.now(UTC)),
     )
@@ -265,6 +268,37 @@ def _glass(case: Case) -> Iterator[Finding]:
 
 
 # Sun
+
+
+DARKER_EV, BRIGHTER_EV = 4.0, 1.0
+"""How far light on a facade lies below that of things in the sun (shade, thick clouds), and above it (bright walls)."""
+
+
+def _light(case: Case, at: datetime | None) -> Iterator[Finding]:
+    """A manual exposure is one that daylight at the planned time can want; others the camera measures itself."""
+    use = camera_use_of(case.plan)
+    settings, origin = use.settings, case.site_model.site.origin
+    shutter_s, iso, f_number = settings.shutter_s, settings.iso, use.f_number
+    if at is None or settings.exposure != "manual" or shutter_s is None or iso is None or f_number is None:
+        return
+    _, elevation_deg = sun_place_deg(origin.lat_deg, origin.lon_deg, at)
+    clear_ev = clear_sky_ev(math.radians(elevation_deg))
+    if math.isinf(clear_ev):  # that there is no sun is said by the rule about it
+        return
+    set_ev = exposure_value(f_number, shutter_s, iso)
+    text = say(
+        "{}, f/{:g}, ISO {} is an exposure for EV {:.1f}; with the sun {:.0f} degrees high a clear sky gives EV {:.1f}",
+        *(shutter_text(shutter_s), f_number, iso, set_ev, elevation_deg, clear_ev),
+    )
+    off_ev = set_ev - clear_ev
+    if off_ev > BRIGHTER_EV:
+        text = say("{}: photos would be {:.1f} stops too dark; open up, expose longer, or raise ISO", text, off_ev)
+        yield Finding(Severity.WARNING, "exposure", text, "", set_ev, clear_ev + BRIGHTER_EV, "EV")
+    elif off_ev < -DARKER_EV:
+        text = say("{}: even in shade photos would be too bright; expose for less time", text)
+        yield Finding(Severity.WARNING, "exposure", text, "", set_ev, clear_ev - DARKER_EV, "EV")
+    else:
+        yield Finding(Severity.OK, "exposure", text, "", set_ev, clear_ev + BRIGHTER_EV, "EV")
 
 
 def _sun(case: Case, at: datetime | None, known: SunReport | None) -> Iterator[Finding]:

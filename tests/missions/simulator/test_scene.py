@@ -75,3 +75,10 @@ def test_wind_from_the_west_blows_towards_the_east() -> None:
 def test_conditions_that_make_no_sense_are_refused(wrong: dict[str, Any]) -> None:
     with pytest.raises(ValueError, match=rf"{next(iter(wrong))}: expected"):
         replace(Conditions(), **wrong)
+
+
+def test_photos_are_exposed_as_long_as_the_plan_says_unless_somebody_asks_for_another_time() -> None:
+    usual, dark = Conditions(), Conditions(exposure_s=0.1)
+    assert usual.with_shutter(None).exposure_s == 0.002
+    assert usual.with_shutter(1 / 100) == Conditions(exposure_s=1 / 100)
+    assert dark.with_shutter(1 / 100) is dark

@@ -22,6 +22,7 @@ from groundstation.services.site.edits import HeightReference, set_origin
 from planning.base.findings import Finding, Severity
 from planning.checks.case import Case
 from planning.geo.sun import sun_directions_enu
+from planning.parameters import CameraSettings
 from planning.plan import Viewpoint
 from planning.planner import plan_flight
 from planning.request import PlanRequest
@@ -54,6 +55,26 @@ def with_views(*views: Viewpoint, **changes) -> Case:
     """A case of these views, on the kiosk without its tree, which would shade it."""
     plan = replace(planned()[1], viewpoints=views, sorties=())
     return Case.of(plan, kiosk(**{"obstacles": (), **changes}))
+
+
+@pytest.mark.parametrize(
+    ("shutter_s", "severity", "text"),
+    [
+        (1 / 800, Severity.OK, "EV 15.0"),
+        (1 / 8, Severity.WARNING, "even in shade photos would be too bright"),
+        (1 / 8000, Severity.WARNING, "stops too dark; open up, expose longer, or raise ISO"),
+    ],
+)
+def test_a_manual_exposure_is_compared_with_the_light_of_the_day(shutter_s, severity, text):
+    """Nearly overhead, the sun gives EV 15.2 or so: f/6.3 at ISO 100 wants 1/800 s."""
+    settings = CameraSettings("manual", shutter_s, 6.3, 100)
+    changed = case().with_plan(replace(case().plan, camera_settings=settings))
+    (found,) = of("exposure", readiness_findings(changed, FlightDay(NOON)))
+    assert found.severity is severity
+    assert text in found.message
+    assert of("exposure", readiness_findings(changed)) == [], "without a time nothing is known of the light"
+    assert of("exposure", readiness_findings(changed, FlightDay(NOON + timedelta(hours=12)))) == []
+    assert of("exposure", readiness_findings(case(), FlightDay(NOON))) == [], "the camera measures it"
 
 
 # The verdict
