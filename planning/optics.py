@@ -38,7 +38,7 @@ SHUTTERS = (
 )
 """Shutter times in third stops, as parts of a second."""
 
-MavlinkControl = Literal["focus", "exposure"]
+MavlinkControl = Literal["focus", "exposure", "parameters"]
 
 
 def _positive(value: float, name: str, *, infinite: bool = False) -> float:
@@ -82,7 +82,8 @@ class CameraControls:
     nearest_focus_m
         Shortest distance that it focuses on.
     mavlink
-        What the camera takes from items of MAVLink missions; a camera on a trigger cable takes nothing.
+        What the camera takes by MAVLink: focus and exposure from items of missions, or its parameters by the camera
+        protocol. A camera on a trigger cable takes nothing.
     """
 
     aperture: tuple[float, float]

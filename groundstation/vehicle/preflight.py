@@ -78,6 +78,8 @@ class OnBoard:
         Parameters that should be set for the plan; None while they were not read.
     failsafes
         What the vehicle will do by itself, by its parameters (`failsafes.py`); empty while they were not read.
+    camera
+        Whether the camera took its settings; None where it is one that takes none.
     """
 
     mission: bool | None = None
@@ -86,6 +88,7 @@ class OnBoard:
     reason_to_reread: str = ""
     changes: tuple[ParameterChange, ...] | None = None
     failsafes: tuple[PreflightCheck, ...] = ()
+    camera: PreflightCheck | None = None
 
     def of(self, mission_type: MissionType) -> bool | None:
         """Whether a list is the one that was uploaded."""
@@ -139,6 +142,7 @@ def preflight_checks(
             else []
         ),
         *_parameters(on_board.changes),
+        *([] if on_board.camera is None else [on_board.camera]),
         *on_board.failsafes,
     )
     return overruled(checks, overrules)

@@ -267,9 +267,7 @@ def default_autopilot(profile_id: str) -> Autopilot:
     return Autopilot.PX4 if profile_id == Autopilot.PX4 else Autopilot.ARDUPILOT
 
 
-def encode_mavlink(
-    plan: Plan, missions: Sequence[Mission], file_format: FileFormat, options: ExportOptions
-) -> EncodedFiles:
+def encode_mavlink(missions: Sequence[Mission], file_format: FileFormat, options: ExportOptions) -> EncodedFiles:
     """A `.plan` or a `.waypoints` file for each sortie."""
     from missions.mavlink.check import check_items
     from missions.mavlink.fence import fence_polygons, rally_points
@@ -304,7 +302,6 @@ def encode_mavlink(
                 found += on_fences
             contents.append(plan_json_bytes(items, mission.takeoff, autopilot, speed_m_s, reference, fences, rally))
         findings += _in_sortie(found, mission, missions)
-    findings += camera_steps(plan, file_format, options.autopilot or default_autopilot(plan.profile)).findings()
     return EncodedFiles(tuple(contents), tuple(findings))
 
 

@@ -95,9 +95,12 @@ def _encode_dji(plan: Plan, missions: Sequence[Mission], options: ExportOptions)
 def _encode_mavlink(
     file_format: FileFormat, plan: Plan, missions: Sequence[Mission], options: ExportOptions
 ) -> EncodedFiles:
-    from missions.formats.encode import encode_mavlink
+    from missions.formats.camera_steps import camera_steps
+    from missions.formats.encode import default_autopilot, encode_mavlink
 
-    return encode_mavlink(plan, missions, file_format, options)
+    encoded = encode_mavlink(missions, file_format, options)
+    steps = camera_steps(plan, file_format, options.autopilot or default_autopilot(plan.profile))
+    return replace(encoded, findings=(*encoded.findings, *steps.findings()))
 
 
 def _encode_kml(_plan: Plan, missions: Sequence[Mission], _options: ExportOptions) -> EncodedFiles:

@@ -568,6 +568,40 @@ class CameraImageCaptured(Message):
     capture_result: int  # MAV_BOOL
     file_url: str = ...
 
+# PARAM_EXT_REQUEST_READ (320).
+@dataclass(frozen=True, slots=True)
+class ParamExtRequestRead(Message):
+    target_system: int
+    target_component: int
+    param_id: str
+    param_index: int = ...
+
+# PARAM_EXT_VALUE (322).
+@dataclass(frozen=True, slots=True)
+class ParamExtValue(Message):
+    param_id: str
+    param_value: bytes
+    param_type: int  # MAV_PARAM_EXT_TYPE
+    param_count: int
+    param_index: int
+
+# PARAM_EXT_SET (323).
+@dataclass(frozen=True, slots=True)
+class ParamExtSet(Message):
+    target_system: int
+    target_component: int
+    param_id: str
+    param_value: bytes
+    param_type: int  # MAV_PARAM_EXT_TYPE
+
+# PARAM_EXT_ACK (324).
+@dataclass(frozen=True, slots=True)
+class ParamExtAck(Message):
+    param_id: str
+    param_value: bytes
+    param_type: int  # MAV_PARAM_EXT_TYPE
+    param_result: int  # PARAM_ACK
+
 # GIMBAL_DEVICE_ATTITUDE_STATUS (285). `q` w first; its yaw is the vehicle's or the earth's by `flags`.
 @dataclass(frozen=True, slots=True)
 class GimbalDeviceAttitudeStatus(Message):

@@ -120,12 +120,20 @@ MESSAGES: Mapping[str, Mapping[str, Any]] = {
     "CameraCaptureStatus": _zeros("image_status video_status")
     | {"image_interval": 0.0, "recording_time_ms": 0, "available_capacity": math.nan},
     "CameraImageCaptured": {"file_url": ""},
+    "ParamExtRequestRead": {"param_index": -1},
+    "ParamExtValue": {},
+    "ParamExtSet": {},
+    "ParamExtAck": {},
     "GimbalDeviceAttitudeStatus": _TURNING | {"failure_flags": 0},
     "MountStatus": {},
     "MountOrientation": {},
 }
 """The messages that are used, by the names of their records, and the fields that may be left out, with what they are
 then."""
+
+
+RAW = frozenset(("param_value",))
+"""Fields of letters that hold the bytes of a number: pymavlink's text of them ends at the first zero."""
 
 
 def _add_to_dialect(name: str, number: int, crc_extra: int, layout: str, fields: Mapping[str, str]) -> None:
@@ -183,7 +191,7 @@ class Field:
     """
 
     name: str
-    kind: type[float] | type[str]
+    kind: type[float] | type[str] | type[bytes]
     length: int
     is_extension: bool
     default: Any
@@ -193,7 +201,7 @@ class Field:
     def annotation(self) -> str:
         """Type of its value."""
         kind = self.kind.__name__
-        if not self.length or self.kind is str:
+        if not self.length or self.kind in (str, bytes):
             return kind
         return f"tuple[{', '.join([kind] * 4) if self.length == 4 else f'{kind}, ...'}]"
 
@@ -247,7 +255,8 @@ def _fields(packet: Any, defaults: Mapping[str, Any]) -> tuple[Field, ...]:
     lengths = dict(zip(packet.ordered_fieldnames, packet.array_lengths, strict=True))
     fields = []
     for name, kind in zip(packet.fieldnames, packet.fieldtypes, strict=True):
-        python = {"float": float, "double": float, "char": str}.get(kind, int)
+        letters = bytes if name in RAW else str
+        python = {"float": float, "double": float, "char": letters}.get(kind, int)
         extension = signature[name].default if name in signature else inspect.Parameter.empty
         is_extension = extension is not inspect.Parameter.empty
         default = defaults.get(name, ("" if python is str else extension) if is_extension else MISSING)

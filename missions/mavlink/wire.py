@@ -72,6 +72,8 @@ def _to_wire(message: Message, field_: Field) -> Any:
         return text
     if not field_.length:
         return value
+    if field_.kind is bytes and len(value) <= field_.length:
+        return value.ljust(field_.length, b"\0")
     if len(value) > field_.length:
         raise ValueError(f"{field_.name}: expected at most {field_.length} values, got {len(value)}")
     return [*value, *[FILL.get(field_.name, 0)] * (field_.length - len(value))]
@@ -226,7 +228,7 @@ def message_of(packet: Any) -> Message | None:
     if name is None:
         return None
     record_layout = layout(name)
-    return record_layout.record(**{each.name: _from_wire(getattr(packet, each.name)) for each in record_layout.fields})
+    return record_layout.record(**{each.name: _from_wire(packet, each) for each in record_layout.fields})
 
 
 def message_id(record: type[Message]) -> int:
@@ -234,5 +236,8 @@ def message_id(record: type[Message]) -> int:
     return number(record.__name__)
 
 
-def _from_wire(value: Any) -> Any:
+def _from_wire(packet: Any, field_: Field) -> Any:
+    if field_.kind is bytes:
+        return getattr(packet, f"_{field_.name}_raw").ljust(field_.length, b"\0")
+    value = getattr(packet, field_.name)
     return tuple(value) if isinstance(value, list) else value

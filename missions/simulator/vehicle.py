@@ -26,6 +26,8 @@ from missions.mavlink.messages import (
     OpenDroneIdOperatorId,
     OpenDroneIdSelfId,
     OpenDroneIdSystem,
+    ParamExtRequestRead,
+    ParamExtSet,
     ParamRequestList,
     ParamRequestRead,
     ParamSet,
@@ -37,6 +39,7 @@ from missions.mavlink.messages import (
 )
 from missions.simulator.airframe.state import Airframe, Pose
 from missions.simulator.autopilot.ardupilot_scheduler import ArduPilotScheduler
+from missions.simulator.autopilot.camera_parameters import CAMERA_COMPONENT, CameraParameters
 from missions.simulator.autopilot.commands import Commands
 from missions.simulator.autopilot.corrections import CorrectionsReceiver
 from missions.simulator.autopilot.failsafe import Failsafe
@@ -91,6 +94,8 @@ class SimulatedVehicle:
         Values that differ from those of `data/simulator.toml`, None for what the vehicle does not have.
     control_step_s
         Simulated time between two decisions of the autopilot.
+    camera
+        Its camera's parameters by the camera protocol; None: it does not speak that.
     is_ready
         The position estimate is there from the start, as if it had been switched on some time ago.
     """
@@ -106,6 +111,7 @@ class SimulatedVehicle:
         control_step_s: float = CONTROL_STEP_S,
         unix_start_s: float = UNIX_START_S,
         is_ready: bool = False,
+        camera: CameraParameters | None = None,
     ) -> None:
         if not (math.isfinite(control_step_s) and control_step_s > 0.0):
             raise ValueError(f"control_step_s: expected more than 0 seconds, got {control_step_s}")
@@ -113,6 +119,7 @@ class SimulatedVehicle:
         self.autopilot, self.airframe, self.address = autopilot, airframe, address
         self.control_step_s = control_step_s
         self.shots: list[Shot] = []
+        self.camera_parameters = camera
         self._out: list[Message] = []
         self._reached: int | None = None
         self._n_steps = 0
@@ -197,6 +204,9 @@ class SimulatedVehicle:
                 self._out += self._commands.receive_set_mode(message, source)
             case ParamSet() | ParamRequestRead() | ParamRequestList():
                 self._out += self.parameters.receive(message)
+            case ParamExtSet() | ParamExtRequestRead():
+                if self.camera_parameters is not None:
+                    self._out += self.camera_parameters.receive(message)
             case GpsRtcmData():
                 self.corrections.receive(message, self.now_s)
             case FileTransferProtocol():
@@ -260,7 +270,8 @@ class SimulatedVehicle:
     def _is_for_me(self, message: Message) -> bool:
         system = getattr(message, "target_system", 0)
         component = getattr(message, "target_component", 0)
-        return system in (0, self.address.system) and component in (0, self.address.component)
+        is_camera = component == CAMERA_COMPONENT and isinstance(message, ParamExtSet | ParamExtRequestRead)
+        return system in (0, self.address.system) and (component in (0, self.address.component) or is_camera)
 
     def _say(self, severity: int, text: str) -> None:
         self.log.note(Event(self.now_s, "text", text))

@@ -30,6 +30,7 @@ from missions.mavlink.messages import Message, Received
 from missions.mavlink.signing import Signer
 from missions.mavlink.wire import Counts
 from missions.simulator.airframe.state import Airframe, Battery, Fix, Pose, Target
+from missions.simulator.autopilot.camera_parameters import CameraParameters, simulated_camera
 from missions.simulator.autopilot.profiles import vehicle_profile
 from missions.simulator.build import make_airframe
 from missions.simulator.conditions import Conditions
@@ -193,9 +194,14 @@ class SampledVehicle(SimulatedVehicle):
     """A simulated vehicle that notes where it truly is, on the thread that flies it."""
 
     def __init__(
-        self, autopilot: Autopilot, airframe: Airframe, origin: Origin, parameters: Mapping[str, float | None]
+        self,
+        autopilot: Autopilot,
+        airframe: Airframe,
+        origin: Origin,
+        parameters: Mapping[str, float | None],
+        camera: CameraParameters | None = None,
     ) -> None:
-        super().__init__(autopilot, airframe, origin, parameters=parameters, is_ready=True)
+        super().__init__(autopilot, airframe, origin, parameters=parameters, is_ready=True, camera=camera)
         self._lock = threading.Lock()
         self._truth = TruthRecorder(self)
 
@@ -348,7 +354,8 @@ class Simulation:
             autopilot=self.autopilot,
         )
         flown = with_charge(airframe, self.charge, decisions)
-        vehicle = SampledVehicle(self.autopilot, flown, self.site_model.site.origin, self._parameters())
+        camera = simulated_camera(orders.mission)
+        vehicle = SampledVehicle(self.autopilot, flown, self.site_model.site.origin, self._parameters(), camera)
         watched = FlownClock(clock())
         ground, air = memory_pair(vehicle=vehicle.address, clock=watched)
         ground.observe(observe)

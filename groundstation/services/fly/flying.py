@@ -44,6 +44,7 @@ from missions.mavlink.remote_id import NOBODY, RemoteId, RemoteIdSender
 from missions.mavlink.signing import Signer
 from missions.mission.build import missions_from_plan
 from missions.mission.model import GeoPoint, altitude_amsl_m
+from missions.simulator.autopilot.camera_parameters import simulated_camera
 from missions.simulator.build import make_airframe
 from missions.simulator.conditions import Conditions
 from missions.simulator.effects.link_loss import through_air
@@ -595,7 +596,8 @@ class _Case:
             seed=seed,
             autopilot=self.autopilot,
         )
-        vehicle = SimulatedVehicle(self.autopilot, airframe, origin, orders.home_enu_m)
+        camera = simulated_camera(orders.mission)
+        vehicle = SimulatedVehicle(self.autopilot, airframe, origin, orders.home_enu_m, camera=camera)
         direct = DirectLink(vehicle)
         truth, pace = TruthRecorder(vehicle), _Pace(request.speedup)
         # Nothing real moves: what needs a pilot's word elsewhere is only told.

@@ -22,6 +22,7 @@ from collections.abc import Callable, Generator
 from dataclasses import replace
 from typing import Any
 
+from groundstation.vehicle.camera import CameraSettingCall, settings_text, wanted_settings
 from groundstation.vehicle.commands import (
     MAV_RESULT_TEMPORARILY_REJECTED,
     MISSION_MODE,
@@ -145,6 +146,7 @@ def _prepare(run: SortieRun) -> Steps:
         raise LinkRejected(f"{run.link_name}: {run.options.simulations_only}")
     if run.options.sets_parameters or run.is_simulation:
         yield from _set_parameters(run, run.on_board.changes or ())
+    yield from _set_camera(run)
     for change in run.on_board.changes or ():
         run.note("warning-setup" if change.is_off else "parameter", change_text(change))
     run.camera_reports.ask_count()
@@ -189,6 +191,31 @@ def _set_parameters(run: SortieRun, changes: tuple[ParameterChange, ...]) -> Ste
         yield from _reboot(run)
     if changes:
         yield from _read_parameters(run)
+
+
+def _set_camera(run: SortieRun) -> Steps:
+    """Set a camera that speaks the camera protocol, and believe what it says when it is read back."""
+    _, address = vehicle_of(run)
+    taken: list[tuple[str, float]] = []
+    left: list[tuple[str, float]] = []
+    wanted = wanted_settings(run.orders.mission)
+    if not wanted:
+        return
+    for name, value in wanted.items():
+        outcome: ParameterOutcome = yield CameraSettingCall(name, value, address.system)
+        if outcome.status is ParameterStatus.UNKNOWN and not taken and not left:
+            text = say("no camera answers by the camera protocol; set it by hand: {}", settings_text(wanted.items()))
+            run.on_board = replace(run.on_board, camera=PreflightCheck("camera", Verdict.WARN, text))
+            run.note("camera", text)
+            return
+        (taken if outcome.is_as_set else left).append((name, value))
+    texts = [say("the camera is set, and read back: {}", settings_text(taken))] if taken else []
+    if left:
+        texts.append(say("the camera does not take this, set it by hand: {}", settings_text(left)))
+    text = joined("; ", texts)
+    verdict = Verdict.WARN if left else Verdict.OK
+    run.on_board = replace(run.on_board, camera=PreflightCheck("camera", verdict, text))
+    run.note("camera", text)
 
 
 def _ask_for_telemetry(run: SortieRun, *, must_answer: bool = True) -> Steps:

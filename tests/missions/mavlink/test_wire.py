@@ -19,11 +19,12 @@ from missions.mavlink.messages import (
     Message,
     MissionAck,
     MissionItemInt,
+    ParamExtSet,
     ParamValue,
     SetupSigning,
     Statustext,
 )
-from missions.mavlink.records import MESSAGES, layout
+from missions.mavlink.records import MESSAGES, RAW, layout
 from missions.mavlink.wire import Decoder, Encoder
 
 OWN = Address(255, 190)
@@ -46,6 +47,8 @@ LETTERS = st.characters(min_codepoint=32, max_codepoint=126)
 def values(packet: Any, name: str) -> st.SearchStrategy[Any]:
     kind = packet.fieldtypes[packet.fieldnames.index(name)]
     length = packet.array_lengths[packet.ordered_fieldnames.index(name)]
+    if kind == "char" and name in RAW:
+        return st.binary(min_size=length, max_size=length)
     if kind == "char":
         return st.text(LETTERS, max_size=length)
     one: st.SearchStrategy[Any] = st.floats(width=32) if kind == "float" else st.integers(*RANGES[kind])
@@ -84,7 +87,8 @@ def test_frames_are_those_that_pymavlink_reads(record: type[Message]) -> None:
     for name, kind in zip(packet.fieldnames, packet.fieldtypes, strict=True):
         length = packet.array_lengths[packet.ordered_fieldnames.index(name)]
         if name in zeros:
-            zeros[name] = "" if kind == "char" else (0,) * length if length else 0
+            letters = b"" if name in RAW else ""
+            zeros[name] = letters if kind == "char" else (0,) * length if length else 0
     frame = Encoder(Address(7, 8)).encode(record(**zeros))
     reader = dialect.MAVLink(None)
     (read,) = reader.parse_buffer(frame)
@@ -228,6 +232,7 @@ def test_letters_that_are_not_ascii_are_replaced() -> None:
         ParamValue("ABCDEFGHIJKLMNOPQ", 1.0, 9, 1, 0),
         BatteryStatus(0, 0, 1, 2500, (4100,) * 11, 100, 20, -1, 80),
         SetupSigning(1, 1, (256,) * 32, 0),
+        ParamExtSet(1, 100, "CAM_ISO", bytes(129), 5),
     ],
     ids=lambda message: type(message).__name__,
 )

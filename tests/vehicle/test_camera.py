@@ -1,0 +1,219 @@
+"""A camera that is set over MAVLink's camera protocol: acknowledged, read back, refused, silent; and in a flight."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Callable
+from dataclasses import replace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from groundstation.services.fly.flying import FlightRequest, Flown, fly_plan
+from groundstation.vehicle.camera import (
+    ATTEMPT_S,
+    N_ATTEMPTS,
+    CameraSettingCall,
+    decoded,
+    encoded,
+    settings_text,
+    wanted_settings,
+)
+from groundstation.vehicle.parameters import ParameterStatus
+from missions.mavlink.messages import Address, Message, ParamExtAck, ParamExtSet, ParamExtValue, Received
+from missions.mission.build import missions_from_plan
+from missions.mission.model import Mission
+from missions.simulator.autopilot.camera_parameters import CAMERA_COMPONENT, CameraParameters
+from planning.aircraft.camera_use import controls_of
+from planning.parameters import CameraSettings
+from planning.plan import Plan
+from planning.planner import plan_flight
+from planning.request import PlanRequest
+from planning.site.bundled import single_panel
+from tests.missions.plans import example_plan
+from tests.planning.revision.cases import QUICK
+
+CAMERA = Address(1, CAMERA_COMPONENT)
+MANUAL = CameraSettings("manual", 1 / 500, 5.6, 200, white_balance="sunny")
+
+
+def obedient(plan: Plan, settings: CameraSettings) -> Plan:
+    controls = controls_of(plan)
+    assert controls is not None
+    return replace(plan, camera_settings=settings, camera_controls=replace(controls, mavlink=("parameters",)))
+
+
+def mission_with(settings: CameraSettings) -> Mission:
+    return missions_from_plan(obedient(example_plan("ardupilot"), settings))[0]
+
+
+Answer = Callable[[Message], list[Message]]
+
+
+def driven(call: CameraSettingCall, answer: Answer, source: Address = CAMERA) -> float:
+    """Run a call against something that answers; the time it took."""
+    now_s, pending = 0.0, call.start(0.0)
+    while call.outcome is None:
+        for message in pending:
+            for reply in answer(message):
+                pending = call.receive(Received(reply, source, now_s))
+                break
+            else:
+                continue
+            break
+        else:
+            now_s = call.next_deadline_s
+            pending = call.tick(now_s)
+    return now_s
+
+
+def test_what_is_wanted_follows_the_settings_and_only_a_camera_that_takes_it_is_asked() -> None:
+    assert wanted_settings(mission_with(MANUAL)) == {
+        **{"CAM_EXPMODE": 1, "CAM_SHUTTERSPD": 1 / 500, "CAM_APERTURE": 5.6, "CAM_ISO": 200, "CAM_WBMODE": 4},
+    }
+    usual = wanted_settings(mission_with(CameraSettings(compensation_ev=-0.5)))
+    assert usual == {"CAM_EXPMODE": 0, "CAM_EV": -0.5}, "kelvins and locks have no name in the protocol"
+    assert wanted_settings(missions_from_plan(example_plan("ardupilot"))[0]) == {}
+
+
+@pytest.mark.parametrize("settings", [MANUAL, CameraSettings(compensation_ev=-1.5, white_balance="cloudy")])
+def test_the_simulated_camera_has_what_was_set_when_it_is_read_back(settings: CameraSettings) -> None:
+    camera = CameraParameters()
+    for name, value in wanted_settings(mission_with(settings)).items():
+        call = CameraSettingCall(name, value, 1)
+        driven(call, camera.receive)
+        assert call.outcome is not None
+        assert call.outcome.is_as_set, name
+        assert camera.values[name] == pytest.approx(value, rel=1e-6)
+
+
+def test_a_second_time_nothing_is_sent() -> None:
+    camera, sent = CameraParameters({"CAM_ISO": 200}), list[Message]()
+
+    def answer(message: Message) -> list[Message]:
+        sent.append(message)
+        return camera.receive(message)  # type: ignore[arg-type]
+
+    call = CameraSettingCall("CAM_ISO", 200, 1)
+    driven(call, answer)
+    assert call.outcome is not None
+    assert call.outcome.status is ParameterStatus.UNCHANGED
+    assert not any(isinstance(message, ParamExtSet) for message in sent)
+
+
+@pytest.mark.parametrize(("name", "value"), [("CAM_SHUTTERSPD", 1 / 777), ("CAM_ISO", 12_800), ("CAM_ISO", 100.5)])
+def test_values_that_the_camera_does_not_have_are_refused_and_change_nothing(name: str, value: float) -> None:
+    camera = CameraParameters()
+    camera.values["CAM_EXPMODE"] = 1
+    before = dict(camera.values)
+    call = CameraSettingCall(name, value, 1)
+    driven(call, camera.receive)
+    assert call.outcome is not None
+    assert call.outcome.status is ParameterStatus.REFUSED
+    assert camera.values == before
+
+
+def test_a_camera_that_accepts_and_keeps_another_value_is_found_out() -> None:
+    """Which is why it is read back."""
+    camera = CameraParameters({"CAM_ISO": 100})
+
+    def liar(message: Message) -> list[Message]:
+        if isinstance(message, ParamExtSet):
+            return [ParamExtAck(message.param_id, message.param_value, message.param_type, 0)]
+        return camera.receive(message)  # type: ignore[arg-type]
+
+    call = CameraSettingCall("CAM_ISO", 200, 1)
+    driven(call, liar)
+    assert call.outcome is not None
+    assert (call.outcome.status, call.outcome.value) == (ParameterStatus.REFUSED, 100.0)
+
+
+def test_a_silent_camera_is_asked_some_times_and_then_unknown() -> None:
+    call = CameraSettingCall("CAM_ISO", 200, 1)
+    assert driven(call, lambda _message: []) == pytest.approx(N_ATTEMPTS * ATTEMPT_S)
+    assert call.outcome is not None
+    assert call.outcome.status is ParameterStatus.UNKNOWN
+
+
+@pytest.mark.parametrize("lost", [1, 2, 3])
+def test_lost_answers_are_asked_for_again(lost: int) -> None:
+    camera, n_heard = CameraParameters(), 0
+
+    def thin(message: Message) -> list[Message]:
+        nonlocal n_heard
+        n_heard += 1
+        answers = camera.receive(message)  # type: ignore[arg-type]
+        return [] if n_heard == lost else answers
+
+    call = CameraSettingCall("CAM_EV", 1.0, 1)
+    driven(call, thin)
+    assert call.outcome is not None
+    assert call.outcome.is_as_set
+    assert camera.values["CAM_EV"] == 1.0
+
+
+def test_answers_of_others_and_about_others_are_passed_over() -> None:
+    call = CameraSettingCall("CAM_ISO", 200, 1)
+    call.start(0.0)
+    content = encoded(200.0, 5)
+    assert call.receive(Received(ParamExtValue("CAM_ISO", content, 5, 1, 0), Address(2, 100), 0.1)) == []
+    assert call.receive(Received(ParamExtValue("CAM_EV", content, 5, 1, 0), CAMERA, 0.1)) == []
+    assert call.outcome is None
+    (asked,) = call.receive(Received(ParamExtValue("CAM_ISO", encoded(100.0, 5), 5, 1, 0), CAMERA, 0.1))
+    assert isinstance(asked, ParamExtSet)
+    assert asked.target_component == CAMERA_COMPONENT, "whoever answered"
+    assert call.receive(Received(ParamExtAck("CAM_ISO", content, 5, 0), Address(1, 101), 0.2)) == []
+    assert call.outcome is None
+
+
+def test_a_camera_at_work_is_waited_for() -> None:
+    call = CameraSettingCall("CAM_ISO", 200, 1)
+    call.start(0.0)
+    call.receive(Received(ParamExtValue("CAM_ISO", encoded(100.0, 5), 5, 1, 0), CAMERA, 0.1))
+    call.receive(Received(ParamExtAck("CAM_ISO", encoded(200.0, 5), 5, 3), CAMERA, 0.9))
+    assert call.next_deadline_s == pytest.approx(0.9 + ATTEMPT_S)
+
+
+@given(st.sampled_from(range(1, 11)), st.integers(0, 100))
+def test_numbers_come_back_in_every_type(kind: int, value: int) -> None:
+    assert decoded(encoded(float(value), kind), kind) == value
+
+
+@pytest.mark.parametrize(("value", "kind"), [(256.0, 1), (-1.0, 5), (0.5, 5), (1.0, 11), (float("nan"), 5)])
+def test_numbers_that_a_type_does_not_hold_are_refused(value: float, kind: int) -> None:
+    with pytest.raises(ValueError, match="does not fit the type"):
+        encoded(value, kind)
+
+
+def test_a_value_of_the_cameras_own_kind_is_no_number() -> None:
+    assert decoded(b"fancy", 11) is None
+    assert decoded(struct.pack("<f", 0.002), 9) == pytest.approx(0.002)
+
+
+def flown(settings: CameraSettings) -> tuple[Flown, tuple[str, ...]]:
+    """A short flight of the simulated vehicle, and what was noted about its camera."""
+    model = single_panel()
+    plan = plan_flight(model, PlanRequest(n_views=2, greedy=QUICK, profile_id="ardupilot")).plan
+    done = fly_plan(obedient(plan, settings), model, FlightRequest())
+    return done, tuple(note.text for sortie in done.sorties for note in sortie.notes if note.code == "camera")
+
+
+@pytest.mark.slow
+def test_the_simulated_vehicles_camera_is_set_before_take_off() -> None:
+    done, (text,) = flown(MANUAL)
+    assert text == ("the camera is set, and read back: manual exposure, 1/500 s, f/5.6, ISO 200, white balance for sun")
+    assert done.error is None
+
+
+@pytest.mark.slow
+def test_what_the_camera_does_not_take_is_told_and_the_flight_goes_on() -> None:
+    done, (text,) = flown(replace(MANUAL, shutter_s=1 / 777))
+    assert "the camera does not take this, set it by hand: 1/777 s" in text
+    assert done.error is None
+
+
+def test_settings_are_put_into_words() -> None:
+    assert settings_text([("CAM_EXPMODE", 0), ("CAM_EV", 0.5), ("CAM_WBMODE", 0)]) == (
+        "automatic exposure, exposure compensation +0.5 EV, automatic white balance"
+    )
