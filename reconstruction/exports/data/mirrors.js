@@ -5,6 +5,7 @@ const MIXED = { srcFactor: "one", dstFactor: "one-minus-src-alpha" };
 const BLEND = { color: MIXED, alpha: MIXED };
 const WORDS_OF_DEGREE = [0, 3, 6, 12];
 const MOST_RAYS = 4; // through a pixel, along each side
+const STRIP_MS = 50; // of shading: systems take a graphics card that is busy for 2 s for a hung one, and reset it
 
 class MirrorPicture {
   // Of the `most` most visible Gaussians. Throws an Error where this browser or device cannot show them so; its message is
@@ -35,7 +36,7 @@ class MirrorPicture {
   }
 
   constructor(device, canvas, model, panes, most) {
-    Object.assign(this, { device, canvas, model, most, n: 0, nGlass: 0, nOrdered: 0, size: [0, 0], isMirroring: true, isBusy: false, hasLight: false, version: 0, shownKey: "" });
+    Object.assign(this, { device, canvas, model, most, n: 0, nGlass: 0, nOrdered: 0, size: [0, 0], isMirroring: true, isBusy: false, hasLight: false, version: 0, shownKey: "", rayMs: STRIP_MS / 16384 });
     this.context = canvas.getContext("webgpu");
     this.format = navigator.gpu.getPreferredCanvasFormat();
     this.context.configure({ device, format: this.format, alphaMode: "opaque" });
@@ -267,12 +268,21 @@ class MirrorPicture {
     pass.end();
   }
 
-  shade(encoder) {
-    const pass = encoder.beginRenderPass({ colorAttachments: [cleared(this.target.shaded)] });
-    pass.setPipeline(this.pipelines.shade);
-    pass.setBindGroup(0, this.groups.shade);
-    pass.draw(3);
-    pass.end();
+  // Strip by strip, each a piece of work of its own: so slow cards are not taken for hung ones.
+  shade(rays) {
+    const [width, height] = this.size;
+    const rows = Math.max(1, Math.floor(STRIP_MS / (this.rayMs * width * (this.hasLight ? rays * rays : 1))));
+    for (let top = 0; top < height; top += rows) {
+      const encoder = this.device.createCommandEncoder();
+      const colorAttachments = [{ ...cleared(this.target.shaded), loadOp: top ? "load" : "clear" }];
+      const pass = encoder.beginRenderPass({ colorAttachments });
+      pass.setPipeline(this.pipelines.shade);
+      pass.setBindGroup(0, this.groups.shade);
+      pass.setScissorRect(0, top, width, Math.min(rows, height - top));
+      pass.draw(3);
+      pass.end();
+      this.device.queue.submit([encoder.finish()]);
+    }
   }
 
   drawOver(encoder, nEdges) {
@@ -306,22 +316,35 @@ class MirrorPicture {
     queue.writeBuffer(this.view, 0, view);
     const edges = looks.outlines.flatMap(({ pane, colour, width }) => edgesOf(panes.panes[pane].corners, colour, width * ratio));
     queue.writeBuffer(this.lines, 0, new Float32Array(edges));
-    const encoder = this.device.createCommandEncoder();
     // Where only outlines are new, what mirrors is as it was.
     const key = `${view.join()} ${this.version}`;
-    if (key !== this.shownKey) {
+    const isNew = key !== this.shownKey;
+    if (isNew) {
       this.shownKey = key;
-      this.colourSplats(encoder, camera);
-      this.drawSplats(encoder, this.target, this.groups.splats);
-      this.drawNumbers(encoder);
-      this.shade(encoder);
+      this.drawParts(camera);
+      this.shade(rays);
     }
+    const encoder = this.device.createCommandEncoder();
     encoder.copyTextureToTexture({ texture: this.target.shaded }, { texture: this.target.whole }, this.size);
     this.drawOver(encoder, edges.length / 11);
     this.show(encoder, this.context.getCurrentTexture(), "show");
     queue.submit([encoder.finish()]);
     this.isBusy = true;
-    queue.onSubmittedWorkDone().then(() => { this.isBusy = false; });
+    const start = performance.now();
+    queue.onSubmittedWorkDone().then(() => {
+      this.isBusy = false;
+      const nRays = this.size[0] * this.size[1] * rays * rays;
+      if (isNew && this.hasLight) this.rayMs = (performance.now() - start) / nRays; // with the rest, which is little
+    });
+  }
+
+  // What is shaded: sums of splats, and which pane is where.
+  drawParts(camera) {
+    const encoder = this.device.createCommandEncoder();
+    this.colourSplats(encoder, camera);
+    this.drawSplats(encoder, this.target, this.groups.splats);
+    this.drawNumbers(encoder);
+    this.device.queue.submit([encoder.finish()]);
   }
 
   // How much of what lies at a depth is hidden at a pixel of the page by Gaussians of no pane, 0 to 1.
