@@ -17,6 +17,20 @@ async function block(id) {
   }
 }
 
+// Bytes that zlib compressed, as only browsers with WebGPU are asked to; an Error where they are damaged.
+async function inflated(bytes) {
+  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}
+
+// Rows of 8 bytes of which all first bytes came first, then all second ones, and so on.
+function inRows(bytes) {
+  const n = bytes.length / 8;
+  const found = new Uint8Array(bytes.length);
+  for (let j = 0; j < 8; j++) for (let i = 0; i < n; i++) found[8 * i + j] = bytes[j * n + i];
+  return found;
+}
+
 // Text that is kept where panes mirror, so that the page can go on without WebGPU when the device is lost.
 const MOST_KEPT = 2 ** 26;
 
@@ -66,7 +80,8 @@ async function load() {
     }
     await pause(0);
     if (own && first === 0) {
-      const light = [await bytesOfBlock("l0"), await bytesOfBlock("l1"), await bytesOfBlock("l2")];
+      const [cells, skips, far] = [await bytesOfBlock("l0"), await bytesOfBlock("l1"), await bytesOfBlock("l2")];
+      const light = [inRows(await inflated(cells)), await inflated(skips), inRows(await inflated(far))];
       if (picture !== shown) return undefined;
       if (!isLight(mirrors, light)) return false;
       shown.addLight(...light);

@@ -3,6 +3,7 @@
 import base64
 import json
 import re
+import zlib
 from dataclasses import replace
 
 import numpy as np
@@ -248,8 +249,9 @@ def test_pages_carry_what_panes_are_made_of_beside_what_is_baked(tmp_path):
     assert model["mirrors"]["n_glass"] == 60
     panels = [element.panel for _, element in scene.elements]
     np.testing.assert_allclose(model["mirrors"]["tilts"], mirrors.tilts[panels], atol=1e-8)
-    cells = base64.b64decode(re.search(r'id="l0">([^<]*)<', page)[1])
-    assert np.array_equal(np.frombuffer(cells, "<f2").reshape(mirrors.cells.shape), mirrors.cells)
+    cells = zlib.decompress(base64.b64decode(re.search(r'id="l0">([^<]*)<', page)[1]))
+    planes = np.frombuffer(cells, np.uint8).reshape(8, -1)
+    assert np.array_equal(planes.T.copy().view("<f2").reshape(mirrors.cells.shape), mirrors.cells)
     # The same Gaussians, whatever their order in the page.
     _, reflectivity, f0 = decoded_glass(page, 0)
     places = np.concatenate([facade.gaussians.places for facade in scene.components[:-1]])
