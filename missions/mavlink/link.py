@@ -17,6 +17,7 @@ import itertools
 import queue
 import select
 import socket
+import ssl
 import threading
 import time
 from collections import deque
@@ -28,7 +29,8 @@ from typing import Any, Protocol, TypeVar, runtime_checkable
 from missions.mavlink.messages import Address, Heartbeat, Message, Received
 from missions.mavlink.signing import Signer
 from missions.mavlink.wire import Counts, Decoder, Encoder
-from planning.base.errors import InputError, LinkError, LinkTimeout, OperationCancelled
+from planning.base.errors import InputError, LinkError, LinkRejected, LinkTimeout, OperationCancelled
+from planning.base.messages import say
 from planning.base.progress import QUIET, Clock, Monitor
 
 # Bytes to and from the other end: datagrams, TCP, a serial line, or memory. The only place that opens sockets.
@@ -223,6 +225,100 @@ class TcpChannel:
     def close(self) -> None:
         """Close the connection."""
         self._socket.close()
+
+
+class TlsChannel:
+    """One TLS connection to a server whose certificate this computer trusts (RFC 8446); never an unprotected one.
+
+    Parameters
+    ----------
+    context
+        None: the certificate authorities of this computer, and those of the file that `SSL_CERT_FILE` names.
+
+    Raises
+    ------
+    LinkRejected
+        The server's certificate is none to trust, or it speaks no TLS; to ask again changes nothing.
+    LinkError
+        The connection broke while it was being made.
+    """
+
+    def __init__(self, host: str, port: int, context: ssl.SSLContext | None = None) -> None:
+        plain = socket.create_connection((host, port), CONNECT_S)
+        self._name = f"{host}:{port}"
+        _prepare(plain)
+        context = ssl.create_default_context() if context is None else context
+        try:
+            self._socket = context.wrap_socket(plain, server_hostname=host)
+        except ssl.SSLError as error:
+            plain.close()
+            raise LinkRejected(tls_problem(error, host)) from error
+        except OSError as error:
+            plain.close()
+            raise LinkError.say("the connection broke while TLS began ({})", error.strerror or error) from error
+
+    def read(self, timeout_s: float) -> Chunk | None:
+        """Bytes as they come."""
+        # What was decrypted already makes no socket ready.
+        if not self._socket.pending() and not _ready([self._socket], timeout_s):
+            return None
+        try:
+            data = self._socket.recv(READ_BYTES)
+        except TimeoutError:
+            return None  # a part of a record
+        except OSError as error:
+            raise LinkError.say("the TLS link to {} broke: {}", self._name, error.strerror or error) from error
+        if not data:
+            raise LinkError.say("{} closed the TLS link", self._name)
+        return Chunk("tls", data)
+
+    def write(self, data: bytes) -> None:
+        """Send all of it."""
+        try:
+            self._socket.sendall(data)
+        except OSError as error:
+            raise LinkError.say("the TLS link to {} broke: {}", self._name, error.strerror or error) from error
+
+    def note_peer(self, origin: Hashable) -> None:
+        """Nothing to note: there is one other end."""
+
+    def close(self) -> None:
+        """Close the connection."""
+        self._socket.close()
+
+
+CERTIFICATE_EARLY, CERTIFICATE_OVER, CERTIFICATE_REVOKED = 9, 10, 23
+CERTIFICATE_NAMES = (62, 64)
+CERTIFICATE_ISSUERS = (2, 18, 19, 20, 21)
+"""Numbers of OpenSSL (X509_verify_cert_error_string)."""
+
+
+def tls_problem(error: ssl.SSLError, host: str) -> str:
+    """Why TLS does not begin, in words that say what to do."""
+    if not isinstance(error, ssl.SSLCertVerificationError):
+        if error.reason in (
+            "WRONG_VERSION_NUMBER",
+            "HTTP_REQUEST",
+            "RECORD_LAYER_FAILURE",
+            "UNEXPECTED_EOF_WHILE_READING",
+        ):
+            return say("it speaks no TLS at this port: ask for its TLS port, or leave ntrips:// out")
+        return say("TLS fails ({}): ask its operator which versions it speaks", error.reason or str(error))
+    code = error.verify_code
+    if code == CERTIFICATE_OVER:
+        return say("its certificate is over: is the clock of this computer right? Else its operator has to renew it")
+    if code == CERTIFICATE_EARLY:
+        return say("its certificate is not valid yet: is the clock of this computer right?")
+    if code == CERTIFICATE_REVOKED:
+        return say("its certificate was revoked: do not send it a password, and ask its operator")
+    if code in CERTIFICATE_NAMES:
+        return say("its certificate is for another name than '{}': is the address right?", host)
+    if code in CERTIFICATE_ISSUERS:
+        return say(
+            "nobody whom this computer trusts vouches for its certificate; where it is the operator's own, save it as "
+            ".pem, name that file in the environment as SSL_CERT_FILE, and start again"
+        )
+    return say("its certificate is refused ({})", error.verify_message)
 
 
 class TcpServerChannel:

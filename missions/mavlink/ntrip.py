@@ -34,23 +34,28 @@ MAX_NAMES = 8
 """Mountpoints that a message names."""
 
 MAX_LINE = 1024
-DEFAULT_PORT = 2101
+DEFAULT_PORT, DEFAULT_TLS_PORT = 2101, 443
+"""Registered for NTRIP; casters with TLS mostly answer at that of HTTPS."""
 
 EXAMPLE_CASTER = "me@rtk.example.org:2101/VRS"
 
 _PLACE = re.compile(
-    r"(?:ntrip://)?(?:(?P<user>[^/\s]+)@)?(?P<host>[^:/@\s]+)(?::(?P<port>\d{1,5}))?/(?P<mount>[^/\s]+)"
+    r"(?:(?P<scheme>ntrips?|https?)://)?(?:(?P<user>[^/\s]+)@)?(?P<host>[^:/@\s]+)(?::(?P<port>\d{1,5}))?/(?P<mount>[^/\s]+)"
 )
 
 
 @dataclass(frozen=True, slots=True)
 class Caster:
-    """Where corrections come from: `USER@HOST:PORT/MOUNTPOINT`; the password stands elsewhere."""
+    """Where corrections come from: `USER@HOST:PORT/MOUNTPOINT`, with `ntrips://` before it over TLS.
+
+    The password stands elsewhere.
+    """
 
     host: str
     port: int
     mountpoint: str
     user: str = ""
+    is_tls: bool = False
 
     @property
     def name(self) -> str:
@@ -84,15 +89,18 @@ def caster_of(text: str) -> Caster:
         It is no such place, or holds a password.
     """
     found = _PLACE.fullmatch(text.strip())
-    port = int(found["port"] or DEFAULT_PORT) if found is not None else 0
+    is_tls = found is not None and found["scheme"] in ("ntrips", "https")
+    usual = DEFAULT_TLS_PORT if is_tls else DEFAULT_PORT
+    port = int(found["port"] or usual) if found is not None else 0
     if found is None or not 0 < port < 65536 or not text.isascii():
         raise InputError.say(
-            "corrections: expected USER@HOST:PORT/MOUNTPOINT, such as me@rtk.example.org:2101/VRS, got '{}'",
+            "corrections: expected USER@HOST:PORT/MOUNTPOINT, such as me@rtk.example.org:2101/VRS, with ntrips:// before "
+            "it over TLS, got '{}'",
             text.rpartition("@")[2],
         )
     if found["user"] and ":" in found["user"]:
         raise InputError.say("corrections: a password is asked for, and not kept; leave it out of the address")
-    return Caster(found["host"], port, found["mount"], found["user"] or "")
+    return Caster(found["host"], port, found["mount"], found["user"] or "", is_tls)
 
 
 class AnswerState(Enum):

@@ -86,7 +86,7 @@ def add_parser(subparsers: Any) -> None:
     add("--signed", action="store_true", help="sign the link with this computer's key ('signing set')")
     add("--operator", metavar="NUMBER", help="operator's registration number, for vehicles with remote ID")
     add("--serial-number", default="", metavar="TEXT", help="of the aircraft, for remote ID (default: its module's)")
-    add("--ntrip", metavar="CASTER", help="RTK corrections for the vehicle at the link: USER@HOST:PORT/MOUNTPOINT")
+    add("--ntrip", metavar="CASTER", help="RTK corrections for the vehicle: [ntrips://]USER@HOST:PORT/MOUNTPOINT")
     add("--logs", type=Path, metavar="DIR", help="folder for telemetry logs of a link (default: beside FLIGHT)")
     add("--json", action="store_true", help="print one JSON object instead of text")
 

@@ -47,7 +47,11 @@ class SettingsPage(QWidget):
         self.battery.setMaxLength(40)
         self.battery.setToolTip(self.tr("Its name: the log book counts its flights and cycles"))
         self.corrections.setPlaceholderText(EXAMPLE_CASTER)
-        self.corrections.setToolTip(self.tr("NTRIP caster, from the next connection on: USER@HOST:PORT/MOUNTPOINT"))
+        self.corrections.setToolTip(
+            self.tr(
+                "NTRIP caster, from the next connection on: USER@HOST:PORT/MOUNTPOINT, with ntrips:// before it over TLS"
+            )
+        )
         self.password.setEchoMode(QLineEdit.EchoMode.Password)
         self.password.setToolTip(self.tr("Kept until the program ends, and never written down"))
         self.serial.setToolTip(self.tr("Only where the aircraft's module does not know it"))

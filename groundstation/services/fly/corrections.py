@@ -15,12 +15,12 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from groundstation.vehicle.preflight import PreflightCheck, Verdict
-from missions.mavlink.link import Channel, TcpChannel
+from missions.mavlink.link import Channel, TcpChannel, TlsChannel
 from missions.mavlink.messages import Message, Received
 from missions.mavlink.ntrip import AnswerState, Caster, CasterAnswer
 from missions.mavlink.rtk import RtcmDecoder, RtcmFrame, distance_m, ecef_m, gga_sentence, rtcm_messages, types_text
 from missions.mission.model import GeoPoint, altitude_amsl_m
-from planning.base.errors import LinkError
+from planning.base.errors import LinkError, LinkRejected
 from planning.base.messages import say
 from planning.base.progress import Clock
 from planning.geo.frames import Vec3
@@ -108,7 +108,7 @@ class Corrections:
     place
         Where the aircraft takes off: told to casters of virtual stations.
     connect
-        Opens the connection; raises OSError or LinkError.
+        Opens the connection; raises OSError or LinkError. None: over TCP, or TLS where the caster's address says so.
     wait
         Waits for some seconds, or until the event is set.
     """
@@ -118,7 +118,7 @@ class Corrections:
     place: GeoPoint
     clock: Clock = time.perf_counter
     unix_clock: Callable[[], float] = time.time
-    connect: Callable[[str, int], Channel] = TcpChannel
+    connect: Callable[[str, int], Channel] | None = None
     _frames: queue.Queue[RtcmFrame] = field(init=False, default_factory=lambda: queue.Queue(MAX_WAITING))
     _ending: threading.Event = field(init=False, default_factory=threading.Event)
     _lock: threading.Lock = field(init=False, default_factory=threading.Lock)
@@ -190,8 +190,12 @@ class Corrections:
 
     def _connected(self) -> bool:
         """One connection to its end; whether another one would end the same way."""
+        connect = self.connect or (TlsChannel if self.caster.is_tls else TcpChannel)
         try:
-            channel = self.connect(self.caster.host, self.caster.port)
+            channel = connect(self.caster.host, self.caster.port)
+        except LinkRejected as error:
+            self._say(str(error))
+            return True
         except (OSError, LinkError) as error:
             self._say(say("it cannot be reached ({})", getattr(error, "strerror", None) or error))
             return False

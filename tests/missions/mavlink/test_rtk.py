@@ -159,6 +159,8 @@ def test_addresses_are_taken_apart_and_passwords_are_refused():
     assert caster_of(EXAMPLE_CASTER) == Caster("rtk.example.org", 2101, "VRS", "me")
     assert caster_of("ntrip://me@x.org@h/M") == Caster("h", 2101, "M", "me@x.org")
     assert caster_of("10.0.0.1:80/A") == Caster("10.0.0.1", 80, "A")
+    assert caster_of("ntrips://me@h/M") == caster_of("https://me@h/M") == Caster("h", 443, "M", "me", is_tls=True)
+    assert caster_of("ntrips://h:2102/M") == Caster("h", 2102, "M", is_tls=True)
     with pytest.raises(InputError, match="leave it out of the address"):
         caster_of("me:secret@h/M")
     for text in ("", "h", "h/", "h:0/M", "h:70000/M", "h:x/M", "me@/M", "h/M N", "höst/M"):
