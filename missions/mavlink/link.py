@@ -250,6 +250,9 @@ class TlsChannel:
         context = ssl.create_default_context() if context is None else context
         try:
             self._socket = context.wrap_socket(plain, server_hostname=host)
+        except ssl.SSLEOFError as error:
+            plain.close()
+            raise LinkError.say("it hung up while TLS began: is this its TLS port?") from error
         except ssl.SSLError as error:
             plain.close()
             raise LinkRejected(tls_problem(error, host)) from error
@@ -287,6 +290,9 @@ class TlsChannel:
         self._socket.close()
 
 
+NO_TLS = ("WRONG_VERSION_NUMBER", "HTTP_REQUEST", "RECORD_LAYER_FAILURE", "PACKET_LENGTH_TOO_LONG")
+"""What OpenSSL says where the answer is no TLS."""
+
 CERTIFICATE_EARLY, CERTIFICATE_OVER, CERTIFICATE_REVOKED = 9, 10, 23
 CERTIFICATE_NAMES = (62, 64)
 CERTIFICATE_ISSUERS = (2, 18, 19, 20, 21)
@@ -296,12 +302,7 @@ CERTIFICATE_ISSUERS = (2, 18, 19, 20, 21)
 def tls_problem(error: ssl.SSLError, host: str) -> str:
     """Why TLS does not begin, in words that say what to do."""
     if not isinstance(error, ssl.SSLCertVerificationError):
-        if error.reason in (
-            "WRONG_VERSION_NUMBER",
-            "HTTP_REQUEST",
-            "RECORD_LAYER_FAILURE",
-            "UNEXPECTED_EOF_WHILE_READING",
-        ):
+        if error.reason in NO_TLS:
             return say("it speaks no TLS at this port: ask for its TLS port, or leave ntrips:// out")
         return say("TLS fails ({}): ask its operator which versions it speaks", error.reason or str(error))
     code = error.verify_code

@@ -94,8 +94,8 @@ def caster_of(text: str) -> Caster:
     port = int(found["port"] or usual) if found is not None else 0
     if found is None or not 0 < port < 65536 or not text.isascii():
         raise InputError.say(
-            "corrections: expected USER@HOST:PORT/MOUNTPOINT, such as me@rtk.example.org:2101/VRS, with ntrips:// before "
-            "it over TLS, got '{}'",
+            "corrections: expected USER@HOST:PORT/MOUNTPOINT, such as me@rtk.example.org:2101/VRS, over TLS with "
+            "ntrips:// before it, got '{}'",
             text.rpartition("@")[2],
         )
     if found["user"] and ":" in found["user"]:

@@ -49,7 +49,7 @@ class SettingsPage(QWidget):
         self.corrections.setPlaceholderText(EXAMPLE_CASTER)
         self.corrections.setToolTip(
             self.tr(
-                "NTRIP caster, from the next connection on: USER@HOST:PORT/MOUNTPOINT, with ntrips:// before it over TLS"
+                "NTRIP caster, from the next connection on: USER@HOST:PORT/MOUNTPOINT; over TLS ntrips:// before it"
             )
         )
         self.password.setEchoMode(QLineEdit.EchoMode.Password)
