@@ -16,7 +16,9 @@ from PySide6.QtWidgets import QButtonGroup, QLabel, QPushButton, QStackedWidget,
 
 from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.widgets.scrolling import WrappingRow
+from groundstation.services.jobs.runner import Job
 from groundstation.services.project.document import Document, Item, ItemKind
+from groundstation.services.scenes.surfaces import Surface, site_surfaces
 from groundstation.services.units import UnitSystem
 from planning.base.findings import Severity
 from planning.plan import Plan
@@ -82,6 +84,7 @@ class SharedView(QWidget):
         self._camera: CameraPreview | None = None
         self._waiting: list[Callable[[SceneView], object]] = []
         self._has_shown_plan = False
+        self._looking_around: Job[tuple[Surface, ...]] | None = None
         self._pages = QStackedWidget()
         self._loading = QLabel(self.tr("The 3-D view is being prepared ..."))
         self._loading.setProperty("role", "muted")
@@ -233,6 +236,7 @@ class SharedView(QWidget):
         document = self._context.document
         scene.set_site(document.site)
         scene.set_plan(_plan_of(document), _locked_in(document))
+        scene.surroundingsWanted.connect(self._look_around)
         self._add_player(scene)
         self._show_selection(self._context.selection)
         if self.page() is SharedViewPage.SCENE:
@@ -242,6 +246,19 @@ class SharedView(QWidget):
         for callback in waiting:
             callback(scene)
         self.sceneReady.emit(scene)
+
+    def _look_around(self, model: SiteModel) -> None:
+        """Have the virtual scene of a site made, and show it where the site is still that one."""
+
+        def show(surfaces: tuple[Surface, ...]) -> None:
+            if self._scene is not None and self._context.document.site is model:
+                self._scene.set_surfaces(surfaces)
+
+        if self._looking_around is not None and self._looking_around in self._context.jobs():
+            self._context.cancel(self._looking_around, quietly=True)
+        self._looking_around = self._context.start(
+            self.tr("Simulated surroundings"), lambda job: job.run_in_process(site_surfaces, model), show
+        )
 
     def player(self) -> PlanPlayer | None:
         """The bar that flies the plan; None before the 3-D view is ready."""

@@ -3,10 +3,11 @@
 from dataclasses import replace
 
 import pytest
+from PySide6.QtCore import QPoint
 
 from groundstation.services.project.document import Document, PlanEntry
 from planning.site.bundled import SCENES
-from tests.gui.driving import close_controller, turn_until
+from tests.gui.driving import click_on, close_controller, press_in, scroll_to, turn_until
 from tests.planning.insight.cases import plan, scene
 
 
@@ -59,3 +60,23 @@ def test_an_edited_site_is_the_same_one_and_another_building_is_not(controller):
     view.set_orbit(near)
     context.change("Plan", context.document.with_plan(entry("third")))
     assert view.orbit() != near
+
+
+@pytest.mark.slow
+def test_simulated_surroundings_are_made_when_their_box_is_ticked_and_go_with_another_site(application, controller):
+    from groundstation.gui.view3d.drawables import Layer
+
+    context, shared = controller.context, controller.window.shared_view
+    context.session.open(Document(scene("office")), None)
+    controller.window.show_tab("site")
+    turn_until(application, lambda: not context.jobs())
+    view = shared.scene()
+    press_in(controller.window, "Layers")
+    box, _slider = view.layer_panel().list.boxes(Layer.SURROUNDINGS.value)
+    scroll_to(box)
+    click_on(controller.window, box, QPoint(12, box.height() // 2))
+    assert "Simulated surroundings" in [job.name for job in context.jobs()]
+    turn_until(application, lambda: Layer.SURROUNDINGS in view.canvas()._drawn)
+    assert sum(part.drawable.picture is not None for part in view.canvas()._drawn[Layer.SURROUNDINGS]) >= 3
+    context.session.open(Document(), None)
+    assert Layer.SURROUNDINGS not in view.canvas()._drawn

@@ -734,3 +734,42 @@ def test_the_view_is_not_taken_out_of_the_users_hand(application, view, plan):
     view.cancel_tool()
     view.bring_in_viewpoints()
     assert view.orbit() != before
+
+
+def test_surroundings_are_drawn_with_their_pictures_only_while_their_layer_is_shown(application, view):
+    from groundstation.services.scenes.surfaces import Part, Surface
+
+    wanted = []
+    view.surroundingsWanted.connect(wanted.append)
+    model = office()
+    view.set_site(model)
+    assert not wanted, "nobody looks at them where a processor draws"
+    view.set_layer_visible(Layer.SURROUNDINGS, True)
+    assert wanted == [model]
+    before = picture(application, view)
+    # A wall before the facade, its lower half green and its upper half red.
+    stripes = np.zeros((8, 8, 3), np.uint8)
+    stripes[:4, :, 0] = stripes[4:, :, 1] = 255
+    left, right, top = (-15.0, -5.0, 0.0), (15.0, -5.0, 0.0), 40.0
+    a, b, c, d = left, right, (*right[:2], top), (*left[:2], top)
+    uv = np.array([[(0, 0), (1, 0), (1, 1)], [(0, 0), (1, 1), (0, 1)]], np.float32)
+    white = np.full((2, 3), 255, np.uint8)
+    view.set_surfaces([Surface(Part.SURROUNDINGS, np.array([[a, b, c], [a, c, d]]), white, uv, stripes)])
+    shown = picture(application, view)
+    is_red = (shown[..., 0] > 120) & (shown[..., 1] < 60) & (shown[..., 2] < 60)
+    is_green = (shown[..., 1] > 120) & (shown[..., 0] < 60) & (shown[..., 2] < 60)
+    assert min(is_red.sum(), is_green.sum()) > 5000
+    assert np.argwhere(is_red)[:, 0].mean() < np.argwhere(is_green)[:, 0].mean(), "the first row is uppermost"
+    view.set_layer_visible(Layer.SURROUNDINGS, False)
+    np.testing.assert_array_equal(picture(application, view), before)
+    view.set_site(canyon())
+    assert wanted == [model]
+
+
+@pytest.mark.parametrize("uv", [np.zeros((1, 3, 2), np.float32), np.zeros((2, 4, 2), np.float32)])
+def test_a_picture_needs_a_place_for_each_corner(uv):
+    from groundstation.gui.view3d.drawables import Picture
+
+    points, cells = np.zeros((4, 3)), np.array([[0, 1, 2], [0, 2, 3]])
+    with pytest.raises(ValueError, match="uv: expected shape"):
+        Drawable(points, cells, flat("#ffffff", 2), picture=Picture(np.zeros((2, 2, 3), np.uint8), uv))

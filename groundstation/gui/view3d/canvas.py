@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pyvista as pv
 from numpy.typing import NDArray
-from PySide6.QtCore import Qt, QTimer
+from PySide6.QtCore import Qt, QTimer, Signal
 from PySide6.QtGui import QColor, QImage, QShowEvent
 from PySide6.QtWidgets import QWidget
 from pyvistaqt import QtInteractor
@@ -57,7 +57,11 @@ class _Drawn:
         cells = pv.CellArray.from_regular_cells(np.arange(n_cells * size).reshape(n_cells, size))
         (data.SetVerts if size == 1 else data.SetLines if size == 2 else data.SetPolys)(cells)
         data.point_data[COLOURS] = np.repeat(drawable.colours, size, axis=0)
-        return cls(_actor(data, drawable), data, drawable, _edge_size_m(drawable), data.GetBounds())
+        actor = _actor(data, drawable)
+        if drawable.picture is not None:
+            data.active_texture_coordinates = drawable.picture.uv.reshape(-1, 2)
+            actor.SetTexture(_texture(drawable.picture.pixels))
+        return cls(actor, data, drawable, _edge_size_m(drawable), data.GetBounds())
 
     @property
     def nearer(self) -> float:
@@ -99,7 +103,14 @@ class Canvas(QtInteractor):  # type: ignore[misc]  # pyvistaqt has no types
 
     Multi-sampling, lamps and order-independent transparency are off: each costs a processor that draws in place of a
     graphics card more than the rest of the picture.
+
+    Signals
+    -------
+    started(bool)
+        It can draw; whether a processor does it in place of a graphics card.
     """
+
+    started = Signal(bool)
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent, auto_update=False, multi_samples=0)
@@ -226,6 +237,7 @@ class Canvas(QtInteractor):  # type: ignore[misc]  # pyvistaqt has no types
         self._is_software = any(name in renderer for name in SOFTWARE_RENDERERS)
         self.renderer.SetUseFXAA(not self._is_software)
         self.set_background_colour(*self._background)
+        self.started.emit(self._is_software)
 
     def paintGL(self) -> None:  # noqa: N802
         """Draw, and count it."""
@@ -286,9 +298,17 @@ def _points(drawable: Drawable) -> NDArray[np.float32]:
     return drawable.points_enu_m.astype(np.float32)[drawable.cells].reshape(-1, 3)
 
 
-def _style(drawable: Drawable) -> tuple[float, str, float, float]:
+def _style(drawable: Drawable) -> tuple[float, str, float, float, int]:
     """What an actor is told once."""
-    return drawable.width_px, drawable.edge_colour, drawable.depth_shift, drawable.nearer
+    picture = 0 if drawable.picture is None else id(drawable.picture)
+    return drawable.width_px, drawable.edge_colour, drawable.depth_shift, drawable.nearer, picture
+
+
+def _texture(pixels: NDArray[np.uint8]) -> pv.Texture:
+    """A picture that repeats; from far away it is averaged, or it would flicker as the view turns."""
+    texture = pv.Texture(pixels)
+    texture.repeat = texture.mipmap = texture.interpolate = True
+    return texture
 
 
 def _edge_size_m(drawable: Drawable) -> float:

@@ -152,10 +152,27 @@ class Layer(StrEnum):
     ROUTES = "routes"
     HEMISPHERES = "hemispheres"
     LABELS = "labels"
+    SURROUNDINGS = "surroundings"
 
 
 ON_TOP = -66_000.0
 """More steps than VTK's coincident shift can undo: in front of everything."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Picture:
+    """A picture on cells, which multiplies their colours and repeats.
+
+    Parameters
+    ----------
+    pixels
+        Shape (h, w, 3), the first row uppermost.
+    uv
+        Place of each corner of each cell, shape (k, c, 2): 1 is the width or height, from the lower left corner.
+    """
+
+    pixels: NDArray[np.uint8]
+    uv: NDArray[np.float32]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -180,6 +197,8 @@ class Drawable:
     nearer
         Part of its distance by which it is drawn nearer to the eye, made smaller by the same part: it keeps its pixels
         and comes before what lies at the same place.
+    picture
+        On triangles and quadrilaterals; None for colours alone.
     """
 
     points_enu_m: NDArray[np.float64]
@@ -189,6 +208,7 @@ class Drawable:
     edge_colour: str = ""
     depth_shift: float = 0.0
     nearer: float = 0.0
+    picture: Picture | None = None
 
     def __post_init__(self) -> None:
         n_cells, size = self.cells.shape
@@ -198,6 +218,8 @@ class Drawable:
             raise ValueError(f"cells: expected shape (k, 1 to 4), got {self.cells.shape}")
         if self.colours.shape != (n_cells, 4) or self.colours.dtype != np.uint8:
             raise ValueError(f"colours: expected bytes of shape ({n_cells}, 4), got {self.colours.shape}")
+        if self.picture is not None and self.picture.uv.shape != (n_cells, size, 2):
+            raise ValueError(f"uv: expected shape ({n_cells}, {size}, 2), got {self.picture.uv.shape}")
 
 
 @dataclass(frozen=True, slots=True)

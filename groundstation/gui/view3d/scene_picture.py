@@ -47,10 +47,12 @@ from groundstation.gui.view3d.site_scene import (
     plan_scene,
     site_scene,
     sortie_colours,
+    surface_drawables,
     views_that_cover,
 )
 from groundstation.gui.widgets.theme import colours
 from groundstation.services.project.document import Item, ItemKind
+from groundstation.services.scenes.surfaces import Part, Surface
 from groundstation.services.units import UnitSystem
 from planning.coverage.sections import PanelFrames, SectionGrid
 from planning.geo.frames import camera_axes
@@ -261,9 +263,12 @@ class ScenePicture(QWidget):
     -------
     orbitChanged(Orbit)
         It is looked at from elsewhere, but not by `set_orbit`.
+    surroundingsWanted(SiteModel)
+        What the virtual scene of this site looks like is to be given to `set_surfaces`.
     """
 
     orbitChanged = Signal(object)  # noqa: N815  (Qt's own way of naming)
+    surroundingsWanted = Signal(object)  # noqa: N815
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -276,7 +281,8 @@ class ScenePicture(QWidget):
         self._panel_values: tuple[ColourScale, Array] | None = None
         self._selection: tuple[Item, ...] = ()
         self._hover: Item | None = None
-        self._hidden: frozenset[Layer] = frozenset({Layer.FRUSTA})
+        self._hidden: frozenset[Layer] = frozenset({Layer.FRUSTA, Layer.SURROUNDINGS})
+        self._surfaces: tuple[Surface, ...] = ()
         self._opacities: dict[Layer, float] = {}
         self._sorties: dict[int, tuple[bool, float]] = {}
         self._n_sorties = 0
@@ -295,6 +301,7 @@ class ScenePicture(QWidget):
         self._navigator.changed.connect(self._follow_orbit)
         self._navigator.moved.connect(self.orbitChanged)
         self._navigator.rested.connect(self._come_to_rest)
+        self._canvas.started.connect(self._show_surroundings)
         self._dress()
 
     # What is shown
@@ -303,7 +310,7 @@ class ScenePicture(QWidget):
         """Draw a site, or none; the plan stays. Values and coverage of other panels go."""
         had = self._site
         self._site = None if model is None else site_scene(model, colours())
-        self._index = None
+        self._index, self._surfaces = None, ()
         is_same = had is not None and self._site is not None and had.panel_index == self._site.panel_index
         if not is_same:
             self._panel_values = None
@@ -313,6 +320,23 @@ class ScenePicture(QWidget):
         self._navigator.wait_for_rest()
         if not keep_camera:
             self.look_at_all()
+        self._want_surroundings()
+
+    def set_surfaces(self, surfaces: Sequence[Surface]) -> None:
+        """Draw walls and surroundings of the site as its virtual scene has them, while that layer is shown."""
+        self._surfaces = tuple(surfaces)
+        self._draw_surroundings()
+
+    def _show_surroundings(self, is_software: bool) -> None:
+        """Show the surroundings from the beginning where a graphics card draws; a processor needs 1.4 times as long."""
+        if not is_software:
+            self.set_layer_visible(Layer.SURROUNDINGS, True)
+
+    def _want_surroundings(self) -> None:
+        """Ask for what the site's virtual scene looks like, where it is to be shown and nobody has said yet."""
+        is_wanted = self.is_layer_visible(Layer.SURROUNDINGS) and not self._surfaces
+        if is_wanted and self._site is not None and len(self._site.frames):
+            self.surroundingsWanted.emit(self._site.model)
 
     def set_plan(self, plan: Plan | None, locked: frozenset[str] = frozenset()) -> None:
         """Draw a plan, or none; `locked` names the viewpoints that are kept as they are. Values of its routes go."""
@@ -408,6 +432,9 @@ class ScenePicture(QWidget):
             self._show_plan_layers()
         elif layer is Layer.FRUSTA:
             self._focus()
+        elif layer is Layer.SURROUNDINGS:
+            self._draw_surroundings()
+            self._want_surroundings()
         self._show_labels()
 
     def is_layer_visible(self, layer: Layer) -> bool:
@@ -564,10 +591,20 @@ class ScenePicture(QWidget):
         self._canvas.draw(
             Layer.PANELS, () if site is None else [panels_drawable(site.frames, self._panel_colours(site))]
         )
+        self._draw_surroundings()
         self._paint_domes()
         self._draw_marks()
         self._show_labels()
         self._show_legend()
+
+    def _draw_surroundings(self) -> None:
+        """The virtual scene's street and neighbours; its walls take the place of the building's own."""
+        is_shown = self.is_layer_visible(Layer.SURROUNDINGS)
+        parts = {part: [each for each in self._surfaces if each.part is part] for part in Part if is_shown}
+        self._canvas.draw(Layer.SURROUNDINGS, surface_drawables(parts.get(Part.SURROUNDINGS, ())))
+        if self._site is not None:
+            walls = surface_drawables(parts.get(Part.WALLS, ()))
+            self._canvas.draw(Layer.BUILDING, walls or self._site.drawables[Layer.BUILDING])
 
     def _draw_plan(self) -> None:
         plan = self._plan

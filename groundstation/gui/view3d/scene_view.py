@@ -353,6 +353,7 @@ class SceneView(ScenePicture):
                 Layer.HOME: self.tr("Home"),
                 Layer.SHADOWS: self.tr("Shadows"),
                 Layer.GROUND: self.tr("Ground"),
+                Layer.SURROUNDINGS: self.tr("Simulated surroundings"),
                 Layer.LABELS: self.tr("Names"),
             }
         return titles

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,6 +12,7 @@ from groundstation.gui.view3d.drawables import (
     Drawable,
     Label,
     Layer,
+    Picture,
     Shape,
     arrows,
     box_edges,
@@ -27,6 +28,7 @@ from groundstation.gui.view3d.drawables import (
 from groundstation.gui.view3d.paint import SUN, ColourScale, flat, rgba, shaded
 from groundstation.gui.widgets.theme import FACADES, SORTIES, Colours, zone_colour
 from groundstation.services.project.document import Item, ItemKind
+from groundstation.services.scenes.surfaces import Surface
 from groundstation.services.site.zones import zone_lines
 from planning.coverage.sections import NOT_SEEN, PanelFrames, SectionGrid, panel_frames, sections_seen
 from planning.geo.frames import Vec3
@@ -353,6 +355,22 @@ def site_scene(model: SiteModel, look: Colours) -> SiteScene:
     panel_index = {panel.id: i for i, panel in enumerate(site.panels)}
     labels = (*_labels(model), *(_zone_label(zone, look) for zone in zones))
     return SiteScene(model, frames, facade, panel_index, drawables, labels, zones)
+
+
+def surface_drawables(surfaces: Sequence[Surface]) -> tuple[Drawable, ...]:
+    """What a virtual scene shows of walls or surroundings."""
+    return tuple(map(_surface, surfaces))
+
+
+def _surface(surface: Surface) -> Drawable:
+    corners = surface.corners_enu_m
+    mesh = TriangleMesh(corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3))
+    colours = np.column_stack([surface.colours, np.full(len(corners), 255, np.uint8)])
+    picture = None
+    if surface.uv is not None and surface.picture is not None:
+        picture = Picture(surface.picture, surface.uv)
+    shades = shaded(colours, triangle_normals(mesh))
+    return Drawable(mesh.vertices_enu_m, mesh.triangles, shades, picture=picture)
 
 
 def facade_colours(facade: NDArray[np.int64]) -> NDArray[np.uint8]:
