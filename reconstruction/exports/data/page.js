@@ -253,7 +253,7 @@ async function mirrorPicture() {
   try {
     return await fitting((most) => MirrorPicture.made(byId("mirrors"), model, panes, most, lost));
   } catch (error) {
-    state.note = error.message === "large" ? "smallMirrors" : "noMirrors";
+    state.note = error.message === "large" ? "smallMirrors" : window.isSecureContext ? "noMirrors" : "httpMirrors";
     console.info(`no mirrors: ${error.message}`);
     return null;
   }

@@ -12,7 +12,7 @@ import torch
 
 from reconstruction.base.cameras import Intrinsics, Pose, PosedPhoto
 from reconstruction.exports.page_mirrors import mirrors_of
-from reconstruction.exports.web import WebOptions, wgsl, write_web
+from reconstruction.exports.web import WebOptions, write_web
 from reconstruction.light.config import GlassLearned
 from reconstruction.light.environment_map import EnvironmentMap
 from reconstruction.light.glass_light import GlassLight
@@ -21,24 +21,17 @@ from reconstruction.light.photo_set import PanelPlanes
 from reconstruction.light.radiance_grid import GridBox, RadianceGrid
 from reconstruction.light.ray_table import RayTable
 from reconstruction.light.reflection_mlp import MlpShape, ReflectionMlp
+from reconstruction.light.shading import display_from_linear
+from reconstruction.splats.rasterising.raster_types import RasterSettings
+from reconstruction.splats.rasterising.views import View
 from reconstruction.splats.sky import Sky
 from reconstruction.splats.splats import Splats
 from reconstruction.training.model.joint_model import SceneModel
+from tests.reconstruction.exports.page_shaders import Shaders, view_numbers
 from tests.reconstruction.objects.synthetic_scene import synthetic_scene
 
 ORIGIN_ENU_M = np.array([100.0, -20.0, 5.0])
 WIDTH, HEIGHT, FOCAL = 240, 160, 150.0
-
-ASK = """
-@group(1) @binding(0) var<storage, read> asked: array<vec4f>;
-@group(1) @binding(1) var<storage, read_write> answers: array<vec4f>;
-@compute @workgroup_size(64)
-fn ask(@builtin(global_invocation_id) id: vec3u) {
-  if (id.x >= arrayLength(&asked)) { return; }
-  let found = mirrored_by(u32(asked[id.x].z), asked[id.x].xy);
-  answers[id.x] = vec4f(found.light, found.cosine);
-}
-"""
 
 
 def leaning_panes(rng):
@@ -119,92 +112,6 @@ def looking(eye, heading_deg, pitch_deg):
     return PosedPhoto("", None, lens, Pose(np.asarray(eye) + ORIGIN_ENU_M, axes)), axes
 
 
-def numbers_of(mirrors, corners_m):
-    """Content of `Light` and of the `Pane`s, as mirrors.js fills them in."""
-    n = mirrors.numbers
-    names = (
-        *("middle", "half_side", "inner", "cell", "over", "outer", "turn", "reach", "unit", "far_side", "far_times"),
-        *("density_scale", "opaque", "environment"),
-    )
-    light = np.concatenate([*(np.atleast_1d(n[name]) for name in names), np.zeros(3)]).astype(np.float32)
-    normals = np.cross(corners_m[:, 2] - corners_m[:, 0], corners_m[:, 3] - corners_m[:, 1])
-    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    edges = [corners_m[:, i] - corners_m[:, 0] for i in (1, 3)]
-    over = [edge / (edge**2).sum(axis=1, keepdims=True) for edge in edges]
-    columns = zip((corners_m[:, 0], normals, *over), (*mirrors.tilts.T, *mirrors.bows.T), strict=True)
-    return light, np.stack([np.column_stack(each) for each in columns], axis=1).astype(np.float32)
-
-
-class Shaders:
-    """The page's programs with one more that asks what panes mirror to pixels."""
-
-    def __init__(self):
-        wgpu = pytest.importorskip("wgpu", reason="wgpu is not installed: pip install wgpu")
-        try:
-            adapter = wgpu.gpu.request_adapter_sync()
-        except RuntimeError:
-            adapter = None
-        if adapter is None:
-            pytest.skip("no graphics adapter: apt-get install mesa-vulkan-drivers")
-        self.wgpu, self.device = wgpu, adapter.request_device_sync()
-        module = self.device.create_shader_module(code=wgsl() + ASK)
-        self.pipeline = self.device.create_compute_pipeline(
-            layout="auto", compute={"module": module, "entry_point": "ask"}
-        )
-
-    def buffer(self, values, usage):
-        return self.device.create_buffer_with_data(data=np.ascontiguousarray(values), usage=usage)
-
-    def texture(self, levels, kind, texel_bytes, dimension):
-        """Of arrays (depth, height, width, ...) or (height, width, ...), each half as large as the one before."""
-        sizes = [(*level.shape[2::-1],) if dimension == "3d" else (*level.shape[1::-1], 1) for level in levels]
-        usage = self.wgpu.TextureUsage.TEXTURE_BINDING | self.wgpu.TextureUsage.COPY_DST
-        found = self.device.create_texture(
-            size=sizes[0], format=kind, usage=usage, dimension=dimension, mip_level_count=len(levels)
-        )
-        for number, (level, size) in enumerate(zip(levels, sizes, strict=True)):
-            layout = {"bytes_per_row": size[0] * texel_bytes, "rows_per_image": size[1]}
-            place = {"texture": found, "mip_level": number}
-            self.device.queue.write_texture(place, np.ascontiguousarray(level), layout, size)
-        return found.create_view()
-
-    def mirrored(self, mirrors, corners_m, eye_m, axes, asked):
-        """Light and cosines, shape (n, 4), of pixels counted from the middle and panes, shape (n, 3)."""
-        usage, device = self.wgpu.BufferUsage, self.device
-        view = np.zeros(32, np.float32)
-        view[0:3], view[3], view[22], view[23] = eye_m, FOCAL, mirrors.rays, 1.0
-        for row, axis in zip((4, 8, 12), axes, strict=True):
-            view[row : row + 3] = axis
-        light, panes = numbers_of(mirrors, corners_m)
-        found = device.create_buffer(size=16 * len(asked), usage=usage.STORAGE | usage.COPY_SRC)
-        linear = dict.fromkeys(("address_mode_u", "address_mode_v", "address_mode_w"), "clamp-to-edge")
-        own = {
-            0: {"buffer": self.buffer(view, usage.UNIFORM)},
-            10: {"buffer": self.buffer(light, usage.UNIFORM)},
-            11: {"buffer": self.buffer(panes, usage.STORAGE)},
-            12: self.texture([mirrors.cells], "rgba16float", 8, "3d"),
-            13: self.texture([mirrors.skips], "r8uint", 1, "3d"),
-            14: self.texture(mirrors.far, "rgba16float", 8, "2d"),
-            15: device.create_sampler(mag_filter="linear", min_filter="linear", **linear),
-            17: device.create_sampler(
-                mag_filter="linear", min_filter="linear", **{**linear, "address_mode_u": "repeat"}
-            ),
-        }
-        questions = np.column_stack([asked, np.zeros(len(asked))]).astype(np.float32)
-        answers = {0: {"buffer": self.buffer(questions, usage.STORAGE)}, 1: {"buffer": found}}
-        encoder = device.create_command_encoder()
-        step = encoder.begin_compute_pass()
-        step.set_pipeline(self.pipeline)
-        for number, group in enumerate((own, answers)):
-            entries = [{"binding": binding, "resource": each} for binding, each in group.items()]
-            layout = self.pipeline.get_bind_group_layout(number)
-            step.set_bind_group(number, device.create_bind_group(layout=layout, entries=entries))
-        step.dispatch_workgroups(-(-len(asked) // 64))
-        step.end()
-        device.queue.submit([encoder.finish()])
-        return np.frombuffer(device.queue.read_buffer(found), np.float32).reshape(-1, 4)
-
-
 @pytest.fixture(scope="module")
 def shaders():
     return Shaders()
@@ -223,13 +130,54 @@ def test_panes_mirror_to_pixels_what_the_model_mirrors(shaders, rays, make):
         with torch.no_grad():
             light, cosines = (each.numpy() for each in model.light(asked_rays))
         pixels = np.column_stack([columns + 0.5 - WIDTH / 2, rows + 0.5 - HEIGHT / 2, panels])
-        found = shaders.mirrored(mirrors_of(model), model.corners_m, np.array(eye), axes, pixels)
+        view = view_numbers(eye, axes, FOCAL, (WIDTH, HEIGHT), int(np.sqrt(rays)))
+        found = shaders.mirrored(mirrors_of(model), model.corners_m, view, pixels)
         is_seen = asked_rays.hits().cosines.numpy() > 0.05
         assert is_seen.sum() > 200
         np.testing.assert_allclose(found[is_seen, 3], cosines[is_seen], atol=2e-5)
         # Half floats: 1e-3 at most was measured.
         np.testing.assert_allclose(found[is_seen, :3], light[is_seen], atol=0.003)
         assert light[is_seen].std() > 0.05
+
+
+def glazed(model, rng):
+    """The model with splats all over its panes, and some beside and before them."""
+    panels = np.repeat([0, 1, 2, 3, -1], 40)
+    u, v = rng.random((2, 160, 1))
+    corners = model.corners_m[panels[:160]]
+    on_panes = corners[:, 0] + u * (corners[:, 1] - corners[:, 0]) + v * (corners[:, 3] - corners[:, 0])
+    n = len(panels)
+    values = {
+        "means": np.concatenate([on_panes, rng.uniform(-2.5, 2.5, (40, 3))]),
+        "quats": np.where(panels[:, None] >= 0, (np.sqrt(0.5), np.sqrt(0.5), 0.0, 0.0), rng.normal(size=(n, 4))),
+        "log_scales": np.log(rng.uniform(0.1, 0.4, (n, 2))),
+        "opacity_logits": rng.normal(1.0, 1.5, n),
+        "sh": rng.normal(0.0, 1.0, (n, 16, 3)) * np.array([0.8, *[0.05] * 15])[:, None],
+        "reflectivity_logits": rng.normal(1.0, 1.0, n),
+        "f0_logits": rng.normal(0.0, 1.0, (n, 3)),
+    }
+    tensors = {name: torch.from_numpy(value).float() for name, value in values.items()}
+    return model.with_splats(Splats(tensors, torch.from_numpy(panels).int()))
+
+
+def test_pages_show_what_the_model_shows_through_all_passes(shaders):
+    rng = np.random.default_rng(3)
+    model = glazed(model_of(rng, 1), rng)
+    size = width, height = 96, 64
+    for eye, heading, pitch in [((0.3, -4.0, 0.5), 2.0, -3.0), ((2.5, -2.5, -0.5), -40.0, 20.0)]:
+        _, axes = looking(eye, heading, pitch)
+        cam_from_world = torch.eye(4, dtype=torch.float64)
+        cam_from_world[:3, :3] = torch.from_numpy(axes)
+        cam_from_world[:3, 3] = torch.from_numpy(-axes @ np.array(eye))
+        view = View(width, height, 60.0, 60.0, width / 2, height / 2, cam_from_world)
+        with torch.no_grad():
+            picture = model(view, settings=RasterSettings(blur_px=np.sqrt(0.3), antialiased=True))
+        found = shaders.picture(model, view_numbers(eye, axes, 60.0, size, 1), size)
+        shown, expected = (display_from_linear(torch.as_tensor(each)).clamp(0, 1) for each in (found, picture.light))
+        error = ((shown - expected) ** 2).mean()
+        assert error < 10**-4.5  # 51 and 60 dB were measured
+        # Without what panes mirror it is another picture.
+        assert ((display_from_linear(picture.diffuse).clamp(0, 1) - expected) ** 2).mean() > 100 * error
 
 
 def decoded_glass(page, number):

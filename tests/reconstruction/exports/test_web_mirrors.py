@@ -100,7 +100,14 @@ def test_what_is_picked_and_marked_is_drawn_over_the_mirrors(browser, tmp_path):
     assert np.abs(around - (0xFF, 0x9F, 0x1C)).max(axis=1).min() < 30
 
 
-@pytest.mark.parametrize(("source", "words"), [(WITHOUT_WEBGPU, "no WebGPU"), (SMALL, "too small for mirror images")])
+OVER_HTTP = f"{WITHOUT_WEBGPU}; Object.defineProperty(window, 'isSecureContext', {{ get: () => false }})"
+
+
+@pytest.mark.parametrize(
+    ("source", "words"),
+    [(WITHOUT_WEBGPU, "no WebGPU"), (SMALL, "too small for mirror images"), (OVER_HTTP, "came over http")],
+    ids=["no WebGPU", "little memory", "http"],
+)
 def test_a_browser_that_cannot_mirror_shows_baked_colours_and_says_so(browser, tmp_path, source, words):
     scene = synthetic_scene(sizes=((50, 50, 50),))
     page = write_web(scene, tmp_path / "page", (), WebOptions(mirrors=made_mirrors(scene)))
