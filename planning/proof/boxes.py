@@ -51,7 +51,7 @@ class Shadows(NamedTuple):
     """Patches as seen from one target.
 
     `faces` (f, 6) are inward normals and a corner, `edges` (e, 3) normals of the planes through the target and the
-    silhouette, `rims` (r, 3) corners; the starts of each patch in them have shape (p + 1,).
+    silhouette; the starts of each patch in them have shape (p + 1,).
     """
 
     eye: Array
@@ -59,8 +59,6 @@ class Shadows(NamedTuple):
     face_starts: NDArray[np.int64]
     edges: Array
     edge_starts: NDArray[np.int64]
-    rims: Array
-    rim_starts: NDArray[np.int64]
     numbers: NDArray[np.int64]
 
 
@@ -197,8 +195,6 @@ def _shadow(centre: Array, half: Array, shadows: Shadows) -> int:
     eye = shadows.eye
     offset = centre - eye
     reach = np.sqrt((offset * offset).sum()) + np.sqrt((half * half).sum())
-    if not _most(-offset, offset, half) < -SLACK_M:
-        return -1
     for p in range(len(shadows.numbers)):
         hidden = True
         for i in range(shadows.edge_starts[p], shadows.edge_starts[p + 1]):
@@ -209,13 +205,7 @@ def _shadow(centre: Array, half: Array, shadows: Shadows) -> int:
             continue
         for i in range(shadows.face_starts[p], shadows.face_starts[p + 1]):
             normal, corner = shadows.faces[i, :3], shadows.faces[i, 3:]
-            if not _most(-normal, centre - corner, half) < -RATIO_SLACK * (reach + 1.0):
-                hidden = False
-                break
-        if not hidden:
-            continue
-        for i in range(shadows.rim_starts[p], shadows.rim_starts[p + 1]):
-            if not (offset * shadows.rims[i]).sum() > 10.0 * SLACK_M:
+            if not _most(-normal, centre - corner, half) < -RATIO_SLACK * (reach + 100.0) - SLACK_M:
                 hidden = False
                 break
         if hidden:

@@ -16,12 +16,11 @@ each: less than E. Comparisons are written so that what is not a number proves n
 from __future__ import annotations
 
 import hashlib
-import io
 import json
 import re
 import struct
 import sys
-import zipfile
+import zlib
 from math import floor, sqrt
 from pathlib import Path
 from typing import Any
@@ -49,10 +48,10 @@ def demand(holds: bool, text: str, verdict: str = NOT_PROVED) -> None:
 
 # Reading: what is not as expected is refused. Numbers are finite, keys occur once, meshes are binary PLY.
 
-def read_json(content: bytes, what: str) -> Any:
-    def finite(text: str) -> float:
+def read_json(content: bytes, what: str, kind: Any = float) -> Any:
+    def finite(text: str) -> Any:
         demand(abs(float(text)) < 1e300, f"{what} holds the number {text[:20]}")
-        return float(text)
+        return kind(text)
 
     def record(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
         demand(len(dict(pairs)) == len(pairs), f"{what} has a key twice")
@@ -64,7 +63,7 @@ def read_json(content: bytes, what: str) -> Any:
             check(each, depth + 1)
 
     try:
-        text, hooks = content.decode("utf-8"), {"parse_float": finite, "parse_int": finite, "parse_constant": finite}
+        text, hooks = content.decode("utf-8"), dict.fromkeys(("parse_float", "parse_int", "parse_constant"), finite)
         demand(re.search(r"\\u[dD][89a-fA-F]", text) is None, f"{what} holds characters in two halves")
         value = json.loads(text, object_pairs_hook=record, **hooks)  # type: ignore[arg-type]
         check(value, 0)
@@ -142,8 +141,8 @@ def nearest(p: Vec, triangle: Triangle) -> Vec:
     """A point of a triangle, to rounding the nearest to p."""
     edges = [(triangle[k], sub(triangle[(k + 1) % 3], triangle[k])) for k in range(3)]
     normal = cross(edges[0][1], edges[1][1])
-    foot = plus(p, normal, -dot(sub(p, triangle[0]), normal) / max(dot(normal, normal), 1e-30))
-    if all([dot(cross(way, sub(foot, a)), normal) > 0.0 for a, way in edges]):
+    foot = plus(p, normal, -dot(sub(p, triangle[0]), normal) / max(dot(normal, normal), 1e-18))
+    if dot(normal, normal) > 1e-18 and all([dot(cross(way, sub(foot, a)), normal) > 0.0 for a, way in edges]):
         return foot
     ends = [plus(a, w, min(max(dot(sub(p, a), w) / max(dot(w, w), 1e-30), 0.0), 1.0)) for a, w in edges]
     away = [length(sub(p, q)) for q in ends]
@@ -540,36 +539,34 @@ class Case:
     def _is_hidden(self, panel: int, k: int, corners: list[Vec]) -> bool:
         """Whether a box lies in the shadow of triangles as seen from a panel's target.
 
-        Each triangle is turned to wind around its inside as seen from there. Edges in both directions cancel. Where all
-        others wind around a direction the same way, so do they together, and some triangle is in it; boxes lie beyond.
+        Each triangle is turned so that it winds to the left around the directions in it, and edges in both directions
+        cancel. All lie in front of the target, and so does the box, beyond their planes. A direction that the edges left
+        all wind around to the left is wound around at least once, and so lies in some triangle.
         """
         eye = self.panes[panel].target
         if (panel, k) not in self.shadows:
-            faces, edges = [], set[tuple[Vec, Vec]]()
+            faces, edges = list[tuple[Vec, Vec]](), set[tuple[Vec, Vec]]()
             for each in get(self.proof, "patches", list)[k]:
                 a, b, c = self.solids.triangles[place_in(each, len(self.solids.triangles), "patches")]
                 u, v, w = sub(a, eye), sub(b, eye), sub(c, eye)
-                volume = dot(cross(u, v), w)
+                volume, normal = dot(cross(u, v), w), cross(sub(b, a), sub(c, a))
                 demand(abs(volume) >= R * length(u) * length(v) * length(w), "a patch is seen edge on")
+                demand(length(normal) >= 1e-6 * length(sub(b, a)) * length(sub(c, a)), "a triangle of a patch is too thin")
                 ring = (a, b, c) if volume > 0.0 else (a, c, b)
-                faces.append(ring)
+                faces.append((a, scaled(normal, (1.0 if volume > 0.0 else -1.0) / length(normal))))
+                ahead = all([dot(faces[0][1], d) >= E for d in (u, v, w)])
                 for edge in ((ring[0], ring[1]), (ring[1], ring[2]), (ring[2], ring[0])):
-                    demand(edge not in edges, "a patch has an edge twice")
+                    demand(ahead and edge not in edges, "a patch is not in front, or has an edge twice")
                     edges ^= {edge} if edge[::-1] not in edges else {edge[::-1]}
-            self.shadows[panel, k] = faces, edges
-        (faces, edges), rays = self.shadows[panel, k], [sub(corner, eye) for corner in corners]
-        middle, holds = scaled(plus(rays[0], rays[7]), 0.5), len(edges) > 0
-        holds = holds and all([dot(middle, d) > E for d in rays + [sub(p, eye) for face in faces for p in face]])
-        for a, b, c in faces:
-            normal = cross(sub(b, a), sub(c, a))
-            demand(length(normal) >= 1e-6 * length(sub(b, a)) * length(sub(c, a)), "a triangle of a patch is too thin")
-            holds = holds and all([dot(normal, sub(corner, a)) > R * length(normal) * length(sub(corner, a)) for corner in corners])
-        for a, b in edges:
-            u, v = sub(a, eye), sub(b, eye)
-            holds = holds and all([dot(cross(u, v), d) > R * length(u) * length(v) * length(d) for d in rays])
-        return holds
+            ends = [(sub(a, eye), sub(b, eye)) for a, b in edges]
+            self.shadows[panel, k] = faces, [scaled(cross(u, v), 1.0 / (length(u) * length(v))) for u, v in ends]
+        (faces, planes), rays = self.shadows[panel, k], [sub(corner, eye) for corner in corners]
+        beyond = all([dot(n, sub(corner, a)) >= R * length(sub(corner, a)) + E for a, n in faces for corner in corners])
+        left = all([dot(m, d) >= R * length(d) for m in planes for d in rays])
+        return beyond and left and len(planes) > 0
 
-# Mission files. What is not understood proves nothing; heights count from take-off at home, or from the ellipsoid.
+
+# Mission files. They are taken as Reflight writes them, and anything else in them proves nothing.
 
 def enu(origin: Vec, lat_deg: float, lon_deg: float, height_m: float) -> Vec:
     """A WGS 84 place in the frame of an origin (latitude, longitude, height), within 1e-7 m."""
@@ -582,145 +579,131 @@ def enu(origin: Vec, lat_deg: float, lon_deg: float, height_m: float) -> Vec:
     d = sub(geocentric(lat_deg, lon_deg, height_m), geocentric(*origin))
     return dot((-sin_lon, cos_lon, 0.0), d), dot((-s * cos_lon, -s * sin_lon, c), d), dot((c * cos_lon, c * sin_lon, s), d)
 
-N, B = "(-?[0-9]+(?:[.][0-9]+)?)", r"[^\[\]]*"
-ACTION = r"action\[actionId=[0-9]+;actionActuatorFunc={};actionActuatorFuncParam\[{}\]\]"
+def members(content: bytes, names: tuple[bytes, ...]) -> list[str]:
+    """Texts of an archive that holds nothing else than these deflated members."""
+    at, texts, directory = 0, list[str](), b""
+    for name in names:
+        mark, _, flags, method, _, _, crc, packed, size, n_name, n_extra = struct.unpack_from("<4s5H3I2H", content, at)
+        start, reader = at + 30 + len(name), zlib.decompressobj(-15)
+        text = reader.decompress(content[start : start + packed], 100_000_000)
+        head = (mark, flags, method, n_name, n_extra) == (b"PK\3\4", 0, 8, len(name), 0) and content[at + 30 : start] == name
+        whole = reader.eof and not reader.unused_data and start + packed <= len(content)
+        demand(head and whole and (len(text), zlib.crc32(text)) == (size, crc), "the archive is not as Reflight writes it")
+        directory += b"PK\1\2\x14\3" + content[at + 4 : at + 30] + struct.pack("<3H2I", 0, 0, 0, 0o644 << 16, at) + name
+        at, texts = start + packed, [*texts, text.decode("ascii")]
+    end = b"PK\5\6" + struct.pack("<4H2IH", 0, 0, len(names), len(names), len(directory), at, 0)
+    demand(content[at:] == directory + end, "the archive is not as Reflight writes it")
+    return texts
+
+def rule(text: str) -> re.Pattern[str]:
+    """A rule of a file: `@x` is a number named x, `#` any number, `*` a value, `~` values; (a|b)? as in expressions."""
+    text = text.replace("\n", "").replace("[", r"\[").replace("]", r"\]").replace(".", "[.]").replace("(", "(?:")
+    text = text.replace("#", NUMBER).replace("*", r"[^;\[\]]*").replace("~", r"[^\[\]]*")
+    for name in dict.fromkeys(re.findall("@([a-z])", text)):
+        text = text.replace(f"@{name}", f"(?P<{name}>{NUMBER})", 1).replace(f"@{name}", f"(?P={name})")
+    return re.compile(text)
+
+NUMBER, STOP = r"-?[0-9]+(?:\.[0-9]+)?", "toPointAndStopWithDiscontinuityCurvature"
+ACTION = "action[actionId=#;actionActuatorFunc={};actionActuatorFuncParam[{}]]"
 HELD = ACTION.format("setFocusType", "cameraFocusType=manual;payloadPositionIndex=0;")
-PHOTO = "".join([
-    ACTION.format("rotateYaw", f"aircraftHeading={N};aircraftPathMode=(?:clockwise|counterClockwise);"),
-    ACTION.format("gimbalRotate", "gimbalHeadingYawBase=north;gimbalRotateMode=absoluteAngle;gimbalPitchRotateEnable=1;gimbalPitchRotateAngle"
-                  f"={N};gimbalRollRotateEnable=0;gimbalRollRotateAngle=0;gimbalYawRotateEnable=0;gimbalYawRotateAngle=0;gimbalRotateTimeEnable"
-                  "=0;gimbalRotateTime=0;payloadPositionIndex=0;"),
-    f"(?:{ACTION.format('zoom', f'focalLength={N};isUseFocalFactor=0;payloadPositionIndex=0;')})?",
-    f"(?:{HELD})?(?:{ACTION.format('focus', B)})?(?:{HELD})?(?:{ACTION.format('hover', f'hoverTime={N};')})?",
-    ACTION.format("takePhoto", "fileSuffix=[^;]*;payloadPositionIndex=0;useGlobalPayloadLensIndex=1;(?:payloadLensIndex=(?:visable|wide);)?")])
-STOP = "toPointAndStopWithDiscontinuityCurvature"
-PLACEMARK = "".join([
-    rf"Placemark\[Point\[coordinates={N},{N};\]index={N};(?:executeHeight={N};waypointSpeed={N};|ellipsoidHeight={N};height={N};)",
-    rf"waypointHeadingParam\[waypointHeadingMode=(?:fixed|smoothTransition);{B}\](?:waypointTurnParam\[waypointTurnMode={STOP};waypointTurnDamping"
-    r"Dist=0;\]|useGlobalHeight=0;useGlobalSpeed=1;useGlobalHeadingParam=0;useGlobalTurnParam=1;)useStraightLine=1;(?:actionGroup\[actionGroupId="
-    rf"[0-9]+;actionGroupStartIndex={N};actionGroupEndIndex={N};actionGroupMode=sequence;actionTrigger\[actionTriggerType=reachPoint;\]",
-    rf"((?:action\[[^\]]*\]\])+)\])?(?:waypointGimbalHeadingParam\[{B}\]isRisky=0;waypointWorkType=0;|isRisky=0;)\]"])
-CONFIG = (r"missionConfig\[flyToWaylineMode=safely;finishAction=goHome;exitOnRCLost=(?:goContinue|executeLostAction);executeRCLostAction=goBack;"
-          rf"takeOffSecurityHeight={N};(?:takeOffRefPoint=[^;]*;takeOffRefPointAGLHeight=0;)?globalTransitionalSpeed={N};globalRTHHeight={N};"
-          rf"droneInfo\[{B}\]waylineAvoidLimitAreaMode=0;payloadInfo\[{B}\]\]Folder\[")
-HEADS = (r"Document\[author=[^;]*;createTime=[0-9]*;updateTime=[0-9]*;" + CONFIG + r"templateType=waypoint;templateId=0;waylineCoordinateSysParam\["
-         rf"coordinateMode=WGS84;heightMode=(relativeToStartPoint|EGM96);\]autoFlightSpeed={N};globalHeight={N};caliFlightEnable=0;gimbalPitchMode="
-         rf"manual;globalWaypointHeadingParam\[waypointHeadingMode=fixed;{B}\]globalWaypointTurnMode={STOP};globalUseStraightLine=1;",
-         r"Document\[" + CONFIG + "templateId=0;executeHeightMode=(relativeToStartPoint|WGS84);waylineId=0;"
-         f"distance={N};duration={N};autoFlightSpeed={N};")
-PROLOG = '<?xml version="1.0" encoding="UTF-8"?>\n<kml xmlns="http://www.opengis.net/kml/2.2" xmlns:wpml="http://www.dji.com/wpmz/1.0.6">\n'
-BLOCKS = [[row.split(" ") for row in block.split("/")] for block in (
-    "2 205 p 0 0 0 0 0 2/2 115 h 0 0 0 0 0 0/3 16 s 0 0 0 y x z/2 203 0 0 0 0 1 0 0/2 93 w -1 -1 -1 0 0 0",
-    "2 205 p 0 0 0 0 0 2/2 115 h 0 0 0 0 0 0/3 16 s 0 0 0 y x z/2 532 5 0 0 0 0 0 0/2 93 f -1 -1 -1 0 0 0/2 203 0 0 0 0 1 0 0/2 93 w -1 -1 -1 0 0 0",
-    "2 1000 p 0 - - 12 0 0/3 16 s 0.5 0 h y x z/2 532 5 0 0 0 0 0 0/3 16 f 0.5 0 h y x z/2 2000 0 0 1 n 0 0 0/3 16 w 0.5 0 h y x z",
-    "2 1000 p 0 - - 12 0 0/3 16 s 0.5 0 h y x z/2 2000 0 0 1 n 0 0 0/3 16 w 0.5 0 h y x z",
-    "3 16 1 0 0 0 y x z", "3 16 1 0.5 0 - y x z", "2 178 1 v -1 0 0 0 0", "2 1001 -2 -2 -1 -1 0 0 0", "2 202 4 e a i 0 0 0", "2 532 m f 0 0 0 0 0")]
-ENDS = [["3 22 0 0 0 0 y x z".split(" "), "3 21 0 0 0 0 y x z".split(" ")], ["3 22 0 0 0 - y x z".split(" "), "3 21 0 0 0 - y x z".split(" ")]]
+KMZ_ORDER, KMZ = "H(O(GP+K)?C)*E", {name: rule(text) for name, text in {
+    "H": f"""Document[(author=*;createTime=#;updateTime=#;)?missionConfig[flyToWaylineMode=safely;finishAction=goHome;exitOnRCLost=
+(goContinue|executeLostAction);executeRCLostAction=goBack;takeOffSecurityHeight=@c;(takeOffRefPoint=*;takeOffRefPointAGLHeight=0;)?
+globalTransitionalSpeed=@v;globalRTHHeight=@r;droneInfo[~]waylineAvoidLimitAreaMode=0;payloadInfo[~]]Folder[(templateType=waypoint;
+templateId=0;waylineCoordinateSysParam[coordinateMode=WGS84;heightMode=(relativeToStartPoint|EGM96);]autoFlightSpeed=#;globalHeight=#;
+caliFlightEnable=0;gimbalPitchMode=manual;globalWaypointHeadingParam[waypointHeadingMode=fixed;~]globalWaypointTurnMode={STOP};
+globalUseStraightLine=1;|templateId=0;executeHeightMode=(relativeToStartPoint|WGS84);waylineId=0;distance=#;duration=#;autoFlightSpeed=#;)""",
+    "O": f"""Placemark[Point[coordinates=@x,@y;]index=@i;(executeHeight=@z;waypointSpeed=@v;|ellipsoidHeight=@e;height=@t;)
+waypointHeadingParam[waypointHeadingMode=(fixed|smoothTransition);~](waypointTurnParam[waypointTurnMode={STOP};
+waypointTurnDampingDist=0;]|useGlobalHeight=0;useGlobalSpeed=1;useGlobalHeadingParam=0;useGlobalTurnParam=1;)useStraightLine=1;""",
+    "G": """actionGroup[actionGroupId=#;actionGroupStartIndex=@i;actionGroupEndIndex=@i;actionGroupMode=sequence;actionTrigger[
+actionTriggerType=reachPoint;]""",
+    "P": ACTION.format("rotateYaw", "aircraftHeading=@h;aircraftPathMode=*;") + ACTION.format("gimbalRotate", """gimbalHeadingYawBase=north;
+gimbalRotateMode=absoluteAngle;gimbalPitchRotateEnable=1;gimbalPitchRotateAngle=@p;gimbalRollRotateEnable=0;gimbalRollRotateAngle=0;
+gimbalYawRotateEnable=0;gimbalYawRotateAngle=0;gimbalRotateTimeEnable=0;gimbalRotateTime=0;payloadPositionIndex=0;""")
+    + f"({ACTION.format('zoom', 'focalLength=@q;isUseFocalFactor=0;payloadPositionIndex=0;')})?({HELD})?({ACTION.format('focus', '~')})?"
+    + f"({HELD})?({ACTION.format('hover', 'hoverTime=@w;')})?" + ACTION.format("takePhoto", """fileSuffix=*;payloadPositionIndex=0;
+useGlobalPayloadLensIndex=1;(payloadLensIndex=(visable|wide);)?"""),
+    "E": """(payloadParam[payloadPositionIndex=0;focusMode=(firstPoint|custom);meteringMode=average;imageFormat=(visable|wide);])?]]$""",
+    "K": "]", "C": "(waypointGimbalHeadingParam[~]isRisky=0;waypointWorkType=0;|isRisky=0;)]"}.items()}
+MAVLINK_ORDER, MAVLINK = "T[VX]*[ABW]*L", {name: rule(text) for name, text in {  # rows: frame, command, seven numbers
+    "T": "3 22 0 0 0 (0|nan) @y @x @z/", "L": "3 21 0 0 0 (0|nan) @y @x @z/", "V": "2 178 1 @v -1 0 0 0 0/",
+    "A": """2 205 @p 0 0 0 0 0 2/2 115 @h 0 0 0 0 0 0/3 16 @s 0 0 0 @y @x @z/(2 532 5 0 0 0 0 0 0/2 93 @f -1 -1 -1 0 0 0/)?
+2 203 0 0 0 0 1 0 0/2 93 @w -1 -1 -1 0 0 0/""",
+    "B": """2 1000 @p 0 nan nan 12 0 0/3 16 @s 0.5 0 @h @y @x @z/(2 532 5 0 0 0 0 0 0/3 16 @f 0.5 0 @h @y @x @z/)?
+2 2000 0 0 1 # 0 0 0/3 16 @w 0.5 0 @h @y @x @z/""",
+    "W": "3 16 1 (0 0 0|0.5 0 nan) @y @x @z/", "X": "(2 1001 -2 -2 -1 -1 0 0 0|2 202 4 # # # 0 0 0|2 532 # # 0 0 0 0 0)/"}.items()}
 
 class Mission:
-    """What a mission file flies, as Reflight writes it: places (latitude, longitude, height), photos (place, heading, pitch)."""
+    """What a mission file flies: places (latitude, longitude, height), and photos (number of its place, heading, pitch)."""
 
     def __init__(self, content: bytes, kind: str) -> None:
-        self.places: list[Vec] = []
-        self.photos: list[Vec] = []
-        self.is_relative, self.speeds, self.zooms, self.return_m = True, [0.0], list[float](), -1.0
-        read = {".kmz": self._kmz, ".plan": self._plan, ".waypoints": self._waypoints}.get(kind)
-        demand(read is not None, "no mission file that is read here: .kmz, .plan or .waypoints")
-        read(content)  # type: ignore[misc]
+        demand(kind in (".kmz", ".plan", ".waypoints"), "no mission file that is read here: .kmz, .plan or .waypoints")
+        self.is_dji, self.is_relative, self.return_m, self.speeds, self.zooms = kind == ".kmz", True, 0.0, [0.0], list[float]()
+        if not self.is_dji:
+            self._take("".join([row + "/" for row in (self._plan if kind == ".plan" else self._lines)(content)]), MAVLINK, MAVLINK_ORDER)
+            return
+        template, lines = members(content, (b"wpmz/template.kml", b"wpmz/waylines.wpml"))
+        found = [self._take(self._flat(text), KMZ, KMZ_ORDER) for text in (template, lines)]
+        self.is_relative = "executeHeightMode>relativeToStartPoint<" in lines
+        of_template, of_lines = ("t" if self.is_relative else "e"), "z"
+        heights = [[each.get(name, "") for each in block] for block, name in zip(found, (of_template, of_lines), strict=True)]
+        same = [[(k, v) for each in block for k, v in each.items() if k in "xyihpcr"] for block in found]
+        demand("templateType" in template and "templateType" not in lines and heights[0] == heights[1] and same[0] == same[1]
+               and "" not in heights[1], "template.kml and waylines.wpml fly different places or photos", FALSE)
 
-    def _fly(self, *place: float) -> None:
-        last = self.places[-1] if self.places else (1e9, 1e9, 1e9)
-        is_new = max(abs(place[0] - last[0]), abs(place[1] - last[1])) > 1e-8 or abs(place[2] - last[2]) > SAME_M
-        self.places += [place] if is_new else []
+    def _take(self, text: str, rules: dict[str, re.Pattern[str]], order: str) -> list[dict[str, str]]:
+        """Places, photos and all else that the blocks of a text say; the blocks that say places."""
+        self.places, self.photos, letters, at, said = list[Vec](), list[Vec](), "", 0, list[dict[str, str]]()
+        while at < len(text):
+            letter, found = next(((k, m) for k, each in rules.items() if (m := each.match(text, at))), ("", None))
+            demand(found is not None, f"what follows place {len(self.places)} is not as Reflight writes it")
+            at, letters = found.end(), letters + letter  # type: ignore[union-attr]
+            values = {k: v for k, v in found.groupdict().items() if v is not None}  # type: ignore[union-attr]
+            n = {k: number(float(v), k) for k, v in values.items()}
+            if "x" in n:
+                place = (n["y"], n["x"], n.get("z", 0.0))
+                last = self.places[-1] if self.places and not self.is_dji else (1e9, 1e9, 1e9)
+                is_new = max(abs(place[0] - last[0]), abs(place[1] - last[1])) > 1e-8 or abs(place[2] - last[2]) > SAME_M
+                self.places += [place] if is_new else []
+            self.photos += [(len(self.places) - 1.0, n["h"], n["p"])] if "h" in n else []
+            self.speeds, self.zooms = self.speeds + [n.get("v", 0.0)], self.zooms + [n[k] for k in "q" if k in n]
+            self.return_m = max(self.return_m, n.get("c", 0.0), n.get("r", 0.0))
+            said += [values] if "x" in n else []
+            demand(all([0.0 <= n.get(wait, 0.0) <= 600.0 for wait in "swf"]) and n.get("i", len(self.places) - 1) == len(self.places) - 1
+                   and n.get("c", 1.0) > 0.0 and n.get("r", 1.0) > 0.0, "a wait, a height or the number of a waypoint is wrong")
+        demand(re.fullmatch(order, letters) is not None, "its parts are not in the order in which Reflight writes them")
+        return said
 
-    def _kmz(self, content: bytes) -> None:
-        with zipfile.ZipFile(io.BytesIO(content)) as archive:
-            files = archive.infolist()
-            n_bytes = sum([76 + 2 * len(each.filename) + each.compress_size for each in files]) + 22
-            plain = all([each.compress_type in (0, 8) and each.flag_bits == 0 and each.file_size < 1e8 for each in files])
-            demand([each.filename for each in files] == ["wpmz/template.kml", "wpmz/waylines.wpml"] and plain and n_bytes == len(content),
-                   "the archive holds something else than Reflight writes")
-            texts = [archive.read(each).decode("ascii") for each in files]
-        read = [self._wpml(text, head) for text, head in zip(texts, HEADS, strict=True)]
-        demand(read[0] == read[1], "template.kml and waylines.wpml fly different places or photos", FALSE)
-
-    def _wpml(self, text: str, head: str) -> Any:
-        demand(text.startswith(PROLOG) and text.endswith("</kml>\n"), "a part of the archive does not begin or end as Reflight writes it")
-        text = re.sub(">\n *<", "><", text[len(PROLOG) : -7].strip(" \n"))
+    def _flat(self, text: str) -> str:
+        prolog = '<?xml version="1.0" encoding="UTF-8"?>\n<kml xmlns="http://www.opengis.net/kml/2.2" xmlns:wpml="http://www.dji.com/wpmz/1.0.6">\n'
+        demand(text.startswith(prolog) and text.endswith("\n</kml>\n"), "a part of the archive is not as Reflight writes it")
+        text = re.sub(">\n *<", "><", text[len(prolog) : -8].strip(" "))
         text = re.sub(r"<(wpml:(?!coordinates)[a-z][A-Za-z]*|coordinates)>([^<>=;&\[\]]*)</\1>", r"\1=\2;", text)
         text = re.sub("<(wpml:[a-z][A-Za-z]*|Document|Folder|Placemark|Point)>", r"\1[", text)
-        text = re.sub("</(wpml:[a-z][A-Za-z]*|Document|Folder|Placemark|Point)>", "]", text).replace("wpml:", "")
-        begun = re.match(head, text)
-        demand(begun is not None, "the head of a part of the archive is not as Reflight writes it")
-        at, self.places, self.photos = begun.end(), [], []  # type: ignore[union-attr]
-        climb, speed, back, mode, *others = begun.groups()  # type: ignore[union-attr]
-        self.is_relative, self.return_m = mode == "relativeToStartPoint", max(float(climb), float(back))
-        self.speeds += [float(speed), float(others[0 if "globalHeight" in head else 2])]
-        while (found := re.compile(PLACEMARK).match(text, at)) is not None:
-            lon, lat, number_, *heights, start, end, photos = found.groups()
-            height = heights[0] or heights[3 if self.is_relative else 2]
-            at, self.speeds = found.end(), self.speeds + [float(heights[1] or 0.0)]
-            demand(float(number_) == len(self.places) and start in (None, number_) and end in (None, number_), "waypoints are not in order")
-            self.places.append((float(lat), float(lon), float(height)))
-            while photos and (photo := re.compile(PHOTO).match(photos)) is not None:
-                self.photos.append((len(self.places) - 1.0, float(photo[1]), float(photo[2])))
-                self.zooms += [float(photo[3])] if photo[3] else []
-                photos = photos[photo.end() :]
-            demand(not photos, "an action of a waypoint is not as Reflight writes it")
-        rest = r"(?:payloadParam\[payloadPositionIndex=0;focusMode=(?:firstPoint|custom);meteringMode=average;imageFormat=(?:visable|wide);\])?\]\]"
-        demand(re.fullmatch(rest, text[at:]) is not None, f"what follows waypoint {len(self.places)} is not as Reflight writes it")
-        return self.places, self.photos, self.is_relative, self.return_m
+        return re.sub("</(wpml:[a-z][A-Za-z]*|Document|Folder|Placemark|Point)>", "]", text).replace("wpml:", "")
 
-    def _plan(self, content: bytes) -> None:
-        plan = read_json(content, "the mission")
+    def _plan(self, content: bytes) -> list[str]:
+        plan, rows = read_json(content, "the mission", lambda text: Text(text.removesuffix(".0"))), []
         mission, rally = get(plan, "mission", dict), get(get(plan, "rallyPoints", dict, {}), "points", list, [])
-        is_simple = get(plan, "fileType", str) == "Plan" and not rally and get_number(mission, "globalPlanAltitudeMode") == 1.0
-        demand(is_simple and get_number(mission, "version") == 2.0, "no mission, or one with rally points or other heights")
-        rows = []
+        modes = plan["fileType"], plan["version"], mission["version"], mission["globalPlanAltitudeMode"], rally
+        demand(modes == ("Plan", "1", "2", "1", []), "no mission as Reflight writes it, or one with rally points")
         for item in get(mission, "items", list):
-            p = [each if each is None else number(each, "params") for each in get(item, "params", list)]
-            simple = get(item, "type", str) == "SimpleItem" and get(item, "autoContinue", bool) and item.get("Altitude", p[6]) == p[6]
-            demand(simple and item.get("AltitudeMode", 1.0) == 1.0 and len(item) <= 10, "an item is not as Reflight writes it")
-            rows.append([get_number(item, "frame"), get_number(item, "command"), *p])
-        self._items(rows)
+            params = ["nan" if each is None else each for each in item["params"]]
+            kinds = item["type"], item["autoContinue"], item.get("AltitudeMode", "1"), item.get("Altitude", params[6])
+            demand(kinds == ("SimpleItem", True, "1", params[6]) and len(params) == 7 and len(item) <= 10, "an item is not as Reflight writes it")
+            rows.append(" ".join([item["frame"], item["command"], *params]))
+        return rows
 
-    def _waypoints(self, content: bytes) -> None:
-        lines, rows = content.decode("ascii").split("\n"), []
-        demand(lines[:1] == ["QGC WPL 110"] and lines[-1:] == [""] and lines[1].startswith("0\t1\t0\t16\t"), "no QGC WPL 110 with home")
-        for n, line in enumerate(lines[2:-1], 1):
-            found = re.fullmatch(f"{n}\t0\t{N}\t{N}" + f"\t(?:nan|{N})" * 7 + "\t1", line)
-            demand(found is not None, f"line {n + 2} is not as Reflight writes it")
-            rows.append([each if each is None else float(each) for each in found.groups()])  # type: ignore[union-attr]
-        self._items(rows)
+    def _lines(self, content: bytes) -> list[str]:
+        lines = content.decode("ascii").split("\n")
+        demand(lines[0] == "QGC WPL 110" and lines[-1] == "" and lines[1].startswith("0\t1\t0\t16\t"), "no QGC WPL 110 with home")
+        rows = [line.split("\t") for line in lines[2:-1]]
+        demand(all([row[:2] == [str(n), "0"] and row[11:] == ["1"] for n, row in enumerate(rows, 1)]), "a line is not as Reflight writes it")
+        return [" ".join(row[2:11]) for row in rows]
 
-    def _items(self, rows: list[list[Any]]) -> None:
-        """MAVLink: take-off 22, waypoint 16, landing 21; gimbal 205 and 1000, yaw 115, shutter 203 and 2000, wait 93."""
-        def match(rules: list[list[str]], rows: list[list[Any]]) -> dict[str, float] | None:
-            found: dict[str, float] = {}
-            for rule, row in zip(rules, rows, strict=False):
-                for token, value in zip(rule, row, strict=True):
-                    wanted = found.setdefault(token, value) if token.isalpha() else None if token == "-" else float(token)
-                    if value != wanted or (value is None) != (token == "-"):
-                        return None
-            return found if len(rows) >= len(rules) else None
-
-        def take(rules: list[list[str]]) -> bool:
-            nonlocal rows
-            found = match(rules, rows)
-            if found is None:
-                return False
-            demand(all([0.0 <= found.get(wait, 0.0) <= 600.0 for wait in "sw"]), "a wait is too long")
-            if "x" in found:
-                self._fly(found["y"], found["x"], found["z"])
-            self.photos += [(len(self.places) - 1.0, found["h"], found["p"])] if "h" in found else []
-            self.speeds += [found["v"]] if "v" in found else []
-            rows = rows[len(rules) :]
-            return True
-
-        ends = next((each for each in ENDS if take(each[:1])), None)
-        while rows and any(take(block) for block in BLOCKS):
-            pass
-        demand(ends is not None and take(ends[1:]) and not rows, "the items are not as Reflight writes them")
+class Text(str):
+    """A number of a file as it is written there."""
 
 def flies(case: Case, mission: Mission) -> int:
     """The sortie that a mission flies."""
@@ -733,10 +716,10 @@ def flies(case: Case, mission: Mission) -> int:
     wide, high, focal = [get_number(camera, name) for name in ("sensor_width_mm", "sensor_height_mm", "focal_length_mm")]
     of_film = focal * 43.2666 / sqrt(wide * wide + high * high)
     demand(all([abs(zoom - of_film) <= 1.0 for zoom in mission.zooms]), "it zooms", FALSE)
-    if mission.return_m >= 0.0:
+    if mission.is_dji:
         case.return_(mission.return_m)
     for s, path in enumerate(case.paths):
-        last = len(path) - (mission.return_m >= 0.0)  # DJI missions end above home
+        last = len(path) - mission.is_dji  # DJI missions end above home
         kept = [k for k in range(1, last) if k == 1 or not is_same(path[k], path[k - 1])]
         photos = [(sum([1 for j in kept if j <= k]) - 1.0, case.by_id[name]) for k, name in zip(case.photos_of(s), case.sorties[s]["viewpoint_ids"], strict=True)]
         if len(places) == len(kept) and len(photos) == len(mission.photos) and all(
@@ -757,7 +740,7 @@ def judged(prove: Any) -> tuple[str, str]:
         return PROVED, prove()
     except Refused as refused:
         return refused.verdict, str(refused)
-    except (ValueError, LookupError, TypeError, ArithmeticError, AttributeError, OSError, struct.error, zipfile.BadZipFile, RecursionError) as error:
+    except (ValueError, LookupError, TypeError, ArithmeticError, AttributeError, OSError, struct.error, zlib.error, RecursionError) as error:
         return NOT_PROVED, f"a file is not as expected ({type(error).__name__})"
 
 def verify(site: Path, plan: Path, proof: Path, missions: list[Path]) -> list[dict[str, str]]:
@@ -780,6 +763,7 @@ def verify(site: Path, plan: Path, proof: Path, missions: list[Path]) -> list[di
         found.append((f"mission {path.name}", *judged(prove)))
     if missions:
         is_whole = bool(cases) and all([sorted(each) == list(range(len(cases[0].paths))) for each in flown.values()]) and len(flown) > 0
+        is_whole = is_whole and all([each[1] == PROVED for each in found[-len(missions) :]])
         found.append(("missions", PROVED if is_whole else NOT_PROVED, "the files of each kind fly every sortie once" if is_whole else "not every sortie is flown once"))
     return [{"id": name, "verdict": verdict, "text": text} for name, verdict, text in found]
 
@@ -792,8 +776,9 @@ def main() -> int:
         for proof in sorted(paths[0].glob("*.proof")):
             named = read_json(proof.read_bytes(), proof.name)
             files = [paths[0] / Path(get(get(named, each, dict), "name", str)).name for each in ("site", "plan")]
-            stem, kind = Path(proof.stem).stem, Path(proof.stem).suffix
-            jobs.append([*files, proof, *[p for p in sorted(paths[0].glob(f"*{kind}")) if kind != ".plan" or p.suffix == kind if re.fullmatch(re.escape(stem) + "(-[0-9]+)?", p.stem)]])
+            stem, dot, kind = proof.name.removesuffix(".mission.proof").rpartition(".")
+            missions = [p for p in sorted(paths[0].iterdir()) if re.fullmatch(re.escape(stem) + "(-[0-9]+)?" + re.escape(dot + kind), p.name)]
+            jobs.append([*files, proof, *(missions if proof.name.endswith(".mission.proof") else [])])
     if not jobs or any(len(job) < 3 for job in jobs):
         print("usage: reflight_verify.py SITE PLAN PROOF [MISSION ...] [--json], or reflight_verify.py FOLDER with *.proof files", file=sys.stderr)
         return 2

@@ -126,7 +126,7 @@ def write_mission_proof(
     if plan is not None:
         flown_path = folder / f"{first}.plan.json"
         written = plan_bytes(plan)
-    path = folder / f"{first}.proof"
+    path = folder / f"{first}.mission.proof"
     known = _known_proof(proof_path(plan_path))
     proof = proof_of(site_path, flown_path, written, site_model, None, known=known, return_height_m=return_height_m)
     beside = dict(_copies(site_path, site_model, folder))
