@@ -379,6 +379,20 @@ class Commands:
         if n_bytes:
             self._encoder.clear_buffer(piece.raw, 0, -(-n_bytes // 4) * 4)
 
+    def copy_to_table(self, piece: Piece, table: Piece, texels: int) -> None:
+        """Bring the beginning of a buffer, texel by texel, into a table."""
+        self._end_pass()
+        self._held += [piece, table]
+        whole, rest = divmod(texels, TEXELS_A_ROW)
+        row_bytes = TEXELS_A_ROW * TEXEL_BYTES
+        for start, n_rows, n_columns in ((0, whole, TEXELS_A_ROW), (whole, 1, rest)):
+            if n_rows and n_columns:
+                self._encoder.copy_buffer_to_texture(
+                    {"buffer": piece.raw, "offset": start * row_bytes, "bytes_per_row": row_bytes},
+                    {"texture": table.raw, "origin": (0, start, 0)},
+                    (n_columns, n_rows, 1),
+                )
+
     def _end_pass(self) -> None:
         if self._pass is not None:
             self._pass.end()

@@ -8,8 +8,12 @@ training stays on the processor. Programs that stand in for a card are never cho
 from __future__ import annotations
 
 import math
+import os
+import subprocess
+import sys
 import time
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import torch
 from torch import Tensor
@@ -22,10 +26,15 @@ from reconstruction.splats.rasterising.raster_types import RasterSettings
 from reconstruction.splats.rasterising.rasteriser import rasterise
 from reconstruction.splats.rasterising.views import View
 from reconstruction.splats.splats import Splats
-from reconstruction.training.config import TrainConfig
+from reconstruction.training.config import ANTIALIASED, TrainConfig
 
 MOST_APART = 0.02
 """Of a picture or gradients, relative, from the processor's: 1e-3 was measured, of splats equally deep in float32."""
+
+MODULE = "reconstruction.training.devices"
+
+TRIAL_S = 120.0
+"""For compiling the kernels and drawing two splats, at most."""
 
 BYTES_A_SPLAT = 1024
 """Of a card's memory for each splat, about, with its lists, features and gradients."""
@@ -124,6 +133,8 @@ def _tried(config: TrainConfig, splats: Splats, view: View) -> CardTrial:
     card = adapters()[0]
     if card.is_software and config.device == "auto":
         return CardTrial(card.name, say("there is no graphics card but {}, which the processor runs", card.name))
+    if config.device == "auto" and not _survives():
+        return CardTrial(card.name, say("{} ended the process that tried it, or did not answer", card.name))
     scale = math.sqrt(min(1.0, config.window_px / (view.width_px * view.height_px)))
     size = max(1, round(scale * view.width_px)), max(1, round(scale * view.height_px))
     window = view.cropped((view.width_px - size[0]) // 2, (view.height_px - size[1]) // 2, *size)
@@ -144,6 +155,35 @@ def _tried(config: TrainConfig, splats: Splats, view: View) -> CardTrial:
     return CardTrial(card.name, "", here_s, there_s, first_s, needed)
 
 
+def _survives() -> bool:
+    """Whether a process of its own that tries the first card comes to its end: a driver may take the process along."""
+    inherited, root = os.environ.get("PYTHONPATH"), Path(__file__).resolve().parents[2]
+    environment = {**os.environ, "PYTHONPATH": f"{root}{os.pathsep}{inherited}" if inherited else str(root)}
+    # -P: modules that lie about in the current folder are not ours.
+    command = [sys.executable, "-P", "-m", MODULE]
+    try:
+        done = subprocess.run(command, env=environment, capture_output=True, timeout=TRIAL_S, check=False)
+    except (OSError, subprocess.TimeoutExpired):
+        return False
+    return done.returncode == 0
+
+
+def try_card() -> None:
+    """Draw a few splats on the first card, forward and backward.
+
+    Raises
+    ------
+    ReconstructionError
+        It fails.
+    """
+    means = torch.tensor([[0.0, 0.0, 4.0], [0.1, 0.0, 5.0]], requires_grad=True)
+    quats, features = torch.tensor([[1.0, 0.1, 0.0, 0.0]] * 2), torch.ones(2, 3)
+    view = View(32, 24, 30.0, 30.0, 16.0, 12.0, torch.eye(4, dtype=torch.float64))
+    settings = replace(ANTIALIASED, on_gpu=True)
+    raster = rasterise(means, quats, torch.full((2, 2), 0.3), torch.full((2,), 0.8), features, view, settings=settings)
+    raster.features.sum().backward()  # type: ignore[no-untyped-call]
+
+
 def _step(splats: Splats, view: View, settings: RasterSettings) -> tuple[float, list[Tensor]]:
     """Seconds of a picture of splats and its gradients, and what comes of it."""
     given = splats.means, splats.quats, splats.scales, splats.opacities, splats.features(view.position_m, 0)
@@ -156,3 +196,7 @@ def _step(splats: Splats, view: View, settings: RasterSettings) -> tuple[float, 
     seconds = time.perf_counter() - began
     gradients = [values.grad for values in (means, scales, opacities, features) if values.grad is not None]
     return seconds, [raster.features.detach(), *gradients]
+
+
+if __name__ == "__main__":
+    try_card()

@@ -1,5 +1,5 @@
-// Adds up each splat's rows of sums, which follow each other patch by patch, to what other windows found: one thread
-// each, in a fixed order, so that the same splats have the same gradients bit by bit.
+// Adds up each splat's rows of sums, which follow each other patch by patch, to what other windows found, if any: one
+// thread each, in a fixed order, so that the same splats have the same gradients bit by bit.
 //: include view
 
 @group(0) @binding(0) var<uniform> view: View;
@@ -19,7 +19,8 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
     if (first == behind || i < view.part.x || i - view.part.x >= view.part.y) { return; }
     let place = (i - view.part.x) * 8u;
 //: for q in EIGHT
-    var total$q = totals[place + $qu];
+    var total$q = vec4f(0.0);
+    if (view.part.z == 1u) { total$q = totals[place + $qu]; }
 //: end
     for (var at = first; at < behind; at++) {
 //: for q in EIGHT

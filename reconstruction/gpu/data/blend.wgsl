@@ -51,10 +51,16 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
         var g0 = vec4f(0.0);
         var g1 = vec4f(0.0);
         var g2 = vec4f(0.0);
+//: for q in QUADS
+        var mine$q = vec4f(0.0);
+//: end
         if (is_reached) {
             g0 = textureLoad(geometry, texel(GEOMETRY_QUADS * pair.x), 0);
             g1 = textureLoad(geometry, texel(GEOMETRY_QUADS * pair.x + 1u), 0);
             g2 = textureLoad(geometry, texel(GEOMETRY_QUADS * pair.x + 2u), 0);
+//: for q in QUADS
+            mine$q = textureLoad(features, texel(N_QUADS * pair.x + $qu), 0);
+//: end
         }
         var todo = vote(is_reached);
 //: else
@@ -64,20 +70,22 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
             let from_lane = firstTrailingBit(todo);
             todo &= todo - 1u;
 //: if SUBGROUPS
-            let i = number_of(pair.x, from_lane);
             let a = subgroupShuffle(g0, from_lane);
             let b = subgroupShuffle(g1, from_lane);
             let c = subgroupShuffle(g2, from_lane);
+//: for q in QUADS
+            let f$q = subgroupShuffle(mine$q, from_lane);
+//: end
 //: else
             let i = textureLoad(pair_texels, texel(numbers[base + from_lane]), 0).x;
             let a = textureLoad(geometry, texel(GEOMETRY_QUADS * i), 0);
             let b = textureLoad(geometry, texel(GEOMETRY_QUADS * i + 1u), 0);
             let c = textureLoad(geometry, texel(GEOMETRY_QUADS * i + 2u), 0);
-//: end
-            let splat = Splat(a.xy, a.z, a.w, b, c.xy, c.z, c.w);
 //: for q in QUADS
             let f$q = textureLoad(features, texel(N_QUADS * i + $qu), 0);
 //: end
+//: end
+            let splat = Splat(a.xy, a.z, a.w, b, c.xy, c.z, c.w);
             var total = 0.0;
 //: for p in PIXELS
             let m$p = meet(splat, pixel$p);

@@ -2,8 +2,8 @@
 // shines through behind it over 1 - alpha, which is at least a hundredth: a rounding error a splat, and never a small
 // difference. With w = T alpha, the change of the result with alpha is T gain - behind / (1 - alpha), `behind` being
 // the gain of all that lies behind. Each splat has a row of eight quads in each patch: of up to five quads of channels,
-// of J and e, f over the area, of its middle, depth, and of the logarithm of alpha. Rows are written into a table, to
-// be added up in a fixed order; without DETERMINISTIC they are added at once by compare-and-swap, in any order.
+// of J and e, f over the area, of its middle, depth, and of the logarithm of alpha. Rows are written down, to be
+// added up in a fixed order; without DETERMINISTIC they are added at once by compare-and-swap, in any order.
 //: include view
 //: include lanes
 //: include meet
@@ -17,7 +17,7 @@
 @group(0) @binding(6) var<storage, read> states: array<vec4f>;
 @group(0) @binding(7) var wanted: texture_2d<f32>;
 //: if DETERMINISTIC
-@group(0) @binding(8) var sums: texture_storage_2d<rgba32float, write>;
+@group(0) @binding(8) var<storage, read_write> sums: array<vec4f>;
 //: else
 @group(0) @binding(8) var<storage, read_write> totals: array<atomic<u32>>;
 
@@ -84,7 +84,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
         if (((pair.z >> patch_) & 1u) == 1u) {
             let at_row = pair.y + countOneBits(pair.z & ((1u << patch_) - 1u));
 //: for q in EIGHT
-            textureStore(sums, texel(at_row * 8u + $qu), vec4f(0.0));
+            sums[at_row * 8u + $qu] = vec4f(0.0);
 //: end
         }
     }
@@ -101,10 +101,16 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
         var g0 = vec4f(0.0);
         var g1 = vec4f(0.0);
         var g2 = vec4f(0.0);
+//: for q in QUADS
+        var mine$q = vec4f(0.0);
+//: end
         if (is_reached) {
             g0 = textureLoad(geometry, texel(GEOMETRY_QUADS * pair.x), 0);
             g1 = textureLoad(geometry, texel(GEOMETRY_QUADS * pair.x + 1u), 0);
             g2 = textureLoad(geometry, texel(GEOMETRY_QUADS * pair.x + 2u), 0);
+//: for q in QUADS
+            mine$q = textureLoad(features, texel(N_QUADS * pair.x + $qu), 0);
+//: end
         }
         var todo = vote(is_reached);
 //: else
@@ -119,6 +125,9 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
             let a = subgroupShuffle(g0, from_lane);
             let b = subgroupShuffle(g1, from_lane);
             let c = subgroupShuffle(g2, from_lane);
+//: for q in QUADS
+            let f$q = subgroupShuffle(mine$q, from_lane);
+//: end
 //: else
             let from_pair = textureLoad(pair_texels, texel(numbers[base + from_lane]), 0);
             let i = from_pair.x;
@@ -126,14 +135,14 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
             let a = textureLoad(geometry, texel(GEOMETRY_QUADS * i), 0);
             let b = textureLoad(geometry, texel(GEOMETRY_QUADS * i + 1u), 0);
             let c = textureLoad(geometry, texel(GEOMETRY_QUADS * i + 2u), 0);
+//: for q in QUADS
+            let f$q = textureLoad(features, texel(N_QUADS * i + $qu), 0);
+//: end
 //: end
             let splat = Splat(a.xy, a.z, a.w, b, c.xy, c.z, c.w);
             let number = base + from_lane;
 //: for q in EIGHT
             var v$q = vec4f(0.0);
-//: end
-//: for q in QUADS
-            let f$q = textureLoad(features, texel(N_QUADS * i + $qu), 0);
 //: end
 //: for p in PIXELS
             {
@@ -170,7 +179,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
             let sum = scattered(v0, v1, v2, v3, v4, v5, v6, v7, lane);
             if (lane < 8u) {
 //: if DETERMINISTIC
-                textureStore(sums, texel(at_row * 8u + lane), sum);
+                sums[at_row * 8u + lane] = sum;
 //: else
                 if (i >= view.part.x && i - view.part.x < view.part.y) {
                     let place = (i - view.part.x) * 32u + lane * 4u;

@@ -12,7 +12,7 @@ struct View {
     reaches: vec4f,             // of an opaque splat, steepest plane, least opacity that is left, least area
     size: vec4u,                // width and height, pixels; splats; splats in front of the camera
     bins: vec4u,                // of the window that is drawn: first column and row, columns and rows
-    part: vec4u,                // of the splats whose gradients are added up: first, number
+    part: vec4u,                // of the splats whose gradients are added up: first, number, whether to more
 }
 
 fn texel(number: u32) -> vec2u {

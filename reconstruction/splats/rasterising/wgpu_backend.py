@@ -201,16 +201,16 @@ class _Drawing:
                 )
         commands.submit()
 
-    def uniform(self, bins: Bins | None = None, part: tuple[int, int] = (0, 0)) -> bytes:
+    def uniform(self, bins: Bins | None = None, part: tuple[int, int] = (0, 0), *, to_more: bool = False) -> bytes:
         """What kernels know of the picture, and of a window or a part of the splats."""
         window = (0, 0, 0, 0) if bins is None else (bins.column, bins.row, bins.n_columns, bins.n_rows)
-        return self._uniform + uniform(*window, *part, 0, 0)
+        return self._uniform + uniform(*window, *part, int(to_more), 0)
 
     def _fits(self, bins: Bins, n_pairs: int, n_patches: int) -> bool:
         rows, columns = bins.pixels(self.view)
         n_pixels = (rows.stop - rows.start) * (columns.stop - columns.start)
         most = self.device.most_bytes
-        in_buffers = max(4 * n_pairs, 4 * n_patches, 16 * MOST_QUADS * n_pixels) <= most
+        in_buffers = max(4 * n_pairs, 16 * ROW_QUADS * n_patches, 16 * MOST_QUADS * n_pixels) <= most
         return in_buffers and n_pairs <= self.device.most_texels and n_patches <= MOST_SUMS
 
     def _listed(
@@ -329,12 +329,15 @@ class _Drawing:
         shared = self.geometry, table, window.pairs, window.numbers, window.starts, window.states, pixels
         n_groups = window.bins.n * int_of(constants, "PATCHES")
         if self.settings.deterministic:
+            rows = self.device.buffer(16 * ROW_QUADS * window.n_patches)
             sums = self.device.table(ROW_QUADS * window.n_patches)
-            commands.run("blend_back", constants, n_groups, self.uniform(window.bins), *shared, sums)
+            commands.run("blend_back", constants, n_groups, self.uniform(window.bins), *shared, rows)
+            commands.copy_to_table(rows, sums, ROW_QUADS * window.n_patches)
         for part, piece in zip(parts, totals, strict=True):
             if self.settings.deterministic:
+                to_more = window is not self.windows[0]
                 commands.run(
-                    "add_sums", constants, groups_of(self.n), self.uniform(part=part),
+                    "add_sums", constants, groups_of(self.n), self.uniform(part=part, to_more=to_more),
                     self.order, window.firsts, sums, piece,
                 )  # fmt: skip
             else:

@@ -62,6 +62,7 @@ def test_a_card_is_tried_and_the_reason_says_how_it_did(splats: Splats, monkeypa
     times = {False: iter([0.5, 0.2]), True: iter([2.0, 0.05])}
     monkeypatch.setattr(devices, "why_no_gpu", str)
     monkeypatch.setattr(devices, "adapters", lambda: (CARD,))
+    monkeypatch.setattr(devices, "_survives", lambda: True)
     monkeypatch.setattr(devices, "_step", lambda _, __, s: (next(times[s.on_gpu]), [torch.ones(3)]))
     on, decision = drawn_by_card(SMALL, splats, level_view())
     assert on
@@ -87,6 +88,17 @@ def test_a_card_is_tried_and_the_reason_says_how_it_did(splats: Splats, monkeypa
     assert "it was tried, and it has no memory left" in decision.reason
     with pytest.raises(DeviceFailed):
         drawn_by_card(replace(SMALL, device="gpu"), splats, level_view())
+
+
+def test_a_card_that_takes_its_process_along_is_not_taken(splats: Splats, monkeypatch: pytest.MonkeyPatch) -> None:
+    needs_card()
+    assert devices._survives()
+    monkeypatch.setattr(devices, "why_no_gpu", str)
+    monkeypatch.setattr(devices, "adapters", lambda: (CARD,))
+    monkeypatch.setattr(devices.sys, "executable", "/bin/false")
+    on, decision = drawn_by_card(SMALL, splats, level_view())
+    assert not on
+    assert "Intel UHD 620 ended the process that tried it, or did not answer" in decision.reason
 
 
 def test_a_device_that_is_not_there_is_refused_with_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -188,10 +188,10 @@ def drawn_by(device: Device, splats: MadeSplats, view: View, settings: RasterSet
 
 def test_windows_of_cards_with_small_buffers_give_the_same_raster(monkeypatch: pytest.MonkeyPatch) -> None:
     view, card = turned_view(60, 40, 50.0), open_device()
-    splats = random_splats(300, view, 4)
+    splats = random_splats(400, view, 4)
     whole = drawn_by(card, splats, view)
-    # First as many pixels as a buffer holds are too few, and sums of 200 splats; then rows of sums.
-    for holder, name, value in ((card, "most_bytes", 25_600), (wgpu_backend, "MOST_SUMS", 300)):
+    # First buffers hold too few pixels and the sums of 312 splats; then there are too few rows of sums.
+    for holder, name, value in ((card, "most_bytes", 40_000), (wgpu_backend, "MOST_SUMS", 300)):
         with monkeypatch.context() as changed:
             changed.setattr(holder, name, value)
             found = drawn_by(card, splats, view)
