@@ -49,7 +49,7 @@ UNIFORM_STEP = 256
 ARENA_BYTES = 1 << 16
 LEAST_BYTES = 256
 MAPPED_STEP = 8
-"""Of places in a buffer that is read."""
+"""Of the bytes that are read of a buffer."""
 IDLE_BYTES = 1 << 30
 """Kept of what was given back, at most."""
 
@@ -59,7 +59,7 @@ LOST = "device is lost"
 
 
 class DeviceFailed(ReconstructionError):  # noqa: N818  (the name says what happened)
-    """The graphics card does not answer any more, or has no memory left; the processor can go on."""
+    """The graphics card does not answer any more, or has too little memory; the processor can go on."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -247,7 +247,7 @@ class Device:
                 raw = self.raw.create_texture(size=(TEXELS_A_ROW, size, 1), format=kind, usage=usage)
                 view = raw.create_view()
         piece = Piece(raw, size if kind == "buffer" else size * TEXELS_A_ROW, view)
-        weakref.finalize(piece, self._given_back, kind, size, n_bytes, raw, view)
+        weakref.finalize(piece, self._given_back, kind, size, n_bytes, raw, view).atexit = False
         return piece
 
     def _given_back(self, kind: str, size: int, n_bytes: int, raw: Any, view: Any) -> None:
@@ -411,24 +411,20 @@ class Commands:
     def read(self, *wanted: tuple[Piece, int]) -> list[NDArray[np.uint8]]:
         """Hand it all to the device, wait, and read the first bytes of some buffers."""
         self._end_pass()
-        sizes = [-(-n_bytes // MAPPED_STEP) * MAPPED_STEP for _, n_bytes in wanted]
-        found = []
         use = _library().BufferUsage
-        staging = self._device.raw.create_buffer(size=max(sum(sizes), MAPPED_STEP), usage=use.COPY_DST | use.MAP_READ)
-        start = 0
-        for (piece, _), size in zip(wanted, sizes, strict=True):
-            if size:
-                self._encoder.copy_buffer_to_buffer(piece.raw, 0, staging, start, size)
-            start += size
+        copies = []
+        for piece, n_bytes in wanted:
+            size = rounded_up(max(n_bytes, 1), MAPPED_STEP) * MAPPED_STEP
+            copy = self._device.raw.create_buffer(size=size, usage=use.COPY_DST | use.MAP_READ)
+            self._encoder.copy_buffer_to_buffer(piece.raw, 0, copy, 0, size)
+            copies.append(copy)
         self.submit()
-        staging.map_sync("READ")
-        start = 0
-        for (_, n_bytes), size in zip(wanted, sizes, strict=True):
-            part = staging.read_mapped(start, size) if size else b""
-            found.append(np.frombuffer(part, np.uint8, n_bytes))
-            start += size
-        staging.unmap()
-        staging.destroy()
+        found = []
+        for copy, (_, n_bytes) in zip(copies, wanted, strict=True):
+            copy.map_sync("READ")
+            found.append(np.frombuffer(copy.read_mapped(), np.uint8, n_bytes))
+            copy.unmap()
+            copy.destroy()
         return found
 
 

@@ -20,9 +20,8 @@ from numpy.typing import NDArray
 from torch import Tensor
 from torch.autograd.function import once_differentiable
 
-from planning.base.errors import ReconstructionError
 from planning.base.messages import say
-from reconstruction.gpu.device import Commands, Device, Piece, open_device, rounded_up, uniform
+from reconstruction.gpu.device import Commands, Device, DeviceFailed, Piece, open_device, rounded_up, uniform
 from reconstruction.gpu.shaders import Constant
 from reconstruction.gpu.sorting import groups_of, run_sums, sort
 from reconstruction.splats.rasterising.gsplat_backend import heaviest_labels
@@ -158,6 +157,12 @@ class _Drawing:
     def __init__(self, device: Device, view: View, settings: RasterSettings, parameters: Floats, solid: bool) -> None:
         self.device, self.view, self.settings = device, view, settings
         self.n = len(parameters)
+        most = device.most_texels // GEOMETRY_QUADS
+        if self.n > most:
+            raise DeviceFailed(
+                say("{} splats are more than the {} that graphics cards are given; compute on the processor instead",
+                    self.n, most)
+            )  # fmt: skip
         self.constants = constants_for(device, settings, solid)
         self.parameters = device.table(PARAMETER_QUADS * self.n)
         device.write_table(self.parameters, parameters.reshape(-1, 4))
@@ -191,7 +196,7 @@ class _Drawing:
             elif bins.n > 1:
                 todo += reversed(bins.halves())
             else:
-                raise ReconstructionError(
+                raise DeviceFailed(
                     say(
                         "{} splats lie over one another in {} pixels, more than the graphics card holds; compute "
                         "on the processor instead",

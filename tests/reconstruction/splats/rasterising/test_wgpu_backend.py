@@ -10,7 +10,6 @@ import pytest
 import torch
 from torch import Tensor
 
-from planning.base.errors import ReconstructionError
 from reconstruction.gpu.device import Device, DeviceFailed, open_device, why_no_gpu
 from reconstruction.splats.rasterising import wgpu_backend
 from reconstruction.splats.rasterising.raster_types import RasterSettings
@@ -204,7 +203,10 @@ def test_windows_of_cards_with_small_buffers_give_the_same_raster(monkeypatch: p
 def test_what_does_not_fit_even_bin_by_bin_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(wgpu_backend, "MOST_SUMS", 100)
     sheets = together(*(one_splat(scale_m=(9.0, 9.0), depth_m=4.0 + 0.01 * k) for k in range(20)))
-    with pytest.raises(ReconstructionError, match="20 splats lie over one another in 256 pixels"):
+    with pytest.raises(DeviceFailed, match="20 splats lie over one another in 256 pixels"):
+        draw(sheets, level_view(), "wgpu", seed=None)
+    monkeypatch.setattr(wgpu_backend, "GEOMETRY_QUADS", 1 << 22)
+    with pytest.raises(DeviceFailed, match="20 splats are more than the 16 that graphics cards are given"):
         draw(sheets, level_view(), "wgpu", seed=None)
 
 
