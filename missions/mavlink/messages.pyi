@@ -294,6 +294,46 @@ class FileTransferProtocol(Message):
     payload: tuple[int, ...]
     target_network: int = ...
 
+# LOG_REQUEST_LIST (117).
+@dataclass(frozen=True, slots=True)
+class LogRequestList(Message):
+    target_system: int
+    target_component: int
+    start: int
+    end: int
+
+# LOG_ENTRY (118).
+@dataclass(frozen=True, slots=True)
+class LogEntry(Message):
+    id: int
+    num_logs: int
+    last_log_num: int
+    time_utc: int  # s
+    size: int  # bytes
+
+# LOG_REQUEST_DATA (119).
+@dataclass(frozen=True, slots=True)
+class LogRequestData(Message):
+    target_system: int
+    target_component: int
+    id: int
+    ofs: int
+    count: int  # bytes
+
+# LOG_DATA (120).
+@dataclass(frozen=True, slots=True)
+class LogData(Message):
+    id: int
+    ofs: int
+    count: int  # bytes
+    data: tuple[int, ...]
+
+# LOG_REQUEST_END (122).
+@dataclass(frozen=True, slots=True)
+class LogRequestEnd(Message):
+    target_system: int
+    target_component: int
+
 # OPEN_DRONE_ID_BASIC_ID (12900).
 @dataclass(frozen=True, slots=True)
 class OpenDroneIdBasicId(Message):
@@ -522,6 +562,24 @@ class WindCov(Message):
     wind_alt: float  # m
     horiz_accuracy: float  # m/s
     vert_accuracy: float  # m/s
+
+# VIDEO_STREAM_INFORMATION (269).
+@dataclass(frozen=True, slots=True)
+class VideoStreamInformation(Message):
+    stream_id: int
+    count: int
+    type: int  # VIDEO_STREAM_TYPE
+    flags: int  # VIDEO_STREAM_STATUS_FLAGS
+    framerate: float  # Hz
+    resolution_h: int  # pix
+    resolution_v: int  # pix
+    bitrate: int  # bits/s
+    rotation: int  # deg
+    hfov: int  # deg
+    name: str
+    uri: str
+    encoding: int = ...  # VIDEO_STREAM_ENCODING
+    camera_device_id: int = ...
 
 # CAMERA_FEEDBACK (180). ArduPilot's: the attitude is the vehicle's, never the gimbal's.
 @dataclass(frozen=True, slots=True)

@@ -94,6 +94,11 @@ MESSAGES: Mapping[str, Mapping[str, Any]] = {
     "MissionSetCurrent": {},
     # Files on the vehicle
     "FileTransferProtocol": {"target_network": 0},
+    "LogRequestList": {},
+    "LogEntry": {},
+    "LogRequestData": {},
+    "LogData": {},
+    "LogRequestEnd": {},
     # Remote identification, and corrections for the receiver
     "OpenDroneIdBasicId": {},
     "OpenDroneIdSelfId": {},
@@ -116,6 +121,7 @@ MESSAGES: Mapping[str, Mapping[str, Any]] = {
     "Wind": {},
     "WindCov": {},
     # Camera and gimbal
+    "VideoStreamInformation": {"encoding": 0},
     "CameraFeedback": {"foc_len": 0.0, "flags": 0},
     "CameraCaptureStatus": _zeros("image_status video_status")
     | {"image_interval": 0.0, "recording_time_ms": 0, "available_capacity": math.nan},

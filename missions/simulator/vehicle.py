@@ -19,6 +19,9 @@ from missions.mavlink.messages import (
     FileTransferProtocol,
     GpsRtcmData,
     Heartbeat,
+    LogRequestData,
+    LogRequestEnd,
+    LogRequestList,
     Message,
     MissionItemReached,
     MissionSetCurrent,
@@ -46,6 +49,7 @@ from missions.simulator.autopilot.failsafe import Failsafe
 from missions.simulator.autopilot.file_server import FileServer
 from missions.simulator.autopilot.guidance import DEG, Guidance, Place
 from missions.simulator.autopilot.instruments import Instruments, Telemetry
+from missions.simulator.autopilot.log_server import LogServer
 from missions.simulator.autopilot.manoeuvres import CM, Manoeuvres, Returning
 from missions.simulator.autopilot.mission_store import MissionStores, TransferMessage
 from missions.simulator.autopilot.modes import FlightModes, ModeContext
@@ -169,6 +173,8 @@ class SimulatedVehicle:
         self._telemetry = Telemetry(self.instruments)
         self.log = OnboardLog(autopilot, self.place, unix_start_s)
         self._file_server = FileServer(self.log.files)
+        self._log_server = LogServer(autopilot, self.log.files, unix_start_s, lambda: self.modes.is_armed)
+        self.has_file_transfer = True
         self._commands = Commands(
             autopilot, profile, self.modes, self.scheduler, actions, self.instruments, self._telemetry, self._say
         )
@@ -209,7 +215,9 @@ class SimulatedVehicle:
                     self._out += self.camera_parameters.receive(message)
             case GpsRtcmData():
                 self.corrections.receive(message, self.now_s)
-            case FileTransferProtocol():
+            case LogRequestList() | LogRequestData() | LogRequestEnd():
+                self._out += self._log_server.receive(message)
+            case FileTransferProtocol() if self.has_file_transfer:
                 self._out += self._file_server.receive(message, source)
             case OpenDroneIdBasicId() | OpenDroneIdOperatorId() | OpenDroneIdSelfId() | OpenDroneIdSystem():
                 self.remote_id.receive(message, self.now_s)
@@ -247,6 +255,7 @@ class SimulatedVehicle:
         self.modes.update()
         self.log.update(guidance.now_s, self.modes.is_armed, self.modes.mode, self._believed)
         self._out += self._file_server.tick()
+        self._out += self._log_server.tick()
         self._out += self.remote_id.tick(guidance.now_s, self.modes.has_position)
         if self._lift_off_s == math.inf and not self.modes.is_landed:
             self._lift_off_s = guidance.now_s

@@ -14,7 +14,8 @@ if TYPE_CHECKING:
     from groundstation.services.fly.onboard_logs import KeptLog
 
 EPILOG = """Over MAVFTP: pieces that are lost are asked for again, and the whole file is proved by the vehicle's
-checksum. A telemetry radio takes an hour for some ten megabytes; use USB or Wi-Fi. Not in flight.
+checksum. Vehicles without it are asked by the log protocol, which has no checksums; what broke off goes on where it
+ended. A telemetry radio takes an hour for some ten megabytes; use USB or Wi-Fi. Not in flight.
 
 examples:
   logs tcp:127.0.0.1:5760 --list

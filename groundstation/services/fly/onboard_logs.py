@@ -92,7 +92,8 @@ def fetch_logs(
             raise LinkError.say("the logs on the vehicle are empty", place=url)
         make_folder(folder)
         route, _ = _vehicle(link, url, clock)
-        fetched = drive(LogFetch(route, chosen), link, clock, monitor)
+        begun = {file.name: _begun(file, folder) for file in chosen if file.log_id is not None}
+        fetched = drive(LogFetch(route, chosen, begun), link, clock, monitor)
     kept = keep_logs(fetched, folder)
     if fetched.problem:
         raise LinkError(fetched.problem)
@@ -102,13 +103,29 @@ def fetch_logs(
 def keep_logs(fetched: FetchedLogs, folder: Path) -> tuple[KeptLog, ...]:
     """Write logs that came; another file of the same name stays, and the new one gets a number.
 
+    What came of one that did not come whole stands beside them as `.part`, from which another try goes on.
+
     Raises
     ------
     InputError
         A file cannot be written.
     """
     make_folder(folder)
-    return tuple(_keep(file, content, is_checked, folder) for file, content, is_checked in fetched.files)
+    kept = tuple(_keep(file, content, is_checked, folder) for file, content, is_checked in fetched.files)
+    for file, *_ in fetched.files:
+        _part(file, folder).unlink(missing_ok=True)
+    if fetched.begun is not None:
+        write_atomically(_part(fetched.begun[0], folder), fetched.begun[1])
+    return kept
+
+
+def _part(file: OnboardFile, folder: Path) -> Path:
+    return folder / f"{file.name}.{file.n_bytes}.part"
+
+
+def _begun(file: OnboardFile, folder: Path) -> bytes:
+    path = _part(file, folder)
+    return read_input_file(path, LOG_FILE) if path.is_file() else b""
 
 
 def _keep(file: OnboardFile, content: bytes, is_checked: bool, folder: Path) -> KeptLog:

@@ -129,7 +129,7 @@ def test_a_vehicle_without_logs_or_without_file_transfer_says_so():
             return []
 
     listed = run(LogListing(ROUTE, Autopilot.ARDUPILOT), Deaf(dict))
-    assert "does not answer to file transfer (MAVFTP); take its card out" in listed.problem
+    assert "answers neither to file transfer (MAVFTP) nor to the log protocol" in listed.problem
 
 
 def test_what_came_before_a_log_that_does_not_is_kept(tmp_path):
@@ -184,3 +184,35 @@ def test_the_simulated_vehicle_logs_from_arming_until_the_motors_stopped(flown):
     idle = SimulatedVehicle(Autopilot.PX4, PointMass(), ORIGIN)
     idle.step(10.0)
     assert idle.log.files() == {}
+
+
+@pytest.mark.slow
+def test_without_file_transfer_the_log_comes_by_the_log_protocol_and_goes_on_where_it_broke_off(
+    flown, url, tmp_path, monkeypatch
+):
+    vehicle, live, site = flown
+    monkeypatch.setattr(vehicle, "has_file_transfer", False)
+    whole = next(iter(vehicle.log.files().values()))
+    first = 1 if vehicle.autopilot is Autopilot.ARDUPILOT else 0
+    (log,) = fetch_logs(url, tmp_path)
+    assert log.file.n_bytes == len(whole)
+    assert log.path.name.startswith(f"log-{first:05d}-2")
+    log.path.unlink()
+    part = tmp_path / f"{log.file.name}.{len(whole)}.part"
+    part.write_bytes(whole[:9000])
+    (log,) = fetch_logs(url, tmp_path)
+    assert not log.is_checked
+    assert log.path.read_bytes() == whole
+    assert not part.exists()
+    (record,) = read_log(log.path, site).records
+    assert len(record.photos) == len(live.photos)
+
+
+def test_what_came_of_a_broken_log_is_kept_for_the_next_try(tmp_path):
+    file = OnboardFile("log-00007-20261128-100000.BIN", 1000, 7)
+    assert keep_logs(FetchedLogs((), "silent", (file, b"abc")), tmp_path) == ()
+    part = tmp_path / "log-00007-20261128-100000.BIN.1000.part"
+    assert part.read_bytes() == b"abc"
+    (kept,) = keep_logs(FetchedLogs(((file, b"abcd", False),)), tmp_path)
+    assert kept.path.read_bytes() == b"abcd"
+    assert not part.exists()
