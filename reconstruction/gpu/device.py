@@ -36,6 +36,9 @@ SOFTWARE = ("llvmpipe", "lavapipe", "swiftshader", "microsoft basic render drive
 """Parts of names of adapters that are programs, whatever kind they say they are."""
 
 ORDER: tuple[Kind, ...] = ("discrete", "integrated", "virtual", "unknown", "software")
+NAME_VARIABLE = "WGPU_ADAPTER_NAME"
+"""As other programs with wgpu have it."""
+
 BACKENDS = ("Vulkan", "Metal", "D3D12")
 INSTALL = "sudo apt-get install mesa-vulkan-drivers"
 
@@ -117,12 +120,21 @@ def _found() -> tuple[tuple[Adapter, Any], ...]:
             kind = "software"
         if info["backend_type"] in BACKENDS:
             found.append((Adapter(name, kind, info["backend_type"], info["description"]), raw))
-    return tuple(sorted(found, key=lambda each: ORDER.index(each[0].kind)))
+    return tuple(found)
 
 
 def adapters() -> tuple[Adapter, ...]:
-    """All there are, the fastest kind first; programs that stand in for a card come last."""
-    return tuple(adapter for adapter, _ in _found())
+    """All there are, the fastest kind first; programs that stand in for a card come last.
+
+    Those whose name has a part that the environment's `NAME_VARIABLE` asks for come before all others.
+    """
+    wanted = os.environ.get(NAME_VARIABLE, "").lower()
+    return tuple(
+        sorted(
+            (adapter for adapter, _ in _found()),
+            key=lambda each: (wanted not in each.name.lower(), ORDER.index(each.kind)),
+        )
+    )
 
 
 def why_no_gpu() -> str:
@@ -461,7 +473,7 @@ def open_device(adapter: Adapter | None = None, most_bytes: int | None = None, s
     if reason := why_no_gpu():
         raise ReconstructionError(say("no graphics card can be used: {}; or compute on the processor", reason))
     raw_of = dict(_found())
-    chosen = adapter or _found()[0][0]
+    chosen = adapter or adapters()[0]
     key = chosen, most_bytes, subgroups
     if key not in _OPEN:
         library = _library()

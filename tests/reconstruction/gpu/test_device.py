@@ -19,6 +19,20 @@ def test_programs_that_stand_in_for_a_card_are_known_and_come_last(card: Device)
     assert card.adapter == found[0]
 
 
+def test_cards_come_before_programs_and_a_named_one_before_all(monkeypatch: pytest.MonkeyPatch) -> None:
+    names: dict[str, devices.Kind] = {
+        "llvmpipe": "software", "Intel UHD 620": "integrated", "Radeon RX": "discrete", "Arc A770": "discrete",
+    }  # fmt: skip
+    found = tuple((Adapter(name, kind, "Vulkan", ""), None) for name, kind in names.items())
+    monkeypatch.setattr(devices, "_found", lambda: found)
+    monkeypatch.delenv(devices.NAME_VARIABLE, raising=False)
+    assert [each.name for each in adapters()] == ["Radeon RX", "Arc A770", "Intel UHD 620", "llvmpipe"]
+    monkeypatch.setenv(devices.NAME_VARIABLE, "arc")
+    assert adapters()[0].name == "Arc A770"
+    monkeypatch.setenv(devices.NAME_VARIABLE, "llvm")
+    assert adapters()[0].name == "llvmpipe"
+
+
 def test_a_device_is_opened_once_and_has_the_bytes_that_are_asked_for(card: Device) -> None:
     assert open_device() is card
     small = open_device(most_bytes=1 << 20)
