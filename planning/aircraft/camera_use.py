@@ -87,6 +87,16 @@ class CameraUse:
                 else say("the electronic shutter goes from {} to {}, not to {}; {}", *times, advice)
             )
 
+    def cost(self) -> str:
+        """What depth of field costs: light, and with it shutter time; empty where the aperture is wide open."""
+        if self.controls is None or self.f_number is None or self.f_number <= self.controls.aperture[0]:
+            return ""
+        factor = (self.f_number / self.controls.aperture[0]) ** 2
+        return say(
+            "f/{:g} rather than f/{:g} takes {:.1f} stops of light: {:.1f} times the shutter time or the ISO",
+            *(self.f_number, self.controls.aperture[0], math.log2(factor), factor),
+        )
+
     def summary(self) -> str:
         """All that is set, in one line."""
         wanted = self.settings

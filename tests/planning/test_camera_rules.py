@@ -9,14 +9,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from planning.aircraft.camera_use import camera_use, camera_use_of, controls_of
+from planning.aircraft.camera_use import camera_use, camera_use_of, controls_of, worst_defocus_px
 from planning.aircraft.catalogue import profile, profiles
 from planning.base.findings import Finding, Severity
 from planning.checks.camera import CAMERA_RULES, glass_depths_m, photo_motions
 from planning.checks.case import Case
-from planning.optics import CameraControls
-from planning.parameters import CameraSettings, Constraints, FlightRules
+from planning.optics import STOPS, CameraControls, sharpest_f_number
+from planning.parameters import CameraSettings, Constraints, FlightRules, FocusMode
 from planning.plan import Coverage, Plan, Sortie, Viewpoint, plan_of, plan_to_json
 from tests.planning.plan_cases import kiosk
 
@@ -201,6 +203,35 @@ def test_the_usual_settings_can_be_made_on_every_camera(identifier: str) -> None
     assert known.controls is not None
     assert known.controls.source
     assert known.controls.aperture[0] <= (use.f_number or 0.0) <= known.controls.aperture[1]
+
+
+@given(st.floats(0.5, 200.0), st.sampled_from(["auto", "lock", "infinity"]))
+def test_the_aperture_chosen_is_the_widest_that_holds_all_or_the_last_before_diffraction(
+    distance_m: float, focus: FocusMode
+) -> None:
+    known = profile("m350_p1")
+    assert known.controls is not None
+    settings = CameraSettings(focus=focus)
+    use = camera_use(known.camera, known.controls, settings, distance_m)
+    assert use.f_number is not None
+    low, _ = known.controls.aperture
+    corner = 1.0 / math.hypot(1.0, known.camera.half_width, known.camera.half_height)
+    nearest_m = max(corner * distance_m, known.controls.nearest_focus_m)
+    limit = sharpest_f_number(known.camera.pixel_mm)
+    assert low <= use.f_number <= limit
+    stops = [each for each in STOPS if low <= each <= limit]
+    is_sharp = worst_defocus_px(known.camera, use.f_number, settings, nearest_m) <= 1.0
+    assert is_sharp or use.f_number == stops[-1]
+    wider = [each for each in stops if each < use.f_number]
+    assert not wider or worst_defocus_px(known.camera, wider[-1], settings, nearest_m) > 1.0
+
+
+def test_what_depth_of_field_costs_is_said_in_light_and_time() -> None:
+    """f/5.6 takes two stops more than f/2.8: four times the shutter time."""
+    m3e = profile("m3e")
+    use = camera_use(m3e.camera, m3e.controls, CameraSettings(aperture=5.6), 10.0)
+    assert use.cost() == ("f/5.6 rather than f/2.8 takes 2.0 stops of light: 4.0 times the shutter time or the ISO")
+    assert camera_use(m3e.camera, m3e.controls, CameraSettings(aperture=2.8), 10.0).cost() == ""
 
 
 def test_a_camera_of_which_nothing_is_known_is_said_so_and_nothing_fails() -> None:

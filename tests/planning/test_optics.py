@@ -93,6 +93,17 @@ def test_defocus_is_that_of_the_textbook(lens: Lens, focus_m: float, distance_m:
         assert found == pytest.approx(far, rel=1e-5, abs=1e-4)
 
 
+def test_differences_of_far_distances_lose_no_digits() -> None:
+    """In single precision the textbook's |d - s| has lost most of them at 1 km; reciprocals have not."""
+    focus_m, distance_m = 1000.0, 1000.0003
+    exact = Lens(35.0, 8.0, 0.004).defocus_px(focus_m, distance_m)
+    f, n, c = np.float32(0.035), np.float32(8.0), np.float32(4e-6)
+    s, d = np.float32(focus_m), np.float32(distance_m)
+    textbook = f * f * abs(d - s) / (n * d * (s - f)) / c
+    assert abs(float(textbook) / exact - 1.0) > 0.01, "which is why it is not computed so"
+    assert Lens(35.0, 8.0, 0.004).defocus_px(1e9, math.inf) == pytest.approx(35.0**2 / (8.0 * 0.004) / 1e12, rel=1e-6)
+
+
 @given(lenses, distances, distances, st.floats(1.1, 4.0))
 def test_stopping_down_sharpens_in_proportion(lens: Lens, focus_m: float, distance_m: float, factor: float) -> None:
     stopped = Lens(lens.focal_length_mm, factor * lens.f_number, lens.pixel_mm)

@@ -54,6 +54,7 @@ def run(options: argparse.Namespace) -> int:
                 "file": None if options.out is None else str(options.out),
                 "settings": plain_values(report.plan.camera_settings),
                 "summary": report.summary,
+                "cost": report.cost,
                 "by_mission": list(report.steps.by_mission),
                 "by_hand": list(report.steps.by_hand),
                 "findings": [finding_summary(finding) for finding in report.findings],
@@ -61,6 +62,8 @@ def run(options: argparse.Namespace) -> int:
         )
         return 0
     show(report.summary)
+    if report.cost:
+        show(report.cost)
     for step in report.steps.by_mission:
         tell("set by the mission: {}", step)
     for step in report.steps.by_hand:

@@ -117,6 +117,7 @@ class CameraPage(QWidget):
             ):
                 if found:
                     lines.append(text.format("; ".join(translated(step, self._units) for step in found)))
+            lines += [translated(self._report.cost, self._units)] if self._report.cost else []
         self._steps.setText("\n".join(lines))
         self._steps.setVisible(bool(lines))
 

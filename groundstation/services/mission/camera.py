@@ -35,14 +35,15 @@ class CameraReport:
 
     Parameters
     ----------
-    summary
-        All that is set, in one line.
+    summary, cost
+        All that is set, in one line, and what its depth of field costs.
     findings
         Of the rules about the camera; empty where the site is not known.
     """
 
     plan: Plan
     summary: str
+    cost: str
     steps: CameraSteps
     findings: tuple[Finding, ...]
 
@@ -75,13 +76,18 @@ def camera_report(plan: Plan, site_model: SiteModel | None, monitor: Monitor = Q
     if site_model is not None:
         case = Case.of(plan, site_model)
         findings = tuple(finding for rule in CAMERA_RULES for finding in rule(case))
-    return CameraReport(plan, camera_use_of(plan).summary(), camera_steps(plan), findings)
+    return _report(plan, findings)
 
 
 def report_of_findings(plan: Plan, findings: Iterable[Finding]) -> CameraReport:
     """What a plan's camera settings mean, of findings of all rules that were made already."""
     found = tuple(finding for finding in findings if finding.code in CODES)
-    return CameraReport(plan, camera_use_of(plan).summary(), camera_steps(plan), found)
+    return _report(plan, found)
+
+
+def _report(plan: Plan, findings: tuple[Finding, ...]) -> CameraReport:
+    use = camera_use_of(plan)
+    return CameraReport(plan, use.summary(), use.cost(), camera_steps(plan), findings)
 
 
 def settable(plan: Plan | None, profile_id: str) -> CameraControls | None:

@@ -131,6 +131,7 @@ def photo_top_up(
         profile_id=flown.profile,
         constraints=flown.constraints,
         rules=rules,
+        camera=flown.camera_settings,
         greedy=GreedyParameters(objective="image-error"),
         seed=request.seed,
         time_budget_s=request.time_budget_s,
