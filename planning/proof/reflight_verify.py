@@ -634,6 +634,8 @@ MAVLINK_ORDER, MAVLINK = "T[VX]*[ABW]*L", {name: rule(text) for name, text in { 
 2 2000 0 0 1 # 0 0 0/3 16 @w 0.5 0 @h @y @x @z/""",
     "W": "3 16 1 (0 0 0|0.5 0 nan) @y @x @z/", "X": "(2 1001 -2 -2 -1 -1 0 0 0|2 202 4 # # # 0 0 0|2 532 # # 0 0 0 0 0)/"}.items()}
 
+ITEM_KEYS = {"AMSLAltAboveTerrain", "Altitude", "AltitudeMode", "autoContinue", "command", "doJumpId", "frame", "params", "type", "viewpointId"}
+
 class Mission:
     """What a mission file flies: places (latitude, longitude, height), and photos (number of its place, heading, pitch)."""
 
@@ -670,7 +672,7 @@ class Mission:
             self.speeds, self.zooms = self.speeds + [n.get("v", 0.0)], self.zooms + [n[k] for k in "q" if k in n]
             self.return_m = max(self.return_m, n.get("c", 0.0), n.get("r", 0.0))
             said += [values] if "x" in n else []
-            demand(all([0.0 <= n.get(wait, 0.0) <= 600.0 for wait in "swf"]) and n.get("i", len(self.places) - 1) == len(self.places) - 1
+            demand(all([0.0 <= n.get(wait, 0.0) <= 60.0 for wait in "swf"]) and n.get("i", len(self.places) - 1) == len(self.places) - 1
                    and n.get("c", 1.0) > 0.0 and n.get("r", 1.0) > 0.0, "a wait, a height or the number of a waypoint is wrong")
         demand(re.fullmatch(order, letters) is not None, "its parts are not in the order in which Reflight writes them")
         return said
@@ -687,19 +689,23 @@ class Mission:
         plan, rows = read_json(content, "the mission", lambda text: Text(text.removesuffix(".0"))), []
         mission, rally = get(plan, "mission", dict), get(get(plan, "rallyPoints", dict, {}), "points", list, [])
         modes = plan["fileType"], plan["version"], mission["version"], mission["globalPlanAltitudeMode"], rally
-        demand(modes == ("Plan", "1", "2", "1", []), "no mission as Reflight writes it, or one with rally points")
+        numbers = [type(each) is Text for each in modes[1:4]]
+        demand(modes == ("Plan", "1", "2", "1", []) and all(numbers), "no mission as Reflight writes it, or one with rally points")
         for item in get(mission, "items", list):
-            params = ["nan" if each is None else each for each in item["params"]]
-            kinds = item["type"], item["autoContinue"], item.get("AltitudeMode", "1"), item.get("Altitude", params[6])
-            demand(kinds == ("SimpleItem", True, "1", params[6]) and len(params) == 7 and len(item) <= 10, "an item is not as Reflight writes it")
-            rows.append(" ".join([item["frame"], item["command"], *params]))
+            params = [Text("nan") if each is None else each for each in item["params"]]
+            row = [item["frame"], item["command"], *params, item.get("Altitude", params[6]), item.get("AltitudeMode", Text("1"))]
+            known = all([type(each) is Text for each in row]) and set(item) <= ITEM_KEYS and len(row) == 11 and row[9:] == [row[8], "1"]
+            demand(known and item["type"] == "SimpleItem" and item["autoContinue"] is True, "an item is not as Reflight writes it")
+            rows.append(" ".join(row[:9]))
         return rows
 
     def _lines(self, content: bytes) -> list[str]:
         lines = content.decode("ascii").split("\n")
         demand(lines[0] == "QGC WPL 110" and lines[-1] == "" and lines[1].startswith("0\t1\t0\t16\t"), "no QGC WPL 110 with home")
         rows = [line.split("\t") for line in lines[2:-1]]
-        demand(all([row[:2] == [str(n), "0"] and row[11:] == ["1"] for n, row in enumerate(rows, 1)]), "a line is not as Reflight writes it")
+        known = [row[:2] == [str(n), "0"] and row[11:] == ["1"] for n, row in enumerate(rows, 1)]
+        known += [re.fullmatch("[-0-9.a-z]+", each) is not None for row in rows for each in row]
+        demand(all(known), "a line is not as Reflight writes it")
         return [" ".join(row[2:11]) for row in rows]
 
 class Text(str):

@@ -48,6 +48,7 @@ def run(options: argparse.Namespace) -> int:
     from groundstation.services.messages import localized, translation
     from groundstation.services.mission.brief import flight_brief
     from groundstation.services.mission.brief_html import brief_html, brief_pictures, sources_in_page
+    from groundstation.services.mission.proof import proof_of_files
     from groundstation.services.mission.readiness import Readiness, preflight
     from groundstation.services.project.input_files import read_input_plan, read_input_site
     from groundstation.services.units import UnitSystem
@@ -73,10 +74,11 @@ def run(options: argparse.Namespace) -> int:
 
     def work(context: JobContext) -> tuple[str, Readiness, int]:
         found = preflight(plan, site_model, day, context)
+        proved = proof_of_files(options.plan, options.site)
         today = date.today().isoformat()
         findings = tuple(
             replace(each, message=localized(each.message, words, units), place=localized(each.place, words, units))
-            for each in found.findings
+            for each in (*found.findings, *([] if proved is None else [proved]))
         )
         brief = flight_brief(
             site_model, plan, findings, today, options.plan.name, day=day, sun=found.sun, ground_risk=risk

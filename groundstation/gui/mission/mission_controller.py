@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from PySide6.QtCore import QObject, QTimer, Signal
@@ -26,6 +26,15 @@ MAX_SHOWN_FINDINGS = 5
 """Findings of one import that are said one by one; the check lists all."""
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Proved:
+    """What the independent verifier said of a plan on its site."""
+
+    plan: Plan
+    site_model: SiteModel
+    finding: Finding
+
+
 class MissionController(QObject):
     """Works on the current plan of the document.
 
@@ -35,15 +44,18 @@ class MissionController(QObject):
         A check ended; it may be of a plan that has changed since.
     compared(MissionComparison, str)
         With the names of the files.
+    proved(Proved)
+        An independent check ended; it may be of a plan that has changed since.
     """
 
     checked = Signal(object)
     compared = Signal(object, str)
+    proved = Signal(object)
 
     def __init__(self, context: ApplicationContext, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self._context = context
-        self._check_id = 0
+        self._check_id = self._proof_id = 0
         self._day = UNKNOWN_DAY
         context.documentChanged.connect(self._document_changed)
 
@@ -95,6 +107,29 @@ class MissionController(QObject):
             return preflight(plan, site_model, day, context)
 
         self._check_id = self._context.start(self.tr("Check"), work, self.checked.emit).id
+
+    def check_and_prove(self) -> None:
+        """Check the current plan, and prove it: what takes longer, and is done where it is asked for."""
+        self.check()
+        self.prove()
+
+    def prove(self) -> None:
+        """Make the proof of the current plan and have the independent verifier judge it; one at a time."""
+        plan, site_model = self.plan, self._context.document.site
+        if plan is None or site_model is None or not self.can_check or self.is_proving:
+            return
+
+        def work(context: JobContext) -> Proved:
+            from groundstation.services.mission.proof import proved_as_saved
+
+            return Proved(plan, site_model, proved_as_saved(plan, site_model, context))
+
+        self._proof_id = self._context.start(self.tr("Proof"), work, self.proved.emit).id
+
+    @property
+    def is_proving(self) -> bool:
+        """Whether a proof is made or waits."""
+        return any(job.id == self._proof_id for job in self._context.jobs())
 
     def import_files(self, paths: Sequence[Path]) -> None:
         """Take mission files of one flight over as a plan of the project; without a site they get a bare one."""

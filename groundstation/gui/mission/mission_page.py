@@ -25,7 +25,7 @@ from PySide6.QtWidgets import (
 from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.map.map_view import MapView
 from groundstation.gui.mission.export_dialog import ExportDialog
-from groundstation.gui.mission.mission_controller import MissionController
+from groundstation.gui.mission.mission_controller import MissionController, Proved
 from groundstation.gui.mission.mission_lists import MissionLists, SortieTable
 from groundstation.gui.mission.send_dialog import SendDialog
 from groundstation.gui.shared_view import SharedView
@@ -81,8 +81,11 @@ class FindingsView(QWidget):
         self._verdict_icon, self._verdict, self._state = QLabel(), QLabel(), QLabel()
         self._verdict.setWordWrap(True)
         self._state.setWordWrap(True)
+        self._proof = QLabel()
+        self._proof.setWordWrap(True)
+        self._proof.setToolTip(self.tr("What a program that shares nothing with this one says of the plan"))
         self._check = QPushButton(self.tr("Check"))
-        self._check.setToolTip(self.tr("Measure every pre-flight rule again"))
+        self._check.setToolTip(self.tr("Measure every pre-flight rule again, and have the plan proved"))
         self._list, self._day = FindingsList(), DayBox()
         self._show = {severity: self._filter_button(severity) for severity in SEVERITIES}
         head, filters = QHBoxLayout(), QHBoxLayout()
@@ -96,6 +99,7 @@ class FindingsView(QWidget):
         layout.addLayout(head)
         layout.addWidget(self._day)
         layout.addWidget(self._state)
+        layout.addWidget(self._proof)
         layout.addLayout(filters)
         layout.addWidget(self._list, 1)
         self._check.clicked.connect(self.checkRequested)
@@ -103,6 +107,7 @@ class FindingsView(QWidget):
         self._list.placePicked.connect(self.placePicked)
         self._filter()
         self.set_findings(None)
+        self.set_proof(None)
 
     def set_findings(self, findings: Sequence[Finding] | None) -> None:
         """Show findings that are as fresh as the plan; None where nothing was checked."""
@@ -124,6 +129,21 @@ class FindingsView(QWidget):
     def set_checking(self) -> None:
         """Say that a check runs."""
         self._say_state(self.tr("Checking ..."))
+
+    def set_proof(self, finding: Finding | None, *, is_proving: bool = False) -> None:
+        """Show what an independent check says of the plan as it is now; None where none did."""
+        text = self.tr("Being proved ...") if is_proving else ""
+        if finding is not None and not is_proving:
+            text = finding.message[:1].upper() + finding.message[1:]
+        role = "" if finding is None or is_proving else {Severity.OK: "ok"}.get(finding.severity, "warning")
+        self._proof.setText(text)
+        self._proof.setVisible(bool(text))
+        self._proof.setProperty("role", role)
+        self._proof.style().polish(self._proof)
+
+    def proof_text(self) -> str:
+        """What an independent check said, as it is read; empty where none did."""
+        return self._proof.text()
 
     def set_can_check(self, can_check: bool) -> None:
         """Whether there is a plan on a site to check."""
@@ -273,6 +293,7 @@ class MissionPage(QObject):
         self._is_shown = False
         self._drawn: Document | None = None
         self._preflight: Preflight | None = None
+        self._proved: Proved | None = None
         self._folder: Path | None = None
         self._ground_risk: GroundRiskRequest | None = None
         self.controller = MissionController(context, self)
@@ -368,7 +389,10 @@ class MissionPage(QObject):
 
         folder = self._export_folder()
         window = self._shared_view.window()
-        BriefDialog(self._context, self._preflight, self._tiles(), folder, window, self._ground_risk).open()
+        found = self._preflight
+        if self._proved is not None and found.is_of(self._proved.plan, self._proved.site_model):
+            found = replace(found, findings=(*found.findings, self._proved.finding))
+        BriefDialog(self._context, found, self._tiles(), folder, window, self._ground_risk).open()
 
     def _tiles(self) -> Path | None:
         """The map file that the shared view shows; a map that was never looked at has none."""
@@ -432,7 +456,12 @@ class MissionPage(QObject):
                 self.tr("Ground risk: volumes, buffer and class, as a draft with formulas and sources"),
                 self.assess_ground_risk,
             ),
-            (self.tr("Check"), "Ctrl+K", self.tr("Measure every pre-flight rule again"), self.controller.check),
+            (
+                self.tr("Check"),
+                "Ctrl+K",
+                self.tr("Measure every pre-flight rule again, and have the plan proved"),
+                self.controller.check_and_prove,
+            ),
         ):
             action = QAction(text, self)
             action.setShortcut(QKeySequence(key))
@@ -462,7 +491,8 @@ class MissionPage(QObject):
 
     def _connect(self) -> None:
         context = self._context
-        self.findings.checkRequested.connect(self.controller.check)
+        self.findings.checkRequested.connect(self.controller.check_and_prove)
+        self.controller.proved.connect(self._take_proof)
         self.findings.dayChanged.connect(self._day_changed)
         context.takeOffPlanned.connect(self._plan_take_off)
         self.findings.placePicked.connect(self._go_to)
@@ -513,10 +543,24 @@ class MissionPage(QObject):
             if is_checking:
                 self.findings.set_checking()
         self.findings.set_can_check(self.controller.can_check and not is_checking)
+        self._show_proof()
         for action in (self._export, self._send, self._compare, self._sora):
             action.setEnabled(plan is not None)
         self._check.setEnabled(self.controller.can_check and not is_checking)
         self._brief.setEnabled(plan is not None and self._is_fresh())
+
+    def _take_proof(self, proved: Proved) -> None:
+        self._proved = proved
+        self._show_proof()
+
+    def _show_proof(self) -> None:
+        proved, is_proving = self._proved, self.controller.is_proving
+        is_fresh = (
+            proved is not None
+            and proved.plan is self.controller.plan
+            and proved.site_model is self._context.document.site
+        )
+        self.findings.set_proof(proved.finding if proved is not None and is_fresh else None, is_proving=is_proving)
 
     def _take_preflight(self, found: Preflight) -> None:
         self._preflight = found

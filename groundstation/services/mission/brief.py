@@ -106,6 +106,8 @@ class FlightBrief:
         What a model of the photos is expected to be like; None where the plan does not say.
     sun
         Of the day it is flown on, in lines; empty where no time is known.
+    proof
+        What an independent check says of the plan, in words; empty where none did.
     """
 
     site: str
@@ -141,6 +143,7 @@ class FlightBrief:
     camera_by_mission: tuple[str, ...] = ()
     zones: tuple[Finding, ...] = ()
     ground_risk: GroundRisk | None = None
+    proof: str = ""
 
     def in_words(self, localize: Callable[[str], str]) -> FlightBrief:
         """The brief with its lines in the pilot's language; findings stay as they are."""
@@ -229,6 +232,7 @@ def flight_brief(
         no_fly=tuple(zone.id for zone in site.airspace.no_fly),
         obstacles=tuple(obstacle.id for obstacle in site.obstacles),
         findings=by_severity(found for found in (*findings, *objections) if found.severity is not Severity.OK),
+        proof=next((found.message for found in findings if found.code == "proof"), ""),
         sun=() if sun is None else tuple(flight_lines(sun)),
         camera_by_hand=camera.by_hand,
         camera_by_mission=camera.by_mission,

@@ -381,6 +381,8 @@ def _overview(brief: FlightBrief, units: UnitSystem, tr: Translate) -> Iterable[
         deviation = f" (\u00b1 {brief.worth.deviation_db:.1f} dB)"
         yield tr("Unseen views of the model, expected, by batteries"), "; ".join(each) + deviation
         yield tr("Another battery would bring"), f"{brief.worth.gain_db:+.1f} dB"
+    if brief.proof:
+        yield tr("Independent check"), brief.proof
     yield tr("Directions of view seen, of those possible"), f"{per_cent(brief.covered_share, 1.0):.1f} %"
     if brief.sharp_share is not None and brief.wanted_gsd_mm and brief.coarsest_gsd_mm is not None:
         pixel = sampling_unit(units)

@@ -7,22 +7,26 @@ mission, so that anybody can run it on what will be flown.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
-from planning.base.errors import InputError
+from planning.base.errors import InfeasibleError, InputError
 from planning.base.files import read_input_file
 from planning.base.findings import Finding, Severity
 from planning.base.json_file import JSON_FILE, parse_json, write_atomically, write_together
 from planning.base.messages import joined, say
 from planning.base.progress import QUIET, Monitor
-from planning.coverage.reachability import Reachability
-from planning.geo.mesh import MESH_FILE
-from planning.plan import Plan, plan_bytes
+from planning.coverage.reachability import Reachability, find_reachable
+from planning.geo.mesh import MESH_FILE, write_mesh
+from planning.plan import Plan, plan_bytes, write_plan
 from planning.proof import reflight_verify
 from planning.proof.make import proof_of, proof_path
+from planning.site.file import write_site
+from planning.site.free_space import free_space
 from planning.site.records import SiteModel
+from planning.viewpoints.prepare import coverage_model
 
 PROVED, FALSE = reflight_verify.PROVED, reflight_verify.FALSE
 
@@ -90,6 +94,46 @@ def write_plan_proof(
     written = read_input_file(plan_path, JSON_FILE)
     write_atomically(path, proof_of(site_path, plan_path, written, site_model, reachability, monitor=monitor))
     return path
+
+
+def proved_as_saved(plan: Plan, site_model: SiteModel, monitor: Monitor = QUIET) -> Finding:
+    """What the verifier says of an open plan, as it and its site are saved.
+
+    Raises
+    ------
+    InputError
+        There is no room for the files.
+    """
+    with TemporaryDirectory(prefix="reflight-") as name:
+        folder = Path(name)
+        site = site_model.site
+        meshes = [(site.building_mesh, site_model.building)]
+        meshes += [(each.mesh, mesh) for each, mesh in zip(site.obstacles, site_model.obstacles, strict=True)]
+        stored = {mesh: f"mesh-{number}.ply" for number, (mesh, _) in enumerate(meshes) if mesh is not None}
+        for mesh, geometry in meshes:
+            if mesh is not None:
+                write_mesh(folder / stored[mesh], geometry)
+        obstacles = tuple(replace(each, mesh=each.mesh and stored[each.mesh]) for each in site.obstacles)
+        building = None if site.building_mesh is None else stored[site.building_mesh]
+        site_path, plan_path = folder / "site.json", folder / "plan.json"
+        sha256 = write_site(site_path, replace(site, building_mesh=building, obstacles=obstacles))
+        write_plan(plan_path, replace(plan, site_sha256=sha256))
+        write_plan_proof(plan_path, site_path, site_model, _reachability(plan, site_model, monitor), monitor)
+        monitor.report(say("checking the proof"), 0, 1)
+        return proof_finding(verified(site_path, plan_path, proof_path(plan_path)))
+
+
+def _reachability(plan: Plan, site_model: SiteModel, monitor: Monitor) -> Reachability | None:
+    """What can be reached under a plan's limits; None where they allow no flight, or leave occlusion open."""
+    constraints = plan.constraints
+    if constraints.occlusion == "auto":
+        return None
+    try:
+        space = free_space(site_model, constraints.min_distance_m, constraints.min_height_above_ground_m)
+        model = coverage_model(site_model, space, plan.camera, constraints)
+    except (InfeasibleError, InputError):
+        return None
+    return find_reachable(model, space, plan.seed, monitor=monitor)
 
 
 def proof_of_files(plan_path: Path, site_path: Path) -> Finding | None:

@@ -105,6 +105,17 @@ def test_a_plan_is_checked_by_itself_and_its_panels_are_counted(page, context, p
     assert all(action.isEnabled() for action in page.actions())
 
 
+def test_the_check_button_has_the_plan_proved_and_an_edit_takes_the_verdict_away(page, context, planned, idle):
+    context.session.open(opened(planned), None)
+    idle(lambda: page.findings.verdict().startswith("Ready to fly"))
+    assert page.findings.proof_text() == ""
+    page.findings._check.click()
+    idle(lambda: page.findings.proof_text().startswith("Proved by an independent check"))
+    plan = replace(planned[1], method="orbit")
+    context.change("Edit", context.document.with_plan(PlanEntry("plan-1", "First plan", plan)))
+    idle(lambda: page.findings.proof_text() == "")
+
+
 @pytest.mark.slow
 def test_the_plan_tab_counts_the_warnings_that_the_mission_tab_counts(page, context, planned, idle):
     """One verdict: a place that is often just the city, and coverage far under what flights can cover."""
