@@ -111,8 +111,13 @@ def _found() -> tuple[tuple[Adapter, Any], ...]:
     library = _library()
     if library is None:
         return ()
+    try:
+        present = library.gpu.enumerate_adapters_sync()
+    except (library.GPUError, RuntimeError):
+        # A driver that does not start is as good as none.
+        return ()
     found = []
-    for raw in library.gpu.enumerate_adapters_sync():
+    for raw in present:
         info = raw.info
         name = info["device"] or info["vendor"] or info["description"]
         kind = KINDS.get(info["adapter_type"], "unknown")

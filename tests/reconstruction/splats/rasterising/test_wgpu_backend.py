@@ -8,6 +8,8 @@ from dataclasses import replace
 
 import pytest
 import torch
+from hypothesis import given
+from hypothesis import strategies as st
 from torch import Tensor
 
 from reconstruction.gpu.device import Device, DeviceFailed, open_device, why_no_gpu
@@ -121,6 +123,53 @@ def hard_cases() -> Iterator[tuple[str, MadeSplats]]:
 def test_hard_splats_are_the_defined_ones(name: str, splats: MadeSplats) -> None:
     for settings in (PLAIN, ANTIALIASED):
         by_card(splats, settings)
+
+
+@given(
+    tilt_deg=st.floats(0.0, 180.0),
+    turned_deg=st.floats(-180.0, 180.0),
+    sizes_px=st.tuples(st.floats(-2.0, 3.0), st.floats(-2.0, 3.0), st.floats(-2.0, 3.0)),
+    place_px=st.tuples(st.floats(-4.0, 36.0), st.floats(-4.0, 28.0)),
+    depth_m=st.floats(0.11, 1000.0),
+    opacity=st.floats(0.005, 1.0),
+    is_flat=st.booleans(),
+    antialiased=st.booleans(),
+)
+def test_any_splat_is_the_defined_one(
+    tilt_deg: float,
+    turned_deg: float,
+    sizes_px: tuple[float, float, float],
+    place_px: tuple[float, float],
+    depth_m: float,
+    opacity: float,
+    is_flat: bool,
+    antialiased: bool,
+) -> None:
+    view = level_view()
+    metres = depth_m / view.fx_px
+    splat = one_splat(
+        depth_m=depth_m,
+        tilt_deg=tilt_deg,
+        scale_m=tuple(metres * 10.0**size for size in sizes_px[: 2 if is_flat else 3]),
+        opacity=opacity,
+        x_m=metres * (place_px[0] - view.cx_px),
+        y_m=metres * (place_px[1] - view.cy_px),
+    )
+    half = math.radians(0.5 * turned_deg)
+    w, x, y, z = splat.quats[0].tolist()
+    turn = torch.tensor([math.cos(half), math.sin(half)], dtype=torch.float64)
+    quat = torch.tensor([[w, -z], [x, y], [y, -x], [z, w]], dtype=torch.float64) @ turn
+    given_splat, chosen = rounded(splat.changed(quats=quat[None])), ANTIALIASED if antialiased else PLAIN
+    truth, found = (draw(given_splat, view, backend, settings=chosen) for backend in ("torch", "wgpu"))
+    # Where a splat ends is a step: a pixel may be on either side of it.
+    is_step = (truth.raster.alphas > 0.0) != (found.raster.alphas > 0.0)
+    assert int(is_step.sum()) <= 2
+    apart = (found.raster.alphas - truth.raster.alphas).abs()[~is_step]
+    assert float(apart.max()) < 2e-3
+    for name, gradient, true_gradient in zip(NAMES, found.gradients, truth.gradients, strict=True):
+        assert gradient.isfinite().all(), name
+        if not is_step.any():
+            assert relative_error(gradient, true_gradient) < 1e-3, name
 
 
 def test_what_is_no_number_is_not_drawn_and_spoils_nothing() -> None:
