@@ -14,6 +14,7 @@ from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.link import VEHICLE
 from missions.mavlink.messages import (
     Address,
+    CommandAck,
     CommandInt,
     CommandLong,
     FileTransferProtocol,
@@ -39,6 +40,7 @@ from missions.mavlink.messages import (
     SetMode,
     Statustext,
     Timesync,
+    VideoStreamInformation,
 )
 from missions.simulator.airframe.state import Airframe, Pose
 from missions.simulator.autopilot.ardupilot_scheduler import ArduPilotScheduler
@@ -175,6 +177,7 @@ class SimulatedVehicle:
         self._file_server = FileServer(self.log.files)
         self._log_server = LogServer(autopilot, self.log.files, unix_start_s, lambda: self.modes.is_armed)
         self.has_file_transfer = True
+        self.video_streams: tuple[VideoStreamInformation, ...] = ()
         self._commands = Commands(
             autopilot, profile, self.modes, self.scheduler, actions, self.instruments, self._telemetry, self._say
         )
@@ -204,6 +207,8 @@ class SimulatedVehicle:
         match message:
             case message if isinstance(message, TransferMessage):
                 self._out += self.stores.receive(received, self.now_s)
+            case CommandLong(command=2504) if self.video_streams:
+                self._out += [CommandAck(2504, 0), *self.video_streams]
             case CommandLong() | CommandInt():
                 self._out += self._commands.receive(message, source)
             case SetMode():

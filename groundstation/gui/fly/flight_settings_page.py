@@ -13,6 +13,7 @@ from groundstation.gui.widgets.inputs import Form
 from groundstation.gui.widgets.tab_order import set_enabled
 from groundstation.services.fly.options import FlightSettings
 from groundstation.services.fly.video import video_url
+from groundstation.services.fly.video_offer import OfferedVideo
 from groundstation.services.units import UnitSystem
 from missions.mavlink.ntrip import EXAMPLE_CASTER, caster_of
 from missions.mavlink.remote_id import EXAMPLE, operator_number, serial_number
@@ -63,6 +64,7 @@ class SettingsPage(QWidget):
         form.addRow(self.tr("RTK corrections"), self.corrections)
         form.addRow(self.tr("Their password"), self.password)
         self.video, self._video_said = QLineEdit(), _muted("")
+        self._offered: OfferedVideo | None = None
         self.video.setPlaceholderText(VIDEO_EXAMPLE)
         self.video.setToolTip(self.tr("The camera's stream, by RTSP, or as an MPEG transport stream by UDP"))
         form.addRow(self.tr("Video"), self.video)
@@ -118,6 +120,21 @@ class SettingsPage(QWidget):
     def video_said(self) -> str:
         """What is wrong with the address of the video; empty for nothing."""
         return self._video_said.text()
+
+    def take_video(self, url: str) -> None:
+        """Take the stream that the camera offers, as if it had been typed."""
+        self.video.setText(url)
+        self._video_typed()
+
+    def offer_video(self, offered: OfferedVideo | None) -> None:
+        """Say what the vehicle's camera tells, where that is not what is shown."""
+        if offered is None or offered == self._offered:
+            return
+        self._offered = offered
+        if offered.problem:
+            self._video_said.setText(translated(offered.problem, UnitSystem.METRIC))
+        elif offered.url != self._kept.video:
+            self._video_said.setText(self.tr("The vehicle's camera offers {0}").format(offered.url))
 
     def _video_typed(self) -> None:
         """Take the address of the video, or say what is wrong with it."""

@@ -424,6 +424,7 @@ class FlyPage(QObject):
         self.report.logRequested.connect(lambda: controller.request(Request.LOG))
         controller.stateChanged.connect(self._show_all)
         controller.viewChanged.connect(self._show_view)
+        self.overlay.camera.videoAccepted.connect(self.settings.take_video)
         controller.photoCounted.connect(self._show_photo)
         controller.linkChanged.connect(self._show_link)
         controller.flightEnded.connect(self._show_end)
@@ -655,6 +656,8 @@ class FlyPage(QObject):
     def _show_view(self, view: LiveView) -> None:
         self.readouts.set_view(view)
         self.overlay.set_view(view)
+        self.overlay.camera.offer_video(view.video)
+        self.settings.offer_video(view.video)
         self.warnings.set_warnings(view.warnings)
         if self.controller.is_connected:
             worded = {each.code: translated(each.text, self._context.units) for each in view.warnings}

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 from PySide6.QtCore import QRect, Qt, QTimer, Signal
 from PySide6.QtGui import QHideEvent, QImage, QMouseEvent, QPixmap, QResizeEvent
-from PySide6.QtWidgets import QFrame, QLabel, QWidget
+from PySide6.QtWidgets import QFrame, QLabel, QPushButton, QWidget
 
 from groundstation.gui.application.translate import translated
 from groundstation.gui.camera_preview.preview import (
@@ -26,6 +26,7 @@ from groundstation.gui.view3d.site_scene import site_scene
 from groundstation.gui.widgets.theme import colours
 from groundstation.services.fly.sortie import LiveSortie
 from groundstation.services.fly.video import VideoStream
+from groundstation.services.fly.video_offer import OfferedVideo
 from groundstation.services.units import UnitSystem
 from groundstation.vehicle.state import VehicleState
 from planning.coverage.sections import panel_frames
@@ -52,8 +53,11 @@ class LiveCamera(QFrame):
     -------
     sizeToggled()
         It wants to be large, or small again.
+    videoAccepted(str)
+        The pilot wants to see the stream that the camera offers.
     """
 
+    videoAccepted = Signal(str)  # noqa: N815
     sizeToggled = Signal()  # noqa: N815  (Qt's own way of naming)
 
     def __init__(self, parent: QWidget | None = None) -> None:
@@ -83,6 +87,10 @@ class LiveCamera(QFrame):
         font = self._caption.font()
         font.setPixelSize(CAPTION_TEXT_PX)
         self._caption.setFont(font)
+        self._offered = ""
+        self.offer = QPushButton(self.tr("Show the camera's video"), self)
+        self.offer.clicked.connect(lambda: self.videoAccepted.emit(self._offered))
+        self.offer.hide()
         self._caption.setToolTip(
             self.tr("The site as the camera should see it, from the pose that the vehicle reports")
         )
@@ -98,6 +106,15 @@ class LiveCamera(QFrame):
         if url != self._url:
             self._stop_video()
             self._url = url
+
+    def offer_video(self, offered: OfferedVideo | None) -> None:
+        """Offer what the camera tells of, where nothing was chosen."""
+        self._offered = "" if offered is None or self._url else offered.url
+        self.offer.setVisible(bool(self._offered))
+        if self._offered:
+            self.offer.setToolTip(self._offered)
+            self.offer.raise_()
+            self._lay_out()
 
     def has_site(self) -> bool:
         """Whether there is something to see."""
@@ -198,6 +215,11 @@ class LiveCamera(QFrame):
     def _lay_out(self) -> None:
         picture = QRect(1, 1, self.width() - 2, max(1, self.height() - CAPTION_PX - 1))
         self._film.setGeometry(picture)
+        size = self.offer.sizeHint()
+        width = min(size.width(), picture.width())
+        self.offer.setGeometry(
+            (picture.width() - width) // 2, picture.bottom() - size.height() - 4, width, size.height()
+        )
         self._pose = None
         if self._canvas is not None:
             self._canvas.setGeometry(picture)

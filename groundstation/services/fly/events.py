@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from groundstation.services.fly.video_offer import OfferedVideo
 from groundstation.vehicle.preflight import OnBoard, PreflightCheck
 from groundstation.vehicle.sortie.run_records import Phase
 from groundstation.vehicle.state import VehicleState
@@ -111,6 +112,8 @@ class LiveView:
         Of a simulation; 1 for a real vehicle.
     fetching
         How far the vehicle's own log has come, as `doing`; None while none is fetched.
+    video
+        What the vehicle's camera tells of its video; None while it tells nothing.
     """
 
     link: LinkState
@@ -126,6 +129,7 @@ class LiveView:
     view_states: tuple[tuple[str, ViewState], ...]
     speed_up: float = 1.0
     fetching: tuple[str, float, float] | None = None
+    video: OfferedVideo | None = None
 
 
 @dataclass(frozen=True, slots=True)

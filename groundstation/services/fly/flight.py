@@ -46,6 +46,7 @@ from groundstation.services.fly.readouts import BEFORE_TAKE_OFF, allowed_request
 from groundstation.services.fly.signing import signing_problem
 from groundstation.services.fly.sortie import LiveSortie
 from groundstation.services.fly.to_go import SortieTimes, to_go
+from groundstation.services.fly.video_offer import VideoFinder
 from groundstation.vehicle.commands import CommandCall, CommandOutcome, set_mode_command
 from groundstation.vehicle.onboard_logs import NewestLog
 from groundstation.vehicle.preflight import OnBoard, is_ready, preflight_checks
@@ -423,6 +424,7 @@ class LiveFlight:
         self._events = FlightEvents(publish, self._coverage)
         self._signing = SigningEvents(publish)
         self._remote_id = RemoteIdSender(settings.identity, sortie.orders.home, unix_clock)
+        self._video = VideoFinder()
         self._activate(sortie, VehicleState())
         for record in flown:
             for photo in record.photos:
@@ -524,7 +526,8 @@ class LiveFlight:
     @property
     def _companions(self) -> tuple[Companion, ...]:
         """What goes along on the link."""
-        return (self._remote_id,) if self._corrections is None else (self._remote_id, self._corrections)
+        usual = (self._remote_id, self._video)
+        return usual if self._corrections is None else (*usual, self._corrections)
 
     @property
     def _machine(self) -> FlightRun | Listener:
@@ -763,4 +766,5 @@ class LiveFlight:
             view_states=view_states,
             speed_up=self._connection.speed_up,
             fetching=None if self._log is None else self._log.progress,
+            video=self._video.offered(),
         )

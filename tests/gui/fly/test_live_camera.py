@@ -12,10 +12,14 @@ from groundstation.gui.fly.flight_settings_page import SettingsPage
 from groundstation.gui.fly.live_camera import MOVED_M, LiveCamera
 from groundstation.gui.view3d.canvas import image_array
 from groundstation.services.fly.options import FlightSettings
+from groundstation.services.fly.video_offer import OfferedVideo, VideoFinder
 from groundstation.vehicle.state import Angles, Motion, Timed, VehicleState
-from tests.gui.driving import turn_until, type_into
+from tests.gui.driving import click_on, turn_until, type_into
+from tests.gui.fly.test_fly_page import connect, controller, page
 from tests.services.fly.test_video import film, is_film, sent_by_udp
 from tests.services.live_cases import sortie
+
+__all__ = ["controller", "page"]
 
 
 @pytest.fixture
@@ -88,3 +92,46 @@ def test_the_address_of_the_video_is_taken_or_what_is_wrong_is_said(application)
     page.video.editingFinished.emit()
     assert page.video_said() == ""
     assert heard == [replace(FlightSettings(), video="udp://0.0.0.0:5600")]
+
+
+def test_the_video_that_the_camera_offers_is_shown_once_the_pilot_wants_it(application, camera):
+    url = "rtsp://127.0.0.9:1/none"
+    page = SettingsPage()
+    chosen = []
+    page.valueChanged.connect(chosen.append)
+    camera.videoAccepted.connect(page.take_video)
+    camera.set_sortie(sortie())
+    camera.offer_video(None)
+    assert camera.offer.isHidden()
+    camera.offer_video(OfferedVideo("day", "", "the camera sends its video as RTP"))
+    assert camera.offer.isHidden()
+    page.offer_video(OfferedVideo("day", "", "the camera sends its video as RTP"))
+    assert page.video_said() == "the camera sends its video as RTP"
+    offered = OfferedVideo("day", url)
+    page.offer_video(offered)
+    assert page.video_said() == f"The vehicle's camera offers {url}"
+    camera.offer_video(offered)
+    assert camera.offer.isVisible()
+    assert camera._stream is None, "nothing is opened by itself"
+    QTest.mouseClick(camera.offer, Qt.MouseButton.LeftButton)
+    assert chosen[-1].video == url
+    assert page.video.text() == url
+    camera.set_video(url)
+    camera.offer_video(offered)
+    assert camera.offer.isHidden()
+    # What the pilot typed stays, whatever the camera offers.
+    type_into(page.video, "rtsp://10.0.0.2/own")
+    QTest.keyClick(page.video, Qt.Key.Key_Return)
+    page.offer_video(offered)
+    assert chosen[-1].video == page.video.text() == "rtsp://10.0.0.2/own"
+
+
+@pytest.mark.slow
+def test_the_flight_screen_takes_the_offer_by_a_click(application, controller, page, monkeypatch):
+    monkeypatch.setattr(VideoFinder, "offered", lambda self: OfferedVideo("day", "udp://127.0.0.1:5999"))
+    connect(application, page)
+    turn_until(application, page.overlay.camera.offer.isVisible)
+    click_on(controller.window, page.overlay.camera.offer)
+    assert page.settings.value().video == "udp://127.0.0.1:5999"
+    assert page.overlay.camera._url == "udp://127.0.0.1:5999"
+    page.settings.take_video("")
