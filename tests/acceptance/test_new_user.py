@@ -80,6 +80,10 @@ def test_from_the_start_page_to_the_report_of_a_simulated_flight(own_garbage, pi
     pilot.idle()
     mouse.look("report")
     assert pilot.reads("Photos: {0} of {1} views; sections covered: {2} of {3} planned ({4:.1f} %)")
+    mouse.press("To Photos")
+    pilot.idle()
+    mouse.look("photos")
+    assert bar.button.text() == "Render photos"
     took_s = time.perf_counter() - started
     told = f"{mouse.n_clicks} clicks, {took_s:.0f} s, longest gaps in ms: {mouse.longest_ms}"
     sys.stdout.write(told + "\n")

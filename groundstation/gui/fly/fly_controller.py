@@ -661,6 +661,9 @@ class FlyController(QObject):
             flown = {record.sortie for record in self.after.flown(case.plan)}
             if self.is_for_shown_plan and len(flown) >= len(case.plan.sorties):
                 self._context.note(is_flown=True)
+            # Only a simulated vehicle tells with which effects it flew.
+            if self.is_for_shown_plan and event.path is not None and event.record.effects:
+                self._context.note(simulated=event.path)
         if event.error is not None:
             self._note(Severity.ERROR, self._words(str(event.error)))
             self._say(Severity.ERROR, str(event.error), "flight.ended")

@@ -43,10 +43,14 @@ from reconstruction.coarse.parameters import CoarseRequest
 from reconstruction.panels.solving.facades_file import found_facades
 
 if TYPE_CHECKING:
+    from groundstation.services.scenes.photos import RenderedScene
     from reconstruction.dataset.prepare import PreparedData
 
 PHOTOS_FOLDER = "photos"
 """Of a project."""
+
+IMAGES = "images"
+"""Of a folder of rendered photos, which holds their truth, too."""
 
 Edit = Callable[[PanelDraft], PanelDraft]
 
@@ -189,6 +193,27 @@ class PhotosController(QObject):
                 self._taken_in(intake, basis)
 
         self._start(self.tr("Read photos"), work, done)
+
+    def render(self, flight: Path, folder: Path, width_px: int | None) -> None:
+        """Render the photos that a simulated flight of the current plan took into a folder, and read them."""
+        model, entry = self._context.document.site, self._context.document.current
+        if model is None or entry is None:
+            return
+
+        def work(context: JobContext) -> RenderedScene:
+            from groundstation.services.scenes.photos import render_flight
+
+            return context.run_in_process(render_flight, model, entry.plan, flight, folder, width_px)
+
+        def done(rendered: RenderedScene) -> None:
+            for found in rendered.findings:
+                self._context.say(found.severity, self._context.localized(found.message))
+            text = self.tr("Photos are rendered: {0}. They lie in {1}")
+            self._context.say(Severity.OK, text.format(len(rendered.written.photos), folder))
+            if _is_same_place(model, self._context.document.site):
+                self.read(folder / IMAGES)
+
+        self._start(self.tr("Render the photos"), work, done)
 
     def make_data_set(self, folder: Path) -> None:
         """Write what a model is trained on: these photos, their poses, and the panels of the site."""

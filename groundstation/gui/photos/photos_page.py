@@ -34,6 +34,7 @@ from groundstation.gui.photos.photo_store import PhotoStore
 from groundstation.gui.photos.photos_controller import PhotosController
 from groundstation.gui.shared_view import SharedView
 from groundstation.gui.widgets.findings_list import FindingsList
+from groundstation.gui.widgets.inputs import ChoiceBox
 from groundstation.gui.widgets.questions import Questions
 from groundstation.gui.widgets.scrolling import scrolled, split
 from groundstation.services.jobs.runner import JobContext
@@ -120,6 +121,11 @@ class FacadeTable(QTableWidget):
                 item.setTextAlignment(Qt.AlignmentFlag.AlignCenter)
                 self.setItem(row, column, item)
 
+
+RENDERED_FOLDER = "rendered-photos"
+
+WIDTHS_PX, USUAL_WIDTH_PX = (512, 1024, 2048), 1024
+"""Of rendered photos, beside that of the camera."""
 
 # Corrections made by hand over a photo, given to the controller as steps that can be undone.
 
@@ -252,6 +258,7 @@ class PhotosPage(QObject):
         self.find, self.use = QPushButton(self.tr("Find panels")), QPushButton(self.tr("Use these panels"))
         self.data_set = QPushButton(self.tr("Make data set ..."))
         self.next_battery = QPushButton(self.tr("Plan the next battery"))
+        self.render, self.width = QPushButton(self.tr("Render these photos ...")), ChoiceBox()
         self.folder, self.coverage, self.state = QLabel(), QLabel(), QLabel()
         self.coverage_shown = CoverageDisplay(context, self.controller, self.pane.scene, self.sightings, self)
         self.left = self._make_page()
@@ -288,6 +295,8 @@ class PhotosPage(QObject):
                     self._read()
                 else:
                     self._choose_folder()
+            case Act.RENDER_PHOTOS:
+                self._render()
             case Act.FIND_PANELS:
                 self.controller.find()
             case Act.MAKE_DATA_SET:
@@ -310,7 +319,17 @@ class PhotosPage(QObject):
         self.coarse.setToolTip(
             self.tr("Make a coarse model and a site of the photos of a first flight: poses, walls, roofs and ground")
         )
+        self.render.setToolTip(
+            self.tr("Make the photos that the simulated flight took, with what its panes mirror; wide ones take hours")
+        )
+        for width_px in WIDTHS_PX:
+            self.width.addItem(self.tr("{0} px wide").format(width_px), width_px)
+        self.width.addItem(self.tr("as the camera"), None)
+        self.width.setCurrentIndex(self.width.findData(USUAL_WIDTH_PX))
+        self.width.setAccessibleName(self.tr("Width of rendered photos"))
         top.addWidget(self.coarse)
+        top.addWidget(self.render)
+        top.addWidget(self.width)
         top.addWidget(self.choose)
         top.addWidget(self.read)
         top.addWidget(self.find)
@@ -364,6 +383,8 @@ class PhotosPage(QObject):
         self.coarse.clicked.connect(self._make_coarse)
         self.choose.clicked.connect(self._choose_folder)
         self.read.clicked.connect(self._read)
+        self.render.clicked.connect(self._render)
+        context.milestonesChanged.connect(self._show_state)
         self.find.clicked.connect(controller.find)
         self.use.clicked.connect(self._use)
         self.data_set.clicked.connect(self._make_data_set)
@@ -416,6 +437,17 @@ class PhotosPage(QObject):
         folder = self.controller.usual_folder()
         if folder is not None:
             self.controller.read(folder)
+
+    def _render(self) -> None:
+        """Ask where the photos of the simulated flight are to lie, and have them rendered."""
+        flight, project = self._context.milestones.simulated, self._context.session.folder
+        if flight is None or self.controller.is_busy:
+            return
+        proposed = (Path.home() if project is None else project) / RENDERED_FOLDER
+        title = self.tr("Folder for the rendered photos")
+        folder = self.questions.new_folder(self._shared_view.window(), title, proposed)
+        if folder is not None:
+            self.controller.render(flight, folder, self.width.currentData())
 
     def _use(self) -> None:
         """Take the panels over, and show them in the shared view."""
@@ -520,6 +552,9 @@ class PhotosPage(QObject):
         self.folder.setText("" if folder is None else self.tr("Folder: {0}").format(_short(folder)))
         self.folder.setToolTip("" if folder is None else str(folder))
         self.coarse.setEnabled(not controller.is_busy)
+        for widget in (self.render, self.width):
+            widget.setVisible(self._context.milestones.simulated is not None)
+            widget.setEnabled(not controller.is_busy)
         self.choose.setEnabled(has_site and not controller.is_busy)
         self.read.setEnabled(has_site and folder is not None and not controller.is_busy)
         self.find.setEnabled(

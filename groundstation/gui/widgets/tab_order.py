@@ -43,6 +43,8 @@ class FocusFrame(QFocusFrame):
     def __init__(self, window: QWidget) -> None:
         super().__init__(window)
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
+        # Else it comes up with its window, around nothing.
+        self.hide()
         application = QApplication.instance()
         assert isinstance(application, QApplication)
         application.focusChanged.connect(self._follow)
@@ -50,7 +52,9 @@ class FocusFrame(QFocusFrame):
     def _follow(self, _before: QWidget | None, now: QWidget | None) -> None:
         is_ours = now is not None and now.window() is self.window()
         is_frame = is_ours and now is not None and not now.focusPolicy() & Qt.FocusPolicy.TabFocus
-        self.setWidget(now if is_frame and now is not self.window() else None)  # type: ignore[arg-type]
+        is_shown = is_frame and now is not self.window()
+        self.setWidget(now if is_shown else None)  # type: ignore[arg-type]
+        self.setVisible(is_shown)
 
     def paintEvent(self, _event: QPaintEvent) -> None:  # noqa: N802
         """A line around it, as around a button; inside, for what scrolls shows nothing beside it."""

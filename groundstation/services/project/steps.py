@@ -6,12 +6,14 @@ is done, what is next, and which one thing leads there. `undone` says what an ed
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
 
 from groundstation.services.project.document import Document
+from missions.flight.flight_file import read_flight
+from planning.base.errors import InputError
 from planning.base.messages import Message, say
 from planning.site.records import SiteModel
 
@@ -51,6 +53,7 @@ class Act(StrEnum):
     TAKE_OFF = "take-off"
     FROM_PHOTOS = "from-photos"
     READ_PHOTOS = "read-photos"
+    RENDER_PHOTOS = "render-photos"
     FIND_PANELS = "find-panels"
     MAKE_DATA_SET = "make-data-set"
     TRAIN = "train"
@@ -82,6 +85,8 @@ class Milestones:
         What the pre-flight check found in the plan as it is; no number of errors where it has not been checked.
     flight, is_flown
         Where its flight stands, and whether all of its sorties have landed.
+    simulated
+        File of the flight that was simulated last; None where there is none: its photos can be rendered.
     n_photos
         Photos that were read over the site.
     data_set, model
@@ -96,6 +101,7 @@ class Milestones:
     is_exported: bool = False
     flight: FlightState = FlightState.APART
     is_flown: bool = False
+    simulated: Path | None = None
     n_photos: int = 0
     data_set: Path | None = None
     is_training: bool = False
@@ -221,6 +227,9 @@ def _photos(now: Milestones) -> Guidance:
     if now.n_panels is None:
         further = say("make a site of photos alone, or open one")
         return Guidance(False, "", further, say("From photos alone"), Act.FROM_PHOTOS)
+    if now.n_photos == 0 and now.simulated is not None:
+        done = say("a flight was simulated")
+        return Guidance(False, done, say("render the photos that it took"), say("Render photos"), Act.RENDER_PHOTOS)
     if now.n_photos == 0:
         further = say("read the photos of a flight; the sample project has some")
         return Guidance(False, "", further, say("Read photos"), Act.READ_PHOTOS)
@@ -288,7 +297,7 @@ def undone(now: Milestones, before: Document, after: Document) -> Milestones:
     elif before.current is not entry and (
         entry is None or before.current is None or before.current.plan is not entry.plan
     ):
-        now = replace(now, n_errors=None, is_exported=False, is_flown=False)
+        now = replace(now, n_errors=None, is_exported=False, is_flown=False, simulated=None)
     elif before.site is not site:
         now = replace(now, n_errors=None)
     n_panels = None if site is None else site.site.n_panels
@@ -308,6 +317,7 @@ class FoundFiles:
 
     is_exported: bool
     is_flown: bool
+    simulated: Path | None
     data_set: Path | None
     model: Path | None
 
@@ -317,9 +327,19 @@ def steps_in_folder(folder: Path) -> FoundFiles:
     return FoundFiles(
         is_exported=bool(_files(folder, "missions/*")),
         is_flown=bool(_files(folder, "flights/*.json")),
+        simulated=_simulated(_files(folder, "flights/*.json")),
         data_set=_newest_folder(folder, "*/dataset.json"),
         model=_newest_folder(folder, "models/*/model.json"),
     )
+
+
+def _simulated(flights: Sequence[Path]) -> Path | None:
+    """The newest flight, where it was simulated: then its file says with which effects."""
+    try:
+        is_simulated = bool(flights) and any(record.effects for record in read_flight(flights[-1]).sorties)
+    except InputError:
+        return None
+    return flights[-1] if is_simulated else None
 
 
 def _newest_folder(folder: Path, pattern: str) -> Path | None:

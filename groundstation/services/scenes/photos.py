@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from groundstation.services.scenes.views import (
+    PLAN_FILE,
     SITE_FILE,
     as_written,
     plan_of_site,
@@ -27,10 +28,10 @@ from planning.base.findings import Finding, Severity
 from planning.base.json_file import plain_values
 from planning.base.messages import about, joined, say
 from planning.base.parallel_map import cluster_client
-from planning.base.progress import QUIET, Monitor
+from planning.base.progress import QUIET, Monitor, Stop, Trace, never
 from planning.geo.mesh import join
 from planning.geo.solids import Solids
-from planning.plan import Camera
+from planning.plan import Camera, Plan, write_plan
 from planning.site.records import SiteModel
 from planning.tradeoff.runner import ComparisonFiles, Subject, compare
 from reconstruction.base.cameras import Intrinsics, PosedPhoto
@@ -237,6 +238,39 @@ def render_photos(
         mitsuba()
     with nullcontext() if address is None else cluster_client(address) as cluster:
         return _photographed(request, folder, n_processes, monitor, cluster)
+
+
+def render_flight(
+    model: SiteModel,
+    plan: Plan,
+    flight: Path,
+    folder: Path,
+    width_px: int | None,
+    *,
+    stop: Stop = never,
+    trace: Trace | None = None,
+    monitor: Monitor = QUIET,
+) -> RenderedScene:
+    """Render the photos that a flight took over a site, of a plan that needs no file.
+
+    Parameters
+    ----------
+    folder
+        For the photos: new, or with those that a run left that was cancelled.
+    width_px
+        Of the photos; None for that of the camera.
+
+    Raises
+    ------
+    InputError
+        As `render_photos`.
+    """
+    with tempfile.TemporaryDirectory() as made:
+        for name, written in as_written(model)[1].items():
+            Path(made, name).write_bytes(written)
+        write_plan(Path(made, PLAN_FILE), plan)
+        request = SceneRequest(str(Path(made, SITE_FILE)), Path(made, PLAN_FILE), flight, width_px=width_px)
+        return render_photos(request, folder, monitor=monitor)
 
 
 def _photographed(

@@ -156,3 +156,24 @@ def test_every_table_lets_tab_pass(application):
         source = path.read_text("utf-8")
         makes_tables = source.count("QTableView(") + source.count("QTableWidget(")
         assert source.count("setTabKeyNavigation(False)") >= makes_tables, path
+
+
+def test_a_frame_that_has_the_keyboard_is_marked_and_nothing_else_is(application, form):
+    from PySide6.QtWidgets import QLineEdit
+
+    from groundstation.gui.widgets.tab_order import FocusFrame, set_enabled
+
+    window, left, _right = form
+    mark = FocusFrame(window)
+    window.activateWindow()
+    turn_until(application, window.isActiveWindow)
+    assert not mark.isVisible()
+    edit = left.findChild(QLineEdit)
+    edit.setFocus()
+    assert not mark.isVisible(), "a widget shows by itself that it has the keyboard"
+    set_enabled(edit, False)
+    assert window.focusWidget() is left
+    assert mark.isVisible()
+    assert mark.widget() is left
+    left.findChildren(QLineEdit)[1].setFocus()
+    assert not mark.isVisible()
