@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import statistics
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import cv2
@@ -50,6 +51,10 @@ def page_rows(trained: TrainedModel, scene: GsScene, source: PhotoSet, model_db:
         return
     options = WebOptions(mirrors=mirrors_of(trained.model), sky=sky_light(trained.model.sky))
     page = write_web(scene, folder / "page", (), options)
+    plain = write_web(scene, folder / "plain", (), replace(options, mirrors=None))
+    size_mb = round(page.n_bytes / 1e6, 2)
+    ratio = page.n_bytes / plain.n_bytes
+    yield Row(f"{page.n_gaussians} Gaussians", "web page whose panes mirror", size_mb, "MB", ratio, "baked alone")
     unseen = trained.record.held_out
     with (
         chromium(folder / "chromium") as browser,
