@@ -4,25 +4,27 @@
 function sortWorker(scope) {
   const capacity = 65537;
   let means = new Float32Array(0);
-  let n = 0;
+  let added = 0;
   let depths = new Float32Array(0);
   let keys = new Uint16Array(0);
   const counts = new Uint32Array(capacity);
 
   function add(part) {
-    if (3 * n + part.length > means.length) {
-      const grown = new Float32Array(Math.max(2 * means.length, 3 * n + part.length));
-      grown.set(means.subarray(0, 3 * n));
+    if (3 * added + part.length > means.length) {
+      const grown = new Float32Array(Math.max(2 * means.length, 3 * added + part.length));
+      grown.set(means.subarray(0, 3 * added));
       means = grown;
       depths = new Float32Array(grown.length / 3 + 1);
       keys = new Uint16Array(depths.length);
     }
-    means.set(part, 3 * n);
-    n += part.length / 3;
+    means.set(part, 3 * added);
+    added += part.length / 3;
   }
 
   // Keys are the upper bits of positive floats, which grow as the floats do: finer the nearer, over any range.
-  function order([fx, fy, fz], offset, near) {
+  // Of the first `most`, which are the most visible ones.
+  function order([fx, fy, fz], offset, near, most) {
+    const n = Math.min(most, added);
     const bits = new Uint32Array(depths.buffer);
     let low = 0xffffffff;
     let high = 0;
@@ -54,7 +56,7 @@ function sortWorker(scope) {
 
   scope.onmessage = ({ data }) => {
     if (data.means) return add(data.means);
-    const found = order(data.forward, data.offset, data.near);
+    const found = order(data.forward, data.offset, data.near, data.most);
     return scope.postMessage(found, [found.buffer]);
   };
 }
@@ -116,10 +118,11 @@ class Sorter {
     this.want(camera);
   }
 
-  // Asked for as often as one likes; while one is being made, only the last is remembered.
-  want(camera) {
+  // Of the `most` most visible ones. Asked for as often as one likes; while one is being made, only the last is
+  // remembered.
+  want(camera, most = 1e9) {
     const forward = camera.axes()[2];
-    this.wanted = { forward, offset: dot(forward, camera.eye), near: NEAR };
+    this.wanted = { forward, offset: dot(forward, camera.eye), near: NEAR, most };
     this.next();
   }
 

@@ -5,7 +5,7 @@ const panes = new Panes(model.panes);
 const records = new Records(model);
 const defects = records.defects();
 const camera = new Camera();
-const state = { picked: null, hovered: null, column: null, matches: null, isLoaded: false, isKeeping: false, isMoving: false, quality: 1, note: "", asked: null };
+const state = { picked: null, hovered: null, column: null, matches: null, isLoaded: false, isKeeping: false, isMoving: false, hasMoved: false, quality: 1, share: 1, note: "", asked: null };
 const scheme = window.matchMedia("(prefers-color-scheme: dark)");
 let picture = null;
 let sorter = null;
@@ -32,17 +32,30 @@ const fullRatio = () => Math.min(window.devicePixelRatio || 1, 2);
 
 function draw() {
   if (picture === null) return;
-  sorter.want(camera);
+  sorter.want(camera, state.isMoving && state.share < 1 ? Math.ceil(state.share * picture.n) : undefined);
   picture.draw(camera, fullRatio() * (state.isMoving ? state.quality : 1), panes, looks(), state.isMoving);
 }
 
-// Frames that take long make the picture coarser while it moves; at rest it is as fine as the screen.
+const CALM = 180; // ms
+const COARSEST = 0.35;
+const FEWEST = 0.1;
+
+// Frames that take long make the picture coarser while it moves, and then leave out what is least visible; at rest it is
+// as fine as the screen, and whole.
+function adapt(took) {
+  if (took > 50 && state.quality <= COARSEST) state.share = Math.max(FEWEST, 0.8 * state.share);
+  else if (took < 25 && state.share < 1) state.share = Math.min(1, 1.1 * state.share);
+  else state.quality = clamped(state.quality * (took > 50 ? 0.8 : took < 25 ? 1.1 : 1), COARSEST, 1);
+}
+
 function frame(now) {
   if (picture?.isBusy) return void requestAnimationFrame(frame);
   isAsked = false;
+  const wasMoving = state.hasMoved;
   const took = now - lastFrame;
   lastFrame = now;
-  if (state.isMoving && took < 1000) state.quality = clamped(state.quality * (took > 50 ? 0.8 : took < 25 ? 1.1 : 1), 0.35, 1);
+  state.hasMoved = state.isMoving;
+  if (state.isMoving && wasMoving) adapt(took);
   draw();
 }
 
@@ -55,10 +68,17 @@ function ask() {
 function changed() {
   state.isMoving = true;
   clearTimeout(restTimer);
-  restTimer = setTimeout(() => {
-    state.isMoving = false;
-    ask();
-  }, 180);
+  restTimer = setTimeout(rest, CALM);
+  ask();
+}
+
+// Where a frame is still being waited for, or a key is held, it is a slow device that makes the pause.
+function rest() {
+  if (isAsked || motion.held.size) {
+    restTimer = setTimeout(rest, CALM);
+    return;
+  }
+  state.isMoving = false;
   ask();
 }
 

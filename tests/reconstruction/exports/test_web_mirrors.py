@@ -165,6 +165,28 @@ def test_a_device_with_little_memory_shows_the_most_visible_and_says_of_how_many
     assert browser.errors() == []
 
 
+HELD = "document.getElementById('picture').dispatchEvent(new KeyboardEvent('keydown', { key: 'arrowleft' }))"
+LET_GO = "window.dispatchEvent(new KeyboardEvent('keyup', { key: 'arrowleft' }))"
+
+
+def test_while_it_moves_slowly_the_least_visible_is_left_out_and_at_rest_nothing_is(browser, tmp_path):
+    scene = synthetic_scene(sizes=((200,),), n_background=30_000)
+    opened(browser, tmp_path / "page", scene, (), (760, 300), degree=0)
+    counts = "const { n, nOrdered } = reflight.state(); return [n, nOrdered]"
+    browser.run("reflight.look([0, -30, 0], 0, 0, 30)")
+    browser.settled()
+    n, at_rest = browser.run(counts)
+    assert at_rest == n > 25_000
+    browser.run(HELD)
+    until = time.monotonic() + 60.0
+    while (moving := browser.run(counts)[1]) > 0.7 * n and time.monotonic() < until:
+        time.sleep(0.05)
+    browser.run(LET_GO)
+    assert 0.05 * n < moving < 0.7 * n
+    browser.settled()
+    assert browser.run(counts) == [n, n]
+
+
 @pytest.mark.parametrize("brightest", [0, 1])
 def test_panes_mirror_an_environment_map(browser, tmp_path, brightest):
     def make(_rng):
