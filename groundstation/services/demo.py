@@ -7,7 +7,7 @@ from pathlib import Path
 
 from groundstation.services.fly.flying import FlightRequest, Flown, fly_files
 from groundstation.services.mission.export import export_plan
-from groundstation.services.mission.proof import VERIFIER
+from groundstation.services.mission.proof import PAGE, VERIFIER
 from groundstation.services.mission.readiness import preflight
 from groundstation.services.plan.planning import plan_site
 from missions.formats.registry import FORMATS
@@ -66,6 +66,7 @@ def demonstrate(
     if is_flyable(findings):
         flight_path = folder / f"{scene}.flight.json"
         flown = fly_files(plan_path, site_path, flight_path, FlightRequest(), monitor=monitor)
-    proofs = (*sorted(folder.glob("*.proof")), *sorted(folder.glob("*.plan.json"))[1:], folder / VERIFIER.name)
+    checkers = folder / VERIFIER.name, folder / PAGE.name
+    proofs = (*sorted(folder.glob("*.proof")), *sorted(folder.glob("*.plan.json"))[1:], *checkers)
     checked = findings, tuple(missions), proofs, tuple(export_findings)
     return Demonstration(site_path, plan_path, planned, *checked, flight_path, flown)

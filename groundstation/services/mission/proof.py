@@ -31,6 +31,8 @@ from planning.viewpoints.prepare import coverage_model
 PROVED, FALSE = reflight_verify.PROVED, reflight_verify.FALSE
 
 VERIFIER = Path(reflight_verify.__file__)
+PAGE = VERIFIER.with_suffix(".html")
+"""The verifier for people without Python: a page that says the same in any browser, without a network."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -176,7 +178,8 @@ def write_mission_proof(
     beside = dict(_copies(site_path, site_model, folder))
     if not _is_same(flown_path, plan_path):
         beside[flown_path] = written
-    write_together({path: proof, **beside, folder / VERIFIER.name: VERIFIER.read_bytes()})
+    checkers = {folder / checker.name: checker.read_bytes() for checker in (VERIFIER, PAGE)}
+    write_together({path: proof, **beside, **checkers})
     return proof_finding(verified(folder / site_path.name, flown_path, path, missions))
 
 

@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 from groundstation.services.mission.export import export_plan
-from groundstation.services.mission.proof import VERIFIER, verified
+from groundstation.services.mission.proof import PAGE, VERIFIER, verified
 from groundstation.services.plan.planning import plan_site
 from planning.geo.mesh import write_mesh
 from planning.parameters import Constraints, GreedyParameters
@@ -74,6 +74,7 @@ def test_all_claims_on_a_planned_flight_are_proved(planned: Path) -> None:
 
 def test_the_verifier_runs_alone_from_the_folder_of_a_mission(planned: Path, tmp_path: Path) -> None:
     export_plan(planned / "kiosk.plan.json", "dji-kmz", tmp_path / "flight.kmz")
+    assert (tmp_path / PAGE.name).read_bytes() == PAGE.read_bytes()
     alone = [sys.executable, "-I", "-S", str(tmp_path / VERIFIER.name), str(tmp_path), "--json"]
     done = subprocess.run(alone, capture_output=True, text=True, check=False)
     claims = json.loads(done.stdout)["claims"]
