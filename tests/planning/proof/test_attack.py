@@ -1,0 +1,100 @@
+"""Tampered files: nothing is called proved that an exact judge calls false, and no verifier falls over."""
+
+from __future__ import annotations
+
+import os
+from collections import Counter
+from concurrent.futures import ProcessPoolExecutor
+from functools import cache
+from pathlib import Path
+from random import Random
+
+import pytest
+
+from tests.planning.proof.attack import same, wrongly_proved
+from tests.planning.proof.scenes import files, kept_hut, places
+from tests.planning.proof.tampering import TAMPERINGS, of_kinds, tampered
+from tests.planning.proof.verifiers import NODE, Claim, QtScript, by_module, by_node, by_program, load
+
+N_SLOW = 10_000
+CHUNK = 100
+
+
+def test_nothing_of_a_few_tampered_huts_is_wrongly_proved(tmp_path: Path) -> None:
+    hut, seen_from = kept_hut()
+    module, verdicts = load(), Counter[str]()
+    for k, kind in enumerate(of_kinds(Random(0), len(TAMPERINGS))):
+        changed = tampered(Random(k), hut, kind)
+        claims = by_module(module, changed, tmp_path)
+        assert wrongly_proved(changed, claims, seen_from) == [], kind
+        verdicts.update({claim.verdict for claim in claims})
+    assert set(verdicts) == {"proved", "false", "not proved"}
+
+
+def test_the_page_says_the_same_of_tampered_huts(tmp_path: Path) -> None:
+    hut, _ = kept_hut()
+    module, script = load(), QtScript()
+    for k, kind in enumerate(of_kinds(Random(1), 12)):
+        changed = tampered(Random(k), hut, kind)
+        assert same(by_module(module, changed, tmp_path), script(changed)), (kind, k)
+
+
+def _attacked(chunk: int) -> list[str]:
+    """What is wrong in one chunk of tamperings, in words."""
+    import tempfile
+
+    found: list[str] = []
+    hut, seen_from = kept_hut()
+    module, changed, claimed = _module(), [], []
+    with tempfile.TemporaryDirectory() as folder:
+        for k, kind in enumerate(of_kinds(Random(chunk), CHUNK)):
+            seed = chunk * CHUNK + k
+            changed.append(tampered(Random(seed), hut, kind))
+            claimed.append(by_module(module, changed[-1], Path(folder)))
+            wrong = wrongly_proved(changed[-1], claimed[-1], seen_from)
+            found += [f"{kind}, seed {seed}: {claim.id} is wrongly proved" for claim in wrong]
+        if NODE is not None:
+            for k, (ours, pages) in enumerate(zip(claimed, by_node(changed, Path(folder)), strict=True)):
+                if not same(ours, pages):
+                    found.append(f"seed {chunk * CHUNK + k}: {_difference(ours, pages)}")
+    return found
+
+
+@cache
+def _module():  # type: ignore[no-untyped-def]
+    return load()
+
+
+def _difference(ours: list[Claim], pages: list[Claim]) -> str:
+    return "; ".join(
+        f"{a.id} {a.verdict}, on the page {b.verdict} ({b.text})"
+        for a, b in zip(ours, pages, strict=True)
+        if a[:2] != b[:2]
+    )
+
+
+@pytest.mark.slow
+def test_nothing_of_ten_thousand_tampered_huts_is_wrongly_proved() -> None:
+    chunks = range(N_SLOW // CHUNK)
+    with ProcessPoolExecutor(os.cpu_count()) as pool:
+        found = [line for lines in pool.map(_attacked, chunks) for line in lines]
+    assert found == []
+
+
+@pytest.mark.slow
+def test_nothing_of_tampered_shops_is_wrongly_proved(tmp_path: Path) -> None:
+    shop, seen_from = files(), places()
+    module, script = load(), QtScript()
+    assert {claim.verdict for claim in by_module(module, shop, tmp_path)} == {"proved"}
+    for k, kind in enumerate(of_kinds(Random(2), 2 * len(TAMPERINGS))):
+        changed = tampered(Random(k), shop, kind)
+        claims = by_module(module, changed, tmp_path)
+        assert wrongly_proved(changed, claims, seen_from) == [], (kind, k)
+        assert same(claims, script(changed)), (kind, k)
+
+
+@pytest.mark.parametrize("kind", ["damaged bytes", "odd values", "mission: archives damaged or doubled"])
+def test_the_program_says_of_damaged_files_what_it_says_of_others(kind: str, tmp_path: Path) -> None:
+    status, claims, errors = by_program(tampered(Random(3), kept_hut()[0], kind), tmp_path)
+    assert errors == ""
+    assert status == (1 if any(claim.verdict == "false" for claim in claims) else 3)
