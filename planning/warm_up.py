@@ -24,6 +24,7 @@ from planning.motion import speed_profile
 from planning.parameters import DEFAULT_PROFILE, Constraints, GreedyParameters, Precision
 from planning.plan import Sortie, Viewpoint, ViewpointArrays
 from planning.planner import plan_flight
+from planning.proof import boxes, separation
 from planning.request import PlanRequest
 from planning.routing import at_once, lower_bound, orienteering, sorties, tour
 from planning.site.bundled import SCENES
@@ -78,7 +79,7 @@ def compile_kernels() -> None:
     field.legs_keep(np.ones((1, 3)), np.ones((1, 3)), 1.0)
     field.heights_m(np.ones((1, 3)))
     field.spread_departures(np.ones((1, 3)), np.zeros((2, 2)), np.zeros((2, 2)), np.zeros((1, 1)))
-    for module in (at_once, lower_bound, orienteering, sorties, speed_profile, tour):
+    for module in (at_once, boxes, lower_bound, orienteering, separation, sorties, speed_profile, tour):
         module.compile_kernels()
 
 

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.jit import inline, kernel
-from planning.geo.bvh import Bvh
+from planning.geo.bvh import Bvh, build_bvh
 
 Array = NDArray[np.float64]
 
@@ -253,3 +253,17 @@ def exclude(
                 waiting += 2
         n += 1
     return n
+
+
+def no_shadows(eye: Array) -> Shadows:
+    """Of a scene in which nothing hides anything."""
+    start = np.zeros(1, np.int64)
+    return Shadows(eye, np.zeros((0, 6)), start, np.zeros((0, 3)), start, start[:0])
+
+
+def compile_kernels() -> None:
+    """Run every kernel on small inputs."""
+    axes = np.eye(3)
+    panel = Panel(np.zeros(3), axes, axes, np.array([1.0, 0.0]), axes[:1], np.array([0.5]))
+    codes = np.empty(8, np.int64)
+    exclude(panel, no_shadows(np.zeros(3)), build_bvh(axes[None]), np.zeros(3), np.ones(3), 1.0, 10.0, codes)

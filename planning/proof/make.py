@@ -26,7 +26,7 @@ from planning.base.progress import QUIET, Monitor
 from planning.coverage.reach_kernel import REACHABLE, UNREACHABLE
 from planning.coverage.reachability import Reachability, convex_groups
 from planning.geo.bvh import Bvh, build_bvh
-from planning.proof.boxes import CONE, CUT_X, PLANE, Panel, Shadows, exclude
+from planning.proof.boxes import CONE, CUT_X, PLANE, Panel, Shadows, exclude, no_shadows
 from planning.proof.reflight_verify import Case, Pane, Refused
 from planning.proof.separation import DirectionTable, Separator
 from planning.routing.rally import return_height
@@ -335,14 +335,11 @@ class _Patches:
         return [patch for _, patch in sorted(found, reverse=True)[:MOST_PATCHES]]
 
 
-_NO_STARTS = np.zeros(1, np.int64)
-
-
 def _shadows(pane: Pane, patches: _Patches | None) -> Shadows:
     """Shadows of all patches as seen from a panel."""
     eye = np.array(pane.target)
     if patches is None:
-        return Shadows(eye, np.zeros((0, 6)), _NO_STARTS, np.zeros((0, 3)), _NO_STARTS, _NO_STARTS[:0])
+        return no_shadows(eye)
     found: list[tuple[Array, Array]] = []
     numbers = []
     for patch in patches.seen_from(pane):

@@ -237,3 +237,9 @@ class DirectionTable:
     def rows(self) -> list[list[float]]:
         """The table."""
         return [list(each) for each in self._numbers]
+
+
+def compile_kernels() -> None:
+    """Run every kernel on small inputs."""
+    triangle = np.eye(3)[None]
+    Separator(DirectionTable(), triangle).directions([np.array([[5.0, 5.0, 5.0], [5.0, 5.0, 6.0]])], 1.0)
