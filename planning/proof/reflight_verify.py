@@ -230,7 +230,6 @@ def rest_to_rest(size: float, speed: float, a: float, jerk: float) -> float:
         root = (2.0 * root + x / (root * root)) / 3.0  # Newton, from above, for the cube root
     return 4.0 * root
 
-
 class Case:
     """Site, plan and proof. The methods from `files` on prove one claim each, and say in words what is proved."""
 
@@ -253,7 +252,8 @@ class Case:
                 (x, y, below), (u, v, above) = vector(box[0], "box"), vector(box[1], "box")
                 triangles += prism([(x, y), (u, y), (u, v), (x, v)], below, above)
                 continue
-            demand(re.fullmatch(r"[^/\\:\0-\x1f]+(/[^/\\:\0-\x1f]+)*", name) is not None and ".." not in name, "a mesh has a name that is no file's")
+            is_plain = re.fullmatch(r"[^/\\:\0-\x1f]+(/[^/\\:\0-\x1f]+)*", name) is not None and ".." not in name
+            demand(is_plain, "a mesh has a name that is no file's")
             self.meshes[name] = (folder / name).read_bytes()
             triangles += read_ply(self.meshes[name])
         air, limits, camera = get(site, "airspace", dict), get(plan, "constraints", dict), get(plan, "camera", dict)
@@ -565,7 +565,6 @@ class Case:
         left = all([dot(m, d) >= R * length(d) for m in planes for d in rays])
         return beyond and left and len(planes) > 0
 
-
 # Mission files. They are taken as Reflight writes them, and anything else in them proves nothing.
 
 def enu(origin: Vec, lat_deg: float, lon_deg: float, height_m: float) -> Vec:
@@ -634,7 +633,8 @@ MAVLINK_ORDER, MAVLINK = "T[VX]*[ABW]*L", {name: rule(text) for name, text in { 
 2 2000 0 0 1 # 0 0 0/3 16 @w 0.5 0 @h @y @x @z/""",
     "W": "3 16 1 (0 0 0|0.5 0 nan) @y @x @z/", "X": "(2 1001 -2 -2 -1 -1 0 0 0|2 202 4 # # # 0 0 0|2 532 # # 0 0 0 0 0)/"}.items()}
 
-ITEM_KEYS = {"AMSLAltAboveTerrain", "Altitude", "AltitudeMode", "autoContinue", "command", "doJumpId", "frame", "params", "type", "viewpointId"}
+ITEM_KEYS = {"AMSLAltAboveTerrain", "Altitude", "AltitudeMode", "autoContinue", "command", "doJumpId", "frame", "params", "type",
+             "viewpointId"}
 
 class Mission:
     """What a mission file flies: places (latitude, longitude, height), and photos (number of its place, heading, pitch)."""
@@ -678,7 +678,8 @@ class Mission:
         return said
 
     def _flat(self, text: str) -> str:
-        prolog = '<?xml version="1.0" encoding="UTF-8"?>\n<kml xmlns="http://www.opengis.net/kml/2.2" xmlns:wpml="http://www.dji.com/wpmz/1.0.6">\n'
+        prolog = ('<?xml version="1.0" encoding="UTF-8"?>\n<kml xmlns="http://www.opengis.net/kml/2.2" '
+                  'xmlns:wpml="http://www.dji.com/wpmz/1.0.6">\n')
         demand(text.startswith(prolog) and text.endswith("\n</kml>\n"), "a part of the archive is not as Reflight writes it")
         text = re.sub(">\n *<", "><", text[len(prolog) : -8].strip(" "))
         text = re.sub(r"<(wpml:(?!coordinates)[a-z][A-Za-z]*|coordinates)>([^<>=;&\[\]]*)</\1>", r"\1=\2;", text)
@@ -725,71 +726,82 @@ def flies(case: Case, mission: Mission) -> int:
     if mission.is_dji:
         case.return_(mission.return_m)
     for s, path in enumerate(case.paths):
-        last = len(path) - mission.is_dji  # DJI missions end above home
+        last = len(path) - mission.is_dji  # DJI missions end above home, and return from there
         kept = [k for k in range(1, last) if k == 1 or not is_same(path[k], path[k - 1])]
-        photos = [(sum([1 for j in kept if j <= k]) - 1.0, case.by_id[name]) for k, name in zip(case.photos_of(s), case.sorties[s]["viewpoint_ids"], strict=True)]
-        if len(places) == len(kept) and len(photos) == len(mission.photos) and all(
-                [length(sub(p, path[k])) <= MISSION_M for p, k in zip(places, kept, strict=True)]) and all(
-                [at == k and same_heading(h, v[2]) and abs(p - v[3]) <= MISSION_DEG for (k, v), (at, h, p) in zip(photos, mission.photos, strict=True)]):
-            return s
+        views = [case.by_id[name] for name in case.sorties[s]["viewpoint_ids"]]
+        at = [sum([1 for j in kept if j <= k]) - 1.0 for k in case.photos_of(s)]
+        if len(places) == len(kept) and len(views) == len(mission.photos):
+            same = [length(sub(p, path[k])) <= MISSION_M for p, k in zip(places, kept, strict=True)]
+            for view, k, photo in zip(views, at, mission.photos, strict=True):
+                same.append(photo[0] == k and same_heading(photo[1], view[2]) and abs(photo[2] - view[3]) <= MISSION_DEG)
+            if all(same):
+                return s
     raise Refused("it flies no sortie of the plan: places, their order, or photos differ", FALSE)
 
 def same_heading(a: float, b: float) -> bool:
     return abs(abs(a - b) - 360.0 * floor(abs(a - b) / 360.0 + 0.5)) <= MISSION_DEG
 
-CLAIMS = (("files", Case.files), ("sorties", Case.sorties_), ("gimbal", Case.gimbal), ("airspace", Case.airspace), ("distance", Case.distance),
-          ("no-fly", Case.no_fly_), ("return", Case.return_), ("battery", Case.battery), ("apart", Case.apart), ("coverage", Case.coverage),
-          ("reachable", Case.reachable))
+CLAIMS = (
+    ("files", Case.files), ("sorties", Case.sorties_), ("gimbal", Case.gimbal), ("airspace", Case.airspace),
+    ("distance", Case.distance), ("no-fly", Case.no_fly_), ("return", Case.return_), ("battery", Case.battery),
+    ("apart", Case.apart), ("coverage", Case.coverage), ("reachable", Case.reachable))
+UNREADABLE = (ValueError, LookupError, TypeError, ArithmeticError, AttributeError, OSError, RecursionError, struct.error, zlib.error)
 
 def judged(prove: Any) -> tuple[str, str]:
+    """Verdict and words of a claim. What trips over a file proves nothing."""
     try:
         return PROVED, prove()
     except Refused as refused:
         return refused.verdict, str(refused)
-    except (ValueError, LookupError, TypeError, ArithmeticError, AttributeError, OSError, struct.error, zlib.error, RecursionError) as error:
+    except UNREADABLE as error:
         return NOT_PROVED, f"a file is not as expected ({type(error).__name__})"
 
 def verify(site: Path, plan: Path, proof: Path, missions: list[Path]) -> list[dict[str, str]]:
     """All claims, in order: each with its id, verdict and text."""
-    cases: list[Case] = []
+    cases, flown = list[Case](), dict[str, list[int]]()
+
     def opened() -> str:
         cases.append(Case(site.parent, [each.read_bytes() for each in (site, plan, proof)]))
         return ""
 
     verdict, reason = judged(opened)
     found = [(name, *(judged(lambda claim=claim: claim(cases[0])) if cases else (verdict, reason))) for name, claim in CLAIMS]
-    flown: dict[str, list[int]] = {}
     for path in missions:
-        def prove(path: Path = path) -> str:
+        def flies_a_sortie(path: Path = path) -> str:
             demand(bool(cases), reason)
-            flown.setdefault(path.suffix, [])
             s = flies(cases[0], Mission(path.read_bytes(), path.suffix))
-            flown[path.suffix].append(s)
+            flown.setdefault(path.suffix, []).append(s)
             return f"flies sortie {s + 1}: the same places in the same order within {MISSION_M:g} m, the same photos"
-        found.append((f"mission {path.name}", *judged(prove)))
+
+        found.append((f"mission {path.name}", *judged(flies_a_sortie)))
     if missions:
-        is_whole = bool(cases) and all([sorted(each) == list(range(len(cases[0].paths))) for each in flown.values()]) and len(flown) > 0
-        is_whole = is_whole and all([each[1] == PROVED for each in found[-len(missions) :]])
-        found.append(("missions", PROVED if is_whole else NOT_PROVED, "the files of each kind fly every sortie once" if is_whole else "not every sortie is flown once"))
+        whole = bool(cases) and all([each[1] == PROVED for each in found[-len(missions) :]])
+        whole = whole and all([sorted(each) == list(range(len(cases[0].paths))) for each in flown.values()])
+        text = "the files of each kind fly every sortie once" if whole else "not every sortie is flown once"
+        found.append(("missions", PROVED if whole else NOT_PROVED, text))
     return [{"id": name, "verdict": verdict, "text": text} for name, verdict, text in found]
+
+def jobs_of(folder: Path) -> list[list[Path]]:
+    """Site, plan, proof and missions of each proof in a folder."""
+    jobs = []
+    for proof in sorted(folder.glob("*.proof")):
+        named = read_json(proof.read_bytes(), proof.name)
+        files = [folder / Path(get(get(named, each, dict), "name", str)).name for each in ("site", "plan")]
+        stem, _, kind = proof.name.removesuffix(".mission.proof").rpartition(".")
+        names = re.compile(re.escape(stem) + "(-[0-9]+)?[.]" + re.escape(kind)) if proof.name.endswith(".mission.proof") else None
+        jobs.append([*files, proof, *[p for p in sorted(folder.iterdir()) if names and names.fullmatch(p.name)]])
+    return jobs
 
 def main() -> int:
     """Check what the command line names; the exit status."""
     paths, as_json = [Path(each) for each in sys.argv[1:] if each != "--json"], "--json" in sys.argv
-    jobs = [paths]
-    if len(paths) == 1:
-        jobs = []
-        for proof in sorted(paths[0].glob("*.proof")):
-            named = read_json(proof.read_bytes(), proof.name)
-            files = [paths[0] / Path(get(get(named, each, dict), "name", str)).name for each in ("site", "plan")]
-            stem, dot, kind = proof.name.removesuffix(".mission.proof").rpartition(".")
-            missions = [p for p in sorted(paths[0].iterdir()) if re.fullmatch(re.escape(stem) + "(-[0-9]+)?" + re.escape(dot + kind), p.name)]
-            jobs.append([*files, proof, *(missions if proof.name.endswith(".mission.proof") else [])])
-    if not jobs or any(len(job) < 3 for job in jobs):
-        print("usage: reflight_verify.py SITE PLAN PROOF [MISSION ...] [--json], or reflight_verify.py FOLDER with *.proof files", file=sys.stderr)
+    jobs = jobs_of(paths[0]) if len(paths) == 1 else [paths]
+    if not jobs or len(jobs[0]) < 3:
+        print("usage: reflight_verify.py SITE PLAN PROOF [MISSION ...] [--json], or FOLDER with *.proof files", file=sys.stderr)
         return 2
     claims = [claim for job in jobs for claim in verify(job[0], job[1], job[2], job[3:])]
-    print(json.dumps({"claims": claims}) if as_json else "\n".join([f"{each['verdict']:>10}  {each['id']}: {each['text']}" for each in claims]))
+    lines = [f"{each['verdict']:>10}  {each['id']}: {each['text']}" for each in claims]
+    print(json.dumps({"claims": claims}) if as_json else "\n".join(lines))
     verdicts = {claim["verdict"] for claim in claims}
     return 1 if FALSE in verdicts else 0 if verdicts == {PROVED} else 3
 

@@ -250,6 +250,17 @@ def test_plans_on_bundled_sites_are_proved(tmp_path: Path, scene: str) -> None:
     assert {claim.verdict for claim in found} == {"proved"}, found
 
 
+MOST_LINES, MOST_COLUMNS = 820, 145
+"""Of the verifier: what can be read in an hour or two. docs/concepts/proof.md states the number."""
+
+
+@pytest.mark.lint
+def test_the_verifier_grows_no_longer() -> None:
+    lines = VERIFIER.read_text(encoding="utf-8").splitlines()
+    assert len(lines) <= MOST_LINES
+    assert max(map(len, lines)) <= MOST_COLUMNS
+
+
 @pytest.mark.lint
 def test_the_verifier_imports_the_standard_library_alone() -> None:
     tree = ast.parse(VERIFIER.read_text(encoding="utf-8"))
