@@ -773,3 +773,25 @@ def test_a_picture_needs_a_place_for_each_corner(uv):
     points, cells = np.zeros((4, 3)), np.array([[0, 1, 2], [0, 2, 3]])
     with pytest.raises(ValueError, match="uv: expected shape"):
         Drawable(points, cells, flat("#ffffff", 2), picture=Picture(np.zeros((2, 2, 3), np.uint8), uv))
+
+
+def test_photos_on_panels_are_asked_for_when_there_are_some_and_lie_before_the_panels(application, view):
+    from groundstation.services.scenes.surfaces import Part, Surface
+
+    wanted = []
+    view.photosWanted.connect(lambda: wanted.append(True))
+    view.set_site(office())
+    view.set_layer_visible(Layer.PHOTOS, True)
+    assert not wanted, "there are no photos yet"
+    view.offer_photos(True)
+    assert wanted == [True]
+    corners = view._site.frames.corners
+    triangles = corners[:, [[0, 1, 2], [0, 2, 3]]].reshape(-1, 3, 3)
+    red = np.tile(np.array([[220, 0, 0]], np.uint8), (len(triangles), 1))
+    view.set_panel_photos([Surface(Part.PANES, triangles, red)])
+    view.look_at_all()
+    shown = picture(application, view)
+    assert ((shown[..., 0] > 100) & (shown[..., 1:] < 30).all(axis=2)).sum() > 10_000
+    view.offer_photos(False)
+    shown = picture(application, view)
+    assert ((shown[..., 0] > 100) & (shown[..., 1:] < 30).all(axis=2)).sum() == 0

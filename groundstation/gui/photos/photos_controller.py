@@ -34,6 +34,8 @@ from groundstation.services.photos.tradeoff import Trial, facade_trials
 from groundstation.services.project.document import Document, PlanEntry
 from groundstation.services.project.input_files import read_input_site
 from groundstation.services.project.session import History
+from groundstation.services.scenes.panel_pictures import panel_pictures
+from groundstation.services.scenes.surfaces import Surface
 from groundstation.services.site.sources import with_new_site
 from planning.base.errors import GroundStationError
 from planning.base.findings import Finding, Severity
@@ -214,6 +216,23 @@ class PhotosController(QObject):
                 self.read(folder / IMAGES)
 
         self._start(self.tr("Render the photos"), work, done)
+
+    def take_panels(self, show: Callable[[tuple[Surface, ...]], None]) -> None:
+        """Take what the photos show of the panels, and show it where they are still these photos."""
+        model, intake = self._context.document.site, self.intake
+        if model is None or intake is None:
+            return
+        usable = [photo for photo, is_usable in zip(intake.photos, intake.usable, strict=True) if is_usable]
+
+        def done(surfaces: tuple[Surface, ...]) -> None:
+            if self.intake is intake:
+                show(surfaces)
+
+        self._start(
+            self.tr("Photos on panels"),
+            lambda context: context.run_in_process(panel_pictures, model, usable, intake.metadata),
+            done,
+        )
 
     def make_data_set(self, folder: Path) -> None:
         """Write what a model is trained on: these photos, their poses, and the panels of the site."""

@@ -413,6 +413,7 @@ class PhotosPage(QObject):
         context.unitsChanged.connect(self._units_changed)
         context.documentChanged.connect(self._document_changed)
         self._shared_view.with_scene(lambda _scene: self.pane.scene.allow_opening())
+        self._shared_view.with_scene(lambda scene: scene.photosWanted.connect(self._show_on_panels))
         self._shared_view.closing.connect(self._window_closing)
 
     # What the user does
@@ -481,6 +482,12 @@ class PhotosPage(QObject):
         self._go_to_place(path)
         self.pane.show_photo()
 
+    def _show_on_panels(self) -> None:
+        """Let the shared view draw the panels as the photos show them."""
+        scene = self._shared_view.scene()
+        if scene is not None:
+            self.controller.take_panels(scene.set_panel_photos)
+
     def _coverage_shown(self, is_shown: bool) -> None:
         if is_shown:
             self.details.setCurrentWidget(self.sightings)
@@ -506,6 +513,8 @@ class PhotosPage(QObject):
     def _show_photos(self) -> None:
         controller, model = self.controller, self._context.document.site
         self.strip.set_cards(controller.cards)
+        has_photos = controller.intake is not None and bool(controller.intake.photos)
+        self._shared_view.with_scene(lambda scene: scene.offer_photos(has_photos))
         self.map.set_photos(controller.cards)
         self.map.set_site(None if model is None else model.site)
         self._show_findings()

@@ -153,6 +153,7 @@ class Layer(StrEnum):
     HEMISPHERES = "hemispheres"
     LABELS = "labels"
     SURROUNDINGS = "surroundings"
+    PHOTOS = "photos"
 
 
 ON_TOP = -66_000.0

@@ -40,6 +40,7 @@ from groundstation.gui.view3d.site_scene import (
     FRUSTUM_M,
     PlanScene,
     SiteScene,
+    before_panels,
     glass_colours,
     landing_pad,
     panels_drawable,
@@ -265,10 +266,13 @@ class ScenePicture(QWidget):
         It is looked at from elsewhere, but not by `set_orbit`.
     surroundingsWanted(SiteModel)
         What the virtual scene of this site looks like is to be given to `set_surfaces`.
+    photosWanted()
+        What the photos show of the panels is to be given to `set_panel_photos`.
     """
 
     orbitChanged = Signal(object)  # noqa: N815  (Qt's own way of naming)
     surroundingsWanted = Signal(object)  # noqa: N815
+    photosWanted = Signal()  # noqa: N815
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -281,8 +285,9 @@ class ScenePicture(QWidget):
         self._panel_values: tuple[ColourScale, Array] | None = None
         self._selection: tuple[Item, ...] = ()
         self._hover: Item | None = None
-        self._hidden: frozenset[Layer] = frozenset({Layer.FRUSTA, Layer.SURROUNDINGS})
+        self._hidden: frozenset[Layer] = frozenset({Layer.FRUSTA, Layer.SURROUNDINGS, Layer.PHOTOS})
         self._surfaces: tuple[Surface, ...] = ()
+        self._has_photos = False
         self._opacities: dict[Layer, float] = {}
         self._sorties: dict[int, tuple[bool, float]] = {}
         self._n_sorties = 0
@@ -326,6 +331,20 @@ class ScenePicture(QWidget):
         """Draw walls and surroundings of the site as its virtual scene has them, while that layer is shown."""
         self._surfaces = tuple(surfaces)
         self._draw_surroundings()
+
+    def offer_photos(self, is_there: bool) -> None:
+        """There are photos of the site, or none any more: their layer can be shown, and asks for them."""
+        self._has_photos = is_there
+        self._canvas.draw(Layer.PHOTOS, ())
+        self._want_photos()
+
+    def set_panel_photos(self, surfaces: Sequence[Surface]) -> None:
+        """Draw panels as photos show them, while that layer is shown."""
+        self._canvas.draw(Layer.PHOTOS, tuple(map(before_panels, surface_drawables(surfaces))))
+
+    def _want_photos(self) -> None:
+        if self._has_photos and self.is_layer_visible(Layer.PHOTOS):
+            self.photosWanted.emit()
 
     def _show_surroundings(self, is_software: bool) -> None:
         """Show the surroundings from the beginning where a graphics card draws; a processor needs 1.4 times as long."""
@@ -435,6 +454,8 @@ class ScenePicture(QWidget):
         elif layer is Layer.SURROUNDINGS:
             self._draw_surroundings()
             self._want_surroundings()
+        elif layer is Layer.PHOTOS:
+            self._want_photos()
         self._show_labels()
 
     def is_layer_visible(self, layer: Layer) -> bool:

@@ -354,6 +354,7 @@ class SceneView(ScenePicture):
                 Layer.SHADOWS: self.tr("Shadows"),
                 Layer.GROUND: self.tr("Ground"),
                 Layer.SURROUNDINGS: self.tr("Simulated surroundings"),
+                **({Layer.PHOTOS: self.tr("Photos on panels")} if self._has_photos else {}),
                 Layer.LABELS: self.tr("Names"),
             }
         return titles
@@ -364,6 +365,11 @@ class SceneView(ScenePicture):
         else:
             self.set_layer_visible(Layer(key), is_visible)
             self.set_layer_opacity(Layer(key), opacity)
+
+    def offer_photos(self, is_there: bool) -> None:
+        """See `ScenePicture`; the list of layers follows."""
+        super().offer_photos(is_there)
+        self._list_anew()
 
     def _draw_site(self) -> None:
         super()._draw_site()

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from groundstation.gui.view3d.drawables import (
+    PANEL_OFFSET_M,
     Drawable,
     Label,
     Layer,
@@ -360,6 +361,12 @@ def site_scene(model: SiteModel, look: Colours) -> SiteScene:
 def surface_drawables(surfaces: Sequence[Surface]) -> tuple[Drawable, ...]:
     """What a virtual scene shows of walls or surroundings."""
     return tuple(map(_surface, surfaces))
+
+
+def before_panels(drawable: Drawable) -> Drawable:
+    """Triangles that lie on panels, where they are seen: before the panels as those are drawn."""
+    normals = np.repeat(triangle_normals(TriangleMesh(drawable.points_enu_m, drawable.cells)), 3, axis=0)
+    return replace(drawable, points_enu_m=drawable.points_enu_m + 2.0 * PANEL_OFFSET_M * normals)
 
 
 def _surface(surface: Surface) -> Drawable:

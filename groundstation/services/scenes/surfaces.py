@@ -39,6 +39,7 @@ class Part(StrEnum):
 
     WALLS = "walls"
     SURROUNDINGS = "surroundings"
+    PANES = "panes"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
