@@ -135,8 +135,7 @@ def open_population(path: Path, counts: Counts = "auto") -> PopulationRaster:
     known = next(((name, counted) for pattern, name, counted in PRODUCTS if pattern.search(path.name)), None)
     if known is None and counts == "auto":
         raise InputError.say(
-            "does not say whether it counts people in a cell or per square kilometre; say it "
-            "(--population-counts cell or km2)",
+            "does not say whether it counts people in a cell or per square kilometre; say it (--population-counts)",
             place=path,
         )
     product, counted = known if known is not None else ("", "cell")

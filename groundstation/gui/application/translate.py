@@ -193,6 +193,7 @@ IN_WINDOW = {
 
 
 OPTION_FIELDS = {
+    "--population-counts": ("Parameters", QT_TRANSLATE_NOOP("Parameters", "Raster counts people")),
     "--reserve": ("Parameters", QT_TRANSLATE_NOOP("Parameters", "Battery reserve")),
     "--airspace-margin": ("ImportForm", QT_TRANSLATE_NOOP("ImportForm", "Airspace around the building")),
     "--axis-order": ("ImportForm", QT_TRANSLATE_NOOP("ImportForm", "Order of coordinates")),
