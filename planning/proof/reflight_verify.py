@@ -358,8 +358,10 @@ class Case:
             in_column, where = is_same(a[:2], self.home) and is_same(b[:2], self.home), f"sortie {s + 1}, leg {k + 1}"
             floor_m = min(self.home[2], self.low[2]) - SAME_M if in_column else self.low[2] + E
             for p in (a, b):
-                inside = all([self.low[i] <= p[i] <= self.high[i] for i in (0, 1)]) and floor_m <= p[2] <= self.high[2]
-                demand(inside, f"{where} leaves the airspace, or flies below {self.height_m:g} m above the ground", FALSE)
+                inside = all([self.low[i] <= p[i] <= self.high[i] for i in (0, 1)]) and p[2] <= self.high[2]
+                verdict = NOT_PROVED if inside and floor_m <= p[2] + 2.0 * E else FALSE
+                text = f"{where} leaves the airspace, or flies below {self.height_m:g} m above the ground"
+                demand(inside and floor_m <= p[2], text, verdict)
         demand(get(self.site, "terrain", dict, None) is None, "heights above terrain are not looked at")
         return f"paths stay in the airspace and {self.height_m:g} m above the ground, but for the column above home"
 
@@ -378,7 +380,8 @@ class Case:
         for s, k, a, b in self.legs:
             found = self.solids.nearer([a, b], self._listed("legs", s, k), self.near_m)
             if found >= 0:
-                near = [length(sub(p, nearest(p, self.solids.triangles[found]))) for p in (a, b, scaled(plus(a, b), 0.5))]
+                places = (a, b, scaled(plus(a, b), 0.5))
+                near = [length(sub(p, nearest(p, triangle))) for triangle in self.solids.triangles for p in places]
                 verdict = FALSE if any([each <= self.near_m - E for each in near]) else NOT_PROVED
                 demand(False, f"sortie {s + 1}, leg {k + 1}: {self.near_m:g} m from everything are not kept", verdict)
         self._leaves(self.solids)
