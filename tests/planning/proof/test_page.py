@@ -14,8 +14,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from planning.proof import reflight_verify as verifier
+from tests.planning.proof.probes import JSON_TEXTS, meshes
 from tests.planning.proof.scenes import kept_hut
 from tests.planning.proof.verifiers import NODE, PAGE, QtScript, by_module, by_node, load, mission_names
+
+Place = tuple[float, float, float]
 
 
 @pytest.fixture(scope="module")
@@ -103,67 +106,6 @@ def test_checksums_are_those_of_the_standard_library(page: QtScript, content: by
     assert page.call("crc32(bytes)", content) == json.dumps(zlib.crc32(content))
 
 
-JSON_TEXTS = (
-    b'{"a": [1, 2.5e3, -0, "x\\u00e9\\n\\/"], "b": null, "c": {"d": true}}',
-    b"[1,]",
-    b"01",
-    b"-",
-    b'"\\ud800"',
-    b"NaN",
-    b"[Infinity]",
-    b"1e400",
-    b"1e299",
-    b"1e300",
-    b'{"a": 1, "a": 2}',
-    b"[1] x",
-    b"\t[true, false]\r\n",
-    b'{"__proto__": 1}',
-    b'"\x01"',
-    b"''",
-    b"1.",
-    b".5",
-    b"+1",
-    b"1E5",
-    b"[1 2]",
-    b'{"a" 1}',
-    b"",
-    b"9" * 400,
-    b"\xef\xbb\xbf{}",
-    b'"\xc3\xa9"',
-    b'"\xff"',
-    b'"\xed\xa0\x80"',
-    b'"\xf0\x9f\x98\x80"',
-    b'"\xc0\xaf"',
-    b"\x00",
-    b"[" * 64 + b"]" * 64,
-    b"[" * 65 + b"]" * 65,
-    b"[" * 66 + b"]" * 66,
-    b"[" * 100_000,
-    b'{"a": ' * 66 + b"1" + b"}" * 66,
-    b"nul",
-    b"truex",
-    b'"\\x41"',
-    b'"\\u12"',
-    b"1e-400",
-    b"123456789012345678901234567890",
-    b"0.1e1",
-    b"[0x10]",
-    b"1_000",
-    "\u0663".encode(),
-    b"\xa0[]",
-    b"\x0b[]",
-    b'{"a":1,}',
-    b"{,}",
-    b"{1:2}",
-    b'"',
-    b'"\\',
-    b"[",
-    b"{",
-    b'{"a',
-    b"\x7f",
-)
-
-
 @pytest.mark.parametrize("content", JSON_TEXTS, ids=range(len(JSON_TEXTS)))
 def test_json_is_read_and_refused_alike(page: QtScript, content: bytes) -> None:
     try:
@@ -187,3 +129,38 @@ def test_numbers_are_written_alike(page: QtScript, value: float) -> None:
 @given(st.floats(-360.0, 360.0))
 def test_sines_are_the_same_to_the_last_bit(page: QtScript, angle_deg: float) -> None:
     assert json.loads(page.call(f"sincos({angle_deg!r})", b"") or "") == list(verifier.sincos(angle_deg))
+
+
+coordinates = st.floats(-100.0, 100.0)
+places = st.tuples(coordinates, coordinates, coordinates)
+
+
+@given(places, places, places, places)
+def test_nearest_points_are_the_same_to_the_last_bit(page: QtScript, p: Place, a: Place, b: Place, c: Place) -> None:
+    asked = f"nearest({list(p)!r}, {[list(a), list(b), list(c)]!r})"
+    assert json.loads(page.call(asked, b"") or "") == list(verifier.nearest(p, (a, b, c)))
+
+
+@given(st.floats(-89.0, 89.0), st.floats(-180.0, 180.0), st.floats(-100.0, 1000.0))
+def test_places_of_missions_are_the_same_to_the_last_bit(page: QtScript, lat: float, lon: float, height: float) -> None:
+    origin = (22.3372, 114.2636, 62.0)
+    found = page.call(f"enu({list(origin)!r}, {lat!r}, {lon!r}, {height!r})", b"")
+    assert json.loads(found or "") == list(verifier.enu(origin, lat, lon, height))
+
+
+@given(st.floats(0.0, 1e4), st.floats(0.1, 20.0), st.floats(0.1, 10.0), st.sampled_from([1e30, 0.5, 4.0, 100.0]))
+def test_times_of_legs_are_the_same_to_the_last_bit(
+    page: QtScript, size: float, speed: float, acceleration: float, jerk: float
+) -> None:
+    found = page.call(f"restToRest({size!r}, {speed!r}, {acceleration!r}, {jerk!r})", b"")
+    assert json.loads(found or "") == verifier.rest_to_rest(size, speed, acceleration, jerk)
+
+
+@pytest.mark.parametrize("content", list(meshes()), ids=lambda content: str(len(content)))
+def test_meshes_are_read_and_refused_alike(page: QtScript, content: bytes) -> None:
+    try:
+        truth = [[list(corner) for corner in triangle] for triangle in verifier.read_ply(content)]
+    except verifier.Refused:
+        assert page.call("readPly(bytes)", content) is None
+        return
+    assert json.loads(page.call("readPly(bytes)", content) or "") == truth
