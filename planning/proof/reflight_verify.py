@@ -78,6 +78,16 @@ def get(record: Any, name: str, kind: type, default: Any = Refused) -> Any:
     demand(type(value) is kind, f"'{name}' is missing or of the wrong kind")
     return value
 
+FIELDS = {  # A field that is not known may be a misspelled one, and what it says would be missed.
+    "the site": """format name origin facades building_mesh obstacles airspace home_enu_m rally_points place_from is_bare terrain zones""",
+    "the airspace": "min_enu_m max_enu_m ground_z_m no_fly min_height_above_ground_m", "an obstacle": "id mesh box_enu_m",
+    "a no-fly volume": "id polygon_enu_m floor_m ceiling_m", "a facade": "id panels",
+    "the constraints": """min_distance_m section_step_deg occlusion whole_panel max_distance_m min_height_above_ground_m wanted_gsd_mm"""}
+
+def known(record: Any, what: str) -> Any:
+    demand(type(record) is dict and set(record) <= set(FIELDS[what].split()), f"{what} has a field that is not known")
+    return record
+
 def number(value: Any, name: str, low: float = -1e6, high: float = 1e6) -> float:
     demand(type(value) is float and low <= value <= high, f"'{name}' is no number from {low:g} to {high:g}")
     return float(value)
@@ -239,13 +249,14 @@ class Case:
         for record, name in zip((site, plan), names, strict=True):
             demand(get(record, "format", str) == f"reflight-{name}/1", f"the {name} has a format that is not known")
         self.site, self.plan, self.meshes = site, plan, {}
-        panels = [panel for facade in get(site, "facades", list) for panel in get(facade, "panels", list)]
+        facades = [known(each, "a facade") for each in get(known(site, "the site"), "facades", list)]
+        panels = [panel for facade in facades for panel in get(facade, "panels", list)]
         corners = [[vector(corner, "corner") for corner in get(panel, "corners_enu_m", list)] for panel in panels]
         demand(len(corners) > 0 and all([len(each) == 4 for each in corners]), "a panel has not four corners, or there is none")
         triangles = [triangle for each in corners for triangle in quad(*each)]
         building = get(site, "building_mesh", str, None)
         bodies: list[Any] = [] if building is None else [{"mesh": building}]
-        for body in bodies + get(site, "obstacles", list, []):
+        for body in bodies + [known(each, "an obstacle") for each in get(site, "obstacles", list, [])]:
             name, box = get(body, "mesh", str, None), get(body, "box_enu_m", list, [])
             demand(len(box) == (2 if name is None else 0), "an obstacle is neither a mesh nor a box")
             if name is None:
@@ -256,8 +267,8 @@ class Case:
             demand(is_plain, "a mesh has a name that is no file's")
             self.meshes[name] = (folder / name).read_bytes()
             triangles += read_ply(self.meshes[name])
-        air, limits, camera = get(site, "airspace", dict), get(plan, "constraints", dict), get(plan, "camera", dict)
-        zones = get(air, "no_fly", list, [])
+        air, limits = known(get(site, "airspace", dict), "the airspace"), known(get(plan, "constraints", dict), "the constraints")
+        camera, zones = get(plan, "camera", dict), [known(each, "a no-fly volume") for each in get(air, "no_fly", list, [])]
         shapes = [[vector(xy, "polygon", 2) for xy in get(zone, "polygon_enu_m", list)] for zone in zones]
         walls = [prism(s, get_number(z, "floor_m"), get_number(z, "ceiling_m")) for s, z in zip(shapes, zones, strict=True)]
         self.solids, self.no_fly = Solids(triangles), Solids([triangle for each in walls for triangle in each])

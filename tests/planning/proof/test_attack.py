@@ -13,7 +13,7 @@ import pytest
 
 from tests.planning.proof.attack import same, wrongly_proved
 from tests.planning.proof.scenes import files, kept_hut, places
-from tests.planning.proof.tampering import TAMPERINGS, of_kinds, tampered
+from tests.planning.proof.tampering import TAMPERINGS, of_kinds, sealed, tampered
 from tests.planning.proof.verifiers import NODE, Claim, QtScript, by_module, by_node, by_program, load
 
 N_SLOW = 10_000
@@ -98,3 +98,20 @@ def test_the_program_says_of_damaged_files_what_it_says_of_others(kind: str, tmp
     status, claims, errors = by_program(tampered(Random(3), kept_hut()[0], kind), tmp_path)
     assert errors == ""
     assert status == (1 if any(claim.verdict == "false" for claim in claims) else 3)
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new"),
+    [
+        ("site.json", b'"building_mesh"', b'"building_mesh "'),
+        ("site.json", b'"obstacles"', b'"obstacle"'),
+        ("site.json", b'"no_fly"', b'"nofly"'),
+        ("plan.json", b'"max_distance_m"', b'"max_distance"'),
+    ],
+)
+def test_a_misspelled_field_proves_nothing(name: str, old: bytes, new: bytes, tmp_path: Path) -> None:
+    hut, _ = kept_hut()
+    assert old in hut[name]
+    changed = sealed({**hut, name: hut[name].replace(old, new)})
+    assert {claim.verdict for claim in by_module(load(), changed, tmp_path)} == {"not proved"}
+    assert {claim.verdict for claim in QtScript()(changed)} == {"not proved"}

@@ -27,7 +27,7 @@ SECONDS = 10
 """A mutant that takes longer hangs, which tells it, too."""
 
 N_PARTS = 8
-SHARE_KILLED = 0.85
+SHARE_KILLED = 0.75
 """Of all mutants. The others change limits that no flight comes near, the last bits of a series, or nothing at all."""
 
 
