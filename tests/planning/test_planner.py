@@ -117,7 +117,8 @@ def test_every_method_and_goal_keeps_the_contract_and_every_check(planned: Plann
     assert_keeps_the_contract(model, plan)
     findings = check_plan(plan, model)
     assert is_flyable(findings)
-    assert {f.code for f in findings if f.severity is not Severity.OK} <= {"leg-spacing"}
+    allowed = {"leg-spacing", "depth-of-field", "mirror-focus"}  # focused once, on what the first photo sees
+    assert {f.code for f in findings if f.severity is not Severity.OK} <= allowed
 
 
 @pytest.mark.parametrize("name", sorted(set(REQUESTS) - {"whole panels from near"}))

@@ -173,4 +173,4 @@ def test_locked_viewpoints_are_read_from_a_plan_that_has_some(site, tmp_path):
     held = replace(plan.viewpoints[1], locked=True)
     write_plan(path, replace(plan, viewpoints=(plan.viewpoints[0], held, plan.viewpoints[2])))
     assert locked_viewpoints(path) == (held,)
-    assert path.read_text().count("locked") == 1
+    assert path.read_text().count('"locked":') == 1
