@@ -371,8 +371,8 @@ class Case:
             for p in (a, b):
                 inside = all([self.low[i] <= p[i] <= self.high[i] for i in (0, 1)]) and p[2] <= self.high[2]
                 verdict = NOT_PROVED if inside and floor_m <= p[2] + 2.0 * E else FALSE
-                text = f"{where} leaves the airspace, or flies below {self.height_m:g} m above the ground"
-                demand(inside and floor_m <= p[2], text, verdict)
+                kept = inside and floor_m <= p[2]
+                demand(kept, f"{where} leaves the airspace, or flies below {self.height_m:g} m above the ground", verdict)
         demand(get(self.site, "terrain", dict, None) is None, "heights above terrain are not looked at")
         return f"paths stay in the airspace and {self.height_m:g} m above the ground, but for the column above home"
 
