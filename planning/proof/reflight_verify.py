@@ -79,10 +79,10 @@ def get(record: Any, name: str, kind: type, default: Any = Refused) -> Any:
     return value
 
 FIELDS = {  # A field that is not known may be a misspelled one, and what it says would be missed.
-    "the site": """format name origin facades building_mesh obstacles airspace home_enu_m rally_points place_from is_bare terrain zones""",
-    "the airspace": "min_enu_m max_enu_m ground_z_m no_fly min_height_above_ground_m", "an obstacle": "id mesh box_enu_m",
-    "a no-fly volume": "id polygon_enu_m floor_m ceiling_m", "a facade": "id panels",
-    "the constraints": """min_distance_m section_step_deg occlusion whole_panel max_distance_m min_height_above_ground_m wanted_gsd_mm"""}
+    "the site": "format name origin facades building_mesh obstacles airspace home_enu_m rally_points place_from is_bare terrain zones",
+    "the airspace": "min_enu_m max_enu_m ground_z_m no_fly min_height_above_ground_m", "a facade": "id panels",
+    "an obstacle": "id mesh box_enu_m", "a no-fly volume": "id polygon_enu_m floor_m ceiling_m", "the constraints":
+    "min_distance_m section_step_deg occlusion whole_panel max_distance_m min_height_above_ground_m wanted_gsd_mm"}
 
 def known(record: Any, what: str) -> Any:
     demand(type(record) is dict and set(record) <= set(FIELDS[what].split()), f"{what} has a field that is not known")
@@ -249,14 +249,13 @@ class Case:
         for record, name in zip((site, plan), names, strict=True):
             demand(get(record, "format", str) == f"reflight-{name}/1", f"the {name} has a format that is not known")
         self.site, self.plan, self.meshes = site, plan, {}
-        facades = [known(each, "a facade") for each in get(known(site, "the site"), "facades", list)]
-        panels = [panel for facade in facades for panel in get(facade, "panels", list)]
+        facades = get(known(site, "the site"), "facades", list)
+        panels = [panel for facade in facades for panel in get(known(facade, "a facade"), "panels", list)]
         corners = [[vector(corner, "corner") for corner in get(panel, "corners_enu_m", list)] for panel in panels]
         demand(len(corners) > 0 and all([len(each) == 4 for each in corners]), "a panel has not four corners, or there is none")
         triangles = [triangle for each in corners for triangle in quad(*each)]
-        building = get(site, "building_mesh", str, None)
-        bodies: list[Any] = [] if building is None else [{"mesh": building}]
-        for body in bodies + [known(each, "an obstacle") for each in get(site, "obstacles", list, [])]:
+        building = [] if site.get("building_mesh") is None else [{"mesh": get(site, "building_mesh", str)}]
+        for body in building + [known(each, "an obstacle") for each in get(site, "obstacles", list, [])]:
             name, box = get(body, "mesh", str, None), get(body, "box_enu_m", list, [])
             demand(len(box) == (2 if name is None else 0), "an obstacle is neither a mesh nor a box")
             if name is None:
