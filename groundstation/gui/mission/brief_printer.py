@@ -9,6 +9,7 @@ from pathlib import Path
 from PySide6.QtCore import QCoreApplication, QDate, QLocale, QMarginsF, QRectF, QSizeF, Qt, QUrl
 from PySide6.QtGui import (
     QAbstractTextDocumentLayout,
+    QFont,
     QImage,
     QPagedPaintDevice,
     QPageLayout,
@@ -18,7 +19,16 @@ from PySide6.QtGui import (
     QPdfWriter,
     QTextDocument,
 )
-from PySide6.QtWidgets import QDialog, QHBoxLayout, QLabel, QPushButton, QTextBrowser, QVBoxLayout, QWidget
+from PySide6.QtWidgets import (
+    QApplication,
+    QDialog,
+    QHBoxLayout,
+    QLabel,
+    QPushButton,
+    QTextBrowser,
+    QVBoxLayout,
+    QWidget,
+)
 
 from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.application.translate import QT_TRANSLATE_NOOP, translated, translated_finding
@@ -53,6 +63,8 @@ from planning.plan import Plan
 from planning.site.records import SiteModel
 
 MARGIN_MM = 15.0
+LETTERS_PT = 9
+"""Of paper, whatever size the letters of the window have; the style's `body` does not reach tables."""
 RESOLUTION_DPI = 300
 
 PICTURE_SCALE = 3.0
@@ -186,6 +198,7 @@ class BriefDocument(QTextDocument):
             image = _drawn(picture) if isinstance(picture, str) else picture
             self.addResource(QTextDocument.ResourceType.ImageResource.value, QUrl(name), image)
         self.setDocumentMargin(0.0)
+        self.setDefaultFont(QFont(QApplication.font().family(), LETTERS_PT))
         self.setHtml(html)
 
 
@@ -234,6 +247,7 @@ def print_pages(document: QTextDocument, device: QPagedPaintDevice, name: str) -
 
 def lay_out(document: QTextDocument, painter: QPainter, width_px: float, height_px: float) -> int:
     """Break a document into pages of a size, with room for a footer; returns their number."""
+    painter.setFont(document.defaultFont())
     document.documentLayout().setPaintDevice(painter.device())
     document.setPageSize(QSizeF(width_px, height_px - _footer_px(painter)))
     return document.pageCount()
