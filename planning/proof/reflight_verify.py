@@ -741,8 +741,8 @@ def flies(case: Case, mission: Mission) -> int:
     for s, path in enumerate(case.paths):
         last = len(path) - mission.is_dji  # DJI missions end above home, and return from there
         kept = [k for k in range(1, last) if k == 1 or not is_same(path[k], path[k - 1])]
-        views = [case.by_id[name] for name in case.sorties[s]["viewpoint_ids"]]
         at = [sum([1 for j in kept if j <= k]) - 1.0 for k in case.photos_of(s)]
+        views = [case.by_id[name] for name in case.sorties[s]["viewpoint_ids"]]
         if len(places) == len(kept) and len(views) == len(mission.photos):
             same = [length(sub(p, path[k])) <= MISSION_M for p, k in zip(places, kept, strict=True)]
             for view, k, photo in zip(views, at, mission.photos, strict=True):

@@ -115,3 +115,11 @@ def test_a_misspelled_field_proves_nothing(name: str, old: bytes, new: bytes, tm
     changed = sealed({**hut, name: hut[name].replace(old, new)})
     assert {claim.verdict for claim in by_module(load(), changed, tmp_path)} == {"not proved"}
     assert {claim.verdict for claim in QtScript()(changed)} == {"not proved"}
+
+
+def test_missions_of_a_plan_that_flies_an_unknown_view_are_false_in_both(tmp_path: Path) -> None:
+    hut, _ = kept_hut()
+    changed = sealed({**hut, "plan.json": hut["plan.json"].replace(b'["v0000"', b'["v9999"')})
+    claims = by_module(load(), changed, tmp_path)
+    assert {claim.verdict for claim in claims if claim.id.startswith("mission ")} == {"false"}
+    assert same(claims, QtScript()(changed))
