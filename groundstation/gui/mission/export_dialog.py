@@ -25,13 +25,14 @@ from groundstation.services.mission.files import (
     PreparedExport,
     export_paths,
     prepare_export,
+    prove_export,
     write_export,
 )
 from groundstation.services.units import UnitSystem
 from missions.formats.options import ExportOptions
 from missions.formats.registry import mission_format, mission_formats
 from planning.base.files import PLAIN_ENDINGS
-from planning.base.findings import Severity
+from planning.base.findings import Finding, Severity
 from planning.base.parameters import declared
 from planning.plan import Plan
 from planning.site.records import SiteModel
@@ -260,9 +261,11 @@ class ExportDialog(AnsweringDialog):
         if prepared is None:
             return
         self._folder = path.parent
+        site_model, (file_format, _) = self._site_model, self._form.value()
 
-        def work(_context: JobContext) -> tuple[Path, ...]:
-            return write_export(prepared, path)
+        def work(context: JobContext) -> tuple[tuple[Path, ...], Finding | None]:
+            paths = write_export(prepared, path)
+            return paths, prove_export(prepared, site_model, file_format, paths, context)
 
         self._is_writing = True
         self._context.start(self.tr("Export"), work, self._when_written, self._when_failed)
@@ -322,9 +325,12 @@ class ExportDialog(AnsweringDialog):
         text = self.tr("These files are replaced: {0}").format(", ".join(there))
         return agrees(self, self.tr("Replace files?"), text, warns=True)
 
-    def _when_written(self, paths: tuple[Path, ...]) -> None:
+    def _when_written(self, done: tuple[tuple[Path, ...], Finding | None]) -> None:
+        paths, proof = done
         self._is_writing = False
         self._context.say(Severity.OK, self.tr("Written: {0}").format(", ".join(str(path) for path in paths)))
+        if proof is not None:
+            self._context.say(proof.severity, proof.message)
         self.written.emit(paths)
         self.accept()
 

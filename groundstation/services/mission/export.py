@@ -8,21 +8,20 @@ from pathlib import Path
 
 from groundstation.services.mission.files import (
     MAVLINK_FORMATS,
+    PROVED_FORMATS,
     bare_site,
     missions_as_plan,
     plan_of_missions,
     read_mission_files,
     readiness,
+    stated_return_m,
     within_item_limit,
 )
 from groundstation.services.mission.proof import write_mission_proof
 from groundstation.services.project.input_files import read_input_plan, read_input_site
 from groundstation.services.project.project_file import SITE_FOLDER, check_not_index
-from missions.formats.encode import dji_return_height
 from missions.formats.options import DEFAULT_OPTIONS, ExportOptions
 from missions.formats.registry import encode, mission_format, sortie_path, write_files
-from missions.mission.build import missions_from_plan
-from missions.mission.export_choices import FileFormat
 from planning.base.errors import InputError
 from planning.base.files import check_ending, real_path, sha256_of_file
 from planning.base.findings import Finding, Severity
@@ -35,9 +34,6 @@ from planning.site.file import read_site, write_site
 from planning.site.records import SiteModel
 
 __all__ = ["export_plan", "find_site", "import_missions"]
-
-PROVED_FORMATS = (FileFormat.DJI_KMZ, FileFormat.MAVLINK_PLAN, FileFormat.MAVLINK_WPL)
-"""That the verifier reads."""
 
 
 def find_site(plan: Plan, plan_path: Path, site_path: Path | None = None) -> SiteModel | None:
@@ -123,9 +119,7 @@ def export_plan(
     paths = write_files(encoded, out)
     findings += encoded.findings
     if site_path is not None and site_model is not None and file_format in PROVED_FORMATS:
-        return_height_m = None
-        if file_format == FileFormat.DJI_KMZ:
-            return_height_m, _ = dji_return_height(plan, missions_from_plan(plan, origin, home), with_site)
+        return_height_m = stated_return_m(plan, origin, home, file_format, with_site)
         flown = None if plan == planned else plan
         findings.append(write_mission_proof(plan_path, flown, site_path, site_model, paths, return_height_m))
     return paths, tuple(findings)

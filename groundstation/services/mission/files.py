@@ -11,9 +11,10 @@ import numpy as np
 
 from groundstation.services.project.input_files import FileKind, expecting
 from groundstation.services.project.project_file import check_not_index
-from missions.formats.encode import default_autopilot
+from missions.formats.encode import default_autopilot, dji_return_height
 from missions.formats.options import DEFAULT_OPTIONS, EncodedFiles, ExportOptions
 from missions.formats.registry import encode, read_missions, sortie_path, write_files
+from missions.mission.build import missions_from_plan
 from missions.mission.export_choices import FileFormat
 from missions.mission.model import GeoPoint, ReadMission, distance_m
 from missions.mission.to_plan import viewpoints_and_sorties
@@ -25,7 +26,7 @@ from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.checks import check_plan
 from planning.coverage.evaluate import coverage
-from planning.geo.frames import Origin
+from planning.geo.frames import Origin, Vec3
 from planning.geo.geoid import undulation_m
 from planning.geo.mesh import empty_mesh
 from planning.parameters import DEFAULT_PROFILE, CameraSettings, Constraints, FlightRules
@@ -36,6 +37,9 @@ from planning.site.records import MAX_DISTANCE_M, Airspace, Site, SiteModel
 from planning.viewpoints.prepare import prepare
 
 MAVLINK_FORMATS = (FileFormat.MAVLINK_PLAN, FileFormat.MAVLINK_WPL)
+
+PROVED_FORMATS = (FileFormat.DJI_KMZ, *MAVLINK_FORMATS)
+"""That the verifier of proofs reads."""
 
 BARE_MARGIN_M = 40.0
 FLOOR_M = 2.0
@@ -55,11 +59,17 @@ class PreparedExport:
         None where the plan cannot be exported so; `refusal` says why then.
     findings
         What the pilot should know first; those of the files come last.
+    flown
+        The plan of the files: the views may be shared out anew.
+    return_height_m
+        Above take-off, as the files say it; None where they do not.
     """
 
     encoded: EncodedFiles | None
     findings: tuple[Finding, ...]
     refusal: str = ""
+    flown: Plan | None = None
+    return_height_m: float | None = None
 
     @property
     def n_files(self) -> int:
@@ -85,11 +95,21 @@ def prepare_export(
         if file_format in MAVLINK_FORMATS:
             plan, split_to_fit = within_item_limit(plan, site_model, options)
             findings += split_to_fit
-        site = site_model.site
-        encoded = encode(plan, site.origin, site.home_enu_m, file_format, replace(options, site=site_model))
+        site, with_site = site_model.site, replace(options, site=site_model)
+        encoded = encode(plan, site.origin, site.home_enu_m, file_format, with_site)
+        return_height_m = stated_return_m(plan, site.origin, site.home_enu_m, file_format, with_site)
     except GroundStationError as error:
         return PreparedExport(None, (), str(error))
-    return PreparedExport(encoded, (*findings, *encoded.findings))
+    return PreparedExport(encoded, (*findings, *encoded.findings), "", plan, return_height_m)
+
+
+def stated_return_m(
+    plan: Plan, origin: Origin | None, home_enu_m: Vec3 | None, file_format: str, options: ExportOptions
+) -> float | None:
+    """Height above take-off of a return to home as mission files say it; None where they do not."""
+    if file_format != FileFormat.DJI_KMZ:
+        return None
+    return dji_return_height(plan, missions_from_plan(plan, origin, home_enu_m), options)[0]
 
 
 def export_paths(prepared: PreparedExport, path: Path) -> tuple[Path, ...]:
@@ -109,6 +129,28 @@ def write_export(prepared: PreparedExport, path: Path) -> tuple[Path, ...]:
         raise ValueError(f"nothing to write: {prepared.refusal}")
     check_not_index(path)
     return write_files(prepared.encoded, path)
+
+
+def prove_export(
+    prepared: PreparedExport, site_model: SiteModel, file_format: str, paths: Sequence[Path], monitor: Monitor = QUIET
+) -> Finding | None:
+    """Write the proof beside written mission files, and judge it; None where the verifier does not read the format.
+
+    Files fly without it: where it cannot be written, the finding says so.
+
+    Raises
+    ------
+    OperationCancelled
+        From `monitor`.
+    """
+    from groundstation.services.mission.proof import prove_open_mission
+
+    if prepared.flown is None or file_format not in PROVED_FORMATS:
+        return None
+    try:
+        return prove_open_mission(prepared.flown, site_model, paths, prepared.return_height_m, monitor)
+    except InputError as error:
+        return Finding(Severity.WARNING, "proof", say("the mission is written without its proof: {}", str(error)))
 
 
 def in_order_of_sorties(paths: Sequence[Path]) -> tuple[Path, ...]:

@@ -29,7 +29,6 @@ from planning.site.records import SiteModel
 from planning.viewpoints.prepare import coverage_model
 
 PROVED, FALSE = reflight_verify.PROVED, reflight_verify.FALSE
-
 VERIFIER = Path(reflight_verify.__file__)
 PAGE = VERIFIER.with_suffix(".html")
 """The verifier for people without Python: a page that says the same in any browser, without a network."""
@@ -107,22 +106,56 @@ def proved_as_saved(plan: Plan, site_model: SiteModel, monitor: Monitor = QUIET)
         There is no room for the files.
     """
     with TemporaryDirectory(prefix="reflight-") as name:
-        folder = Path(name)
-        site = site_model.site
-        meshes = [(site.building_mesh, site_model.building)]
-        meshes += [(each.mesh, mesh) for each, mesh in zip(site.obstacles, site_model.obstacles, strict=True)]
-        stored = {mesh: f"mesh-{number}.ply" for number, (mesh, _) in enumerate(meshes) if mesh is not None}
-        for mesh, geometry in meshes:
-            if mesh is not None:
-                write_mesh(folder / stored[mesh], geometry)
-        obstacles = tuple(replace(each, mesh=each.mesh and stored[each.mesh]) for each in site.obstacles)
-        building = None if site.building_mesh is None else stored[site.building_mesh]
-        site_path, plan_path = folder / "site.json", folder / "plan.json"
-        sha256 = write_site(site_path, replace(site, building_mesh=building, obstacles=obstacles))
-        write_plan(plan_path, replace(plan, site_sha256=sha256))
+        site_path, plan_path = _write_open(plan, site_model, Path(name), "")
         write_plan_proof(plan_path, site_path, site_model, _reachability(plan, site_model, monitor), monitor)
         monitor.report(say("checking the proof"), 0, 1)
         return proof_finding(verified(site_path, plan_path, proof_path(plan_path)))
+
+
+def _write_open(plan: Plan, site_model: SiteModel, folder: Path, prefix: str) -> tuple[Path, Path]:
+    """Write an open plan and its site with all meshes, as a set of files of its own: paths of site and plan."""
+    site = site_model.site
+    meshes = [(site.building_mesh, site_model.building)]
+    meshes += [(each.mesh, mesh) for each, mesh in zip(site.obstacles, site_model.obstacles, strict=True)]
+    stored = {mesh: f"{prefix}mesh-{number}.ply" for number, (mesh, _) in enumerate(meshes) if mesh is not None}
+    for mesh, geometry in meshes:
+        if mesh is not None:
+            write_mesh(folder / stored[mesh], geometry)
+    obstacles = tuple(replace(each, mesh=each.mesh and stored[each.mesh]) for each in site.obstacles)
+    building = None if site.building_mesh is None else stored[site.building_mesh]
+    site_path, plan_path = folder / f"{prefix}site.json", folder / f"{prefix}plan.json"
+    sha256 = write_site(site_path, replace(site, building_mesh=building, obstacles=obstacles))
+    write_plan(plan_path, replace(plan, site_sha256=sha256))
+    return site_path, plan_path
+
+
+def prove_open_mission(
+    plan: Plan,
+    site_model: SiteModel,
+    missions: Sequence[Path],
+    return_height_m: float | None,
+    monitor: Monitor = QUIET,
+) -> Finding:
+    """Write what `write_mission_proof` writes beside missions of an open plan, and judge it.
+
+    Site, meshes and plan go along as they are in the window, under names that begin with the first mission's: what is
+    saved in the project may be older.
+
+    Raises
+    ------
+    InputError
+        A file cannot be written.
+    OperationCancelled
+        From `monitor`.
+    """
+    folder, first = missions[0].parent, missions[0].name
+    site_path, plan_path = _write_open(plan, site_model, folder, f"{first}.")
+    written, reached = read_input_file(plan_path, JSON_FILE), _reachability(plan, site_model, monitor)
+    proof = proof_of(
+        site_path, plan_path, written, site_model, reached, monitor=monitor, return_height_m=return_height_m
+    )
+    monitor.report(say("checking the proof"), 0, 1)
+    return _judged_mission(folder, first, proof, {}, site_path, plan_path, missions)
 
 
 def _reachability(plan: Plan, site_model: SiteModel, monitor: Monitor) -> Reachability | None:
@@ -172,15 +205,28 @@ def write_mission_proof(
     if plan is not None:
         flown_path = folder / f"{first}.plan.json"
         written = plan_bytes(plan)
-    path = folder / f"{first}.mission.proof"
     known = _known_proof(proof_path(plan_path))
     proof = proof_of(site_path, flown_path, written, site_model, None, known=known, return_height_m=return_height_m)
     beside = dict(_copies(site_path, site_model, folder))
     if not _is_same(flown_path, plan_path):
         beside[flown_path] = written
+    return _judged_mission(folder, first, proof, beside, folder / site_path.name, flown_path, missions)
+
+
+def _judged_mission(
+    folder: Path,
+    first: str,
+    proof: bytes,
+    beside: dict[Path, bytes],
+    site_path: Path,
+    plan_path: Path,
+    missions: Sequence[Path],
+) -> Finding:
+    """Write a mission's proof with both verifiers and what else goes beside it; what they say of it."""
+    path = folder / f"{first}.mission.proof"
     checkers = {folder / checker.name: checker.read_bytes() for checker in (VERIFIER, PAGE)}
     write_together({path: proof, **beside, **checkers})
-    return proof_finding(verified(folder / site_path.name, flown_path, path, missions))
+    return proof_finding(verified(site_path, plan_path, path, missions))
 
 
 def _known_proof(path: Path) -> dict[str, Any] | None:

@@ -1,5 +1,6 @@
 """Exports and imports of plans in memory: what is said first, what is written, what is refused."""
 
+import json
 from pathlib import Path
 
 import pytest
@@ -10,8 +11,10 @@ from groundstation.services.mission.files import (
     in_order_of_sorties,
     missions_as_plan,
     prepare_export,
+    prove_export,
     write_export,
 )
+from groundstation.services.mission.proof import PROVED, verified
 from groundstation.services.mission.readiness import preflight
 from missions.formats.options import ExportOptions
 from missions.formats.registry import FORMATS
@@ -19,6 +22,7 @@ from missions.mission.export_choices import FileFormat, HeightReference, LinkLos
 from planning.base.errors import InputError
 from planning.base.findings import Severity
 from planning.planner import plan_flight
+from planning.proof.reflight_verify import jobs_of
 from planning.request import PlanRequest
 from tests.missions.plans import example_plan
 from tests.planning.plan_cases import kiosk
@@ -122,3 +126,33 @@ def test_two_exports_of_one_plan_share_it_out_alike(planned, monkeypatch):
     second = prepare_export(plan, model, FileFormat.MAVLINK_PLAN, amsl)
     assert first.n_files == second.n_files > 1
     assert len(n_shared) == 1
+
+
+def test_written_missions_carry_a_proof_that_the_verifier_accepts_and_that_a_moved_place_breaks(planned, tmp_path):
+    plan, model = planned
+    prepared = prepare_export(plan, model, FileFormat.MAVLINK_PLAN)
+    paths = write_export(prepared, tmp_path / "out.plan")
+    found = prove_export(prepared, model, FileFormat.MAVLINK_PLAN, paths)
+    assert found is not None
+    assert found.severity is Severity.OK, found
+    jobs = jobs_of(tmp_path)
+    assert [path.name for path in jobs[0]] == [
+        "out.plan.site.json",
+        "out.plan.plan.json",
+        "out.plan.mission.proof",
+        "out.plan",
+    ]
+    site, proved, proof, mission = jobs[0]
+    content = json.loads(mission.read_text())
+    photos = [item for item in content["mission"]["items"] if item["command"] == 16]
+    photos[3]["params"][4] += 1e-5
+    mission.write_text(json.dumps(content))
+    assert any(claim.verdict != PROVED for claim in verified(site, proved, proof, [mission]))
+
+
+def test_formats_that_the_verifier_does_not_read_get_no_proof(planned, tmp_path):
+    plan, model = planned
+    prepared = prepare_export(plan, model, FileFormat.KML)
+    paths = write_export(prepared, tmp_path / "out.kml")
+    assert prove_export(prepared, model, FileFormat.KML, paths) is None
+    assert list(tmp_path.iterdir()) == [*paths]
