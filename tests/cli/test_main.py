@@ -78,7 +78,7 @@ def test_every_command_explains_itself(reflight, command):
 
 
 def failing_with(error, monkeypatch):
-    def fail(*_arguments):
+    def fail(*_arguments, **_options):
         raise error
 
     monkeypatch.setattr("groundstation.services.plan.planning.check_files", fail)

@@ -473,8 +473,16 @@
         <translation>Die Mission auf der Fernsteuerung ist dieser Plan (Fotos: {0})</translation>
     </message>
     <message>
-        <source>Focus, exposure and white balance are fixed on the facade</source>
-        <translation>Fokus, Belichtung und Weißabgleich sind auf der Fassade fest eingestellt</translation>
+        <source>The camera is set as listed, its focus on the facade</source>
+        <translation>Die Kamera ist eingestellt wie aufgeführt, ihr Fokus auf die Fassade</translation>
+    </message>
+    <message>
+        <source>Camera, by hand</source>
+        <translation>Kamera, von Hand</translation>
+    </message>
+    <message>
+        <source>Camera, by the mission</source>
+        <translation>Kamera, durch die Mission</translation>
     </message>
     <message>
         <source>Sortie {0}: before any photo the aircraft stops {1}. Where it does not, land: it took off from another height than planned</source>
@@ -546,6 +554,21 @@
     <message>
         <source>PDF (*.pdf)</source>
         <translation>PDF (*.pdf)</translation>
+    </message>
+</context>
+<context>
+    <name>CameraPage</name>
+    <message>
+        <source>What comes of these settings stands here, once there is a plan.</source>
+        <translation>Was aus diesen Einstellungen wird, steht hier, sobald es einen Plan gibt.</translation>
+    </message>
+    <message>
+        <source>By hand: {0}</source>
+        <translation>Von Hand: {0}</translation>
+    </message>
+    <message>
+        <source>By the mission: {0}</source>
+        <translation>Durch die Mission: {0}</translation>
     </message>
 </context>
 <context>
@@ -1411,8 +1434,12 @@ Blickrichtung: {2}</translation>
         <translation>Prüfen</translation>
     </message>
     <message>
-        <source>Measure every pre-flight rule again</source>
-        <translation>Jede Regel vor dem Flug neu messen</translation>
+        <source>What a program that shares nothing with this one says of the plan</source>
+        <translation>Was ein Programm, das mit diesem nichts gemein hat, über den Plan sagt</translation>
+    </message>
+    <message>
+        <source>Measure every pre-flight rule again, and have the plan proved</source>
+        <translation>Alle Regeln vor dem Flug neu messen und den Plan beweisen lassen</translation>
     </message>
     <message>
         <source>Not checked yet.</source>
@@ -1429,6 +1456,10 @@ Blickrichtung: {2}</translation>
     <message>
         <source>Checking ...</source>
         <translation>Wird geprüft ...</translation>
+    </message>
+    <message>
+        <source>Being proved ...</source>
+        <translation>Wird bewiesen ...</translation>
     </message>
     <message>
         <source>Readiness not known</source>
@@ -2083,6 +2114,26 @@ Scheiben: {2}, je {3} × {4}</translation>
         <source>More settings</source>
         <translation>Weitere Einstellungen</translation>
     </message>
+    <message>
+        <source>Without</source>
+        <translation>Ohne</translation>
+    </message>
+    <message>
+        <source>GeoTIFF of GHS-POP, WorldPop or others: people below the buffer, beside what you state</source>
+        <translation>GeoTIFF von GHS-POP, WorldPop oder anderen: Menschen unter dem Puffer, neben Ihrer Angabe</translation>
+    </message>
+    <message>
+        <source>People from a raster ...</source>
+        <translation>Menschen aus einem Raster ...</translation>
+    </message>
+    <message>
+        <source>Population rasters (*.tif *.tiff);;All files (*)</source>
+        <translation>Bevölkerungsraster (*.tif *.tiff);;Alle Dateien (*)</translation>
+    </message>
+    <message>
+        <source>Population raster</source>
+        <translation>Bevölkerungsraster</translation>
+    </message>
 </context>
 <context>
     <name>HemisphereView</name>
@@ -2621,6 +2672,10 @@ Scheiben: {2}, je {3} × {4}</translation>
         <translation>Kamera, gezeichnet</translation>
     </message>
     <message>
+        <source>Show the camera&apos;s video</source>
+        <translation>Video der Kamera zeigen</translation>
+    </message>
+    <message>
         <source>The site as the camera should see it, from the pose that the vehicle reports</source>
         <translation>Der Standort, wie die Kamera ihn sehen sollte, aus der Pose, die das Fluggerät meldet</translation>
     </message>
@@ -2773,12 +2828,20 @@ Scheiben: {2}, je {3} × {4}</translation>
         <translation>, {0} davon frei</translation>
     </message>
     <message>
-        <source>Looking for a CUDA device ...</source>
-        <translation>Ein CUDA-Gerät wird gesucht ...</translation>
+        <source>Looking for a graphics card ...</source>
+        <translation>Sucht nach einer Grafikkarte ...</translation>
     </message>
     <message>
-        <source>No CUDA device: models are learned by one core of the processor.</source>
-        <translation>Kein CUDA-Gerät: Modelle lernt ein Kern des Prozessors.</translation>
+        <source>Graphics card: {0}. It draws splats where a step takes less time.</source>
+        <translation>Grafikkarte: {0}. Sie zeichnet Splats, wo ein Schritt damit weniger Zeit braucht.</translation>
+    </message>
+    <message>
+        <source>No graphics card: models are learned by one core of the processor.</source>
+        <translation>Keine Grafikkarte: Modelle lernt ein Kern des Prozessors.</translation>
+    </message>
+    <message>
+        <source>It is not used, since it is not chosen.</source>
+        <translation>Es wird nicht verwendet, weil es nicht gewählt ist.</translation>
     </message>
     <message>
         <source>The times to choose from are meant for that. A step of splats alone, 20 000 of them on 256 x 192 pixels, takes about 75 ms; with mirrored light or more pixels it takes longer.</source>
@@ -2787,10 +2850,6 @@ Scheiben: {2}, je {3} × {4}</translation>
     <message>
         <source>CUDA device: {0}</source>
         <translation>CUDA-Gerät: {0}</translation>
-    </message>
-    <message>
-        <source>It is not used: the processor is chosen.</source>
-        <translation>Es wird nicht benutzt: der Prozessor ist gewählt.</translation>
     </message>
     <message>
         <source>{0} photos of {1} x {2} pixels take {3} of memory when they are decoded.</source>
@@ -3116,6 +3175,10 @@ Scheiben: {2}, je {3} × {4}</translation>
         <translation>&amp;Vollbild</translation>
     </message>
     <message>
+        <source>Next &amp;step</source>
+        <translation>Nächster &amp;Schritt</translation>
+    </message>
+    <message>
         <source>&amp;Manual</source>
         <translation>&amp;Handbuch</translation>
     </message>
@@ -3268,6 +3331,10 @@ Scheiben: {2}, je {3} × {4}</translation>
         <translation>Prüfen</translation>
     </message>
     <message>
+        <source>Proof</source>
+        <translation>Beweis</translation>
+    </message>
+    <message>
         <source>{0} was read for a site that has changed; import again</source>
         <translation>{0} wurde für einen inzwischen geänderten Standort gelesen; neu importieren</translation>
     </message>
@@ -3374,10 +3441,6 @@ Scheiben: {2}, je {3} × {4}</translation>
         <translation>Prüfen</translation>
     </message>
     <message>
-        <source>Measure every pre-flight rule again</source>
-        <translation>Jede Regel vor dem Flug neu messen</translation>
-    </message>
-    <message>
         <source>{0}, photos: {1}, batteries: {2}, {3}</source>
         <translation>{0}, Fotos: {1}, Akkus: {2}, {3}</translation>
     </message>
@@ -3388,6 +3451,10 @@ Scheiben: {2}, je {3} × {4}</translation>
     <message>
         <source>As a plan of this project; without a site, on a bare one of its own</source>
         <translation>Als Plan dieses Projekts; ohne Standort auf einem leeren eigenen</translation>
+    </message>
+    <message>
+        <source>Measure every pre-flight rule again, and have the plan proved</source>
+        <translation>Alle Regeln vor dem Flug neu messen und den Plan beweisen lassen</translation>
     </message>
     <message>
         <source>Open or import a site first, on the Site tab.</source>
@@ -3508,6 +3575,10 @@ Scheiben: {2}, je {3} × {4}</translation>
     <message>
         <source>What is done, and what comes next</source>
         <translation>Was erledigt ist und was als Nächstes kommt</translation>
+    </message>
+    <message>
+        <source>What comes next ({0})</source>
+        <translation>Was als Nächstes kommt ({0})</translation>
     </message>
     <message>
         <source>Done</source>
@@ -4009,6 +4080,134 @@ Blickrichtung: {3}</translation>
         <translation>Einsätze, die zugleich in der Luft sind, jeder mit eigenem Fluggerät</translation>
     </message>
     <message>
+        <source>Exposure</source>
+        <translation>Belichtung</translation>
+    </message>
+    <message>
+        <source>of the photos of a sortie: each by itself, all as measured before the first, or all as stated</source>
+        <translation>der Fotos eines Einsatzes: jedes einzeln, alle wie vor dem ersten gemessen, oder alle wie angegeben</translation>
+    </message>
+    <message>
+        <source>each photo by itself</source>
+        <translation>jedes Foto einzeln</translation>
+    </message>
+    <message>
+        <source>measured once, then locked</source>
+        <translation>einmal gemessen, dann fest</translation>
+    </message>
+    <message>
+        <source>manual</source>
+        <translation>manuell</translation>
+    </message>
+    <message>
+        <source>Shutter time</source>
+        <translation>Verschlusszeit</translation>
+    </message>
+    <message>
+        <source>shutter time, such as 1/500</source>
+        <translation>Verschlusszeit, etwa 1/500</translation>
+    </message>
+    <message>
+        <source>Aperture</source>
+        <translation>Blende</translation>
+    </message>
+    <message>
+        <source>f-number, such as 5.6</source>
+        <translation>Blendenzahl, etwa 5.6</translation>
+    </message>
+    <message>
+        <source>ISO</source>
+        <translation>ISO</translation>
+    </message>
+    <message>
+        <source>sensitivity, such as 100</source>
+        <translation>Empfindlichkeit, etwa 100</translation>
+    </message>
+    <message>
+        <source>Exposure compensation</source>
+        <translation>Belichtungskorrektur</translation>
+    </message>
+    <message>
+        <source>brighter (+) or darker (-) than the camera measures, in stops; a manual exposure has none</source>
+        <translation>heller (+) oder dunkler (-), als die Kamera misst, in Blendenstufen; eine manuelle Belichtung hat keine</translation>
+    </message>
+    <message>
+        <source>White balance</source>
+        <translation>Weißabgleich</translation>
+    </message>
+    <message>
+        <source>how colours are balanced</source>
+        <translation>wie Farben abgeglichen werden</translation>
+    </message>
+    <message>
+        <source>colour temperature</source>
+        <translation>Farbtemperatur</translation>
+    </message>
+    <message>
+        <source>sunny</source>
+        <translation>sonnig</translation>
+    </message>
+    <message>
+        <source>cloudy</source>
+        <translation>bewölkt</translation>
+    </message>
+    <message>
+        <source>Colour temperature</source>
+        <translation>Farbtemperatur</translation>
+    </message>
+    <message>
+        <source>colour temperature that counts as white; 5500 K is daylight</source>
+        <translation>Farbtemperatur, die als Weiß gilt; 5500 K ist Tageslicht</translation>
+    </message>
+    <message>
+        <source>Focus</source>
+        <translation>Fokus</translation>
+    </message>
+    <message>
+        <source>automatic before each photo; automatic before the first, then locked; at infinity; or at a distance</source>
+        <translation>automatisch vor jedem Foto; automatisch vor dem ersten, dann fest; auf unendlich; oder auf eine Entfernung</translation>
+    </message>
+    <message>
+        <source>automatic, each photo</source>
+        <translation>automatisch, jedes Foto</translation>
+    </message>
+    <message>
+        <source>automatic once, then locked</source>
+        <translation>einmal automatisch, dann fest</translation>
+    </message>
+    <message>
+        <source>infinity</source>
+        <translation>unendlich</translation>
+    </message>
+    <message>
+        <source>at a distance</source>
+        <translation>auf eine Entfernung</translation>
+    </message>
+    <message>
+        <source>Focus distance</source>
+        <translation>Fokusentfernung</translation>
+    </message>
+    <message>
+        <source>distance of the focus, where it is set to one</source>
+        <translation>Entfernung des Fokus, wo er auf eine gestellt ist</translation>
+    </message>
+    <message>
+        <source>Shutter</source>
+        <translation>Verschluss</translation>
+    </message>
+    <message>
+        <source>shutter; a camera that has no mechanical one uses the electronic one</source>
+        <translation>Verschluss; eine Kamera ohne mechanischen nimmt den elektronischen</translation>
+    </message>
+    <message>
+        <source>mechanical</source>
+        <translation>mechanisch</translation>
+    </message>
+    <message>
+        <source>electronic</source>
+        <translation>elektronisch</translation>
+    </message>
+    <message>
         <source>weight hemisphere sections by their solid angle instead of equally</source>
         <translation>Abschnitte der Halbkugeln nach ihrem Raumwinkel gewichten statt alle gleich</translation>
     </message>
@@ -4265,12 +4464,20 @@ Blickrichtung: {3}</translation>
         <translation>Rechnen auf</translation>
     </message>
     <message>
-        <source>what to compute on; cuda needs the extra of that name</source>
-        <translation>worauf gerechnet wird; cuda braucht das gleichnamige Extra</translation>
+        <source>what splats are drawn on; auto measures a step, gpu is a card of any maker, cuda needs the extra of that name</source>
+        <translation>worauf Splats gezeichnet werden; auto misst einen Schritt, gpu ist eine Karte beliebigen Herstellers, cuda braucht das Extra dieses Namens</translation>
+    </message>
+    <message>
+        <source>whatever is fastest</source>
+        <translation>was am schnellsten ist</translation>
     </message>
     <message>
         <source>the processor</source>
         <translation>dem Prozessor</translation>
+    </message>
+    <message>
+        <source>the graphics card</source>
+        <translation>die Grafikkarte</translation>
     </message>
     <message>
         <source>People below</source>
@@ -4279,6 +4486,22 @@ Blickrichtung: {3}</translation>
     <message>
         <source>people below: a word of SORA, or people per square kilometre</source>
         <translation>Menschen darunter: ein Wort von SORA, oder Menschen je Quadratkilometer</translation>
+    </message>
+    <message>
+        <source>what a population raster counts people in; of known products the name of the file says it</source>
+        <translation>worin ein Bevölkerungsraster Menschen zählt; bei bekannten Produkten sagt es der Dateiname</translation>
+    </message>
+    <message>
+        <source>as its name says</source>
+        <translation>wie sein Name sagt</translation>
+    </message>
+    <message>
+        <source>in a cell</source>
+        <translation>in einer Zelle</translation>
+    </message>
+    <message>
+        <source>per km²</source>
+        <translation>je km²</translation>
     </message>
     <message>
         <source>strongest wind in which it flies, from any side</source>
@@ -4431,6 +4654,10 @@ Blickrichtung: {3}</translation>
     <message>
         <source>how much wider than exact the corners of the areas may be; less has more corners</source>
         <translation>wie viel weiter als genau die Ecken der Gebiete sein dürfen; weniger hat mehr Ecken</translation>
+    </message>
+    <message>
+        <source>Raster counts people</source>
+        <translation>Raster zählt Menschen</translation>
     </message>
 </context>
 <context>
@@ -4650,6 +4877,18 @@ Blickrichtung: {3}</translation>
         <translation>Fotos lesen</translation>
     </message>
     <message>
+        <source>Photos are rendered: {0}. They lie in {1}</source>
+        <translation>Gerenderte Fotos: {0}. Sie liegen in {1}</translation>
+    </message>
+    <message>
+        <source>Render the photos</source>
+        <translation>Fotos rendern</translation>
+    </message>
+    <message>
+        <source>Photos on panels</source>
+        <translation>Fotos auf den Scheiben</translation>
+    </message>
+    <message>
         <source>The data set is written, photos: {0}. Train a model of it on the Reconstruct tab: {1}</source>
         <translation>Der Datensatz ist geschrieben, Fotos: {0}. Im Reiter Rekonstruktion ein Modell daraus trainieren: {1}</translation>
     </message>
@@ -4721,12 +4960,32 @@ Blickrichtung: {3}</translation>
         <translation>Nächsten Akku planen</translation>
     </message>
     <message>
+        <source>Render these photos ...</source>
+        <translation>Diese Fotos rendern ...</translation>
+    </message>
+    <message>
         <source>Poses, sharpness, exposure and the coverage that was achieved</source>
         <translation>Lagen, Schärfe, Belichtung und die erreichte Abdeckung</translation>
     </message>
     <message>
         <source>Make a coarse model and a site of the photos of a first flight: poses, walls, roofs and ground</source>
         <translation>Aus den Fotos eines ersten Flugs ein Grobmodell und einen Standort machen: Posen, Wände, Dächer und Boden</translation>
+    </message>
+    <message>
+        <source>Make the photos that the simulated flight took, with what its panes mirror; wide ones take hours</source>
+        <translation>Die Fotos herstellen, die der simulierte Flug gemacht hat, mit dem, was die Scheiben spiegeln; breite dauern Stunden</translation>
+    </message>
+    <message>
+        <source>{0} px wide</source>
+        <translation>{0} px breit</translation>
+    </message>
+    <message>
+        <source>as the camera</source>
+        <translation>wie die Kamera</translation>
+    </message>
+    <message>
+        <source>Width of rendered photos</source>
+        <translation>Breite gerenderter Fotos</translation>
     </message>
     <message>
         <source>Find the grid of every facade in the photos and put it into 3-D</source>
@@ -4767,6 +5026,10 @@ Blickrichtung: {3}</translation>
     <message>
         <source>Folder for the coarse model</source>
         <translation>Ordner für das Grobmodell</translation>
+    </message>
+    <message>
+        <source>Folder for the rendered photos</source>
+        <translation>Ordner für die gerenderten Fotos</translation>
     </message>
     <message>
         <source>Folder for the data set</source>
@@ -4845,6 +5108,10 @@ Blickrichtung: {3}</translation>
     <message>
         <source>Only “Optimised (recommended)” can keep viewpoints. Choose it, or release those kept: {0}</source>
         <translation>Nur „Optimiert (empfohlen)“ kann Aufnahmepunkte behalten. Wählen Sie es, oder geben Sie die fixierten frei: {0}</translation>
+    </message>
+    <message>
+        <source>Camera settings</source>
+        <translation>Kameraeinstellungen</translation>
     </message>
     <message>
         <source>Delete plan</source>
@@ -5094,6 +5361,14 @@ Blickrichtung: {3}</translation>
     <message>
         <source>Compare plans</source>
         <translation>Pläne vergleichen</translation>
+    </message>
+    <message>
+        <source>Camera settings</source>
+        <translation>Kameraeinstellungen</translation>
+    </message>
+    <message>
+        <source>How photos are taken: of this plan at once, and of the next</source>
+        <translation>Wie Fotos gemacht werden: die dieses Plans sofort und die des nächsten</translation>
     </message>
     <message>
         <source>Quality</source>
@@ -5436,6 +5711,14 @@ Blickrichtung: {3}</translation>
     <message>
         <source>Geofence on board</source>
         <translation>Geofence an Bord</translation>
+    </message>
+    <message>
+        <source>Not in the geofence</source>
+        <translation>Nicht im Geofence</translation>
+    </message>
+    <message>
+        <source>Drawn otherwise in the geofence</source>
+        <translation>Im Geofence anders gezeichnet</translation>
     </message>
     <message>
         <source>Rally points on board</source>
@@ -6668,6 +6951,10 @@ Damit weiterarbeiten?</translation>
         <translation>Flugverbotszonen</translation>
     </message>
     <message>
+        <source>Geo-zones</source>
+        <translation>Geo-Zonen</translation>
+    </message>
+    <message>
         <source>Airspace</source>
         <translation>Luftraum</translation>
     </message>
@@ -6682,6 +6969,14 @@ Damit weiterarbeiten?</translation>
     <message>
         <source>Ground</source>
         <translation>Boden</translation>
+    </message>
+    <message>
+        <source>Simulated surroundings</source>
+        <translation>Simulierte Umgebung</translation>
+    </message>
+    <message>
+        <source>Photos on panels</source>
+        <translation>Fotos auf den Scheiben</translation>
     </message>
     <message>
         <source>Names</source>
@@ -7116,6 +7411,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>% der Wände</translation>
     </message>
     <message>
+        <source>&apos;{0}&apos; ({1}{2}, {3})</source>
+        <translation>&apos;{0}&apos; ({1}{2}, {3})</translation>
+    </message>
+    <message>
         <source>&apos;{0}&apos; cannot be read, it is &apos;{1}&apos;</source>
         <translation>&apos;{0}&apos; ist nicht lesbar, dort steht &apos;{1}&apos;</translation>
     </message>
@@ -7126,6 +7425,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>&apos;{0}&apos;, added on {1}</source>
         <translation>&apos;{0}&apos;, hinzugefügt am {1}</translation>
+    </message>
+    <message>
+        <source>, or </source>
+        <translation>, oder </translation>
     </message>
     <message>
         <source>--into and --site are for IFC; expected a name ending in .ifc</source>
@@ -7216,8 +7519,16 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>DJI Fly wurde mit dieser Route nicht erprobt: Sie ist für {0} geschrieben, das DJI Pilot 2 fliegt; sehen Sie vor dem Start jeden Wegpunkt in DJI Fly an</translation>
     </message>
     <message>
+        <source>DO_DIGICAM_CONFIGURE says nothing that is understood; it is not taken over</source>
+        <translation>DO_DIGICAM_CONFIGURE sagt nichts Verständliches; es wird nicht übernommen</translation>
+    </message>
+    <message>
         <source>EGM96 stands in for &apos;{0}&apos;, which may be off by 1 m, in mountains by 2 m; home stands on the same terrain, so heights above take-off do not change</source>
         <translation>EGM96 steht für &apos;{0}&apos; ein, was um 1 m falsch sein kann, im Gebirge um 2 m; der Startplatz steht auf demselben Gelände, Höhen über dem Start ändern sich also nicht</translation>
+    </message>
+    <message>
+        <source>EGM96 stands in for EGM2008: both differ by 0.5 m in the mean, at few places by several metres; home stands on the same terrain, so heights above take-off do not change; a grid of EGM2008 (--geoid) brings them nearer</source>
+        <translation>EGM96 steht für EGM2008: Beide weichen im Mittel um 0,5 m ab, an wenigen Orten um mehrere Meter; der Startplatz steht auf demselben Gelände, Höhen über dem Start ändern sich also nicht; ein Gitter von EGM2008 (--geoid) bringt sie näher</translation>
     </message>
     <message>
         <source>Export</source>
@@ -7242,6 +7553,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>Hemisphere section</source>
         <translation>Sektor der Halbkugel</translation>
+    </message>
+    <message>
+        <source>ISO automatic</source>
+        <translation>ISO automatisch</translation>
+    </message>
+    <message>
+        <source>ISO goes from {0} to {1}, {2} cannot be set</source>
+        <translation>ISO reicht von {0} bis {1}, {2} lässt sich nicht einstellen</translation>
     </message>
     <message>
         <source>Ipopt found no speed profile: {0}</source>
@@ -7300,6 +7619,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Reflight versagte, wo es nicht sollte ({0}: {1}); bitte mit {2} melden</translation>
     </message>
     <message>
+        <source>Render photos</source>
+        <translation>Fotos rendern</translation>
+    </message>
+    <message>
         <source>Show the first</source>
         <translation>Den ersten zeigen</translation>
     </message>
@@ -7338,6 +7661,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>Stop and keep</source>
         <translation>Stopp, behalten</translation>
+    </message>
+    <message>
+        <source>TLS fails ({0}): ask its operator which versions it speaks</source>
+        <translation>TLS scheitert ({0}): den Betreiber fragen, welche Versionen er spricht</translation>
     </message>
     <message>
         <source>Table of photos (.csv)</source>
@@ -7416,6 +7743,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>ein leerer Standort darum herum, ohne Gebäude und Scheiben</translation>
     </message>
     <message>
+        <source>a cell of the raster ({0} m) is larger than the whole buffer, and evens out crowds in it</source>
+        <translation>eine Zelle des Rasters ({0} m) ist größer als der ganze Puffer und gleicht Menschenmengen darin aus</translation>
+    </message>
+    <message>
         <source>a circle has no centre or no radius that can be used</source>
         <translation>ein Kreis hat keinen brauchbaren Mittelpunkt oder Radius</translation>
     </message>
@@ -7446,6 +7777,18 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>a file of geo-zones</source>
         <translation>eine Datei mit Geozonen</translation>
+    </message>
+    <message>
+        <source>a flight was simulated</source>
+        <translation>ein Flug ist simuliert</translation>
+    </message>
+    <message>
+        <source>a focus at a distance needs that distance, and no other has one</source>
+        <translation>ein Fokus auf eine Entfernung braucht diese Entfernung, und kein anderer hat eine</translation>
+    </message>
+    <message>
+        <source>a focus of type {0} with {1} is not taken over; set it on the camera</source>
+        <translation>ein Fokus der Art {0} mit {1} wird nicht übernommen; an der Kamera einstellen</translation>
     </message>
     <message>
         <source>a full battery</source>
@@ -7508,6 +7851,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>eine Beschränkung, die die Datei nicht nennt</translation>
     </message>
     <message>
+        <source>a return passes under this zone, and fences have no height: it is not in the fence</source>
+        <translation>ein Rückflug führt unter dieser Zone hindurch, und Zäune haben keine Höhe: Sie ist nicht im Zaun</translation>
+    </message>
+    <message>
         <source>a site alone has no viewpoints to fly to; name a plan as well</source>
         <translation>ein Standort allein hat keine Aufnahmepunkte zum Anfliegen; auch einen Plan nennen</translation>
     </message>
@@ -7560,6 +7907,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>alle Prüfungen bestanden; Missionsdateien sind geschrieben</translation>
     </message>
     <message>
+        <source>all photos are taken at a hover, so none is blurred by motion</source>
+        <translation>alle Fotos entstehen im Schweben, also verwischt keines durch Bewegung</translation>
+    </message>
+    <message>
+        <source>all photos are taken at a hover, so the electronic shutter skews none</source>
+        <translation>alle Fotos entstehen im Schweben, also verzerrt der elektronische Verschluss keines</translation>
+    </message>
+    <message>
         <source>ambiguous option: %(option)s could match %(matches)s</source>
         <translation>mehrdeutige Option: %(option)s kann %(matches)s sein</translation>
     </message>
@@ -7580,6 +7935,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>eine Fläche hat keinen Umriss</translation>
     </message>
     <message>
+        <source>an independent check finds that claims are false ({0} of {1}): {2}</source>
+        <translation>eine unabhängige Prüfung findet falsche Aussagen ({0} von {1}): {2}</translation>
+    </message>
+    <message>
+        <source>an independent check proves {0} of {1} claims; not proved: {2}</source>
+        <translation>eine unabhängige Prüfung beweist {0} von {1} Aussagen; nicht bewiesen: {2}</translation>
+    </message>
+    <message>
         <source>an outline lies on earth only if latitude and longitude are exchanged</source>
         <translation>ein Umriss liegt nur auf der Erde, wenn Breite und Länge vertauscht werden</translation>
     </message>
@@ -7592,6 +7955,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>eine andere Mission dieses Namens ist dort; senden Sie sie unter einem anderen Namen, oder erlauben Sie das Ersetzen</translation>
     </message>
     <message>
+        <source>aperture f/{0}</source>
+        <translation>Blende f/{0}</translation>
+    </message>
+    <message>
         <source>argument %(argument_name)s: %(message)s</source>
         <translation>Argument %(argument_name)s: %(message)s</translation>
     </message>
@@ -7600,12 +7967,40 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Baukörper werden gebildet</translation>
     </message>
     <message>
+        <source>as its name says</source>
+        <translation>wie sein Name sagt</translation>
+    </message>
+    <message>
+        <source>as stated</source>
+        <translation>wie angegeben</translation>
+    </message>
+    <message>
         <source>at most {0} longer than the shortest</source>
         <translation>höchstens {0} länger als die kürzeste</translation>
     </message>
     <message>
         <source>at the shutter (median / worst): {0}</source>
         <translation>beim Auslösen (Median / schlechteste): {0}</translation>
+    </message>
+    <message>
+        <source>automatic exposure</source>
+        <translation>automatische Belichtung</translation>
+    </message>
+    <message>
+        <source>automatic focus (AF)</source>
+        <translation>Autofokus (AF)</translation>
+    </message>
+    <message>
+        <source>automatic focus before each photo</source>
+        <translation>Autofokus vor jedem Foto</translation>
+    </message>
+    <message>
+        <source>automatic focus before the first photo, then locked</source>
+        <translation>Autofokus vor dem ersten Foto, dann fest</translation>
+    </message>
+    <message>
+        <source>automatic white balance</source>
+        <translation>automatischer Weißabgleich</translation>
     </message>
     <message>
         <source>begin with a building model, photos of a first flight, or a mission of another program</source>
@@ -7628,6 +8023,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>unter dem Boden, oder wo er nicht bekannt ist</translation>
     </message>
     <message>
+        <source>below {0} % of the way the terrain has no heights: how high it was there is not known</source>
+        <translation>unter {0} % des Weges hat das Gelände keine Höhen: wie hoch es dort war, ist nicht bekannt</translation>
+    </message>
+    <message>
         <source>best</source>
         <translation>beste</translation>
     </message>
@@ -7640,8 +8039,20 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>so viel Sonne nehmen Körper des Standorts einer Scheibe an diesem Tag</translation>
     </message>
     <message>
+        <source>browsers cannot mirror as this model does, by a network or by normals of splats: they show these colours</source>
+        <translation>Browser können nicht spiegeln wie dieses Modell, mit einem Netz oder nach Normalen der Splats: Sie zeigen diese Farben</translation>
+    </message>
+    <message>
+        <source>browsers with WebGPU show panes that mirror as in the model, others these colours</source>
+        <translation>Browser mit WebGPU zeigen Scheiben, die wie im Modell spiegeln, andere diese Farben</translation>
+    </message>
+    <message>
         <source>bundled scenes have a look of their own; name a site file to give one, or leave it out</source>
         <translation>mitgelieferte Szenen haben ein eigenes Aussehen; dafür eine Standortdatei nennen oder es weglassen</translation>
+    </message>
+    <message>
+        <source>by the grid &apos;{0}&apos; in steps of {1} minutes: here {2} m above the ellipsoid, {3} m from EGM96</source>
+        <translation>nach dem Gitter &apos;{0}&apos; in Schritten von {1} Minuten: hier {2} m über dem Ellipsoid, {3} m gegen EGM96</translation>
     </message>
     <message>
         <source>byte {0} says that {1} entries follow, but the {2} bytes left hold at most {3}; the file is damaged or cut off: write it again</source>
@@ -7696,6 +8107,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>geprüft; Fehler: {0}</translation>
     </message>
     <message>
+        <source>checking the proof</source>
+        <translation>der Beweis wird geprüft</translation>
+    </message>
+    <message>
+        <source>choose another time</source>
+        <translation>andere Zeit wählen</translation>
+    </message>
+    <message>
         <source>choose viewpoints and a route</source>
         <translation>Aufnahmepunkte und Flugweg wählen</translation>
     </message>
@@ -7710,6 +8129,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>collections of areas are nested too deeply</source>
         <translation>Sammlungen von Flächen sind zu tief verschachtelt</translation>
+    </message>
+    <message>
+        <source>colour temperatures go from {0} to {1} K</source>
+        <translation>Farbtemperaturen reichen von {0} bis {1} K</translation>
     </message>
     <message>
         <source>colouring points</source>
@@ -7764,6 +8187,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>die Passpunkte liegen im Mittel um {0} m daneben, höchstens um {1} m</translation>
     </message>
     <message>
+        <source>corrections: expected USER@HOST:PORT/MOUNTPOINT, such as me@rtk.example.org:2101/VRS, over TLS with ntrips:// before it, got &apos;{0}&apos;</source>
+        <translation>Korrekturen: erwartet USER@HOST:PORT/MOUNTPOINT, etwa me@rtk.example.org:2101/VRS, über TLS mit ntrips:// davor, gefunden &apos;{0}&apos;</translation>
+    </message>
+    <message>
         <source>cost</source>
         <translation>Kosten</translation>
     </message>
@@ -7804,6 +8231,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>dichte Tiefen</translation>
     </message>
     <message>
+        <source>device: &apos;gpu&apos; is asked for, and {0}; leave it out</source>
+        <translation>device: „gpu“ ist verlangt, und {0}; lassen Sie es weg</translation>
+    </message>
+    <message>
         <source>distance</source>
         <translation>Strecke</translation>
     </message>
@@ -7824,6 +8255,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>sagt nicht, wo es liegt; ein GeoTIFF mit Georeferenz angeben</translation>
     </message>
     <message>
+        <source>does not say whether it counts people in a cell or per square kilometre; say it (--population-counts)</source>
+        <translation>sagt nicht, ob es Menschen in einer Zelle oder je Quadratkilometer zählt; angeben (--population-counts)</translation>
+    </message>
+    <message>
+        <source>each photo exposed by itself</source>
+        <translation>jedes Foto einzeln belichtet</translation>
+    </message>
+    <message>
         <source>effect</source>
         <translation>Effekt</translation>
     </message>
@@ -7836,6 +8275,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
 {0}</source>
         <translation>Effekte:
 {0}</translation>
+    </message>
+    <message>
+        <source>electronic shutter</source>
+        <translation>elektronischer Verschluss</translation>
     </message>
     <message>
         <source>embedded, {0} x {1} rays</source>
@@ -7920,6 +8363,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>expected ZONE=REFERENCE, got &apos;{0}&apos;</source>
         <translation>erwartet wird ZONE=AKTENZEICHEN, angegeben ist &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>expected [lowest, highest], both above 0, got {0}</source>
+        <translation>erwartet [kleinster, größter], beide über 0, gefunden {0}</translation>
     </message>
     <message>
         <source>expected a COLMAP model (cameras and images as .bin or .txt), found {0}; models are often in sparse/0</source>
@@ -8014,6 +8461,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>erwartet wird eine Zahl über 0, angegeben &apos;{0}&apos;</translation>
     </message>
     <message>
+        <source>expected a number above 0, got {0}</source>
+        <translation>erwartet eine Zahl über 0, gefunden {0}</translation>
+    </message>
+    <message>
         <source>expected a number, got &apos;{0}&apos;</source>
         <translation>erwartet wird eine Zahl, angegeben &apos;{0}&apos;</translation>
     </message>
@@ -8068,6 +8519,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>expected a time of day such as 08:30, got &apos;{0}&apos;</source>
         <translation>erwartet wurde eine Uhrzeit wie 08:30, gefunden &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>expected a time such as 1/500 or 0.002, got &apos;{0}&apos;</source>
+        <translation>erwartet eine Zeit wie 1/500 oder 0.002, gefunden &apos;{0}&apos;</translation>
     </message>
     <message>
         <source>expected a time such as 2026-06-21T10:30, got &apos;{0}&apos;</source>
@@ -8148,6 +8603,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>expected at least one depot</source>
         <translation>mindestens ein Depot wird erwartet</translation>
+    </message>
+    <message>
+        <source>expected at least one way to choose, got none</source>
+        <translation>erwartet mindestens eine Wahl, gefunden keine</translation>
     </message>
     <message>
         <source>expected at most one argument</source>
@@ -8232,6 +8691,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>expected more than 0, got {0}</source>
         <translation>erwartet wird mehr als 0, angegeben {0}</translation>
+    </message>
+    <message>
+        <source>expected more than the focal length of {0} mm, got {1} m</source>
+        <translation>erwartet mehr als die Brennweite von {0} mm, gefunden {1} m</translation>
     </message>
     <message>
         <source>expected named tensors, found {0}; name a file of weights</source>
@@ -8320,6 +8783,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>expected the sample project or nothing there, found something else</source>
         <translation>erwartet wurde dort das Beispielprojekt oder nichts, gefunden etwas anderes</translation>
+    </message>
+    <message>
+        <source>expected the site&apos;s own &apos;{0}&apos; here, or none; write the mission into another folder</source>
+        <translation>hier wird „{0}“ des Standorts selbst erwartet oder keine; schreiben Sie die Mission in einen anderen Ordner</translation>
+    </message>
+    <message>
+        <source>expected the times of a shutter, got none</source>
+        <translation>erwartet die Zeiten eines Verschlusses, gefunden keine</translation>
     </message>
     <message>
         <source>expected the weights of AlexNet or VGG16 as torchvision names them; {0}</source>
@@ -8430,8 +8901,52 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>wird exportiert</translation>
     </message>
     <message>
+        <source>exposure compensation {0} EV</source>
+        <translation>Belichtungskorrektur {0} EV</translation>
+    </message>
+    <message>
+        <source>exposure lock (AE) on, with the facade filling the picture, and left on for the whole sortie</source>
+        <translation>Belichtungsspeicher (AE) ein, während die Fassade das Bild füllt, und für den ganzen Einsatz eingeschaltet gelassen</translation>
+    </message>
+    <message>
+        <source>exposure measured once, then locked</source>
+        <translation>Belichtung einmal gemessen, dann fest</translation>
+    </message>
+    <message>
+        <source>exposure mode A (aperture priority)</source>
+        <translation>Belichtungsmodus A (Blendenvorwahl)</translation>
+    </message>
+    <message>
+        <source>exposure mode M</source>
+        <translation>Belichtungsmodus M</translation>
+    </message>
+    <message>
+        <source>exposure mode P (automatic)</source>
+        <translation>Belichtungsmodus P (automatisch)</translation>
+    </message>
+    <message>
+        <source>exposure mode S (shutter priority)</source>
+        <translation>Belichtungsmodus S (Zeitvorwahl)</translation>
+    </message>
+    <message>
         <source>exposure of each photo</source>
         <translation>Belichtung jedes Fotos</translation>
+    </message>
+    <message>
+        <source>exposures are compensated by {0} EV at most</source>
+        <translation>Belichtungen lassen sich um höchstens {0} EV korrigieren</translation>
+    </message>
+    <message>
+        <source>f/{0} keeps both sharp</source>
+        <translation>f/{0} hält beides scharf</translation>
+    </message>
+    <message>
+        <source>f/{0} rather than f/{1} takes {2} stops of light: {3} times the shutter time or the ISO</source>
+        <translation>f/{0} statt f/{1} kostet {2} Blendenstufen Licht: {3}-fache Verschlusszeit oder ISO-Zahl</translation>
+    </message>
+    <message>
+        <source>f/{0}, {1}</source>
+        <translation>f/{0}, {1}</translation>
     </message>
     <message>
         <source>facade &apos;{0}&apos;</source>
@@ -8460,6 +8975,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>fall without drag</source>
         <translation>Fall ohne Luftwiderstand</translation>
+    </message>
+    <message>
+        <source>faster ones are electronic, and skew what moves</source>
+        <translation>kürzere sind elektronisch und verzerren, was sich bewegt</translation>
     </message>
     <message>
         <source>fastest climb</source>
@@ -8558,6 +9077,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>geflogen, bevor der Pilot handelt</translation>
     </message>
     <message>
+        <source>fly at {0} m/s, or stop for each photo</source>
+        <translation>mit {0} m/s fliegen oder für jedes Foto anhalten</translation>
+    </message>
+    <message>
         <source>fly it, first in simulation; or export it for your aircraft</source>
         <translation>fliegen, zuerst simuliert; oder für Ihr Fluggerät exportieren</translation>
     </message>
@@ -8566,12 +9089,44 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Ausreißer</translation>
     </message>
     <message>
+        <source>focus at infinity</source>
+        <translation>Fokus auf unendlich</translation>
+    </message>
+    <message>
+        <source>focus at {0} m</source>
+        <translation>Fokus auf {0} m</translation>
+    </message>
+    <message>
         <source>formula</source>
         <translation>Formel</translation>
     </message>
     <message>
         <source>formulas and tables of both were taken from public implementations that agree, and give the distances that German authorities publish (STS-BOS 1.0, tables 1 and 2); compare them with the documents</source>
         <translation>Formeln und Tabellen beider stammen aus öffentlichen Programmen, die übereinstimmen, und ergeben die Abstände, die deutsche Behörden veröffentlichen (STS-BOS 1.0, Tabellen 1 und 2); vergleichen Sie sie mit den Dokumenten</translation>
+    </message>
+    <message>
+        <source>from step {0} on splats were drawn by the processor: {1}</source>
+        <translation>ab Schritt {0} zeichnete der Prozessor die Splats: {1}</translation>
+    </message>
+    <message>
+        <source>from the ground to {0} m above home</source>
+        <translation>vom Boden bis {0} m über dem Startplatz</translation>
+    </message>
+    <message>
+        <source>from the ground upwards</source>
+        <translation>vom Boden nach oben</translation>
+    </message>
+    <message>
+        <source>from {0} m above home upwards</source>
+        <translation>ab {0} m über dem Startplatz nach oben</translation>
+    </message>
+    <message>
+        <source>from {0} m on f/{1} keeps both sharp</source>
+        <translation>ab {0} m hält f/{1} beides scharf</translation>
+    </message>
+    <message>
+        <source>from {0} m to {1} m above home</source>
+        <translation>von {0} m bis {1} m über dem Startplatz</translation>
     </message>
     <message>
         <source>full speed over the ground</source>
@@ -8588,6 +9143,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>fusing views: expected rectified views of one size with a mask each, found sizes {0}; rectify them all onto the same window of the facade</source>
         <translation>Ansichten verbinden: erwartet werden entzerrte Ansichten einer Größe mit je einer Maske, gefunden Größen {0}; alle auf denselben Ausschnitt der Fassade entzerren</translation>
+    </message>
+    <message>
+        <source>geoid heights</source>
+        <translation>Geoidhöhen</translation>
     </message>
     <message>
         <source>give and withdraw want the url of a link; set, status and forget want none</source>
@@ -8630,6 +9189,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>hat sich beim Lesen geändert</translation>
     </message>
     <message>
+        <source>has more than {0} cells below the buffer; the map of the raster may be torn here, or its cells are too fine: take one in longitudes and latitudes, of 100 m or more</source>
+        <translation>hat mehr als {0} Zellen unter dem Puffer; die Karte des Rasters ist hier vielleicht zerrissen, oder seine Zellen sind zu fein: eines in Längen und Breiten nehmen, mit 100 m oder mehr</translation>
+    </message>
+    <message>
         <source>has more than {0} points; cut out the part that is wanted, or simplify it</source>
         <translation>hat mehr als {0} Punkte; den gewünschten Teil ausschneiden oder vereinfachen</translation>
     </message>
@@ -8662,6 +9225,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>hat keinen Splat bis {0} m vor den Scheiben von {1}; sind beide in einem Bezugssystem?</translation>
     </message>
     <message>
+        <source>has no such place on its map</source>
+        <translation>hat keinen solchen Ort auf seiner Karte</translation>
+    </message>
+    <message>
         <source>has none of the views that the model did not learn from; leave --held-out out</source>
         <translation>hat keine der Ansichten, aus denen das Modell nicht lernte; --held-out weglassen</translation>
     </message>
@@ -8680,10 +9247,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>has {0} MB free, the files need {1} MB; delete something there</source>
         <translation>hat {0} MB frei, die Dateien brauchen {1} MB; löschen Sie dort etwas</translation>
-    </message>
-    <message>
-        <source>has {0} bands, as pictures have; expected one band of heights</source>
-        <translation>hat {0} Kanäle wie ein Bild; erwartet einen Kanal mit Höhen</translation>
     </message>
     <message>
         <source>has {0} bytes; a tile of SRTM has {1} or {2}; copy it again</source>
@@ -8882,10 +9445,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>ist kein CSV ({0})</translation>
     </message>
     <message>
-        <source>is no GeoTIFF; expected heights as .tif or .hgt</source>
-        <translation>ist kein GeoTIFF; erwartet Höhen als .tif oder .hgt</translation>
-    </message>
-    <message>
         <source>is no PLY file (it does not start with &apos;ply&apos;)</source>
         <translation>ist keine PLY-Datei (sie beginnt nicht mit &apos;ply&apos;)</translation>
     </message>
@@ -8896,6 +9455,22 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>is no file; {0}</source>
         <translation>ist keine Datei; {0}</translation>
+    </message>
+    <message>
+        <source>is no geoid grid in the form GTX, or is damaged</source>
+        <translation>ist kein Geoidgitter der Form GTX oder ist beschädigt</translation>
+    </message>
+    <message>
+        <source>is no geoid grid: expected heights in longitudes and latitudes</source>
+        <translation>ist kein Geoidgitter: erwartet: Höhen in Längen und Breiten</translation>
+    </message>
+    <message>
+        <source>is no geoid grid; expected .pgm of GeographicLib, or .gtx or .tif of PROJ</source>
+        <translation>ist kein Geoidgitter; erwartet: .pgm von GeographicLib oder .gtx oder .tif von PROJ</translation>
+    </message>
+    <message>
+        <source>is no geoid of GeographicLib: expected P5 with &apos;# Offset&apos; and &apos;# Scale&apos; and 65535 steps</source>
+        <translation>ist kein Geoid von GeographicLib: erwartet: P5 mit &apos;# Offset&apos; und &apos;# Scale&apos; und 65535 Stufen</translation>
     </message>
     <message>
         <source>is not empty, and has no {0} of photos to go on with; name a new folder</source>
@@ -8946,6 +9521,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>er antwortet nicht</translation>
     </message>
     <message>
+        <source>it does not answer any more</source>
+        <translation>sie antwortet nicht mehr</translation>
+    </message>
+    <message>
+        <source>it does not apply at the planned time</source>
+        <translation>sie gilt zur geplanten Zeit nicht</translation>
+    </message>
+    <message>
         <source>it does not begin as one</source>
         <translation>es beginnt nicht wie eines</translation>
     </message>
@@ -8966,8 +9549,20 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>er hat den Strom beendet</translation>
     </message>
     <message>
+        <source>it ends before the size that the vehicle listed: list the logs again</source>
+        <translation>es endet vor der Größe, die das Fahrzeug aufgelistet hat: die Logs neu auflisten</translation>
+    </message>
+    <message>
+        <source>it focuses at infinity for some photos and automatically for others, which is not taken over</source>
+        <translation>sie fokussiert für manche Fotos auf unendlich und für andere automatisch; das wird nicht übernommen</translation>
+    </message>
+    <message>
         <source>it has a line for each panel</source>
         <translation>sie hat eine Zeile für jedes Panel</translation>
+    </message>
+    <message>
+        <source>it has no memory left</source>
+        <translation>sie hat keinen Speicher mehr</translation>
     </message>
     <message>
         <source>it has no operator number: enter yours in the settings</source>
@@ -8980,6 +9575,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>it has not heard for seconds where the operator stands: the link to it is bad</source>
         <translation>es hat seit Sekunden nicht gehört, wo der Betreiber steht: die Verbindung zu ihm ist schlecht</translation>
+    </message>
+    <message>
+        <source>it hung up while TLS began: is this its TLS port?</source>
+        <translation>er hat aufgelegt, während TLS begann: Ist das sein TLS-Port?</translation>
     </message>
     <message>
         <source>it is connected and sends nothing that is RTCM</source>
@@ -9018,6 +9617,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>es sagt: {0}</translation>
     </message>
     <message>
+        <source>it sets the camera to video: most take no photos then</source>
+        <translation>sie stellt die Kamera auf Video: die meisten machen dann keine Fotos</translation>
+    </message>
+    <message>
+        <source>it speaks no TLS at this port: ask for its TLS port, or leave ntrips:// out</source>
+        <translation>er spricht an diesem Port kein TLS: nach seinem TLS-Port fragen oder ntrips:// weglassen</translation>
+    </message>
+    <message>
         <source>it was not looked for</source>
         <translation>nicht untersucht</translation>
     </message>
@@ -9026,12 +9633,52 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>ihm wurde nicht gesagt, wozu der Flug dient</translation>
     </message>
     <message>
+        <source>it was tried, and {0}</source>
+        <translation>sie wurde versucht, und {0}</translation>
+    </message>
+    <message>
         <source>it would not land in the light</source>
         <translation>er würde nicht bei Licht landen</translation>
     </message>
     <message>
+        <source>it zooms to {0} mm (35 mm equivalent), but all photos count with one field of view</source>
+        <translation>sie zoomt auf {0} mm (Kleinbild), aber alle Fotos zählen mit einem Bildwinkel</translation>
+    </message>
+    <message>
+        <source>it zooms, but all photos count with the field of view of the camera that is named</source>
+        <translation>sie zoomt, aber alle Fotos zählen mit dem Bildwinkel der genannten Kamera</translation>
+    </message>
+    <message>
         <source>its authority</source>
         <translation>ihre Behörde</translation>
+    </message>
+    <message>
+        <source>its camera measures exposures at a spot; plans do not say that, so set it on the controller</source>
+        <translation>ihre Kamera misst Belichtungen an einem Punkt; Pläne sagen das nicht, also an der Fernsteuerung einstellen</translation>
+    </message>
+    <message>
+        <source>its camera: {0}</source>
+        <translation>ihre Kamera: {0}</translation>
+    </message>
+    <message>
+        <source>its certificate is for another name than &apos;{0}&apos;: is the address right?</source>
+        <translation>sein Zertifikat ist für einen anderen Namen als &apos;{0}&apos;: Stimmt die Adresse?</translation>
+    </message>
+    <message>
+        <source>its certificate is not valid yet: is the clock of this computer right?</source>
+        <translation>sein Zertifikat gilt noch nicht: Geht die Uhr dieses Rechners richtig?</translation>
+    </message>
+    <message>
+        <source>its certificate is over: is the clock of this computer right? Else its operator has to renew it</source>
+        <translation>sein Zertifikat ist abgelaufen: Geht die Uhr dieses Rechners richtig? Sonst muss der Betreiber es erneuern</translation>
+    </message>
+    <message>
+        <source>its certificate is refused ({0})</source>
+        <translation>sein Zertifikat wird abgelehnt ({0})</translation>
+    </message>
+    <message>
+        <source>its certificate was revoked: do not send it a password, and ask its operator</source>
+        <translation>sein Zertifikat wurde widerrufen: ihm kein Passwort schicken und den Betreiber fragen</translation>
     </message>
     <message>
         <source>its checksum is never the vehicle&apos;s: the link damages it, or it is still being written</source>
@@ -9078,8 +9725,16 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>ihre Höhen sind in der Einheit &apos;{0}&apos;, die hier nicht bekannt ist; mit --height-unit angeben</translation>
     </message>
     <message>
+        <source>its heights, here {0} m above the ellipsoid, are those of no geoid; is it damaged, or something else?</source>
+        <translation>seine Höhen, hier {0} m über dem Ellipsoid, sind die keines Geoids; ist es beschädigt oder etwas anderes?</translation>
+    </message>
+    <message>
         <source>its lower limit &apos;{0}&apos; lies above the upper one &apos;{1}&apos;</source>
         <translation>ihre Untergrenze &apos;{0}&apos; liegt über der Obergrenze &apos;{1}&apos;</translation>
+    </message>
+    <message>
+        <source>its missions set the camera differently; what the first says is taken for all</source>
+        <translation>ihre Missionen stellen die Kamera verschieden ein; was die erste sagt, gilt für alle</translation>
     </message>
     <message>
         <source>its nearest zone is {0} km away; is this the file for this place?</source>
@@ -9114,6 +9769,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>seine Punkte haben {0} Eigenschaften; erwartet werden 1 bis {1}</translation>
     </message>
     <message>
+        <source>its proof for an independent check: {0}</source>
+        <translation>sein Beweis für eine unabhängige Prüfung: {0}</translation>
+    </message>
+    <message>
         <source>its shape is that of another airspace, which is not in the file (&apos;{0}&apos;)</source>
         <translation>ihre Form ist die eines anderen Luftraums, der nicht in der Datei steht (&apos;{0}&apos;)</translation>
     </message>
@@ -9144,6 +9803,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>lay a grid of panels on a facade, or find panels in photos</source>
         <translation>ein Raster von Scheiben auf eine Fassade legen, oder Scheiben in Fotos suchen</translation>
+    </message>
+    <message>
+        <source>level ground</source>
+        <translation>ebenem Boden</translation>
     </message>
     <message>
         <source>light</source>
@@ -9270,6 +9933,22 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>den Datensatz erstellen, von dem ein Modell lernt</translation>
     </message>
     <message>
+        <source>manual exposure</source>
+        <translation>manuelle Belichtung</translation>
+    </message>
+    <message>
+        <source>manual exposure needs a shutter time and an ISO</source>
+        <translation>manuelle Belichtung braucht eine Verschlusszeit und einen ISO-Wert</translation>
+    </message>
+    <message>
+        <source>manual focus (MF) at infinity</source>
+        <translation>manueller Fokus (MF) auf unendlich</translation>
+    </message>
+    <message>
+        <source>manual focus (MF) on something {0} m away</source>
+        <translation>manueller Fokus (MF) auf etwas in {0} m Entfernung</translation>
+    </message>
+    <message>
         <source>map error</source>
         <translation>Kartenfehler</translation>
     </message>
@@ -9296,6 +9975,18 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>measured tilts of panes</source>
         <translation>gemessene Neigungen von Scheiben</translation>
+    </message>
+    <message>
+        <source>mechanical shutter</source>
+        <translation>mechanischer Verschluss</translation>
+    </message>
+    <message>
+        <source>mechanical shutter off</source>
+        <translation>mechanischer Verschluss aus</translation>
+    </message>
+    <message>
+        <source>mechanical shutter on</source>
+        <translation>mechanischer Verschluss ein</translation>
     </message>
     <message>
         <source>metering</source>
@@ -9334,6 +10025,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>mehr, wo es noch steigt oder der Wind es trägt</translation>
     </message>
     <message>
+        <source>most people in a cell below the buffer</source>
+        <translation>die meisten Menschen in einer Zelle unter dem Puffer</translation>
+    </message>
+    <message>
         <source>moving the swarm</source>
         <translation>der Schwarm bewegt sich</translation>
     </message>
@@ -9354,12 +10049,20 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>name: mehrere Objekte haben den Namen &apos;{0}&apos;; die GlobalId nennen</translation>
     </message>
     <message>
+        <source>names a coordinate reference system that is not known here</source>
+        <translation>nennt ein Koordinatenreferenzsystem, das hier nicht bekannt ist</translation>
+    </message>
+    <message>
         <source>names a coordinate reference system that is not known here; name it with --crs</source>
         <translation>nennt ein Koordinatenreferenzsystem, das hier nicht bekannt ist; mit --crs angeben</translation>
     </message>
     <message>
         <source>names no coordinate reference system; name it with --crs</source>
         <translation>nennt kein Koordinatenreferenzsystem; mit --crs angeben</translation>
+    </message>
+    <message>
+        <source>names no coordinate reference system; take the file as its maker gives it</source>
+        <translation>nennt kein Koordinatenreferenzsystem; die Datei nehmen, wie ihr Hersteller sie gibt</translation>
     </message>
     <message>
         <source>needs the folder of its annotated photos; name it with --data</source>
@@ -9390,8 +10093,16 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>kein Dask-Scheduler antwortet unter {0} ({1})</translation>
     </message>
     <message>
+        <source>no Vulkan, Metal or Direct3D 12 driver answers (on Debian or Ubuntu: {0})</source>
+        <translation>kein Treiber für Vulkan, Metal oder Direct3D 12 antwortet (auf Debian oder Ubuntu: {0})</translation>
+    </message>
+    <message>
         <source>no building in this file has windows; {0}</source>
         <translation>kein Gebäude in dieser Datei hat Fenster; {0}</translation>
+    </message>
+    <message>
+        <source>no camera answers by the camera protocol; set it by hand: {0}</source>
+        <translation>keine Kamera antwortet über das Kameraprotokoll; von Hand einstellen: {0}</translation>
     </message>
     <message>
         <source>no card or remote controller is connected; on Windows and macOS a controller that is connected by USB has no path: use its card</source>
@@ -9424,6 +10135,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>no geo-zones are known here; add files of your authority: &apos;site zones SITE FILE&apos;</source>
         <translation>hier sind keine Geozonen bekannt; Dateien der Behörde hinzufügen: &apos;site zones SITE FILE&apos;</translation>
+    </message>
+    <message>
+        <source>no graphics card can be used: {0}; or compute on the processor</source>
+        <translation>es ist keine Grafikkarte nutzbar: {0}; oder rechnen Sie auf dem Prozessor</translation>
+    </message>
+    <message>
+        <source>no graphics card: {0}</source>
+        <translation>keine Grafikkarte: {0}</translation>
     </message>
     <message>
         <source>no ground was seen: it is taken to be where the lowest points are</source>
@@ -9520,6 +10239,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>nobody who is not involved (controlled ground area)</source>
         <translation>niemand Unbeteiligtes (kontrollierter Bodenbereich)</translation>
+    </message>
+    <message>
+        <source>nobody whom this computer trusts vouches for its certificate; where it is the operator&apos;s own, save it as .pem, name that file in the environment as SSL_CERT_FILE, and start again</source>
+        <translation>niemand, dem dieser Rechner vertraut, bürgt für sein Zertifikat; wo es das eigene des Betreibers ist, es als .pem speichern, die Datei in der Umgebung als SSL_CERT_FILE nennen und neu starten</translation>
     </message>
     <message>
         <source>none</source>
@@ -9682,6 +10405,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Hindernisse aus der Oberfläche: {0} Quader, und {1}, wo sie keine Höhen hat</translation>
     </message>
     <message>
+        <source>of a step&apos;s time for splats saved</source>
+        <translation>der Zeit eines Schritts für Splats gespart</translation>
+    </message>
+    <message>
         <source>of all sections</source>
         <translation>von allen Sektoren</translation>
     </message>
@@ -9704,6 +10431,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>of what can be covered</source>
         <translation>vom Erreichbaren</translation>
+    </message>
+    <message>
+        <source>of {0} % of the buffer the raster has no number, which does not mean nobody: state how many people are below</source>
+        <translation>für {0} % des Puffers hat das Raster keine Zahl, was nicht niemand heißt: angeben, wie viele Menschen darunter sind</translation>
     </message>
     <message>
         <source>of {0} it is not known how large, heavy and fast it is; state {1}, or &apos;body&apos; in a profile of your own</source>
@@ -9794,6 +10525,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Scheiben: {0}</translation>
     </message>
     <message>
+        <source>panes out of focus ({0})</source>
+        <translation>Scheiben unscharf ({0})</translation>
+    </message>
+    <message>
+        <source>part of the buffer of which the raster knows nothing</source>
+        <translation>Teil des Puffers, von dem das Raster nichts weiß</translation>
+    </message>
+    <message>
         <source>parts of the log are damaged and were skipped</source>
         <translation>Teile des Logs sind beschädigt und wurden übersprungen</translation>
     </message>
@@ -9810,8 +10549,28 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Passwort des Casters: </translation>
     </message>
     <message>
+        <source>people</source>
+        <translation>Menschen</translation>
+    </message>
+    <message>
+        <source>people are those of the raster: {0} per square kilometre in its fullest cell (&apos;{1}&apos;), {2} in the mean; it counts who lives there, so state more where people work, shop or gather</source>
+        <translation>die Menschen sind die des Rasters: {0} je Quadratkilometer in seiner vollsten Zelle (&apos;{1}&apos;), {2} im Mittel; es zählt, wer dort wohnt, also mehr angeben, wo Menschen arbeiten, einkaufen oder sich versammeln</translation>
+    </message>
+    <message>
+        <source>people below the buffer, in the mean</source>
+        <translation>Menschen unter dem Puffer, im Mittel</translation>
+    </message>
+    <message>
         <source>people below: {0}</source>
         <translation>Menschen darunter: {0}</translation>
+    </message>
+    <message>
+        <source>people in a cell</source>
+        <translation>Menschen in einer Zelle</translation>
+    </message>
+    <message>
+        <source>people per square kilometre</source>
+        <translation>Menschen je Quadratkilometer</translation>
     </message>
     <message>
         <source>permissions of the old state of &apos;{0}&apos; have ended, state them again: {1}</source>
@@ -9844,6 +10603,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>photos read: {0}</source>
         <translation>gelesene Fotos: {0}</translation>
+    </message>
+    <message>
+        <source>photos taken in passing: {0}, at up to {1} m/s</source>
+        <translation>Fotos im Vorbeiflug: {0}, mit bis zu {1} m/s</translation>
     </message>
     <message>
         <source>photos: {0} of {1} views</source>
@@ -9934,12 +10697,24 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Projekt: {0}</translation>
     </message>
     <message>
+        <source>proofs:   {0}</source>
+        <translation>Beweise:  {0}</translation>
+    </message>
+    <message>
+        <source>proved by an independent check: all {0} claims on this plan</source>
+        <translation>durch eine unabhängige Prüfung bewiesen: alle {0} Aussagen über diesen Plan</translation>
+    </message>
+    <message>
         <source>px of parallax</source>
         <translation>px Parallaxe</translation>
     </message>
     <message>
         <source>question: {0}</source>
         <translation>Frage: {0}</translation>
+    </message>
+    <message>
+        <source>raster {0}, cells of {1} m</source>
+        <translation>Raster {0}, Zellen von {1} m</translation>
     </message>
     <message>
         <source>reachability</source>
@@ -10022,6 +10797,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Remote ID: {0}</translation>
     </message>
     <message>
+        <source>render the photos that it took</source>
+        <translation>die Fotos rendern, die er gemacht hat</translation>
+    </message>
+    <message>
         <source>rendered in</source>
         <translation>gerendert in</translation>
     </message>
@@ -10046,6 +10825,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Rest von Einsatz {0} ab {1}, {2}, {3} m, {4} min</translation>
     </message>
     <message>
+        <source>rolling shutter</source>
+        <translation>Rolling Shutter</translation>
+    </message>
+    <message>
         <source>route &apos;{0}&apos;: expected the beginning of one route&apos;s id, {1}</source>
         <translation>Route &apos;{0}&apos;: erwartet wurde der Anfang der Kennung einer Route, {1}</translation>
     </message>
@@ -10060,6 +10843,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>routing</source>
         <translation>Route</translation>
+    </message>
+    <message>
+        <source>rows are read one after the other</source>
+        <translation>Zeilen werden nacheinander gelesen</translation>
     </message>
     <message>
         <source>run</source>
@@ -10126,6 +10913,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Sektoren nur in diesem Plan</translation>
     </message>
     <message>
+        <source>see where, and fly higher</source>
+        <translation>nachsehen, wo, und höher fliegen</translation>
+    </message>
+    <message>
         <source>seen at least twice: {0} sections</source>
         <translation>mindestens zweimal gesehen: {0} Sektoren</translation>
     </message>
@@ -10140,6 +10931,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>serial number &apos;{0}&apos;: expected at most {1} letters and digits</source>
         <translation>Seriennummer &apos;{0}&apos;: erwartet wurden höchstens {1} Buchstaben und Ziffern</translation>
+    </message>
+    <message>
+        <source>set by hand: {0}</source>
+        <translation>von Hand einzustellen: {0}</translation>
+    </message>
+    <message>
+        <source>set by the mission: {0}</source>
+        <translation>stellt die Mission ein: {0}</translation>
     </message>
     <message>
         <source>setting</source>
@@ -10162,6 +10961,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>zeigt andere Scheiben als die gelernten; Fotos desselben Standorts nennen</translation>
     </message>
     <message>
+        <source>shutter time {0}</source>
+        <translation>Verschlusszeit {0}</translation>
+    </message>
+    <message>
         <source>simulated fly-aways: {0} of {1} ended inside; smallest distance to the border {2} m</source>
         <translation>simulierte Ausreißer: {0} von {1} endeten innerhalb; kleinster Abstand zum Rand {2} m</translation>
     </message>
@@ -10172,6 +10975,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>simulation, {0} times as fast</source>
         <translation>Simulation, {0}-mal so schnell</translation>
+    </message>
+    <message>
+        <source>single automatic focus (AF-S) on the facade, then manual (MF)</source>
+        <translation>Einzel-Autofokus (AF-S) auf die Fassade, dann manuell (MF)</translation>
     </message>
     <message>
         <source>site &apos;{0}&apos; without terrain</source>
@@ -10206,12 +11013,20 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>für {0} m/s bemessen; wo ein Modus auf die {1} m/s des Plans begrenzt, geben Sie diese als volle Geschwindigkeit an</translation>
     </message>
     <message>
+        <source>skew of a photo by the electronic shutter, which reads its rows in {0} ms</source>
+        <translation>Verzerrung eines Fotos durch den elektronischen Verschluss, der seine Zeilen in {0} ms liest</translation>
+    </message>
+    <message>
         <source>smallest clearance</source>
         <translation>kleinster Abstand</translation>
     </message>
     <message>
         <source>smallest distance between aircraft that start as planned, {0} s after the first start</source>
         <translation>kleinster Abstand zwischen Fluggeräten, die wie geplant starten, {0} s nach dem ersten Start</translation>
+    </message>
+    <message>
+        <source>smallest height above {0}, {1} s after the start</source>
+        <translation>kleinste Höhe über {0}, {1} s nach dem Start</translation>
     </message>
     <message>
         <source>somebody else reads its files</source>
@@ -10254,6 +11069,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Splats beginnen auf Punkten, nicht auf dem Netz</translation>
     </message>
     <message>
+        <source>splats drawn by the graphics card</source>
+        <translation>Splats von der Grafikkarte gezeichnet</translation>
+    </message>
+    <message>
         <source>spread</source>
         <translation>Streuung</translation>
     </message>
@@ -10288,6 +11107,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>steps of {0} m from heights {1} m apart: bounds at most {2} m off, and {3} m for the accuracy</source>
         <translation>Schritte von {0} m aus Höhen im Abstand von {1} m: Schranken höchstens {2} m daneben, dazu {3} m für die Genauigkeit</translation>
+    </message>
+    <message>
+        <source>stop for each photo</source>
+        <translation>für jedes Foto anhalten</translation>
     </message>
     <message>
         <source>stop once the curve is flat, or let it end by itself</source>
@@ -10358,6 +11181,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>herausgenommen</translation>
     </message>
     <message>
+        <source>taking panels from photos</source>
+        <translation>Scheiben aus Fotos nehmen</translation>
+    </message>
+    <message>
         <source>template and waylines name different aircraft: {0}, {1}</source>
         <translation>template und waylines nennen verschiedene Fluggeräte: {0}, {1}</translation>
     </message>
@@ -10380,6 +11207,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the KML file {0}; expected areas alone</source>
         <translation>die KML-Datei {0}; erwartet werden nur Flächen</translation>
+    </message>
+    <message>
+        <source>the TLS link to {0} broke: {1}</source>
+        <translation>die TLS-Verbindung zu {0} brach ab: {1}</translation>
     </message>
     <message>
         <source>the ULog cannot be read ({0}); copy it from the vehicle again</source>
@@ -10418,6 +11249,18 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>die Annotation hat {0} x {1} Pixel, ihr Foto {2} x {3}</translation>
     </message>
     <message>
+        <source>the aperture goes from f/{0} to f/{1}, f/{2} cannot be set</source>
+        <translation>die Blende reicht von f/{0} bis f/{1}, f/{2} lässt sich nicht einstellen</translation>
+    </message>
+    <message>
+        <source>the aperture is fixed at f/{0}, f/{1} cannot be set</source>
+        <translation>die Blende steht fest auf f/{0}, f/{1} lässt sich nicht einstellen</translation>
+    </message>
+    <message>
+        <source>the aperture is not known, so depth of field is not checked; state it</source>
+        <translation>die Blende ist nicht bekannt, daher wird die Schärfentiefe nicht geprüft; angeben</translation>
+    </message>
+    <message>
         <source>the battery on board</source>
         <translation>dem eingesetzten Akku</translation>
     </message>
@@ -10430,6 +11273,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>das Gebäude ohne Scheiben</translation>
     </message>
     <message>
+        <source>the camera does not take this, set it by hand: {0}</source>
+        <translation>die Kamera nimmt dies nicht an, von Hand einstellen: {0}</translation>
+    </message>
+    <message>
+        <source>the camera is set, and read back: {0}</source>
+        <translation>die Kamera ist eingestellt und zurückgelesen: {0}</translation>
+    </message>
+    <message>
         <source>the camera model {0} is not supported; expected one of {1}; undistort the images with COLMAP (image_undistorter), which then writes PINHOLE cameras</source>
         <translation>das Kameramodell {0} wird nicht unterstützt; erwartet wird eines von {1}; die Bilder mit COLMAP entzerren (image_undistorter), das dann PINHOLE-Kameras schreibt</translation>
     </message>
@@ -10438,8 +11289,28 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>die Kamera meldet, dass Foto {0} nicht gelang</translation>
     </message>
     <message>
+        <source>the camera sends its video as RTP, which is not read: set it to RTSP</source>
+        <translation>die Kamera sendet ihr Video als RTP, was nicht gelesen wird: sie auf RTSP stellen</translation>
+    </message>
+    <message>
+        <source>the camera sends its video over TCP, which is not read: set it to RTSP</source>
+        <translation>die Kamera sendet ihr Video über TCP, was nicht gelesen wird: sie auf RTSP stellen</translation>
+    </message>
+    <message>
+        <source>the camera tells an address that holds on itself alone: type its own in the settings of the flight</source>
+        <translation>die Kamera nennt eine Adresse, die nur auf ihr selbst gilt: ihre eigene in den Einstellungen des Flugs eingeben</translation>
+    </message>
+    <message>
+        <source>the camera tells of a video without an address</source>
+        <translation>die Kamera nennt ein Video ohne Adresse</translation>
+    </message>
+    <message>
         <source>the cluster does not answer any more ({0}); complete photos stay in {1}: run it again to go on</source>
         <translation>der Cluster antwortet nicht mehr ({0}); fertige Fotos bleiben in {1}: noch einmal starten, um weiterzumachen</translation>
+    </message>
+    <message>
+        <source>the connection broke while TLS began ({0})</source>
+        <translation>die Verbindung brach ab, während TLS begann ({0})</translation>
     </message>
     <message>
         <source>the contingency volume reaches into the no-fly zone &apos;{0}&apos;</source>
@@ -10478,12 +11349,28 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>das Gerät wurde entfernt oder antwortet nicht mehr ({0}); schließen Sie es an und senden Sie erneut</translation>
     </message>
     <message>
+        <source>the electronic shutter goes from {0} to {1}, not to {2}; {3}</source>
+        <translation>der elektronische Verschluss reicht von {0} bis {1}, nicht bis {2}; {3}</translation>
+    </message>
+    <message>
         <source>the ellipsoid</source>
         <translation>das Ellipsoid</translation>
     </message>
     <message>
         <source>the facade&apos;s horizon runs through its middle: it is seen edge-on, or the lines are wrong</source>
         <translation>der Horizont der Fassade geht durch ihre Mitte: sie ist von der Kante zu sehen, oder die Linien sind falsch</translation>
+    </message>
+    <message>
+        <source>the fence has no height: it keeps the vehicle out below this zone, too, which begins {0} m above the ground</source>
+        <translation>der Zaun hat keine Höhe: Er hält das Fahrzeug auch unter dieser Zone fern, die {0} m über dem Boden beginnt</translation>
+    </message>
+    <message>
+        <source>the fence of {0} has room for {1} corners, and nearer zones need them: this zone is not in the fence</source>
+        <translation>der Zaun von {0} hat Platz für {1} Ecken, und nähere Zonen brauchen sie: Diese Zone ist nicht im Zaun</translation>
+    </message>
+    <message>
+        <source>the fence of {0} has room for {1} corners: this zone is drawn with {2} in place of {3}, up to {4} m around its outside</source>
+        <translation>der Zaun von {0} hat Platz für {1} Ecken: Diese Zone ist mit {2} statt {3} gezeichnet, bis zu {4} m außen herum</translation>
     </message>
     <message>
         <source>the file does not say when this applies</source>
@@ -10522,6 +11409,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>der Flug ist {0} km vom Standort &apos;{1}&apos; entfernt; erwartet werden höchstens {2} km; ist es das richtige Log und der richtige Standort?</translation>
     </message>
     <message>
+        <source>the focus &apos;{0}&apos; cannot be set; it has {1}</source>
+        <translation>der Fokus &apos;{0}&apos; lässt sich nicht einstellen; möglich sind {1}</translation>
+    </message>
+    <message>
+        <source>the focus is set by hand before the flight, and the file does not say to which distance</source>
+        <translation>der Fokus wird vor dem Flug von Hand eingestellt, und die Datei sagt nicht, auf welche Entfernung</translation>
+    </message>
+    <message>
         <source>the folder has no files of heights; expected .tif or .hgt</source>
         <translation>der Ordner hat keine Dateien mit Höhen; erwartet .tif oder .hgt</translation>
     </message>
@@ -10532,6 +11427,18 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the following arguments are required: %s</source>
         <translation>folgende Argumente fehlen: %s</translation>
+    </message>
+    <message>
+        <source>the format cannot set all of the camera; set by hand before take-off: {0}</source>
+        <translation>das Format kann nicht alles an der Kamera einstellen; vor dem Start von Hand: {0}</translation>
+    </message>
+    <message>
+        <source>the graphics card {0} does not open ({1}); compute on the processor instead</source>
+        <translation>die Grafikkarte {0} lässt sich nicht öffnen ({1}); rechnen Sie stattdessen auf dem Prozessor</translation>
+    </message>
+    <message>
+        <source>the graphics card {0} failed: {1}; compute on the processor instead</source>
+        <translation>die Grafikkarte {0} ist ausgefallen: {1}; rechnen Sie stattdessen auf dem Prozessor</translation>
     </message>
     <message>
         <source>the ground</source>
@@ -10584,6 +11491,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the latitude is {0} degrees; expected -90 to 90{1}</source>
         <translation>die Breite ist {0} Grad; erwartet wird -90 bis 90{1}</translation>
+    </message>
+    <message>
+        <source>the lens focuses from {0} m on</source>
+        <translation>das Objektiv fokussiert ab {0} m</translation>
     </message>
     <message>
         <source>the lens moves pixels by up to {0} px</source>
@@ -10678,12 +11589,28 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>der Kartenserver {0} hat etwas anderes als eine Kartenkachel geschickt ({1}); die Adresse prüfen</translation>
     </message>
     <message>
+        <source>the mechanical shutter goes from {0} to {1}, not to {2}; {3}</source>
+        <translation>der mechanische Verschluss reicht von {0} bis {1}, nicht bis {2}; {3}</translation>
+    </message>
+    <message>
+        <source>the mechanical shutter takes all rows at once</source>
+        <translation>der mechanische Verschluss nimmt alle Zeilen zugleich auf</translation>
+    </message>
+    <message>
         <source>the mission is called &apos;{0}&apos; there: DJI&apos;s apps take no dots and underscores in names</source>
         <translation>die Mission heißt dort &apos;{0}&apos;: DJIs Apps nehmen keine Punkte und Unterstriche in Namen</translation>
     </message>
     <message>
         <source>the mission is on board</source>
         <translation>die Mission ist an Bord</translation>
+    </message>
+    <message>
+        <source>the mission is written without its proof: {0}</source>
+        <translation>die Mission ist ohne ihren Beweis geschrieben: {0}</translation>
+    </message>
+    <message>
+        <source>the mission passes over or under this zone, and fences have no height: it is not in the fence</source>
+        <translation>die Mission führt über oder unter dieser Zone hindurch, und Zäune haben keine Höhe: Sie ist nicht im Zaun</translation>
     </message>
     <message>
         <source>the model is open</source>
@@ -10790,6 +11717,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>das Bild ist verzeichnet, und Splats werden ohne Verzeichnung gerendert; mit `prepare` entzerren</translation>
     </message>
     <message>
+        <source>the plan has no proof beside it ({0}); plan it again</source>
+        <translation>neben dem Plan liegt kein Beweis ({0}); planen Sie ihn neu</translation>
+    </message>
+    <message>
         <source>the plan has no sorties, so there is nothing that could fall; plan a flight first</source>
         <translation>der Plan hat keine Flüge, also kann nichts abstürzen; planen Sie zuerst einen Flug</translation>
     </message>
@@ -10820,6 +11751,18 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the positions of {0} of {1} photos contradict the model</source>
         <translation>die Positionen von {0} von {1} Fotos widersprechen dem Modell</translation>
+    </message>
+    <message>
+        <source>the raster has no more people than stated: {0} per square kilometre in its fullest cell</source>
+        <translation>das Raster hat nicht mehr Menschen als angegeben: {0} je Quadratkilometer in seiner vollsten Zelle</translation>
+    </message>
+    <message>
+        <source>the raster has {0} people per square kilometre in its fullest cell (&apos;{1}&apos;), more than the &apos;{2}&apos; stated</source>
+        <translation>das Raster hat {0} Menschen je Quadratkilometer in seiner vollsten Zelle (&apos;{1}&apos;), mehr als das angegebene &apos;{2}&apos;</translation>
+    </message>
+    <message>
+        <source>the raster has {0} people per square kilometre in its fullest cell: see that all of them stay out</source>
+        <translation>das Raster hat {0} Menschen je Quadratkilometer in seiner vollsten Zelle: dafür sorgen, dass alle draußen bleiben</translation>
     </message>
     <message>
         <source>the reader of IFC files crashed on this one (status {0}), so something in it goes in circles or beyond all bounds; open and export it again in a BIM program</source>
@@ -10958,12 +11901,24 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>die Höhen des Templates sind {0}, die Wayline wird aber in {1} geflogen; hier zählt die Wayline, ein Programm, das vom Template ausgeht, flöge woanders</translation>
     </message>
     <message>
+        <source>the terrain</source>
+        <translation>dem Gelände</translation>
+    </message>
+    <message>
+        <source>the terrain around departs from level ground by up to {0} m, which moves the ground in the glass by up to {1} degrees</source>
+        <translation>das Gelände ringsum weicht um bis zu {0} m vom ebenen Boden ab, was den Boden im Glas um bis zu {1} Grad verschiebt</translation>
+    </message>
+    <message>
         <source>the terrain below the airspace departs from its level ground by up to {0} m</source>
         <translation>das Gelände unter dem Luftraum weicht um bis zu {0} m vom ebenen Boden ab</translation>
     </message>
     <message>
         <source>the terrain cannot be brought to home: it has no heights there; give the shift in metres</source>
         <translation>das Gelände kann nicht zum Startplatz gebracht werden: es hat dort keine Höhen; die Verschiebung in Metern angeben</translation>
+    </message>
+    <message>
+        <source>the terrain has no heights around the glass</source>
+        <translation>das Gelände hat um das Glas keine Höhen</translation>
     </message>
     <message>
         <source>the terrain has no heights below it</source>
@@ -11004,14 +11959,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the transfer does not get on; a vehicle that restarts again and again, or a bad link</source>
         <translation>die Übertragung kommt nicht voran; ein Fahrzeug, das immer wieder neu startet, oder eine schlechte Verbindung</translation>
-    </message>
-    <message>
-        <source>the vehicle does not answer to file transfer (MAVFTP); take its card out</source>
-        <translation>das Fahrzeug antwortet nicht auf Dateiübertragung (MAVFTP); nehmen Sie seine Karte heraus</translation>
-    </message>
-    <message>
-        <source>the vehicle knows no file transfer (MAVFTP); take its card out</source>
-        <translation>das Fahrzeug kennt keine Dateiübertragung (MAVFTP); nehmen Sie seine Karte heraus</translation>
     </message>
     <message>
         <source>the vehicle no longer answers</source>
@@ -11498,12 +12445,20 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>{0}: {1} Elemente, zurückgelesen und gleich</translation>
     </message>
     <message>
+        <source>{0}; and {1} more</source>
+        <translation>{0}; und {1} weitere</translation>
+    </message>
+    <message>
         <source>{0}; another battery would bring {1} dB more</source>
         <translation>{0}; ein weiterer Akku brächte {1} dB mehr</translation>
     </message>
     <message>
         <source>{0}; export it again</source>
         <translation>{0}; erneut exportieren</translation>
+    </message>
+    <message>
+        <source>{0}; motion blur at {1}</source>
+        <translation>{0}; Bewegungsunschärfe bei {1}</translation>
     </message>
     <message>
         <source>{0}; the sun or its mirror image is in {1} of {2} photos, {3} show uneven light, the pilot is blinded for {4} s</source>
@@ -12140,10 +13095,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>items {0} and {1}</source>
         <translation>Elemente {0} und {1}</translation>
-    </message>
-    <message>
-        <source>the mission passes over or under this zone, and fences have no height: it is not in the file&apos;s fence</source>
-        <translation>die Mission führt über diese Zone oder unter ihr hindurch, und Zäune haben keine Höhe: Sie ist nicht im Zaun der Datei</translation>
     </message>
     <message>
         <source>spline legs are taken as straight</source>
@@ -13206,10 +14157,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Datensatz</translation>
     </message>
     <message>
-        <source>EGM96 stands in for EGM2008: both differ by 0.5 m in the mean, at few places by several metres; home stands on the same terrain, so heights above take-off do not change</source>
-        <translation>EGM96 steht für EGM2008: beide unterscheiden sich im Mittel um 0.5 m, an wenigen Orten um mehrere Meter; der Startplatz steht auf demselben Gelände, Höhen über dem Start ändern sich also nicht</translation>
-    </message>
-    <message>
         <source>Effects</source>
         <translation>Effekte</translation>
     </message>
@@ -13530,10 +14477,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Korrekturen: ein Passwort wird gefragt und nicht behalten; lassen Sie es aus der Adresse weg</translation>
     </message>
     <message>
-        <source>corrections: expected USER@HOST:PORT/MOUNTPOINT, such as me@rtk.example.org:2101/VRS, got &apos;{0}&apos;</source>
-        <translation>Korrekturen: erwartet wurde USER@HOST:PORT/MOUNTPOINT, etwa me@rtk.example.org:2101/VRS, es ist &apos;{0}&apos;</translation>
-    </message>
-    <message>
         <source>cut out the part that is wanted</source>
         <translation>den gewünschten Teil ausschneiden</translation>
     </message>
@@ -13556,6 +14499,34 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>even light {0}; all of it in the sun {1}; part of it {2}</source>
         <translation>gleichmäßiges Licht {0}; ganz in der Sonne {1}; zum Teil {2}</translation>
+    </message>
+    <message>
+        <source>has {0} bands, as pictures have; expected one band of {1}</source>
+        <translation>hat {0} Bänder wie ein Bild; erwartet: ein Band mit {1}</translation>
+    </message>
+    <message>
+        <source>has {0} x {1} nodes; expected those of the whole earth</source>
+        <translation>hat {0} x {1} Knoten; erwartet: die der ganzen Erde</translation>
+    </message>
+    <message>
+        <source>heights</source>
+        <translation>Höhen</translation>
+    </message>
+    <message>
+        <source>holds values of the type {0}; expected numbers</source>
+        <translation>enthält Werte vom Typ {0}; erwartet: Zahlen</translation>
+    </message>
+    <message>
+        <source>is cut off, or goes on behind its grid; copy it again</source>
+        <translation>ist abgeschnitten oder geht hinter seinem Gitter weiter; neu kopieren</translation>
+    </message>
+    <message>
+        <source>is finer than any geoid grid; expected steps of a minute or more</source>
+        <translation>ist feiner als jedes Geoidgitter; erwartet: Schritte von einer Minute oder mehr</translation>
+    </message>
+    <message>
+        <source>is no GeoTIFF; expected {0} as .tif</source>
+        <translation>ist kein GeoTIFF; erwartet: {0} als .tif</translation>
     </message>
     <message>
         <source>it covers nothing; take it closer or drop it</source>
@@ -13594,12 +14565,24 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>die beiden Fluchtpunkte sind fast dieselben: das ist keine Ebene, die von vorn zu sehen ist</translation>
     </message>
     <message>
+        <source>the vehicle answers neither to file transfer (MAVFTP) nor to the log protocol; is it disarmed? Else take its card out</source>
+        <translation>das Fahrzeug antwortet weder auf Dateiübertragung (MAVFTP) noch auf das Log-Protokoll; ist es entschärft? Sonst seine Karte herausnehmen</translation>
+    </message>
+    <message>
         <source>the vehicle does not say that it is a simulation: {0}; nothing was changed on it</source>
         <translation>das Fluggerät sagt nicht, dass es eine Simulation ist: {0}; nichts wurde daran geändert</translation>
     </message>
     <message>
+        <source>the vehicle knows neither file transfer (MAVFTP) nor the log protocol; take its card out</source>
+        <translation>das Fahrzeug kennt weder Dateiübertragung (MAVFTP) noch das Log-Protokoll; nehmen Sie seine Karte heraus</translation>
+    </message>
+    <message>
         <source>the virtual screen Xvfb did not start; run it by hand to see why</source>
         <translation>der virtuelle Bildschirm Xvfb startete nicht; ihn von Hand starten, um zu sehen, warum</translation>
+    </message>
+    <message>
+        <source>the white balance &apos;{0}&apos; cannot be set; it has {1}</source>
+        <translation>der Weißabgleich &apos;{0}&apos; lässt sich nicht einstellen; möglich sind {1}</translation>
     </message>
     <message>
         <source>the worker {0} could not take the scene; see its own log</source>
@@ -13632,6 +14615,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>there is no effect &apos;{0}&apos;; expected one of {1}</source>
         <translation>es gibt keinen Effekt &apos;{0}&apos;; erwartet wird einer von {1}</translation>
+    </message>
+    <message>
+        <source>there is no graphics card but {0}, which the processor runs</source>
+        <translation>es gibt keine Grafikkarte außer {0}, die der Prozessor rechnet</translation>
     </message>
     <message>
         <source>there is no key</source>
@@ -13674,12 +14661,28 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>sie zeigen {0} von {1} Sektoren ({2} %)</translation>
     </message>
     <message>
+        <source>this camera cannot do what is wanted: {0}</source>
+        <translation>diese Kamera kann nicht, was gewünscht ist: {0}</translation>
+    </message>
+    <message>
         <source>this camera has pixels of {0} mm at {1} m, but the minimum distance is {2} m; allow larger pixels or lower --min-distance</source>
         <translation>diese Kamera hat Pixel von {0} mm bei {1} m, aber der Mindestabstand ist {2} m; größere Pixel erlauben oder --min-distance senken</translation>
     </message>
     <message>
         <source>this could be a real aircraft, and &apos;simulate&apos; takes off by itself; add --take-off if it may</source>
         <translation>das könnte ein echtes Fluggerät sein, und &apos;simulate&apos; startet von selbst; --take-off dazunehmen, wenn es darf</translation>
+    </message>
+    <message>
+        <source>this file has no fence: only a .plan file tells the vehicle the zones to keep out of</source>
+        <translation>diese Datei hat keinen Zaun: Nur eine .plan-Datei sagt dem Fahrzeug, welche Zonen es meiden soll</translation>
+    </message>
+    <message>
+        <source>this geoid grid knows nothing here ({0}, {1}); take one that covers the site</source>
+        <translation>dieses Geoidgitter weiß hier nichts ({0}, {1}); eines nehmen, das den Standort abdeckt</translation>
+    </message>
+    <message>
+        <source>this grid is of {0}, and heights of &apos;{1}&apos; are above {2}; take the grid of that</source>
+        <translation>dieses Gitter ist von {0}, und die Höhen von &apos;{1}&apos; sind über {2}; dessen Gitter nehmen</translation>
     </message>
     <message>
         <source>this is a flight over &apos;{0}&apos;, and not over &apos;{1}&apos; at its origin; name the site that was flown over</source>
@@ -13722,6 +14725,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Aufruf: </translation>
     </message>
     <message>
+        <source>use the mechanical shutter</source>
+        <translation>den mechanischen Verschluss verwenden</translation>
+    </message>
+    <message>
         <source>vehicle {0} has the key and signs with it</source>
         <translation>Fluggerät {0} hat den Schlüssel und signiert damit</translation>
     </message>
@@ -13754,12 +14761,32 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>den Flug bis zur Landung verfolgen</translation>
     </message>
     <message>
+        <source>wgpu is not installed (pip install wgpu)</source>
+        <translation>wgpu ist nicht installiert (pip install wgpu)</translation>
+    </message>
+    <message>
         <source>what airspace &apos;{0}&apos; means for unmanned aircraft is national law: ask what holds here</source>
         <translation>was Luftraum &apos;{0}&apos; für unbemannte Luftfahrzeuge bedeutet, ist Landesrecht: fragen, was hier gilt</translation>
     </message>
     <message>
+        <source>what came twice was not the same: it is still being written, or is another log now</source>
+        <translation>was zweimal kam, war nicht gleich: Es wird noch geschrieben oder ist inzwischen ein anderes Log</translation>
+    </message>
+    <message>
+        <source>what can be set on this camera is not known, so its settings are not checked: {0}</source>
+        <translation>was sich an dieser Kamera einstellen lässt, ist nicht bekannt, daher werden ihre Einstellungen nicht geprüft: {0}</translation>
+    </message>
+    <message>
         <source>what is missing cannot be shown</source>
         <translation>was fehlt, ist nicht zu zeigen</translation>
+    </message>
+    <message>
+        <source>what panes mirror, behind them up to infinity, out of focus</source>
+        <translation>was Scheiben spiegeln, hinter ihnen bis unendlich, unscharf</translation>
+    </message>
+    <message>
+        <source>what photos come of it is not known without the site: add --site SITE</source>
+        <translation>welche Fotos daraus werden, ist ohne den Standort nicht bekannt: --site SITE angeben</translation>
     </message>
     <message>
         <source>what the vehicle sends makes no sense; take the card out</source>
@@ -13786,12 +14813,44 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>wo der Boden nicht bekannt ist, zählt die Oberfläche als Boden</translation>
     </message>
     <message>
+        <source>white balance automatic</source>
+        <translation>Weißabgleich automatisch</translation>
+    </message>
+    <message>
+        <source>white balance cloudy</source>
+        <translation>Weißabgleich bewölkt</translation>
+    </message>
+    <message>
+        <source>white balance for clouds</source>
+        <translation>Weißabgleich für Wolken</translation>
+    </message>
+    <message>
+        <source>white balance for sun</source>
+        <translation>Weißabgleich für Sonne</translation>
+    </message>
+    <message>
+        <source>white balance manual, {0} K</source>
+        <translation>Weißabgleich manuell, {0} K</translation>
+    </message>
+    <message>
+        <source>white balance sunny</source>
+        <translation>Weißabgleich sonnig</translation>
+    </message>
+    <message>
+        <source>white balance {0} K</source>
+        <translation>Weißabgleich {0} K</translation>
+    </message>
+    <message>
         <source>whole</source>
         <translation>ganz</translation>
     </message>
     <message>
         <source>why</source>
         <translation>warum</translation>
+    </message>
+    <message>
+        <source>with the focus at {0} m f/{1} is enough</source>
+        <translation>mit dem Fokus auf {0} m reicht f/{1}</translation>
     </message>
     <message>
         <source>with the records the file would have {0} instances, {1} were expected; it is written in a way that is not understood; save it anew in a BIM program</source>
@@ -13804,6 +14863,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>worst</source>
         <translation>schlechteste</translation>
+    </message>
+    <message>
+        <source>writing the proof</source>
+        <translation>der Beweis wird geschrieben</translation>
     </message>
     <message>
         <source>zone &apos;{0}&apos;: expected the reference of the authorisation, got an empty text</source>
@@ -13824,6 +14887,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>{0} % of what can be covered in sections of {1}°</source>
         <translation>{0} % dessen, was in Sektoren zu {1}° abzudecken ist</translation>
+    </message>
+    <message>
+        <source>{0} (assumed, nobody has published it)</source>
+        <translation>{0} (angenommen, niemand hat es veröffentlicht)</translation>
+    </message>
+    <message>
+        <source>{0} ({1})</source>
+        <translation>{0} ({1})</translation>
     </message>
     <message>
         <source>{0} Gaussian</source>
@@ -13858,6 +14929,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>{0} geändert</translation>
     </message>
     <message>
+        <source>{0} closed the TLS link</source>
+        <translation>{0} hat die TLS-Verbindung geschlossen</translation>
+    </message>
+    <message>
         <source>{0} column</source>
         <translation>{0} Spalte</translation>
     </message>
@@ -13872,6 +14947,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>{0} did not come: {1}</source>
         <translation>{0} kam nicht: {1}</translation>
+    </message>
+    <message>
+        <source>{0} does not draw what the processor draws (apart: {1})</source>
+        <translation>{0} zeichnet nicht, was der Prozessor zeichnet (Abweichung: {1})</translation>
+    </message>
+    <message>
+        <source>{0} ended the process that tried it, or did not answer</source>
+        <translation>{0} hat den Prozess beendet, der sie versuchte, oder nicht geantwortet</translation>
     </message>
     <message>
         <source>{0} facade</source>
@@ -13944,6 +15027,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>{0} is {1}, which has no place in MISSION_ITEM_INT; expected {2}</source>
         <translation>{0} ist {1}, wofür MISSION_ITEM_INT keinen Platz hat; erwartet wird {2}</translation>
+    </message>
+    <message>
+        <source>{0} keeps it sharp, or a stop for each photo</source>
+        <translation>{0} hält es scharf, oder ein Halt für jedes Foto</translation>
     </message>
     <message>
         <source>{0} looked at in {1} s; glass of held-out photos: {2} dB</source>
@@ -14022,6 +15109,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>{0} oder {1}</translation>
     </message>
     <message>
+        <source>{0} or {1} m/s keep it sharp, or a stop for each photo</source>
+        <translation>{0} oder {1} m/s halten es scharf, oder ein Halt für jedes Foto</translation>
+    </message>
+    <message>
         <source>{0} panel</source>
         <translation>{0} Scheibe</translation>
     </message>
@@ -14032,6 +15123,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>{0} panels in {1} photos</source>
         <translation>{0} Scheiben in {1} Fotos</translation>
+    </message>
+    <message>
+        <source>{0} people per square kilometre live nowhere: does it count people per km² or in a cell?</source>
+        <translation>{0} Menschen je Quadratkilometer leben nirgends: Zählt es Menschen je km² oder in einer Zelle?</translation>
     </message>
     <message>
         <source>{0} photo</source>
@@ -14110,12 +15205,24 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>{0} Splats</translation>
     </message>
     <message>
+        <source>{0} splats are more than the {1} that graphics cards are given; compute on the processor instead</source>
+        <translation>{0} Splats sind mehr als die {1}, die Grafikkarten gegeben werden; rechnen Sie stattdessen auf dem Prozessor</translation>
+    </message>
+    <message>
+        <source>{0} splats lie over one another in {1} pixels, more than the graphics card holds; compute on the processor instead</source>
+        <translation>{0} Splats liegen in {1} Pixeln übereinander, mehr als die Grafikkarte fasst; rechnen Sie stattdessen auf dem Prozessor</translation>
+    </message>
+    <message>
         <source>{0} step</source>
         <translation>{0} Schritt</translation>
     </message>
     <message>
         <source>{0} steps</source>
         <translation>{0} Schritte</translation>
+    </message>
+    <message>
+        <source>{0} takes {1} ms, the processor {2} ms; about {3} GB of its memory are needed</source>
+        <translation>{0} braucht {1} ms, der Prozessor {2} ms; etwa {3} GB ihres Speichers werden gebraucht</translation>
     </message>
     <message>
         <source>{0} through {1} points, proven to be {2}
@@ -14176,6 +15283,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>{0} {1}, {2} min, {3} m/s, Wind bis {4} m/s; {5}, {6} x {7}, {8} mm, Gimbal {9} bis {10} Grad</translation>
     </message>
     <message>
+        <source>{0}, and the camera chooses the shutter time; no longer than {1} keeps motion blur within a pixel: set it</source>
+        <translation>{0}, und die Kamera wählt die Verschlusszeit; höchstens {1} hält die Bewegungsunschärfe unter einem Pixel: einstellen</translation>
+    </message>
+    <message>
+        <source>{0}, f/{1}, ISO {2} is an exposure for EV {3}; with the sun {4} degrees high a clear sky gives EV {5}</source>
+        <translation>{0}, f/{1}, ISO {2} ist eine Belichtung für EV {3}; bei {4} Grad Sonnenhöhe gibt klarer Himmel EV {5}</translation>
+    </message>
+    <message>
         <source>{0}, the coarsest with {1} mm</source>
         <translation>{0}, das gröbste mit {1} mm</translation>
     </message>
@@ -14184,12 +15299,32 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>{0}: Mission fortsetzen ({1})</translation>
     </message>
     <message>
+        <source>{0}: even in shade photos would be too bright; expose for less time</source>
+        <translation>{0}: selbst im Schatten würden Fotos zu hell; kürzer belichten</translation>
+    </message>
+    <message>
         <source>{0}: it does not apply at the planned time</source>
         <translation>{0}: sie gilt zur geplanten Zeit nicht</translation>
     </message>
     <message>
         <source>{0}: it restricts nothing</source>
         <translation>{0}: sie beschränkt nichts</translation>
+    </message>
+    <message>
+        <source>{0}: photos would be {1} stops too dark; open up, expose longer, or raise ISO</source>
+        <translation>{0}: Fotos würden um {1} Blendenstufen zu dunkel; Blende öffnen, länger belichten oder ISO erhöhen</translation>
+    </message>
+    <message>
+        <source>{0}: sharp from {1} m on</source>
+        <translation>{0}: scharf ab {1} m</translation>
+    </message>
+    <message>
+        <source>{0}: sharp from {1} m on wherever it focuses</source>
+        <translation>{0}: scharf ab {1} m, worauf auch fokussiert wird</translation>
+    </message>
+    <message>
+        <source>{0}: sharp from {1} to {2} m</source>
+        <translation>{0}: scharf von {1} bis {2} m</translation>
     </message>
     <message>
         <source>{0}: the path enters it</source>
@@ -19639,8 +20774,8 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Sein Name: das Logbuch zählt seine Flüge und Zyklen</translation>
     </message>
     <message>
-        <source>NTRIP caster, from the next connection on: USER@HOST:PORT/MOUNTPOINT</source>
-        <translation>NTRIP-Caster, ab der nächsten Verbindung: USER@HOST:PORT/MOUNTPOINT</translation>
+        <source>NTRIP caster, from the next connection on: USER@HOST:PORT/MOUNTPOINT; over TLS ntrips:// before it</source>
+        <translation>NTRIP-Caster, ab der nächsten Verbindung: USER@HOST:PORT/MOUNTPOINT; über TLS ntrips:// davor</translation>
     </message>
     <message>
         <source>Kept until the program ends, and never written down</source>
@@ -19691,6 +20826,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Dieser Rechner hat kein Sprachprogramm: speech-dispatcher oder espeak-ng installieren.</translation>
     </message>
     <message>
+        <source>The vehicle&apos;s camera offers {0}</source>
+        <translation>Die Kamera des Fahrzeugs bietet {0}</translation>
+    </message>
+    <message>
         <source>Operator number: its checksum is right.</source>
         <translation>Betreibernummer: ihre Prüfsumme stimmt.</translation>
     </message>
@@ -19733,6 +20872,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <source>What a viewpoint will see</source>
         <translation>Was ein Aufnahmepunkt sehen wird</translation>
     </message>
+    <message>
+        <source>Simulated surroundings</source>
+        <translation>Simulierte Umgebung</translation>
+    </message>
 </context>
 <context>
     <name>Shortcuts</name>
@@ -19759,6 +20902,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>with Shift</source>
         <translation>mit Umschalt</translation>
+    </message>
+    <message>
+        <source>Buttons</source>
+        <translation>Schaltflächen</translation>
+    </message>
+    <message>
+        <source>Press the button that has the keyboard</source>
+        <translation>Die Schaltfläche drücken, die die Tastatur hat</translation>
     </message>
     <message>
         <source>3-D view</source>
@@ -20787,6 +21938,10 @@ Größe: {3}; Dreiecke: {4}</translation>
         <translation>Genauigkeit</translation>
     </message>
     <message>
+        <source>Grid of the geoid</source>
+        <translation>Gitter des Geoids</translation>
+    </message>
+    <message>
         <source>Unit of heights</source>
         <translation>Einheit der Höhen</translation>
     </message>
@@ -20809,6 +21964,10 @@ Größe: {3}; Dreiecke: {4}</translation>
     <message>
         <source>Heights with trees</source>
         <translation>Höhen mit Bäumen</translation>
+    </message>
+    <message>
+        <source>EGM2008 of GeographicLib (.pgm) or PROJ (.gtx, .tif); without one EGM96 stands in</source>
+        <translation>EGM2008 von GeographicLib (.pgm) oder PROJ (.gtx, .tif); ohne eines steht EGM96 dafür</translation>
     </message>
     <message>
         <source>As the files say</source>
