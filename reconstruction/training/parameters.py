@@ -119,7 +119,7 @@ class TrainRequest:
     start: Path | None = None
     device: str | None = parameter(
         None,
-        "what splats are drawn on; auto measures a step, gpu is a card of any maker, cuda needs the extra of that name",
+        "what splats are drawn on; auto measures a step, gpu is any card, cuda needs the extra of that name",
         label="Compute on",
         choices=(
             Choice("auto", "whatever is fastest"),

@@ -168,7 +168,7 @@ TEXTS = (
     QT_TRANSLATE_NOOP("Parameters", "Compute on"),
     QT_TRANSLATE_NOOP(
         "Parameters",
-        "what splats are drawn on; auto measures a step, gpu is a card of any maker, cuda needs the extra of that name",
+        "what splats are drawn on; auto measures a step, gpu is any card, cuda needs the extra of that name",
     ),
     QT_TRANSLATE_NOOP("Parameters", "whatever is fastest"),
     QT_TRANSLATE_NOOP("Parameters", "the processor"),
