@@ -26,6 +26,7 @@ from planning.coverage.image_error import ImageErrorModel
 from planning.coverage.model import exact_coverage
 from planning.coverage.positions import rounded
 from planning.coverage.reach_kernel import REACHABLE, UNREACHABLE
+from planning.geo.frames import wrap_heading_deg
 from planning.motion.timing import motion_limits, round_trip_metric
 from planning.parameters import DEFAULT_SHARE, DEFAULT_VIEWS
 from planning.plan import ANGLE_DECIMALS, HistoryPoint, Plan, Sortie, Viewpoint, ViewpointArrays, viewpoint_arrays
@@ -112,7 +113,7 @@ def plan_records(
 
 def _record(viewpoint_id: str, views: ViewpointArrays, view: int) -> Viewpoint:
     x, y, z = (float(value) for value in views.positions_enu_m[view])
-    heading_deg = round(float(np.degrees(views.heading_rad[view])), ANGLE_DECIMALS)
+    heading_deg = wrap_heading_deg(round(float(np.degrees(views.heading_rad[view])), ANGLE_DECIMALS))
     pitch_deg = round(float(np.degrees(views.pitch_rad[view])), ANGLE_DECIMALS)
     return Viewpoint(viewpoint_id, (x, y, z), heading_deg, pitch_deg)
 

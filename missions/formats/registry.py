@@ -8,7 +8,7 @@ command line describes itself from this table.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, partial
 from pathlib import Path
@@ -216,8 +216,8 @@ def _on_passing(plan: Plan, missions: Sequence[Mission]) -> Iterator[Finding]:
             yield Finding(Severity.WARNING, "in-passing", text, place, mission.duration_s, sortie.duration_s, "s")
 
 
-def write_files(encoded: EncodedFiles, path: Path) -> tuple[Path, ...]:
-    """Write encoded missions, all of them or none; see `export`."""
+def write_files(encoded: EncodedFiles, path: Path, beside: Mapping[Path, bytes] | None = None) -> tuple[Path, ...]:
+    """Write encoded missions, and what goes beside them, all of them or none; paths of the missions; see `export`."""
     from planning.base.json_file import write_together
 
     errors = [finding for finding in encoded.findings if finding.severity is Severity.ERROR]
@@ -226,7 +226,7 @@ def write_files(encoded: EncodedFiles, path: Path) -> tuple[Path, ...]:
         more = say(" (and {} more errors)", len(errors) - 1) if len(errors) > 1 else ""
         raise MissionError.say("the mission would be refused: {}", glue(first, more))
     paths = tuple(sortie_path(path, number) for number in range(1, len(encoded.contents) + 1))
-    write_together(dict(zip(paths, encoded.contents, strict=True)))
+    write_together({**dict(zip(paths, encoded.contents, strict=True)), **(beside or {})})
     return paths
 
 

@@ -16,6 +16,7 @@ from typing import Literal, get_args
 import numpy as np
 
 from planning.base.progress import QUIET, Clock, Monitor, TimeLimit, Trace
+from planning.geo.frames import wrap_heading_deg
 from planning.plan import Viewpoint, ViewpointArrays
 from planning.viewpoints.greedy import greedy
 from planning.viewpoints.prepare import Prepared
@@ -70,7 +71,7 @@ def shots_of(views: ViewpointArrays) -> tuple[Shot, ...]:
     """Views as shots that follow each other."""
     columns = (views.positions_enu_m.tolist(), np.degrees(views.heading_rad), np.degrees(views.pitch_rad))
     return tuple(
-        Shot(Viewpoint(f"u{number:04d}", (x, y, z), float(heading), float(pitch)), number * BETWEEN)
+        Shot(Viewpoint(f"u{number:04d}", (x, y, z), wrap_heading_deg(float(heading)), float(pitch)), number * BETWEEN)
         for number, ((x, y, z), heading, pitch) in enumerate(zip(*columns, strict=True))
     )
 

@@ -19,7 +19,7 @@ COUNTS = {"planar": (50, 100, 200), "curved": (50, 100), "court": (50, 100), "pl
 FAR = ("planar-far",)
 NEAR = tuple(scene for scene in COUNTS if scene not in FAR)
 METHODS = ("random", "sections", "image-error")
-N_SEEDS = 3
+N_SEEDS = 2
 
 N_FURTHER = 100
 FURTHER = {
@@ -82,7 +82,7 @@ def _further() -> Iterator[Row]:
     for name in FURTHER:
         request = further_request(name)
         (light,) = request.lights
-        results = worth_tradeoff(request, KEPT).found
+        results = worth_tradeoff(request, KEPT, n_processes=2).found
         for result in results:
             beside = f"{result.minutes:.1f} min; " + ", ".join(
                 f"{kind} {value:.1f}" for kind, value in result.psnr_db[light].items()

@@ -20,7 +20,7 @@ def test_demo_plans_checks_and_exports_and_says_where_things_are(reflight, tmp_p
     for path in folder.iterdir():
         assert str(path) in done.out
     of_missions = {".kmz", ".plan", ".waypoints", ".kml", ".csv"}
-    assert {path.suffix for path in folder.iterdir()} == {".json", ".proof", ".py"} | of_missions
+    assert {path.suffix for path in folder.iterdir()} == {".json", ".proof", ".py", ".html"} | of_missions
     assert reflight("check", folder / "single-panel.plan.json", folder / "single-panel.site.json").status == 0
 
 

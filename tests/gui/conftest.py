@@ -1,31 +1,16 @@
 """One application for all window tests, on a virtual screen of its own."""
 
 import gc
-import shutil
-import sys
 
 import pytest
 
-from tests.gui.screen import start_virtual_screen
+from tests.gui.screen import the_application
 
 
 @pytest.fixture(scope="session")
 def application():
     """The Qt application."""
-    if not sys.platform.startswith("linux"):
-        pytest.skip("the virtual screen Xvfb exists on Linux only")
-    if shutil.which("Xvfb") is None:
-        pytest.skip("Xvfb is not installed (make setup installs it as root)")
-    from PySide6.QtCore import Qt
-    from PySide6.QtWidgets import QApplication
-
-    # Tests of other folders have this fixture, too, and a process has one application.
-    if QApplication.instance() is not None:
-        return QApplication.instance()
-    start_virtual_screen()
-    # Files are chosen in Qt's own dialogs, which can be clicked: those of a desktop are other programs.
-    QApplication.setAttribute(Qt.ApplicationAttribute.AA_DontUseNativeDialogs)
-    return QApplication(["reflight-tests"])
+    return the_application()
 
 
 @pytest.fixture(autouse=True)

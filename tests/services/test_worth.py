@@ -6,6 +6,7 @@ import csv
 import json
 from dataclasses import asdict, replace
 
+import numpy as np
 import pytest
 
 from groundstation.services.worth import (
@@ -21,6 +22,8 @@ from groundstation.services.worth import (
     worth_tradeoff,
 )
 from planning.base.errors import InputError
+from planning.plan import ViewpointArrays
+from reconstruction.tradeoff.flight_worth import shots_of
 
 
 def result(planner: str, n_views: int, seed: int, decibels: float, minutes: float = 6.0) -> FlightResult:
@@ -135,3 +138,8 @@ def test_a_flight_is_planned_flown_photographed_and_learned_from(tmp_path):
         assert after.psnr_db["radiance-grid"] == before.psnr_db["radiance-grid"]
         assert after.n_taken == 4
         assert set(after.psnr_db) == {"radiance-grid", "mlp"}
+
+
+def test_headings_beyond_a_half_turn_are_shots_all_the_same():
+    views = ViewpointArrays(np.zeros((3, 3)), np.radians([-180.4, 180.0, 540.0]), np.zeros(3))
+    assert [shot.view.heading_deg for shot in shots_of(views)] == pytest.approx([179.6, 180.0, 180.0])

@@ -118,9 +118,9 @@ def run_render(options: argparse.Namespace) -> int:
 
 
 def _request(options: argparse.Namespace) -> SceneRequest:
-    from reconstruction.scenes.effects.registry import NAMES
+    from reconstruction.scenes.effects.registry import effect_names
 
-    settings = effect_settings(options.effects, NAMES)
+    settings = effect_settings(options.effects, effect_names())
     typed = typed_values(options, SceneRequest)
     rays = ("settings", "mitsuba_rays")
     if options.renderer == "mitsuba":

@@ -146,10 +146,10 @@ def _scene_summary(found: SceneTrials) -> dict[str, Any]:
 
 
 def _scene_request(options: argparse.Namespace) -> SceneRequest:
-    from reconstruction.scenes.effects.registry import NAMES
+    from reconstruction.scenes.effects.registry import effect_names
     from reconstruction.scenes.parameters import RenderSettings, SceneRequest
 
-    settings = effect_settings(options.effects, NAMES)
+    settings = effect_settings(options.effects, effect_names())
     with in_words_of_options(SceneRequest):
         return SceneRequest(
             scene=options.scene,

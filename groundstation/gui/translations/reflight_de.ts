@@ -4464,7 +4464,7 @@ Blickrichtung: {3}</translation>
         <translation>Rechnen auf</translation>
     </message>
     <message>
-        <source>what splats are drawn on; auto measures a step, gpu is a card of any maker, cuda needs the extra of that name</source>
+        <source>what splats are drawn on; auto measures a step, gpu is any card, cuda needs the extra of that name</source>
         <translation>worauf Splats gezeichnet werden; auto misst einen Schritt, gpu ist eine Karte beliebigen Herstellers, cuda braucht das Extra dieses Namens</translation>
     </message>
     <message>

@@ -17,7 +17,7 @@ from groundstation.services.mission.files import (
     stated_return_m,
     within_item_limit,
 )
-from groundstation.services.mission.proof import write_mission_proof
+from groundstation.services.mission.proof import mission_proof
 from groundstation.services.project.input_files import read_input_plan, read_input_site
 from groundstation.services.project.project_file import SITE_FOLDER, check_not_index
 from missions.formats.options import DEFAULT_OPTIONS, ExportOptions
@@ -116,12 +116,15 @@ def export_plan(
     encoded = encode(plan, origin, home, file_format, with_site)
     for number in range(2, len(encoded.contents) + 1):
         check_output(sortie_path(out, number), sources)
-    paths = write_files(encoded, out)
-    findings += encoded.findings
+    proof = None
     if site_path is not None and site_model is not None and file_format in PROVED_FORMATS:
         return_height_m = stated_return_m(plan, origin, home, file_format, with_site)
         flown = None if plan == planned else plan
-        findings.append(write_mission_proof(plan_path, flown, site_path, site_model, paths, return_height_m))
+        proof = mission_proof(plan_path, flown, site_path, site_model, out, return_height_m)
+    paths = write_files(encoded, out, None if proof is None else proof.files)
+    findings += encoded.findings
+    if proof is not None:
+        findings.append(proof.judged(paths))
     return paths, tuple(findings)
 
 

@@ -136,7 +136,7 @@ def prove_open_mission(
     return_height_m: float | None,
     monitor: Monitor = QUIET,
 ) -> Finding:
-    """Write what `write_mission_proof` writes beside missions of an open plan, and judge it.
+    """Write beside missions of an open plan what `mission_proof` has, and judge it.
 
     Site, meshes and plan go along as they are in the window, under names that begin with the first mission's: what is
     saved in the project may be older.
@@ -155,7 +155,9 @@ def prove_open_mission(
         site_path, plan_path, written, site_model, reached, monitor=monitor, return_height_m=return_height_m
     )
     monitor.report(say("checking the proof"), 0, 1)
-    return _judged_mission(folder, first, proof, {}, site_path, plan_path, missions)
+    found = _with_verifiers(folder, first, proof, {}, site_path, plan_path)
+    write_together(found.files)
+    return found.judged(missions)
 
 
 def _reachability(plan: Plan, site_model: SiteModel, monitor: Monitor) -> Reachability | None:
@@ -177,29 +179,45 @@ def proof_of_files(plan_path: Path, site_path: Path) -> Finding | None:
     return proof_finding(verified(site_path, plan_path, path)) if path.is_file() else None
 
 
-def write_mission_proof(
+@dataclass(frozen=True, slots=True, eq=False)
+class MissionProof:
+    """What goes beside mission files, so that anybody can check them: proof, what it speaks of, and both verifiers."""
+
+    path: Path
+    site_path: Path
+    plan_path: Path
+    files: dict[Path, bytes]
+
+    def judged(self, missions: Sequence[Path]) -> Finding:
+        """What the verifier says, once all is written."""
+        return proof_finding(verified(self.site_path, self.plan_path, self.path, missions))
+
+
+def mission_proof(
     plan_path: Path,
     plan: Plan | None,
     site_path: Path,
     site_model: SiteModel,
-    missions: Sequence[Path],
+    mission: Path,
     return_height_m: float | None,
-) -> Finding:
-    """Write the proof beside mission files, with what it speaks of and the verifier, and judge it.
+) -> MissionProof:
+    """The proof of mission files that are to be written; nothing is written yet.
 
     Parameters
     ----------
     plan
         What is flown where that is another plan than in the file: the same views, shared out among more sorties.
+    mission
+        The first of the files.
     return_height_m
         Above take-off, as the mission says it; None where it does not.
 
     Raises
     ------
     InputError
-        A file cannot be read or written.
+        A file cannot be read, or the folder holds another site's files.
     """
-    folder, first = missions[0].parent, missions[0].name
+    folder, first = mission.parent, mission.name
     written = read_input_file(plan_path, JSON_FILE)
     flown_path = folder / plan_path.name
     if plan is not None:
@@ -210,23 +228,15 @@ def write_mission_proof(
     beside = dict(_copies(site_path, site_model, folder))
     if not _is_same(flown_path, plan_path):
         beside[flown_path] = written
-    return _judged_mission(folder, first, proof, beside, folder / site_path.name, flown_path, missions)
+    return _with_verifiers(folder, first, proof, beside, folder / site_path.name, flown_path)
 
 
-def _judged_mission(
-    folder: Path,
-    first: str,
-    proof: bytes,
-    beside: dict[Path, bytes],
-    site_path: Path,
-    plan_path: Path,
-    missions: Sequence[Path],
-) -> Finding:
-    """Write a mission's proof with both verifiers and what else goes beside it; what they say of it."""
+def _with_verifiers(
+    folder: Path, first: str, proof: bytes, beside: dict[Path, bytes], site_path: Path, plan_path: Path
+) -> MissionProof:
     path = folder / f"{first}.mission.proof"
     checkers = {folder / checker.name: checker.read_bytes() for checker in (VERIFIER, PAGE)}
-    write_together({path: proof, **beside, **checkers})
-    return proof_finding(verified(site_path, plan_path, path, missions))
+    return MissionProof(path, site_path, plan_path, {path: proof, **beside, **checkers})
 
 
 def _known_proof(path: Path) -> dict[str, Any] | None:

@@ -26,8 +26,10 @@ EFFECTS: tuple[Effect[Probe], ...] = (
     *flight.EFFECTS,
 )
 
-NAMES = (*(effect.name for effect in EFFECTS), MirroredTerrain.name)
-"""Of all effects; the last one is decided when a scene is built."""
+
+def effect_names() -> tuple[str, ...]:
+    """Of all effects; the last one is decided when a scene is built."""
+    return (*(effect.name for effect in EFFECTS), MirroredTerrain.name)
 
 
 def decide_effects(
@@ -47,9 +49,10 @@ def decide_effects(
     InputError
         There are no photos, or the settings name an effect that there is not.
     """
-    unknown = [name for name in settings.effects if name not in NAMES]
+    names = effect_names()
+    unknown = [name for name in settings.effects if name not in names]
     if unknown:
-        raise InputError(say("there is no effect '{}'; expected one of {}", unknown[0], ", ".join(NAMES)))
+        raise InputError(say("there is no effect '{}'; expected one of {}", unknown[0], ", ".join(names)))
     if not photos:
         raise InputError(say("effects are decided by the photos of a flight; expected at least one, got none"))
     probe = Probe(scene, photos, camera_model, moments)

@@ -18,6 +18,7 @@ from types import ModuleType
 from typing import Any, NamedTuple
 
 import planning
+from tests.gui.screen import the_application
 
 FOLDER = Path(planning.__file__).parent / "proof"
 PYTHON, PAGE = FOLDER / "reflight_verify.py", FOLDER / "reflight_verify.html"
@@ -92,10 +93,10 @@ class QtScript:
     """The script in Qt's engine: ECMAScript 2016 without BigInt, DecompressionStream or TextDecoder."""
 
     def __init__(self) -> None:
-        from PySide6.QtCore import QCoreApplication
         from PySide6.QtQml import QJSEngine
 
-        self._application = QCoreApplication.instance() or QCoreApplication([])
+        # Not a lesser one of its own: tests of windows in this process could have no other then.
+        the_application()
         self._engine = QJSEngine()
         result = self._engine.evaluate(script(), "reflight_verify.html")
         assert not result.isError(), result.toString()
