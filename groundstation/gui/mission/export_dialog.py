@@ -25,8 +25,7 @@ from groundstation.services.mission.files import (
     PreparedExport,
     export_paths,
     prepare_export,
-    prove_export,
-    write_export,
+    write_proved_export,
 )
 from groundstation.services.units import UnitSystem
 from missions.formats.options import ExportOptions
@@ -264,8 +263,7 @@ class ExportDialog(AnsweringDialog):
         site_model, (file_format, _) = self._site_model, self._form.value()
 
         def work(context: JobContext) -> tuple[tuple[Path, ...], Finding | None]:
-            paths = write_export(prepared, path)
-            return paths, prove_export(prepared, site_model, file_format, paths, context)
+            return write_proved_export(prepared, site_model, file_format, path, context)
 
         self._is_writing = True
         self._context.start(self.tr("Export"), work, self._when_written, self._when_failed)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
@@ -117,8 +117,8 @@ def export_paths(prepared: PreparedExport, path: Path) -> tuple[Path, ...]:
     return tuple(sortie_path(path, number) for number in range(1, prepared.n_files + 1))
 
 
-def write_export(prepared: PreparedExport, path: Path) -> tuple[Path, ...]:
-    """Write prepared mission files, all or none.
+def write_export(prepared: PreparedExport, path: Path, beside: Mapping[Path, bytes] | None = None) -> tuple[Path, ...]:
+    """Write prepared mission files and what goes beside them, all or none; paths of the missions.
 
     Raises
     ------
@@ -128,29 +128,36 @@ def write_export(prepared: PreparedExport, path: Path) -> tuple[Path, ...]:
     if prepared.encoded is None:
         raise ValueError(f"nothing to write: {prepared.refusal}")
     check_not_index(path)
-    return write_files(prepared.encoded, path)
+    return write_files(prepared.encoded, path, beside)
 
 
-def prove_export(
-    prepared: PreparedExport, site_model: SiteModel, file_format: str, paths: Sequence[Path], monitor: Monitor = QUIET
-) -> Finding | None:
-    """Write the proof beside written mission files, and judge it; None where the verifier does not read the format.
+def write_proved_export(
+    prepared: PreparedExport, site_model: SiteModel, file_format: str, path: Path, monitor: Monitor = QUIET
+) -> tuple[tuple[Path, ...], Finding | None]:
+    """Write prepared mission files with their proof: paths of the missions, and what the verifier says of them.
 
-    Files fly without it: where it cannot be written, the finding says so.
+    The finding is None where the verifier does not read the format. Missions fly without a proof: where none can be
+    made, they are written alone, and the finding says so.
 
     Raises
     ------
+    InputError, MissionError
+        As `write_export`.
     OperationCancelled
-        From `monitor`.
+        From `monitor`; nothing is written then.
     """
-    from groundstation.services.mission.proof import prove_open_mission
+    from groundstation.services.mission.proof import open_mission_proof
 
     if prepared.flown is None or file_format not in PROVED_FORMATS:
-        return None
+        return write_export(prepared, path), None
     try:
-        return prove_open_mission(prepared.flown, site_model, paths, prepared.return_height_m, monitor)
+        proof = open_mission_proof(prepared.flown, site_model, path, prepared.return_height_m, monitor)
     except InputError as error:
-        return Finding(Severity.WARNING, "proof", say("the mission is written without its proof: {}", str(error)))
+        text = say("the mission is written without its proof: {}", str(error))
+        return write_export(prepared, path), Finding(Severity.WARNING, "proof", text)
+    paths = write_export(prepared, path, proof.files)
+    monitor.report(say("checking the proof"), 0, 1)
+    return paths, proof.judged(paths)
 
 
 def in_order_of_sorties(paths: Sequence[Path]) -> tuple[Path, ...]:

@@ -15,7 +15,7 @@ from typing import Any
 from planning.base.errors import InfeasibleError, InputError
 from planning.base.files import read_input_file
 from planning.base.findings import Finding, Severity
-from planning.base.json_file import JSON_FILE, parse_json, write_atomically, write_together
+from planning.base.json_file import JSON_FILE, parse_json, write_atomically
 from planning.base.messages import joined, say
 from planning.base.progress import QUIET, Monitor
 from planning.coverage.reachability import Reachability, find_reachable
@@ -129,14 +129,10 @@ def _write_open(plan: Plan, site_model: SiteModel, folder: Path, prefix: str) ->
     return site_path, plan_path
 
 
-def prove_open_mission(
-    plan: Plan,
-    site_model: SiteModel,
-    missions: Sequence[Path],
-    return_height_m: float | None,
-    monitor: Monitor = QUIET,
-) -> Finding:
-    """Write beside missions of an open plan what `mission_proof` has, and judge it.
+def open_mission_proof(
+    plan: Plan, site_model: SiteModel, mission: Path, return_height_m: float | None, monitor: Monitor = QUIET
+) -> MissionProof:
+    """What `mission_proof` has, for missions of an open plan.
 
     Site, meshes and plan go along as they are in the window, under names that begin with the first mission's: what is
     saved in the project may be older.
@@ -144,20 +140,19 @@ def prove_open_mission(
     Raises
     ------
     InputError
-        A file cannot be written.
+        There is no room for the files.
     OperationCancelled
         From `monitor`.
     """
-    folder, first = missions[0].parent, missions[0].name
-    site_path, plan_path = _write_open(plan, site_model, folder, f"{first}.")
-    written, reached = read_input_file(plan_path, JSON_FILE), _reachability(plan, site_model, monitor)
-    proof = proof_of(
-        site_path, plan_path, written, site_model, reached, monitor=monitor, return_height_m=return_height_m
-    )
-    monitor.report(say("checking the proof"), 0, 1)
-    found = _with_verifiers(folder, first, proof, {}, site_path, plan_path)
-    write_together(found.files)
-    return found.judged(missions)
+    folder, first = mission.parent, mission.name
+    with TemporaryDirectory(prefix="reflight-") as name:
+        site_path, plan_path = _write_open(plan, site_model, Path(name), f"{first}.")
+        written, reached = read_input_file(plan_path, JSON_FILE), _reachability(plan, site_model, monitor)
+        proof = proof_of(
+            site_path, plan_path, written, site_model, reached, monitor=monitor, return_height_m=return_height_m
+        )
+        beside = {folder / path.name: path.read_bytes() for path in sorted(Path(name).iterdir())}
+    return _with_verifiers(folder, first, proof, beside, folder / site_path.name, folder / plan_path.name)
 
 
 def _reachability(plan: Plan, site_model: SiteModel, monitor: Monitor) -> Reachability | None:

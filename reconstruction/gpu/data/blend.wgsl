@@ -47,25 +47,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
         if (k < end) { pair = textureLoad(pair_texels, texel(numbers[k]), 0); }
         let is_reached = ((pair.z >> patch_) & 1u) == 1u;
         var mine = 0.0;
-//: if SUBGROUPS
-        var g0 = vec4f(0.0);
-        var g1 = vec4f(0.0);
-        var g2 = vec4f(0.0);
-//: for q in QUADS
-        var mine$q = vec4f(0.0);
-//: end
-        if (is_reached) {
-            g0 = textureLoad(geometry, texel(GEOMETRY_QUADS * pair.x), 0);
-            g1 = textureLoad(geometry, texel(GEOMETRY_QUADS * pair.x + 1u), 0);
-            g2 = textureLoad(geometry, texel(GEOMETRY_QUADS * pair.x + 2u), 0);
-//: for q in QUADS
-            mine$q = textureLoad(features, texel(N_QUADS * pair.x + $qu), 0);
-//: end
-        }
-        var todo = vote(is_reached);
-//: else
-        var todo = vote(is_reached, lane);
-//: end
+//: include load_lane
         while (todo != 0u) {
             let from_lane = firstTrailingBit(todo);
             todo &= todo - 1u;

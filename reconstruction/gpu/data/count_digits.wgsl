@@ -1,14 +1,7 @@
 // Radix sort, the first of its three parts: each thread counts the digits of KEYS_A_THREAD keys that follow each other.
 // Counts are laid out digit by digit, so that their running sum says where each thread's keys of a digit go; keys of a
 // thread keep their order, so that equal ones do. No part needs a barrier or shared memory.
-struct Pass {
-    n: u32,
-    n_threads: u32,
-    shift: u32,
-}
-
-@group(0) @binding(0) var<uniform> pass_: Pass;
-@group(0) @binding(1) var<storage, read> keys: array<u32>;
+//: include pass_of_keys
 @group(0) @binding(2) var<storage, read_write> counts: array<u32>;
 
 @compute @workgroup_size(64)

@@ -1,13 +1,6 @@
 // Radix sort, the last of its three parts: each thread brings its keys, and the numbers that belong to them, to where
 // the running sum of the counts says.
-struct Pass {
-    n: u32,
-    n_threads: u32,
-    shift: u32,
-}
-
-@group(0) @binding(0) var<uniform> pass_: Pass;
-@group(0) @binding(1) var<storage, read> keys: array<u32>;
+//: include pass_of_keys
 @group(0) @binding(2) var<storage, read> numbers: array<u32>;
 @group(0) @binding(3) var<storage, read> places: array<u32>;
 @group(0) @binding(4) var<storage, read_write> moved_keys: array<u32>;

@@ -11,8 +11,8 @@ from groundstation.services.mission.files import (
     in_order_of_sorties,
     missions_as_plan,
     prepare_export,
-    prove_export,
     write_export,
+    write_proved_export,
 )
 from groundstation.services.mission.proof import PROVED, verified
 from groundstation.services.mission.readiness import preflight
@@ -131,8 +131,7 @@ def test_two_exports_of_one_plan_share_it_out_alike(planned, monkeypatch):
 def test_written_missions_carry_a_proof_that_the_verifier_accepts_and_that_a_moved_place_breaks(planned, tmp_path):
     plan, model = planned
     prepared = prepare_export(plan, model, FileFormat.MAVLINK_PLAN)
-    paths = write_export(prepared, tmp_path / "out.plan")
-    found = prove_export(prepared, model, FileFormat.MAVLINK_PLAN, paths)
+    _, found = write_proved_export(prepared, model, FileFormat.MAVLINK_PLAN, tmp_path / "out.plan")
     assert found is not None
     assert found.severity is Severity.OK, found
     jobs = jobs_of(tmp_path)
@@ -153,6 +152,6 @@ def test_written_missions_carry_a_proof_that_the_verifier_accepts_and_that_a_mov
 def test_formats_that_the_verifier_does_not_read_get_no_proof(planned, tmp_path):
     plan, model = planned
     prepared = prepare_export(plan, model, FileFormat.KML)
-    paths = write_export(prepared, tmp_path / "out.kml")
-    assert prove_export(prepared, model, FileFormat.KML, paths) is None
+    paths, found = write_proved_export(prepared, model, FileFormat.KML, tmp_path / "out.kml")
+    assert found is None
     assert list(tmp_path.iterdir()) == [*paths]
