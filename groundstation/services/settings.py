@@ -80,6 +80,7 @@ HEADER = """\
 # Settings of Reflight. Edit them while no window is open; what they mean is in docs/guide/projects.md.
 # theme: system, light, dark, sunlight; language: system, en, de; units: metric, imperial
 # text_scale: 0.8 to 2.0; autosave_s: 5 to 3600, or 0 for never; map_tiles: an MBTiles or PMTiles file, or empty
+# models_drawn_by: auto, cpu, gpu
 # online_map_is_on: no map tile is asked for from the network while it is false
 
 """
@@ -100,6 +101,14 @@ class Language(StrEnum):
     SYSTEM = "system"
     ENGLISH = "en"
     GERMAN = "de"
+
+
+class DrawnBy(StrEnum):
+    """What draws pictures of models; `AUTO` takes what is faster."""
+
+    AUTO = "auto"
+    PROCESSOR = "cpu"
+    CARD = "gpu"
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,6 +136,8 @@ class Settings:
         Layout of the window as text, by its size ("1280x720").
     has_seen_tour
         The start page offers the tour no more.
+    models_drawn_by
+        What draws pictures of models in the window.
     """
 
     theme: Theme = Theme.SYSTEM
@@ -145,6 +156,7 @@ class Settings:
     default_profile: str = DEFAULT_PROFILE
     window_layouts: Mapping[str, str] = field(default_factory=dict, hash=False)
     has_seen_tour: bool = False
+    models_drawn_by: DrawnBy = DrawnBy.AUTO
 
     def __post_init__(self) -> None:
         if not 0.8 <= self.text_scale <= 2.0:
@@ -178,7 +190,12 @@ class Settings:
         return replace(self, recent_projects=tuple(known for known in self.recent_projects if known != folder))
 
 
-CHOICES: dict[str, type[StrEnum]] = {"theme": Theme, "language": Language, "units": UnitSystem}
+CHOICES: dict[str, type[StrEnum]] = {
+    "theme": Theme,
+    "language": Language,
+    "units": UnitSystem,
+    "models_drawn_by": DrawnBy,
+}
 
 
 def settings_path() -> Path:

@@ -2,7 +2,8 @@
 
 A card is asked by one step of the training's own splats, forward and backward, and its picture and gradients are
 compared with the processor's: what drivers and cards make of the kernels is not known beforehand. Everything else of a
-training stays on the processor. Programs that stand in for a card are never chosen by themselves.
+training stays on the processor. Pictures of models that somebody looks at are decided about in the same way, by one
+picture each way. Programs that stand in for a card are never chosen by themselves.
 """
 
 from __future__ import annotations
@@ -12,16 +13,21 @@ import os
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
 
+import numpy as np
 import torch
+from numpy.typing import NDArray
 from torch import Tensor
 
 from planning.base.effects import Assessment, Decision, EffectSetting, decide
 from planning.base.errors import InputError, ReconstructionError
 from planning.base.messages import say
 from reconstruction.gpu.device import adapters, why_no_gpu
+from reconstruction.metrics.image_metrics import psnr_db
 from reconstruction.splats.rasterising.raster_types import RasterSettings
 from reconstruction.splats.rasterising.rasteriser import rasterise
 from reconstruction.splats.rasterising.views import View
@@ -30,6 +36,9 @@ from reconstruction.training.config import ANTIALIASED, TrainConfig
 
 MOST_APART = 0.02
 """Of a picture or gradients, relative, from the processor's: 1e-3 was measured, of splats equally deep in float32."""
+
+LEAST_DB = 40.0
+"""PSNR of a card's picture against the processor's, at least: 90 dB was measured, and 8 bits alone come to 59 dB."""
 
 MODULE = "reconstruction.training.devices"
 
@@ -43,7 +52,7 @@ BYTES_FOR_ALL = 256 << 20
 
 @dataclass(frozen=True, slots=True)
 class CardTrial:
-    """What one step takes on a card and on the processor.
+    """What one step, or picture, takes on a card and on the processor.
 
     Parameters
     ----------
@@ -56,7 +65,7 @@ class CardTrial:
     first_s
         Of the first one on the card.
     needed_bytes
-        Of its memory, by the end of the training.
+        Of its memory, at most.
     """
 
     card: str
@@ -125,16 +134,25 @@ def drawn_by_card(config: TrainConfig, splats: Splats, view: View) -> tuple[bool
     return found.on, found
 
 
-def _tried(config: TrainConfig, splats: Splats, view: View) -> CardTrial:
-    """A step on the first card, or why there is none."""
+def _untried(is_auto: bool) -> CardTrial | None:
+    """Why the first card is not even tried; None where it is to be."""
     reason = why_no_gpu()
     if reason:
         return CardTrial("", say("no graphics card: {}", reason))
     card = adapters()[0]
-    if card.is_software and config.device == "auto":
+    if card.is_software and is_auto:
         return CardTrial(card.name, say("there is no graphics card but {}, which the processor runs", card.name))
-    if config.device == "auto" and not _survives():
+    if is_auto and not _survives():
         return CardTrial(card.name, say("{} ended the process that tried it, or did not answer", card.name))
+    return None
+
+
+def _tried(config: TrainConfig, splats: Splats, view: View) -> CardTrial:
+    """A step on the first card, or why there is none."""
+    untried = _untried(config.device == "auto")
+    if untried is not None:
+        return untried
+    card = adapters()[0]
     scale = math.sqrt(min(1.0, config.window_px / (view.width_px * view.height_px)))
     size = max(1, round(scale * view.width_px)), max(1, round(scale * view.height_px))
     window = view.cropped((view.width_px - size[0]) // 2, (view.height_px - size[1]) // 2, *size)
@@ -155,12 +173,53 @@ def _tried(config: TrainConfig, splats: Splats, view: View) -> CardTrial:
     return CardTrial(card.name, "", here_s, there_s, first_s, needed)
 
 
+Draw = Callable[[bool], NDArray[np.float32]]
+"""Draws a picture, shape (h, w, 3), 0 to 1, by the graphics card or by the processor."""
+
+
+def shown_by_card(draw: Draw, n_splats: int, setting: EffectSetting) -> Decision:
+    """Whether pictures of a model are drawn on a graphics card: a trial picture each way.
+
+    Where it is asked for, it is not measured, and what fails is seen by whoever draws.
+    """
+    trial = CardTrial("", say("it was not measured"))
+    if setting == "auto":
+        trial = _untried(True) or _compared(draw, n_splats)
+    effect = SplatsByCard(say("pictures of models drawn by the graphics card"), say("of a picture's time saved"))
+    return decide(effect, trial, setting)
+
+
+def _compared(draw: Draw, n_splats: int) -> CardTrial:
+    card = adapters()[0]
+    try:
+        (first_s, found), (_, expected) = _timed(draw, True), _timed(draw, False)
+        (there_s, _), (here_s, _) = _timed(draw, True), _timed(draw, False)
+    except ReconstructionError as error:
+        return CardTrial(card.name, say("it was tried, and {}", error))
+    alike_db = psnr_db(float(np.mean(np.square(found - expected), dtype=np.float64)))
+    # Not less: what is no number at all is not alike either.
+    if not alike_db >= LEAST_DB:
+        return CardTrial(card.name, say("{} does not draw what the processor draws ({:.0f} dB)", card.name, alike_db))
+    return CardTrial(card.name, "", here_s, there_s, first_s, BYTES_FOR_ALL + BYTES_A_SPLAT * n_splats)
+
+
+def _timed(draw: Draw, on_card: bool) -> tuple[float, NDArray[np.float32]]:
+    began = time.perf_counter()
+    found = draw(on_card)
+    return time.perf_counter() - began, found
+
+
 def _survives() -> bool:
     """Whether a process of its own that tries the first card comes to its end: a driver may take the process along."""
+    return _ends_well(sys.executable)
+
+
+@cache
+def _ends_well(python: str) -> bool:
     inherited, root = os.environ.get("PYTHONPATH"), Path(__file__).resolve().parents[2]
     environment = {**os.environ, "PYTHONPATH": f"{root}{os.pathsep}{inherited}" if inherited else str(root)}
     # -P: modules that lie about in the current folder are not ours.
-    command = [sys.executable, "-P", "-m", MODULE]
+    command = [python, "-P", "-m", MODULE]
     try:
         done = subprocess.run(command, env=environment, capture_output=True, timeout=TRIAL_S, check=False)
     except (OSError, subprocess.TimeoutExpired):

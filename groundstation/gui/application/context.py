@@ -28,6 +28,7 @@ from groundstation.services.jobs.runner import (
 from groundstation.services.project.document import Document, Item, exists
 from groundstation.services.project.session import Session
 from groundstation.services.project.steps import Milestones, undone
+from groundstation.services.settings import DrawnBy
 from groundstation.services.units import UnitSystem
 from planning.base.errors import GroundStationError, shortened
 from planning.base.findings import Severity
@@ -123,6 +124,8 @@ class ApplicationContext(QObject):
     selectionChanged(Item or None), lookAtRequested(Item)
         What is selected; what the 3-D view and the map should show now.
     unitsChanged(UnitSystem)
+    drawnByChanged()
+        What draws pictures of models was chosen anew.
     messageShown(Message), messageWithdrawn(str)
         Something was told; what was said about a topic holds no more.
     jobsChanged()
@@ -139,6 +142,7 @@ class ApplicationContext(QObject):
     selectionChanged = Signal(object)  # noqa: N815
     lookAtRequested = Signal(object)  # noqa: N815
     unitsChanged = Signal(object)  # noqa: N815
+    drawnByChanged = Signal()  # noqa: N815
     messageShown = Signal(object)  # noqa: N815
     messageWithdrawn = Signal(str)  # noqa: N815
     jobsChanged = Signal()  # noqa: N815
@@ -151,6 +155,7 @@ class ApplicationContext(QObject):
         self._session, self._runner = session, runner
         self._selection: Item | None = None
         self._units = UnitSystem.METRIC
+        self._models_drawn_by = DrawnBy.AUTO
         self._milestones = undone(Milestones(), session.document, session.document)
         self._waiting: dict[int, _Waiting] = {}
         self._quiet: set[int] = set()
@@ -184,6 +189,17 @@ class ApplicationContext(QObject):
         if units is not self._units:
             self._units = units
             self.unitsChanged.emit(units)
+
+    @property
+    def models_drawn_by(self) -> DrawnBy:
+        """What draws pictures of models."""
+        return self._models_drawn_by
+
+    def set_models_drawn_by(self, drawn_by: DrawnBy) -> None:
+        """Let pictures of models be drawn by something else."""
+        if drawn_by is not self._models_drawn_by:
+            self._models_drawn_by = drawn_by
+            self.drawnByChanged.emit()
 
     @property
     def milestones(self) -> Milestones:

@@ -15,7 +15,7 @@ from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.model.model_controller import ModelController
 from groundstation.gui.model.picture_places import places_in
 from groundstation.gui.reconstruct.model_view import USUAL_DISTANCE_M, GuidedCamera, Mark, ModelView
-from groundstation.gui.reconstruct.view_pictures import View, ViewPictures, layer_names
+from groundstation.gui.reconstruct.view_pictures import View, ViewPictures, layer_names, leave_card, tell_device
 from groundstation.gui.widgets.inputs import ChoiceBox, calm
 from groundstation.gui.widgets.scrolling import WrappingRow, labelled
 from groundstation.gui.widgets.theme import colours
@@ -58,10 +58,13 @@ class ScenePane(QWidget):
         self.axis, self.cut, self.turn_over = ChoiceBox(), QSlider(Qt.Orientation.Horizontal), QCheckBox()
         calm(self.cut)
         self.cut_at = QLabel()
-        self.pictures_in_view = ViewPictures(controller.request_view, self._size_px, self)
+        self.pictures_in_view = ViewPictures(
+            controller.request_view, self._size_px, self, lambda: context.models_drawn_by
+        )
         self.guided = GuidedCamera(self.view, self)
         self._images: dict[str, QImage | None] = {"left": None, "right": None}
         self._problem = ""
+        self._answer: ViewAnswer | None = None
         self._pointed = -1
         self._asked = {PICK: 0, MEASURE: 0}
         self._measured: list[Vec3] = []
@@ -179,6 +182,7 @@ class ScenePane(QWidget):
         self.guided.cameraMoved.connect(self._camera_moved)
         view.homeRequested.connect(self.go_home)
         view.resized.connect(self.show_view)
+        self._context.drawnByChanged.connect(self.show_view)
         view.clicked.connect(self._clicked)
         view.pointed.connect(self._point_at)
         self.pictures_in_view.pictureCame.connect(self._show_picture)
@@ -254,6 +258,7 @@ class ScenePane(QWidget):
     def _take(self, answer: ViewAnswer | None) -> None:
         if answer is None:
             self.pictures_in_view.forget()
+            leave_card(self._context, self._answer)
         else:
             self.pictures_in_view.take(answer)
 
@@ -274,7 +279,8 @@ class ScenePane(QWidget):
         left, right = self._subjects()
         if answer.look.subject != (left if place == "left" else right):
             return
-        self._images[place] = image
+        self._images[place], self._answer = image, answer
+        tell_device(self._context, self.view, answer)
         self._problem = answer.problem
         if place == "left" and answer.depth_m is not None:
             self.guided.distance_m = answer.depth_m

@@ -10,6 +10,7 @@ from PySide6.QtCore import QElapsedTimer, QEvent, QObject, QPointF, QRectF, QSiz
 from PySide6.QtGui import (
     QColor,
     QFocusEvent,
+    QHelpEvent,
     QImage,
     QKeyEvent,
     QMouseEvent,
@@ -20,7 +21,7 @@ from PySide6.QtGui import (
     QResizeEvent,
     QWheelEvent,
 )
-from PySide6.QtWidgets import QSizePolicy, QWidget
+from PySide6.QtWidgets import QSizePolicy, QToolTip, QWidget
 
 from groundstation.gui.widgets.theme import colours
 from groundstation.services.reconstruct.guided_camera import NEAREST_M, moved, orbited, turned
@@ -128,6 +129,7 @@ class ModelView(QWidget):
         self._left: QImage | None = None
         self._right: QImage | None = None
         self._words, self._note = ("", ""), ""
+        self._device, self._device_box = ("", ""), QRectF()
         self._line, self._grabbed, self._holds_line = 0.5, QPointF(), False
         self._pressed: QPointF | None = None
         self._marks: tuple[Mark, ...] = ()
@@ -161,6 +163,17 @@ class ModelView(QWidget):
         if note != self._note:
             self._note = note
             self.update()
+
+    def set_device(self, words: str, reason: str) -> None:
+        """Say in the lower left corner what draws, and why where the mouse rests there."""
+        if (words, reason) != self._device:
+            self._device = words, reason
+            self.setAccessibleDescription(f"{words}: {reason}" if reason else words)
+            self.update()
+
+    def device(self) -> tuple[str, str]:
+        """What is said of it."""
+        return self._device
 
     def set_marks(self, marks: tuple[Mark, ...]) -> None:
         """Draw lines over the picture, in the place of those that were there."""
@@ -225,6 +238,8 @@ class ModelView(QWidget):
             self._paint_words(painter, room, self._words[0], Qt.AlignmentFlag.AlignLeft)
         if right is not None:
             self._paint_words(painter, room, self._words[1], Qt.AlignmentFlag.AlignRight)
+        if left is not None:
+            self._paint_device(painter, room)
         self._paint_note(painter, left is None and right is None)
         if self.hasFocus():
             painter.setPen(QColor(look.accent))
@@ -275,6 +290,18 @@ class ModelView(QWidget):
         painter.fillRect(box, QColor(0, 0, 0, 160))
         painter.setPen(QColor("#ffffff"))
         painter.drawText(box, Qt.AlignmentFlag.AlignCenter, words)
+
+    def _paint_device(self, painter: QPainter, room: QRectF) -> None:
+        words = self._device[0]
+        self._device_box = QRectF()
+        if not words:
+            return
+        box = QRectF(painter.fontMetrics().boundingRect(words)).adjusted(-PAD_PX, -3.0, PAD_PX, 3.0)
+        box.moveBottomLeft(room.bottomLeft() + QPointF(PAD_PX, -PAD_PX))
+        painter.fillRect(box, QColor(0, 0, 0, 110))
+        painter.setPen(QColor(255, 255, 255, 200))
+        painter.drawText(box, Qt.AlignmentFlag.AlignCenter, words)
+        self._device_box = box
 
     def _paint_note(self, painter: QPainter, is_alone: bool) -> None:
         if not self._note:
@@ -349,6 +376,10 @@ class ModelView(QWidget):
         """Keys that fly are no shortcuts of the window while the view has the keyboard."""
         if event.type() == QEvent.Type.ShortcutOverride and isinstance(event, QKeyEvent) and _flies(event):
             event.accept()
+            return True
+        if event.type() == QEvent.Type.ToolTip and isinstance(event, QHelpEvent):
+            is_there = self._device_box.contains(QPointF(event.pos()))
+            QToolTip.showText(event.globalPos(), self._device[1] if is_there else "", self)
             return True
         return super().event(event)
 

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QComboBox, QHBoxLayout, QPushButton, QSlider, QVBo
 from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.reconstruct.model_view import GuidedCamera, ModelView
 from groundstation.gui.reconstruct.reconstruct_controller import TRAINING, Phase, ReconstructController
-from groundstation.gui.reconstruct.view_pictures import View, ViewPictures, layer_names
+from groundstation.gui.reconstruct.view_pictures import View, ViewPictures, layer_names, leave_card, tell_device
 from groundstation.gui.widgets.inputs import ChoiceBox, calm
 from groundstation.gui.widgets.photo_strip import PhotoStrip, Thumbnails
 from groundstation.gui.widgets.scrolling import WrappingRow, labelled
@@ -277,12 +277,15 @@ class ViewPane(QWidget):
         self.bar, self.view, self.strip = ViewBar(), ModelView(), ErrorStrip(self.pictures)
         self.line, self.worst = QSlider(Qt.Orientation.Horizontal), QPushButton(self.tr("Worst first"))
         calm(self.line)
-        self.pictures_in_view = ViewPictures(controller.request_view, self._size_px, self)
+        self.pictures_in_view = ViewPictures(
+            controller.request_view, self._size_px, self, lambda: context.models_drawn_by
+        )
         self._photo: PosedPhoto | None = None
         self.guided = GuidedCamera(self.view, self)
         self._images: dict[str, QImage | None] = {"left": None, "right": None}
         self._scale: tuple[float, float] | None = None
         self._problem = ""
+        self._answer: ViewAnswer | None = None
         self._units = UnitSystem.METRIC
         self._is_at_home, self._has_model = True, False
         self._judged = QTimer(self)
@@ -385,6 +388,7 @@ class ViewPane(QWidget):
         self.guided.cameraMoved.connect(self._camera_moved)
         view.homeRequested.connect(self._go_home)
         view.resized.connect(self.show_view)
+        self._context.drawnByChanged.connect(self.show_view)
         view.valueChanged.connect(self._line_moved)
         self.line.valueChanged.connect(self._slider_moved)
         self.pictures_in_view.pictureCame.connect(self._show_picture)
@@ -448,6 +452,7 @@ class ViewPane(QWidget):
     def _take(self, answer: ViewAnswer | None) -> None:
         if answer is None:
             self.pictures_in_view.forget()
+            leave_card(self._context, self._answer)
         else:
             self.pictures_in_view.take(answer)
 
@@ -455,7 +460,8 @@ class ViewPane(QWidget):
         left, right = self._subjects()
         if answer.look.subject != (left if place == "left" else right):
             return
-        self._images[place] = image
+        self._images[place], self._answer = image, answer
+        tell_device(self._context, self.view, answer)
         if place == "left":
             self._scale, self._problem = answer.scale, answer.problem
             if answer.depth_m is not None:

@@ -15,10 +15,15 @@ import numpy as np
 from PySide6.QtCore import QCoreApplication, QObject, QTimer, Signal
 from PySide6.QtGui import QImage
 
+from groundstation.gui.application.context import ApplicationContext
+from groundstation.gui.reconstruct.model_view import ModelView
 from groundstation.gui.widgets.parameter_form import choice_text
 from groundstation.gui.widgets.picture_decoder import qimage_of
 from groundstation.services.reconstruct.guided_camera import PicturePace, sized
 from groundstation.services.reconstruct.messages import Section, Subject, Tints, ViewAnswer, ViewRequest
+from groundstation.services.settings import DrawnBy
+from planning.base.findings import Severity
+from planning.base.messages import say
 from planning.base.parameters import declared
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.training.layers import LAYERS, PICTURE
@@ -121,6 +126,8 @@ class ViewPictures(QObject):
         Takes looks.
     size_px
         Width and height of the widget.
+    drawn_by
+        What the user wants pictures to be drawn by.
 
     Signals
     -------
@@ -131,10 +138,14 @@ class ViewPictures(QObject):
     pictureCame = Signal(str, object, object)  # noqa: N815  (Qt's own way of naming)
 
     def __init__(
-        self, send: Callable[[ViewRequest], None], size_px: Callable[[], tuple[int, int]], parent: QObject | None = None
+        self,
+        send: Callable[[ViewRequest], None],
+        size_px: Callable[[], tuple[int, int]],
+        parent: QObject | None = None,
+        drawn_by: Callable[[], DrawnBy] = lambda: DrawnBy.AUTO,
     ) -> None:
         super().__init__(parent)
-        self._send, self._size_px = send, size_px
+        self._send, self._size_px, self._drawn_by = send, size_px, drawn_by
         self._view: View | None = None
         self._on_way: dict[str, int] = {}
         self._version, self._shown = 0, {"left": (-1, False), "right": (-1, False)}
@@ -236,9 +247,8 @@ class ViewPictures(QObject):
         self._shown[place] = (self._version, is_fine)
         layer = "picture" if subject.kind == "photo" else view.layer
         tints = view.tints if place == "left" else view.right_tints
-        self._send(
-            ViewRequest(place, number, subject, camera, layer, view.exposed_as, tints, view.section, not is_fine)
-        )
+        wanted = (place, number, subject, camera, layer, view.exposed_as, tints, view.section, not is_fine)
+        self._send(ViewRequest(*wanted, self._drawn_by().value))
 
     def _fine_px(self) -> float:
         width, height = self._size_px()
@@ -258,6 +268,37 @@ class ViewPictures(QObject):
         if known is None or known[0] != subject:
             self._paces[place] = known = subject, PicturePace()
         return known[1]
+
+
+def tell_device(context: ApplicationContext, view: ModelView, answer: ViewAnswer) -> None:
+    """Say on the view what drew a picture, and among the messages where the graphics card failed."""
+    if answer.by_card is not None:
+        translate = QCoreApplication.translate
+        by = translate("ViewPictures", "Graphics card") if answer.by_card else translate("ViewPictures", "Processor")
+        why = answer.drawn_by or say("a graphics card is tried once the camera rests")
+        view.set_device(by, str(context.localized(why)))
+    if answer.lost:
+        context.say(Severity.WARNING, context.localized(answer.lost), about="models.drawn_by")
+
+
+def leave_card(context: ApplicationContext, answer: ViewAnswer | None) -> None:
+    """Let the processor draw after the process of models ended while a card drew or was tried: its driver may be why.
+
+    Parameters
+    ----------
+    answer
+        The last one; None for none.
+    """
+    is_by_card = answer is not None and answer.by_card is not None and (answer.by_card or not answer.drawn_by)
+    if is_by_card and context.models_drawn_by is not DrawnBy.PROCESSOR:
+        context.set_models_drawn_by(DrawnBy.PROCESSOR)
+        context.say(
+            Severity.NOTE,
+            QCoreApplication.translate(
+                "ViewPictures", "The processor draws models for now; View, Models drawn by tries a graphics card again."
+            ),
+            about="models.drawn_by",
+        )
 
 
 def image_of(picture: np.typing.NDArray[np.uint8]) -> QImage:

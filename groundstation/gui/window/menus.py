@@ -20,7 +20,7 @@ from groundstation.gui.widgets.icons import NAME
 from groundstation.gui.window.main_window import MainWindow
 from groundstation.gui.window.next_step import NEXT_STEP_KEY
 from groundstation.services.plugins import plugin_rows
-from groundstation.services.settings import Language, Settings, Theme
+from groundstation.services.settings import DrawnBy, Language, Settings, Theme
 from groundstation.services.units import UnitSystem
 from planning.base.plugins import PluginGroup
 
@@ -302,11 +302,17 @@ class Menus(QObject):
         units = {UnitSystem.METRIC: self.tr("Metres"), UnitSystem.IMPERIAL: self.tr("Feet")}
         scales = {scale: f"{scale:.0%}" for scale in TEXT_SCALES}
         languages = {**LANGUAGES, Language.SYSTEM: self.tr("As the desktop")}
+        drawn_by = {
+            DrawnBy.AUTO: self.tr("What is faster"),
+            DrawnBy.CARD: self.tr("Graphics card"),
+            DrawnBy.PROCESSOR: self.tr("Processor"),
+        }
         for name, title, entries, now in (
             ("theme", self.tr("&Theme"), themes, look.theme),
             ("units", self.tr("&Units"), units, look.units),
             ("text_scale", self.tr("Te&xt size"), scales, look.text_scale),
             ("language", self.tr("&Language"), languages, look.language),
+            ("models_drawn_by", self.tr("Models drawn &by"), drawn_by, look.models_drawn_by),
         ):
             sub, group = menu.addMenu(title), QActionGroup(self)
             for value, text in entries.items():

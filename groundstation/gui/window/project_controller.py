@@ -78,6 +78,7 @@ class ProjectController(QObject):
         self.project_session = ProjectSession(self.autosaveFailed.emit)
         self.context = ApplicationContext(Session(_first_document(self._settings)), self._runner, self)
         self.context.set_units(self._settings.units)
+        self.context.set_models_drawn_by(self._settings.models_drawn_by)
         self._dress()
         self.window = self._make_window()
         self._timer = QTimer(self)
@@ -237,6 +238,7 @@ class ProjectController(QObject):
         if (before.theme, before.text_scale) != (self._settings.theme, self._settings.text_scale):
             self._dress()
         self.context.set_units(self._settings.units)
+        self.context.set_models_drawn_by(self._settings.models_drawn_by)
         if before.language != self._settings.language:
             self._change_language()
         if before.autosave_s != self._settings.autosave_s:

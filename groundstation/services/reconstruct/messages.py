@@ -191,6 +191,8 @@ class ViewRequest:
         That cuts a finished model.
     is_quick
         Whether splats of a large finished model that are finer than pixels may be drawn as one.
+    drawn_by
+        The graphics card or the processor; `auto` for what is faster.
     """
 
     place: str
@@ -202,6 +204,7 @@ class ViewRequest:
     tints: Tints = ()
     section: Section | None = None
     is_quick: bool = False
+    drawn_by: Literal["auto", "cpu", "gpu"] = "auto"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -299,6 +302,12 @@ class ViewAnswer:
         Of what is in the picture's middle, along the optical axis; None where nothing is, or that is not known.
     seconds
         That it took.
+    by_card
+        Whether the graphics card drew it; None for photos.
+    drawn_by
+        Why that, or the processor; "" where it is not decided yet.
+    lost
+        What became of the graphics card while it drew this; "" where it did, or did not draw.
     """
 
     look: ViewRequest
@@ -307,6 +316,9 @@ class ViewAnswer:
     depth_m: float | None = None
     seconds: float = 0.0
     problem: str = ""
+    by_card: bool | None = None
+    drawn_by: str = ""
+    lost: str = ""
 
 
 @dataclass(frozen=True, slots=True)

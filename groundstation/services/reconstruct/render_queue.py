@@ -27,7 +27,7 @@ from groundstation.services.reconstruct.messages import (
     ViewRequest,
     WatchErrors,
 )
-from planning.base.errors import GroundStationError
+from planning.base.errors import GroundStationError, ReconstructionError
 from planning.base.messages import say
 from reconstruction.training.layers import PICTURE
 
@@ -41,8 +41,9 @@ if TYPE_CHECKING:
     from reconstruction.splats.rasterising.views import View
     from reconstruction.splats.splats import Splats
     from reconstruction.training.callbacks import TrainingSnapshot
+    from reconstruction.training.devices import Draw
     from reconstruction.training.model.joint_model import SceneModel
-    from reconstruction.training.model.render import PhotoErrors
+    from reconstruction.training.model.render import PhotoErrors, Rendered
     from reconstruction.training.model.saved import TrainedModel
 
 
@@ -331,6 +332,63 @@ def _numbered(numbers: NDArray[np.int64]) -> Picture:
     return colours[np.where(numbers >= 0, numbers, n_panels)]
 
 
+class PictureDevices:
+    """What draws pictures of models: the graphics card where that is faster, else the processor; see `devices`.
+
+    A model is decided about when nobody waits for a picture. Once the card has failed, the processor draws until
+    the user chooses anew.
+    """
+
+    def __init__(self) -> None:
+        self._decided: OrderedDict[object, Decision] = OrderedDict()
+        self._undecided: tuple[object, Draw, int] | None = None
+        self._lost: tuple[str, str] | None = None
+
+    def by_card(self, shown: ShownModel, wanted: str) -> tuple[bool, str]:
+        """Whether the card draws a model, and why; "" where that is not decided yet.
+
+        Parameters
+        ----------
+        wanted
+            As `ViewRequest` has it.
+        """
+        from reconstruction.gpu.device import adapters, why_no_gpu
+
+        if wanted == "cpu":
+            return False, say("the processor, as you asked")
+        if self._lost is not None and self._lost[0] == wanted:
+            return False, self._lost[1]
+        if shown.quads is None:
+            return shown.settings.on_gpu, say("as its training")
+        if wanted == "gpu":
+            reason = why_no_gpu()
+            return not reason, say("no graphics card: {}", reason) if reason else say("{}, as you asked", adapters()[0])
+        found = self._decided.get(shown.version)
+        return (False, "") if found is None else (found.on, found.reason)
+
+    def ask(self, shown: ShownModel, draw: Draw) -> None:
+        """Decide about a model later, by pictures such as this one."""
+        if shown.quads is not None and shown.version not in self._decided:
+            self._undecided = shown.version, draw, len(shown.model.splats)
+
+    def decide(self) -> bool:
+        """Try the card with what was asked last; whether there was anything."""
+        from reconstruction.training.devices import shown_by_card
+
+        if self._undecided is None:
+            return False
+        (version, draw, n_splats), self._undecided = self._undecided, None
+        self._decided[version] = shown_by_card(draw, n_splats, "auto")
+        while len(self._decided) > MOST_MODELS:
+            self._decided.popitem(last=False)
+        return True
+
+    def leave(self, wanted: str, reason: str) -> str:
+        """Draw by the processor from now on, as the card has failed; what to tell the user."""
+        self._lost = wanted, say("the processor goes on: {}", reason)
+        return self._lost[1]
+
+
 MOST_PHOTOS = 8
 """Decoded ones that are kept."""
 
@@ -352,7 +410,7 @@ class RenderQueue:
     def __init__(self, tell: Callable[[Any], None]) -> None:
         self._tell = tell
         self._training: ShownModel | None = None
-        self._models = ShownModels()
+        self._models, self._devices = ShownModels(), PictureDevices()
         self._photos: OrderedDict[tuple[Path, str], NDArray[np.uint8]] = OrderedDict()
         self._sources: dict[Path, PhotoSet] = {}
         self._errors: tuple[WatchErrors, object, PhotoErrors] | None = None
@@ -411,26 +469,53 @@ class RenderQueue:
 
     def _rendered(self, look: ViewRequest, shown: ShownModel, begun_s: float) -> ViewAnswer:
         from reconstruction.splats.rasterising.views import View
-        from reconstruction.training.model.render import render_view
 
         gain = shown.gains.get(look.exposed_as, 1.0)
         wanted = ("depth",) if look.layer == PICTURE else (*dict.fromkeys(("depth", look.layer)),)
         view = View.of(look.camera, shown.model.origin_enu_m)
-        models = self._models
-        model = models.quick(shown, look.section, view) if look.is_quick else models.cut(shown, look.section)
-        found = render_view(model, view, wanted, gain, shown.settings)
+
+        def draw(on_card: bool) -> Rendered:
+            return self._drawn(look, shown, view, wanted, gain, on_card)
+
+        (by_card, why), lost = self._devices.by_card(shown, look.drawn_by), ""
+        try:
+            found = draw(by_card)
+        except ReconstructionError as error:
+            if not by_card:
+                raise
+            lost = why = self._devices.leave(look.drawn_by, str(error))
+            by_card, found = False, draw(False)
+        if look.drawn_by == "auto" and not why and not look.is_quick:
+            self._devices.ask(shown, lambda on_card: draw(on_card).display)
         values = found.display if look.layer == PICTURE else found.layers[look.layer]
         picture, scale = coloured(look.layer, values)
         depth = found.layers["depth"]
         if look.tints and shown.quads is not None:
             picture = tinted(picture, shown.quads, look, depth)
         middle = float(depth[depth.shape[0] // 2, depth.shape[1] // 2])
+        depth_m = middle if np.isfinite(middle) and middle > 0.0 else None
         seconds = time.perf_counter() - begun_s
-        return ViewAnswer(look, picture, scale, middle if np.isfinite(middle) and middle > 0.0 else None, seconds)
+        return ViewAnswer(look, picture, scale, depth_m, seconds, by_card=by_card, drawn_by=why, lost=lost)
+
+    def _drawn(
+        self,
+        look: ViewRequest,
+        shown: ShownModel,
+        view: View,
+        layers: tuple[str, ...],
+        gain: Any,
+        on_card: bool,
+    ) -> Rendered:
+        """A picture of a model; a card draws large ones whole, as quickly as others."""
+        from reconstruction.training.model.render import render_view
+
+        models, is_quick = self._models, look.is_quick and not on_card
+        model = models.quick(shown, look.section, view) if is_quick else models.cut(shown, look.section)
+        return render_view(model, view, layers, gain, replace(shown.settings, on_gpu=on_card))
 
     def prepare(self) -> bool:
         """Something that later pictures come sooner by, when nobody waits; whether there was anything."""
-        return self._models.prepare()
+        return self._devices.decide() or self._models.prepare()
 
     def probed(self, probe: Probe) -> Probed:
         """Answer a probe."""

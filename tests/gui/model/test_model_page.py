@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 import pytest
 from PySide6.QtCore import QCoreApplication, QEvent, QPointF, Qt
-from PySide6.QtGui import QMouseEvent
+from PySide6.QtGui import QAction, QMouseEvent
 
 from groundstation.gui.model.record_side import KIND_TITLES, RecordDialog
 from groundstation.gui.reconstruct.model_view import Mark
@@ -408,6 +408,34 @@ def test_a_lost_process_is_told_and_asked_anew(opened):
     before = len(looks(opened))
     opened.pane.show_view()
     assert len(looks(opened)) > before
+
+
+def test_what_draws_is_said_with_its_reason_and_chosen_in_the_menu(opened, controller):
+    def answered(**more):
+        # One look is on its way, and the next one goes once it is answered.
+        opened.pane.show_view()
+        opened.controller._take(ViewAnswer(looks(opened)[-1], np.zeros((9, 16, 3), np.uint8), **more))
+
+    def chosen(text):
+        actions = controller.window.findChildren(QAction)
+        next(action for action in actions if action.text() == text).trigger()
+
+    chosen("Graphics card")
+    answered(by_card=False, drawn_by="Arc takes 50 ms, the processor 20 ms")
+    assert opened.pane.view.device() == ("Processor", "Arc takes 50 ms, the processor 20 ms")
+    assert looks(opened)[-1].drawn_by == "gpu"
+    answered(by_card=True, drawn_by="Arc, as you asked")
+    assert opened.pane.view.device() == ("Graphics card", "Arc, as you asked")
+    answered(by_card=False, drawn_by="the processor goes on", lost="the processor goes on")
+    assert "processor goes on" in opened.messages[-1].text
+    # A driver may take the process of models along.
+    answered(by_card=True)
+    opened.controller._take(ProcessEnded(-11))
+    assert looks(opened)[-1].drawn_by == "cpu"
+    assert "The processor draws models for now" in opened.messages[-1].text
+    chosen("What is faster")
+    answered(by_card=False, drawn_by="the processor, as you asked")
+    assert looks(opened)[-1].drawn_by == "auto"
 
 
 def test_damaged_records_are_told_and_the_model_is_still_there(opened):

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 import torch
+from numpy.typing import NDArray
 
 from planning.base.effects import decide
 from planning.base.errors import InputError
@@ -13,7 +15,7 @@ from reconstruction.gpu.device import Adapter, DeviceFailed, open_device, why_no
 from reconstruction.splats.splats import Splats
 from reconstruction.training import devices
 from reconstruction.training.config import TrainConfig
-from reconstruction.training.devices import CardTrial, SplatsByCard, check_device, drawn_by_card
+from reconstruction.training.devices import CardTrial, SplatsByCard, check_device, drawn_by_card, shown_by_card
 from reconstruction.training.train import train_model
 from tests.reconstruction.splats.drawn_splats import level_view, random_splats
 
@@ -88,6 +90,32 @@ def test_a_card_is_tried_and_the_reason_says_how_it_did(splats: Splats, monkeypa
     assert "it was tried, and it has no memory left" in decision.reason
     with pytest.raises(DeviceFailed):
         drawn_by_card(replace(SMALL, device="gpu"), splats, level_view())
+
+
+def test_a_card_shows_models_where_its_picture_is_the_processors_and_comes_sooner(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    now, error = [0.0], [0.0]
+
+    def draw(on_card: bool) -> NDArray[np.float32]:
+        now[0] += 0.05 if on_card else 0.2
+        return np.full((4, 4, 3), 0.5 + on_card * error[0], np.float32)
+
+    monkeypatch.setattr(devices, "why_no_gpu", str)
+    monkeypatch.setattr(devices, "adapters", lambda: (CARD,))
+    monkeypatch.setattr(devices, "_survives", lambda: True)
+    monkeypatch.setattr(devices.time, "perf_counter", lambda: now[0])
+    found = shown_by_card(draw, 1000, "auto")
+    assert found.on
+    assert found.size == pytest.approx(0.75)
+    assert "Intel UHD 620 takes 50 ms, the processor 200 ms" in found.reason
+    # 40 dB are an error of 0.01; what is no number is no picture.
+    for error[0], on in ((0.0099, True), (0.0101, False), (np.nan, False)):
+        assert shown_by_card(draw, 1000, "auto").on == on
+    monkeypatch.setattr(devices, "adapters", lambda: (replace(CARD, name="llvmpipe", kind="software"),))
+    found = shown_by_card(lambda _: np.ones((1, 1, 3), np.float32), 1000, "auto")
+    assert not found.on
+    assert "there is no graphics card but llvmpipe" in found.reason
 
 
 def test_a_card_that_takes_its_process_along_is_not_taken(splats: Splats, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,8 +11,12 @@ import torch
 from groundstation.services.model.objects import organise_files
 from groundstation.services.reconstruct.messages import Probe, Section, Subject, ViewRequest
 from groundstation.services.reconstruct.render_queue import TINT_SHARE, RenderQueue, ShownModels
+from planning.base.effects import Decision
+from reconstruction.gpu.device import open_device, why_no_gpu
 from reconstruction.light.config import ReflectionConfig
 from reconstruction.light.photo_set import read_photo_set
+from reconstruction.metrics.image_metrics import psnr_db
+from reconstruction.training import devices
 from reconstruction.training.config import TrainConfig
 from reconstruction.training.model.saved import save_model
 from reconstruction.training.train import train_model
@@ -23,6 +27,8 @@ LIGHT = ReflectionConfig(environment_rows=8, steps=10, batch=256)
 CONFIG = TrainConfig(
     light="environment-map", iterations=3, n_splats=300, max_splats=400, reflections=LIGHT, score_every_s=1e9
 )
+
+DECISION = Decision("", True, "scene", "", 0.0, 0.1, "", 0.0)
 
 
 @contextmanager
@@ -49,7 +55,7 @@ def render_queue():
 
 
 def look(folder, camera, **more):
-    return ViewRequest("left", 1, Subject("model", folder), camera, **more)
+    return ViewRequest("left", 1, Subject("model", folder), camera, **{"drawn_by": "cpu"} | more)
 
 
 def camera(folders):
@@ -185,3 +191,62 @@ def test_a_probe_tells_panel_and_place(folders, render_queue):
     assert (sky.panel, sky.point_enu_m) == (None, None)
     missing = render_queue.probed(Probe("pick", 3, Subject("model", Path("nowhere")), photo, at))
     assert "make one with `organise`" in missing.problem or "no finished model" in missing.problem
+
+
+def needs_card():
+    if reason := why_no_gpu():
+        pytest.skip(f"no graphics card: {reason}")
+
+
+def apart_db(a, b):
+    return psnr_db(float(np.mean(np.square((a.astype(float) - b.astype(float)) / 255.0))))
+
+
+def test_the_card_shows_what_the_processor_shows_in_every_layer(folders, render_queue):
+    needs_card()
+    for layer in ("picture", "reflectivity", "normals", "depth"):
+        there, here = (
+            render_queue.answer(look(folders / "scene", camera(folders), layer=layer, drawn_by=by))
+            for by in ("gpu", "cpu")
+        )
+        assert (there.by_card, here.by_card) == (True, False)
+        assert "as you asked" in there.drawn_by
+        assert "as you asked" in here.drawn_by
+        assert apart_db(there.picture, here.picture) > 40.0
+        assert there.depth_m == pytest.approx(here.depth_m, rel=1e-4)
+
+
+def test_a_card_that_is_lost_is_told_and_the_processor_goes_on(folders, render_queue):
+    needs_card()
+    asked = look(folders / "scene", camera(folders), drawn_by="gpu")
+    assert render_queue.answer(asked).by_card
+    open_device().raw.destroy()
+    after, later = (render_queue.answer(asked) for _ in range(2))
+    expected = render_queue.answer(replace(asked, drawn_by="cpu")).picture
+    for each in (after, later):
+        assert each.problem == ""
+        assert not each.by_card
+        assert "the processor goes on: the graphics card" in each.drawn_by
+        assert np.array_equal(each.picture, expected)
+    assert after.lost == after.drawn_by
+    assert later.lost == ""
+
+
+def test_a_model_is_decided_about_when_nobody_waits_and_the_reason_is_said(folders, render_queue, monkeypatch):
+    tried = []
+
+    def decided(draw, n_splats, setting):
+        tried.append((draw(False).shape, n_splats, setting))
+        return replace(DECISION, on=False, reason="Arc takes 50 ms, the processor 20 ms")
+
+    monkeypatch.setattr(devices, "shown_by_card", decided)
+    asked = look(folders / "scene", camera(folders), drawn_by="auto")
+    before = render_queue.answer(asked)
+    assert (before.by_card, before.drawn_by) == (False, "")
+    assert render_queue.prepare()
+    after = render_queue.answer(asked)
+    assert (after.by_card, after.drawn_by) == (False, "Arc takes 50 ms, the processor 20 ms")
+    assert not render_queue.prepare()
+    lens = asked.camera.intrinsics
+    n_splats = len(render_queue._models.of(folders / "scene").model.splats)
+    assert tried == [((lens.height_px, lens.width_px, 3), n_splats, "auto")]
