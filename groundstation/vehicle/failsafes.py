@@ -8,17 +8,20 @@ ArduPilot: parameter documentation of Copter 4.5, `failsafe_gcs_check`, `failsaf
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum, auto
 
 import numpy as np
 
 from groundstation.vehicle.orders import SortieOrders
-from groundstation.vehicle.preflight import PreflightCheck, Verdict
+from groundstation.vehicle.preflight import FOREIGN_FENCE, PreflightCheck, Verdict
 from groundstation.vehicle.surroundings import Surroundings
 from groundstation.vehicle.watch import DISTANCE_TOLERANCE_M
 from missions.mavlink.autopilots import Autopilot
+from missions.mavlink.fence import FENCE_CLEARANCE_M, FenceFit, fence_fit, fences_of
+from missions.mavlink.messages import MissionItemInt
+from planning.base.errors import MissionError
 from planning.base.messages import say
 from planning.geo.frames import Vec3
 from planning.routing.rally import return_route
@@ -530,16 +533,9 @@ def _fence(autopilot: Autopilot, values: Mapping[str, float], orders: SortieOrde
     name = "FENCE_ACTION" if autopilot is Autopilot.ARDUPILOT else "GF_ACTION"
     number = values.get(name)
     action = None if number is None else FENCE_ACTIONS[autopilot].get(int(number))
-    switch, value = name, number or 0.0
-    is_off = False
-    if autopilot is Autopilot.ARDUPILOT:
-        kinds = int(values.get("FENCE_TYPE", POLYGON_FENCE))
-        if not values.get("FENCE_ENABLE", 0.0):
-            is_off, switch, value = True, "FENCE_ENABLE", 0.0
-        elif not kinds & POLYGON_FENCE:
-            is_off, switch, value = True, "FENCE_TYPE", float(kinds)
-    set_so = f"{switch} {value:g}"
-    if is_off or action is FailsafeAction.GO_ON:
+    switched_off = _fence_off(autopilot, values)
+    set_so = switched_off or f"{name} {number or 0.0:g}"
+    if switched_off or action is FailsafeAction.GO_ON:
         verdict = Verdict.WARN
         text = say("the geofence is on board, but nothing keeps the aircraft from leaving it ({})", set_so)
     elif action is FailsafeAction.RETURN:
@@ -553,3 +549,85 @@ def _fence(autopilot: Autopilot, values: Mapping[str, float], orders: SortieOrde
     else:
         verdict, text = Verdict.WARN, say("what the vehicle does at the geofence is not known: see {}", name)
     yield PreflightCheck("fence-action", verdict, text)
+
+
+def _fence_off(autopilot: Autopilot, values: Mapping[str, float]) -> str:
+    """The parameter that switches the areas of a fence off, with its value; empty where they count."""
+    if autopilot is Autopilot.PX4:
+        return "" if values.get("GF_ACTION", 1.0) else "GF_ACTION 0"
+    if not values.get("FENCE_ENABLE", 0.0) and not values.get("FENCE_AUTOENABLE", 0.0):
+        return "FENCE_ENABLE 0"
+    kinds = int(values.get("FENCE_TYPE", POLYGON_FENCE))
+    return "" if kinds & POLYGON_FENCE else f"FENCE_TYPE {kinds}"
+
+
+# A fence that was on board before, and that this ground station did not put there
+
+FOUND_FENCE_NAMES = {
+    Autopilot.ARDUPILOT: ("FENCE_ENABLE", "FENCE_AUTOENABLE", "FENCE_TYPE", "FENCE_OPTIONS"),
+    Autopilot.PX4: ("GF_ACTION",),
+}
+"""Parameters that decide what comes of it."""
+
+UNION_OF_INCLUSIONS = 2
+"""Bit of FENCE_OPTIONS: without it ArduPilot must be inside of every area to stay in."""
+
+
+def fence_words(items: Sequence[MissionItemInt]) -> str:
+    """What a fence that was read from a vehicle consists of."""
+    try:
+        fences = fences_of(items)
+    except MissionError as error:
+        return say("{} items that are no geofence: {}", len(items), error)
+    n_in = sum(fence.is_inclusion for fence in fences)
+    return say("areas to stay in: {}, to keep out of: {}", n_in, len(fences) - n_in)
+
+
+def found_fence_check(
+    autopilot: Autopilot, values: Mapping[str, float], orders: SortieOrders, items: Sequence[MissionItemInt]
+) -> PreflightCheck:
+    """What a fence of somebody else means for this sortie; it stays on board until the pilot says otherwise.
+
+    It grounds a sortie that has a fence of its own, as there is room for one, and one that it does not let fly.
+
+    Parameters
+    ----------
+    values
+        Of the parameters in `FOUND_FENCE_NAMES`, as far as the vehicle knows them.
+    """
+    found = say("the vehicle has a geofence that this ground station did not put there ({})", fence_words(items))
+    advice = say("overrule this line to remove it, or change it with the program that set it")
+    if orders.fences.get(autopilot):
+        text = say("{}, and this sortie has its own, which would replace it; {}", found, advice)
+        return PreflightCheck(FOREIGN_FENCE, Verdict.BAD, text)
+    try:
+        fences = fences_of(items)
+    except MissionError:
+        text = say("{}; whether the sortie stays inside cannot be told; {}", found, advice)
+        return PreflightCheck(FOREIGN_FENCE, Verdict.BAD, text)
+    in_all = autopilot is Autopilot.ARDUPILOT and not int(values.get("FENCE_OPTIONS", 0.0)) & UNION_OF_INCLUSIONS
+    fit = fence_fit(fences, orders.mission, in_all=in_all)
+    room_m, limit_m = fit.room_m, FENCE_CLEARANCE_M
+    if room_m >= 0.0:
+        text = say("{}; it stays on board, and the sortie stays {:.0f} m inside", found, room_m)
+        if room_m < limit_m:
+            text = say("{}; it stays on board, and the sortie comes within {:.1f} m of its edge", found, room_m)
+        return PreflightCheck(FOREIGN_FENCE, Verdict.WARN, text, room_m, limit_m, "m")
+    beyond = _beyond(fit)
+    if switched_off := _fence_off(autopilot, values):
+        text = say("{}; {}, but it is switched off ({}): it stays on board", found, beyond, switched_off)
+        return PreflightCheck(FOREIGN_FENCE, Verdict.WARN, text, room_m, limit_m, "m")
+    text = say("{}; {}: the vehicle would refuse the mission or break it off; {}", found, beyond, advice)
+    return PreflightCheck(FOREIGN_FENCE, Verdict.BAD, text, room_m, limit_m, "m")
+
+
+def _beyond(fit: FenceFit) -> str:
+    """Where a sortie leaves a fence."""
+    if not math.isfinite(fit.room_m):
+        return say("no place is allowed by it")
+    off_m = -fit.room_m
+    if fit.waypoint is None:
+        return say("a leg of the sortie leaves it, by {:.0f} m", off_m)
+    if fit.waypoint == 0:
+        return say("the take-off lies outside of it, and the sortie leaves it by {:.0f} m", off_m)
+    return say("waypoint {} lies outside of it, and the sortie leaves it by {:.0f} m", fit.waypoint, off_m)

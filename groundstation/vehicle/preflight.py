@@ -12,6 +12,7 @@ from groundstation.vehicle.setup import ParameterChange, change_text
 from groundstation.vehicle.state import VehicleState
 from groundstation.vehicle.watch import FIX_3D, RTK_FLOAT, STALE_S
 from missions.mavlink.autopilots import Autopilot
+from missions.mavlink.messages import MissionItemInt
 from missions.mavlink.remote_id import refusal_text
 from missions.mavlink.transfer.exchange import MissionType
 from missions.mission.model import altitude_amsl_m as home_altitude_amsl_m
@@ -80,6 +81,10 @@ class OnBoard:
         What the vehicle will do by itself, by its parameters (`failsafes.py`); empty while they were not read.
     camera
         Whether the camera took its settings; None where it is one that takes none.
+    found_fence
+        Items of a fence that this ground station did not put there, and that stays on board.
+    fence_check
+        What there is to say of the fence that was on board before; None where nothing was.
     """
 
     mission: bool | None = None
@@ -89,6 +94,8 @@ class OnBoard:
     changes: tuple[ParameterChange, ...] | None = None
     failsafes: tuple[PreflightCheck, ...] = ()
     camera: PreflightCheck | None = None
+    found_fence: tuple[MissionItemInt, ...] = ()
+    fence_check: PreflightCheck | None = None
 
     def of(self, mission_type: MissionType) -> bool | None:
         """Whether a list is the one that was uploaded."""
@@ -159,7 +166,13 @@ class Remedy(Enum):
     OVERRULE = "overrule"
 
 
-OVERRULABLE = frozenset(("return", "home-height", "parameters"))
+FOREIGN_FENCE = "foreign-fence"
+"""Code of the check of a fence that somebody else put on board: overruled, it is removed."""
+
+FENCE_BEFORE = "fence-before"
+"""Code of the line on what became of the fence that was on board before."""
+
+OVERRULABLE = frozenset(("return", "home-height", "parameters", FOREIGN_FENCE))
 """Codes of checks that ground a flight until the pilot overrules them by typing the code."""
 
 
@@ -426,10 +439,17 @@ def _low_flight(orders: SortieOrders) -> Iterator[PreflightCheck]:
 
 
 def _geofence(state: VehicleState, orders: SortieOrders, on_board: OnBoard) -> Iterator[PreflightCheck]:
-    """Whether the fence is on board, and what it does not keep the vehicle out of."""
+    """Whether the fence is on board, what was there before, and what it does not keep the vehicle out of."""
     autopilot = state.autopilot if state.autopilot is not None else next(iter(Autopilot))
-    if orders.fences.get(autopilot):
-        yield _board("geofence", "geofence", on_board.fence, on_board.reason_to_reread)
+    has_own, reason = bool(orders.fences.get(autopilot)), on_board.reason_to_reread
+    if on_board.fence_check is not None:
+        yield on_board.fence_check
+    if (has_own and not on_board.found_fence) or on_board.fence is False:
+        yield _board("geofence", "geofence", on_board.fence, reason)
+    elif on_board.fence is None and reason and not has_own:
+        yield PreflightCheck("geofence", Verdict.WAIT, say("the geofence on board is read again: {}", reason))
+    elif on_board.fence and not on_board.found_fence:
+        yield PreflightCheck("geofence", Verdict.OK, say("none is on board, and the sortie needs none"))
     found = orders.unfenced.get(autopilot, ())
     for severity, verdict in ((Severity.WARNING, Verdict.WARN), (Severity.NOTE, Verdict.OK)):
         told = [finding for finding in found if finding.severity is severity]

@@ -5,11 +5,12 @@ under can therefore not become a fence, or the vehicle would refuse its own miss
 
 Vehicles take some dozen corners. Where the zones have more, each is drawn with fewer around its outside, as coarsely as
 it must be and never nearer to the path than `FENCE_CLEARANCE_M`; what still finds no room is left out, the farthest
-first, and said so.
+first, and said so. How a mission lies in a fence that a vehicle has already, `fence_fit` says.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -18,6 +19,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from missions.mavlink.autopilots import Autopilot, facts
 from missions.mavlink.items import MissionItem, Polygon
+from missions.mavlink.messages import MissionItemInt
 from missions.mission.model import GeoPoint, Mission
 from planning.base.errors import MissionError
 from planning.base.findings import Finding, Severity
@@ -61,7 +63,7 @@ class FenceCircle:
     is_inclusion: bool
 
     def __post_init__(self) -> None:
-        if not self.radius_m > 0.0:
+        if not 0.0 < self.radius_m < math.inf:
             raise MissionError.say("a fence has a radius of {:g} m; expected more than 0", self.radius_m)
 
 
@@ -82,6 +84,117 @@ def _fence_items(fence: Fence) -> list[MissionItem]:
     command = next(each for each, inside in _POLYGONS.items() if inside is fence.is_inclusion)
     n_corners = float(len(fence.corners))
     return [MissionItem(command, frame, (n_corners, 0.0, 0.0, 0.0, lat, lon, 0.0)) for lat, lon in fence.corners]
+
+
+RETURN_POINT = mavlink.MAV_CMD_NAV_FENCE_RETURN_POINT
+"""Where planes wait after a breach; it encloses nothing."""
+
+DEGREES_E7 = 1e7
+
+
+def fences_of(messages: Sequence[MissionItemInt]) -> tuple[Fence, ...]:
+    """The areas of a fence as it was read from a vehicle.
+
+    Raises
+    ------
+    MissionError
+        An item is none of a fence, a polygon has other corners than it announces, or a place is not on the globe.
+    """
+    fences: list[Fence] = []
+    seq = 0
+    while seq < len(messages):
+        first, n_corners = messages[seq], 1
+        if first.command in _POLYGONS:
+            # Not a whole number, not even a number: then the comparison below fails.
+            n_corners = int(first.param1) if 0.0 < first.param1 <= len(messages) - seq else 0
+        run = messages[seq : seq + n_corners]
+        places = tuple((item.x / DEGREES_E7, item.y / DEGREES_E7) for item in run)
+        is_one = all(item.command == first.command and item.param1 == first.param1 for item in run)
+        if not run or not is_one or any(abs(lat) > 90.0 or abs(lon) > 180.0 for lat, lon in places):
+            raise MissionError.say("item {} is none of a fence", seq + 1)
+        if first.command in _POLYGONS:
+            fences.append(FencePolygon(places, _POLYGONS[first.command]))
+        elif first.command in _CIRCLES:
+            fences.append(FenceCircle(*places[0], first.param1, _CIRCLES[first.command]))
+        elif first.command != RETURN_POINT:
+            raise MissionError.say("item {} is none of a fence", seq + 1)
+        seq += n_corners
+    return tuple(fences)
+
+
+@dataclass(frozen=True, slots=True)
+class FenceFit:
+    """How a mission lies in a fence, seen from above.
+
+    Parameters
+    ----------
+    room_m
+        Smallest distance of its path from the fence's lines; negative where it leaves the fence: by so much, and
+        infinitely where the fence has no inside.
+    waypoint
+        First waypoint outside, from 1; 0 is the take-off, None where only a leg leaves it, or nothing does.
+    """
+
+    room_m: float
+    waypoint: int | None = None
+
+
+DATE_LINE_DEG = 179.0
+"""East or west of this, longitudes are counted from the mission on; elsewhere as vehicles do, as plain numbers."""
+
+CIRCLE_SEGMENTS = 64
+"""For a quarter: the chord runs 7.5e-5 of the radius inside."""
+
+SCALE_M = 1000.0
+LEG_STEP_M = 1.0
+
+
+def fence_fit(fences: Sequence[Fence], mission: Mission, *, in_all: bool) -> FenceFit:
+    """How a mission lies in a fence; sides of polygons are straight in latitude and longitude, as vehicles have them.
+
+    Parameters
+    ----------
+    in_all
+        The vehicle must be inside of every area to stay in (ArduPilot, unless bit 1 of FENCE_OPTIONS is set), not of
+        any (PX4).
+    """
+    import shapely
+
+    home = mission.takeoff
+    lat_deg, lon_deg, _ = geodetic_from_enu(mission.origin, [(0.0, 0.0, 0.0), (SCALE_M, 0.0, 0.0), (0.0, SCALE_M, 0.0)])
+    east_deg, north_deg = float(lon_deg[1] - lon_deg[0]) % 360.0, float(lat_deg[2] - lat_deg[0])
+    scale_xy = (SCALE_M / east_deg, SCALE_M / north_deg)
+    wraps = abs(home.lon_deg) > DATE_LINE_DEG
+
+    def plane(lat: float, lon: float) -> tuple[float, float]:
+        east_deg = lon - home.lon_deg
+        if wraps:
+            east_deg = (east_deg + 180.0) % 360.0 - 180.0
+        return (east_deg * scale_xy[0], (lat - home.lat_deg) * scale_xy[1])
+
+    def area(fence: Fence) -> Any:
+        if isinstance(fence, FenceCircle):
+            centre = shapely.Point(plane(fence.lat_deg, fence.lon_deg))
+            return centre.buffer(fence.radius_m, quad_segs=CIRCLE_SEGMENTS)
+        return shapely.make_valid(shapely.Polygon([plane(*corner) for corner in fence.corners]))
+
+    track = [plane(each.lat_deg, each.lon_deg) for each in (home, *(one.position for one in mission.waypoints))]
+    path = shapely.LineString(track) if len(track) > 1 else shapely.Point(track[0])
+    inside, outside = ([area(each) for each in fences if each.is_inclusion is wanted] for wanted in (True, False))
+    room = path.envelope.buffer(1e6)
+    if inside:
+        room = shapely.intersection_all(inside) if in_all else shapely.union_all(inside)
+    if outside:
+        room = room.difference(shapely.union_all(outside))
+    if room.is_empty:
+        return FenceFit(-math.inf, 0)
+    beyond = next((number for number, place in enumerate(track) if not room.covers(shapely.Point(place))), None)
+    left = path.difference(room)
+    if beyond is None and left.is_empty:
+        return FenceFit(float(room.boundary.distance(path)))
+    steps = [] if left.is_empty else shapely.get_coordinates(shapely.segmentize(left, LEG_STEP_M))
+    off_m = [float(room.distance(shapely.Point(place))) for place in (*steps, *track)]
+    return FenceFit(-max(off_m), beyond)
 
 
 def rally_points(site: Site) -> tuple[GeoPoint, ...]:

@@ -33,7 +33,8 @@ a vehicle at a link:
   --link tcp:127.0.0.1:5760  a simulation of ArduPilot or PX4. It is set up, armed and started.
   A vehicle that does not say itself that it is a simulation takes off only with --take-off, wherever it is: programs
   on this machine pass links on to aircraft. Its parameters are compared, and set only with --set-parameters.
-  --overrule return, home-height or parameters flies though that line of the list before take-off grounds it.
+  --overrule return, home-height or parameters flies though that line of the list before take-off grounds it;
+  --overrule foreign-fence removes a geofence that this ground station did not put on the vehicle.
 
 examples:
   simulate office.plan.json office.site.json -o office.flight.json

@@ -154,6 +154,8 @@ class PreflightList(QWidget):
             "low-flight": self.tr("Lowest flight"),
             "mission": self.tr("Mission on board"),
             "geofence": self.tr("Geofence on board"),
+            "foreign-fence": self.tr("Geofence of others"),
+            "fence-before": self.tr("Earlier geofence"),
             "fence-gaps": self.tr("Not in the geofence"),
             "fence-shape": self.tr("Drawn otherwise in the geofence"),
             "rally": self.tr("Rally points on board"),

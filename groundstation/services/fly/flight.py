@@ -42,6 +42,7 @@ from groundstation.services.fly.events import (
 from groundstation.services.fly.log_book import book_path, enter, entry_of
 from groundstation.services.fly.onboard_logs import keep_logs
 from groundstation.services.fly.options import USUAL, FlightSettings
+from groundstation.services.fly.own_fences import own_fences
 from groundstation.services.fly.readouts import BEFORE_TAKE_OFF, allowed_requests, link_state, readouts
 from groundstation.services.fly.signing import signing_problem
 from groundstation.services.fly.sortie import LiveSortie
@@ -579,10 +580,14 @@ class LiveFlight:
 
     def _begin_run(self) -> None:
         settings, connection = self._settings, self._connection
+        fences, problem = own_fences(self._sortie.orders)
+        if problem:
+            self._publish(LogProblem(problem))
         options = RunOptions(
             sets_parameters=connection.is_simulated,
             starts_itself=False,
             needs_rtk=settings.needs_rtk,
+            own_fences=fences,
         )
         run = FlightRun(self._sortie.orders, options, connection.name)
         run.state = replace(self._machine.state, photos=())

@@ -18,6 +18,7 @@ from groundstation.services.fly.connection import TruthRecorder
 from groundstation.services.fly.corrections import Corrections
 from groundstation.services.fly.events import FlightEnded
 from groundstation.services.fly.log_book import book_path, enter, entry_of
+from groundstation.services.fly.own_fences import own_fences
 from groundstation.services.mission.files import within_item_limit
 from groundstation.services.project.input_files import read_input_plan, read_input_site
 from groundstation.services.project.project_file import check_not_index
@@ -625,12 +626,14 @@ class _Case:
         request = self.request
         if request.log_folder is None:
             raise ValueError("log_folder: a flight over a link is always logged")
+        fences, problem = own_fences(orders)
         options = RunOptions(
             autopilot=request.autopilot,
             simulations_only=request.simulations_only,
             sets_parameters=request.sets_parameters,
             needs_rtk=request.needs_rtk,
             overrules=request.overrules,
+            own_fences=fences,
         )
         companions: list[Companion] = [RemoteIdSender(request.identity, orders.home, time.time)]
         with ExitStack() as stack:
@@ -650,7 +653,8 @@ class _Case:
                 monitor=self.monitor,
             )
         found = run.state.autopilot or self.autopilot
-        notes = (*outcome.notes, *self._entered(orders, run, outcome))
+        of_fences = (FlightEvent(0.0, "fence", problem),) if problem else ()
+        notes = (*of_fences, *outcome.notes, *self._entered(orders, run, outcome))
         sortie = FlownSortie(orders.number, items_duration_s(orders, found), (), notes, log)
         return outcome, outcome.record, sortie
 

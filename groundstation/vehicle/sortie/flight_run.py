@@ -31,10 +31,25 @@ from groundstation.vehicle.commands import (
     CommandOutcome,
     set_mode_command,
 )
-from groundstation.vehicle.failsafes import NAMES, failsafe_checks
+from groundstation.vehicle.failsafes import (
+    FOUND_FENCE_NAMES,
+    NAMES,
+    failsafe_checks,
+    fence_words,
+    found_fence_check,
+)
 from groundstation.vehicle.orders import fence_messages, rally_messages
 from groundstation.vehicle.parameters import ParameterCall, ParameterOutcome, ParameterReads, ParameterStatus
-from groundstation.vehicle.preflight import HOME_HEIGHT_M, PreflightCheck, Verdict, is_ready, overruled, stands_above_m
+from groundstation.vehicle.preflight import (
+    FENCE_BEFORE,
+    FOREIGN_FENCE,
+    HOME_HEIGHT_M,
+    PreflightCheck,
+    Verdict,
+    is_ready,
+    overruled,
+    stands_above_m,
+)
 from groundstation.vehicle.recorder import Recorder
 from groundstation.vehicle.setup import (
     ParameterChange,
@@ -57,7 +72,7 @@ from missions.mavlink.messages import Address, CommandLong
 from missions.mavlink.remote_id import refusal_text
 from missions.mavlink.transfer.exchange import Download, DownloadOutcome, Ending, MissionType, Route
 from missions.mavlink.transfer.verified import NotVerified, Verified, VerifiedUpload
-from missions.mavlink.transfer.wire_items import to_wire
+from missions.mavlink.transfer.wire_items import compare, to_wire
 from planning.base.errors import LinkRejected, LinkTimeout, MissionError
 from planning.base.messages import glue, joined, say
 
@@ -289,6 +304,7 @@ def _keep_up(run: SortieRun) -> Steps:
     if run.agreed:
         changes, run.agreed = run.agreed, ()
         yield from _set_parameters(run, changes)
+    yield from _remove_found_fence(run)
     if not reason:
         return
     if reason == UNREAD:
@@ -350,6 +366,8 @@ def _start_once(run: SortieRun) -> Steps:
     """
     autopilot, address = vehicle_of(run)
     yield from _read_parameters(run)
+    yield from _remove_found_fence(run)
+    yield from _judge_found_fence(run)
     yield from read_again(run)
     _refuse_what_is_not_ours(run)
     if autopilot is Autopilot.ARDUPILOT:
@@ -394,7 +412,8 @@ def _refuse_what_is_not_ours(run: SortieRun, *, is_armed: bool = False) -> None:
                     ours.what,
                 )
             )
-    checks = overruled(run.on_board.failsafes, run.options.overrules)
+    of_fence = () if run.on_board.fence_check is None else (run.on_board.fence_check,)
+    checks = overruled((*of_fence, *run.on_board.failsafes), run.options.overrules)
     bad = [check.text for check in checks if check.verdict is Verdict.BAD]
     if bad:
         raise LinkRejected(say("{}; it was not started", bad[0]))
@@ -543,13 +562,85 @@ def upload(run: SortieRun) -> Steps:
     """Geofence first: a mission is never on board without its fence."""
     autopilot, address = vehicle_of(run)
     run.lists = ()
-    if fences := run.orders.fences.get(autopilot):
-        route = Route(run.own, address, MissionType.FENCE)
-        yield from _put(run, BoardList("geofence", route, fence_messages(fences, autopilot)))
+    yield from _put_fence(run)
     yield from _put_rally_points(run)
     items = to_wire(run.orders.items[autopilot], autopilot)
     yield from _put(run, BoardList("mission", Route(run.own, address), items))
     run.forget_progress()
+
+
+def _put_fence(run: SortieRun) -> Steps:
+    """The sortie's fence, or none; one that somebody else put there stays on board until the pilot says otherwise."""
+    autopilot, ours = vehicle_of(run)[0], _own_fence(run)
+    run.on_board = replace(run.on_board, found_fence=(), fence_check=None)
+    read: DownloadOutcome = yield Download(ours.route)
+    if read.ending is not Ending.DONE and read.ending is not Ending.REFUSED:
+        read = yield Download(ours.route)
+    if read.ending is Ending.REFUSED:
+        # It takes no fences at all: where the sortie has one, the upload says so.
+        if ours.messages:
+            yield from _put(run, ours)
+    elif read.ending is not Ending.DONE and ours.messages:
+        raise LinkTimeout(
+            say("the geofence on board could not be read ({}): it may be somebody else's, and stays", read.ending.value)
+        )
+    elif read.ending is not Ending.DONE:
+        text = say("the vehicle does not say whether it has a geofence; look before it takes off")
+        run.note("warning-fence", text)
+        run.on_board = replace(run.on_board, fence_check=PreflightCheck(FENCE_BEFORE, Verdict.WARN, text))
+    elif not compare(ours.messages, read.items, autopilot, MissionType.FENCE):
+        run.note("fence", say("geofence: {} items are on board already", len(read.items)))
+        _know_fence(run, ours)
+    elif not read.items:
+        yield from _put(run, ours)
+    elif any(not compare(own, read.items, autopilot, MissionType.FENCE) for own in run.options.own_fences):
+        yield from _put(run, ours)
+        text = say("that of an earlier flight of this ground station is cleared ({})", fence_words(read.items))
+        run.note("fence", text)
+        run.on_board = replace(run.on_board, fence_check=PreflightCheck(FENCE_BEFORE, Verdict.OK, text))
+    else:
+        run.on_board = replace(run.on_board, found_fence=read.items)
+        _know_fence(run, replace(ours, messages=read.items))
+        yield from _judge_found_fence(run)
+        yield from _remove_found_fence(run)
+
+
+def _own_fence(run: SortieRun) -> BoardList:
+    autopilot, address = vehicle_of(run)
+    route = Route(run.own, address, MissionType.FENCE)
+    return BoardList("geofence", route, fence_messages(run.orders.fences.get(autopilot, ()), autopilot))
+
+
+def _know_fence(run: SortieRun, fence: BoardList) -> None:
+    """Take a fence for the one that stays on board: nobody changes it unnoticed."""
+    run.lists = (*(each for each in run.lists if each.route.mission_type is not MissionType.FENCE), fence)
+    run.on_board = run.on_board.known(MissionType.FENCE, True)
+
+
+def _judge_found_fence(run: SortieRun) -> Steps:
+    """Say what somebody else's fence means for the sortie, by the parameters as they are now."""
+    autopilot, address = vehicle_of(run)
+    items = run.on_board.found_fence
+    if not items:
+        return
+    values: dict[str, float] = yield ParameterReads(FOUND_FENCE_NAMES[autopilot], autopilot, address)
+    check = found_fence_check(autopilot, values, run.orders, items)
+    if check != run.on_board.fence_check:
+        run.note("warning-fence", check.text)
+    run.on_board = replace(run.on_board, fence_check=check)
+
+
+def _remove_found_fence(run: SortieRun) -> Steps:
+    """Put the sortie's fence, or none, in the place of somebody else's, once the pilot has said so."""
+    items, ours = run.on_board.found_fence, _own_fence(run)
+    if not items or FOREIGN_FENCE not in run.options.overrules:
+        return
+    run.lists = tuple(each for each in run.lists if each.route.mission_type is not MissionType.FENCE)
+    yield from _put(run, ours)
+    text = say("one that this ground station had not put there was removed, as the pilot said ({})", fence_words(items))
+    run.note("warning-fence", text)
+    check = PreflightCheck(FENCE_BEFORE, Verdict.WARN, text)
+    run.on_board = replace(run.on_board, found_fence=(), fence_check=check)
 
 
 def _put_rally_points(run: SortieRun) -> Steps:

@@ -42,6 +42,9 @@ GIVE_UP_M = 100.0
 HEIGHT_FENCE, CIRCLE_FENCE, POLYGON_FENCE = 1, 2, 4
 """Bits of ArduPilot's FENCE_TYPE."""
 
+UNION_OF_INCLUSIONS = 2
+"""Bit of ArduPilot's FENCE_OPTIONS: without it the vehicle must be inside of every area to stay in; PX4: of any."""
+
 
 @dataclass(frozen=True, slots=True)
 class FenceZone:
@@ -147,16 +150,17 @@ class Failsafe:
         return max(above_m - highest_m, away_m - farthest_m)
 
     def _is_outside_zones(self, x: float, y: float) -> bool:
-        """Inside a zone to keep out of, or outside all those to stay in, where zones count."""
+        """Inside a zone to keep out of, or not inside those to stay in, where zones count."""
         values = self._parameters
         if self._autopilot is Autopilot.ARDUPILOT:
             counts = bool(values["FENCE_ENABLE"]) and bool(int(values["FENCE_TYPE"]) & POLYGON_FENCE)
+            is_any_enough = bool(int(values["FENCE_OPTIONS"]) & UNION_OF_INCLUSIONS)
         else:
-            counts = values["GF_ACTION"] > 0
+            counts, is_any_enough = values["GF_ACTION"] > 0, True
         if not counts:
             return False
         wanted = [zone.holds(x, y) for zone in self._zones if zone.is_inclusion]
-        return (bool(wanted) and not any(wanted)) or any(
+        return (bool(wanted) and not (any(wanted) if is_any_enough else all(wanted))) or any(
             zone.holds(x, y) for zone in self._zones if not zone.is_inclusion
         )
 

@@ -101,6 +101,22 @@ def test_leaving_an_inclusion_polygon_is_a_breach() -> None:
     assert "Fence breached" in ground.said
 
 
+@pytest.mark.parametrize(
+    ("autopilot", "parameters", "is_forbidden"),
+    [
+        (ARDUPILOT, {"FENCE_ENABLE": 1}, True),
+        (ARDUPILOT, {"FENCE_ENABLE": 1, "FENCE_OPTIONS": 2}, False),
+        (PX4, {}, False),
+    ],
+)
+def test_of_two_areas_to_stay_in_ardupilot_wants_both_and_px4_any(autopilot, parameters, is_forbidden: bool) -> None:
+    ground = Ground(autopilot, parameters)
+    assert ground.upload([*square(5001, 0, 100), *square(5001, 200, 100)], 1) == 0
+    failsafe = ground.vehicle._failsafe
+    assert failsafe.is_forbidden((0.0, 0.0, 10.0)) is is_forbidden
+    assert failsafe.is_forbidden((100.0, 0.0, 10.0)) is True
+
+
 @pytest.mark.parametrize("parameters", [{"FENCE_RADIUS": 50.0}, {"FENCE_ALT_MAX": 15.0}])
 def test_height_and_radius_are_fences_too(parameters) -> None:
     ground = Ground(ARDUPILOT, {"FENCE_ENABLE": 1, **parameters})
