@@ -13,6 +13,7 @@ from planning.aircraft.catalogue import profile
 from planning.checks import check_plan
 from planning.coverage.model import CoverageModel
 from planning.coverage.sections import PanelFrames, SectionGrid, panel_frames
+from planning.geo.bvh import first_hits
 from planning.geo.height_field import HeightField
 from planning.geo.sun import sun_track
 from planning.insight.clearance import route_clearance
@@ -45,6 +46,7 @@ def _analyse() -> None:
     ends = space.home_enu_m[None], space.column_top_enu_m[None]
     first_obstructions_hit(space.solids, obstructions.solid_owner, *ends)
     space.solids.lines_free(*ends)
+    first_hits(space.solids.bvh, *ends, 1.0, np.empty(1), np.empty(1, np.int64))
     noon = datetime(2026, 6, 21, 4, tzinfo=UTC)
     track = sun_track(model.site.origin.lat_deg, model.site.origin.lon_deg, noon, noon + timedelta(minutes=10))
     view = Viewpoint("v", (0.0, -20.0, 5.0), 0.0, 0.0)

@@ -409,3 +409,44 @@ def segment_hits(bvh: Bvh, a: Array, b: Array, hits: NDArray[np.int64]) -> int:
 def segment_is_free(bvh: Bvh, a: Array, b: Array) -> bool:
     """True where segment ab meets no triangle."""
     return segment_hits(bvh, a, b, np.empty(0, np.int64)) == 0
+
+
+@kernel
+def first_hits(bvh: Bvh, origins: Array, directions: Array, reach: float, way: Array, hit: NDArray[np.int64]) -> None:
+    """Where rays first meet a triangle within `reach`, in lengths of their directions, shapes (n, 3).
+
+    Written to `way`, infinite where nothing is met, and to `hit`, the triangle in the array the tree was built from, -1
+    there. The nearer of two boxes comes first, and what lies behind a hit is left out.
+    """
+    stack = np.empty(MAX_DEPTH, np.int64)
+    end = np.empty(3)
+    for i in range(len(origins)):
+        a, ahead = origins[i], directions[i]
+        way[i], hit[i] = np.inf, -1
+        length = reach
+        for axis in range(3):
+            end[axis] = a[axis] + length * ahead[axis]
+        stack[0] = 0
+        depth = 1 if len(bvh.corners) > 0 else 0
+        while depth > 0:
+            depth -= 1
+            node = stack[depth]
+            if not _segment_near_box(a, end, bvh.low[node], bvh.high[node], 0.0):
+                continue
+            child = bvh.child[node]
+            if child < 0:
+                for k in range(bvh.first[node], bvh.first[node] + bvh.size[node]):
+                    along = segment_hits_triangle(a, end, bvh.corners[k])
+                    if along >= 0.0:
+                        length *= along
+                        way[i], hit[i] = length, bvh.source[k]
+                        for axis in range(3):
+                            end[axis] = a[axis] + length * ahead[axis]
+            else:
+                further = 0.0
+                for axis in range(3):
+                    middles = bvh.low[child + 1, axis] + bvh.high[child + 1, axis]
+                    further += (middles - bvh.low[child, axis] - bvh.high[child, axis]) * ahead[axis]
+                nearer = child if further >= 0.0 else child + 1
+                stack[depth], stack[depth + 1] = 2 * child + 1 - nearer, nearer
+                depth += 2

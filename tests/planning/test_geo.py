@@ -7,10 +7,12 @@ from hypothesis import strategies as st
 
 from planning.geo.bvh import (
     build_bvh,
+    first_hits,
     line_of_sight,
     nearest_d2,
     point_triangle_d2,
     segment_d2,
+    segment_hits_triangle,
     segment_segment_d2,
     segment_triangle_d2,
 )
@@ -161,3 +163,23 @@ def test_embree_line_of_sight_agrees_with_the_float64_twin_but_for_grazing_lines
 
 def test_line_of_sight_without_anything_in_the_way_is_free():
     assert line_of_sight(np.zeros((0, 3, 3)))(np.zeros((3, 3)), np.ones((3, 3))).all()
+
+
+def test_rays_meet_the_first_triangle_on_their_way_as_trying_each_says_also_far_from_the_origin() -> None:
+    rng = np.random.default_rng(3)
+    near = np.concatenate([rng.normal(0, 6, (60, 1, 3)) + rng.normal(0, 2, (60, 3, 3)), np.full((1, 3, 3), 2.0)])
+    origins, directions = rng.normal(0, 8, (200, 3)), rng.normal(0, 1, (200, 3))
+    directions[:20, :2] = 0.0
+    ends = origins + 100.0 * directions
+    for shift_m in (0.0, 5e6):
+        way, hit = np.empty(200), np.empty(200, np.int64)
+        first_hits(build_bvh(near + shift_m), origins + shift_m, directions, 100.0, way, hit)
+        for i in range(200):
+            along = [segment_hits_triangle(origins[i], ends[i], triangle) for triangle in near]
+            tried = 100.0 * min((each for each in along if each >= 0.0), default=np.inf)
+            assert way[i] == pytest.approx(tried, abs=1e-6)
+            assert along[hit[i]] == pytest.approx(tried / 100.0, abs=1e-7) if hit[i] >= 0 else np.isinf(tried)
+    nothing = np.empty(200), np.empty(200, np.int64)
+    first_hits(build_bvh(np.empty((0, 3, 3))), origins, directions, 100.0, *nothing)
+    assert (nothing[1] == -1).all()
+    assert np.isinf(nothing[0]).all()

@@ -119,9 +119,12 @@ class _GiveWay:
 
 
 def _waits_for_import(thread: int) -> bool:
-    """Whether a thread is waiting for a module that another one is importing."""
-    frame = sys._current_frames().get(thread)
-    return frame is not None and frame.f_code.co_filename == "<frozen importlib._bootstrap>"
+    """Whether a thread is waiting for a module that another one is importing.
+
+    Its stack says so, too, but who looks at a stack holds it for a moment: what a function of it has made, such
+    as a painter of a widget, then outlives the function, and Qt paints into nothing.
+    """
+    return bool(getattr(importlib._bootstrap, "_blocking_on", {}).get(thread))
 
 
 class BackgroundImport(QObject):

@@ -148,8 +148,8 @@ class SimulationController(QObject):
             return
         request = (number, self.conditions, dict(self.effect_settings))
 
-        def work(_context: JobContext) -> tuple[EffectChoice, ...]:
-            return simulation_effects(plan, site_model, *request)
+        def work(context: JobContext) -> tuple[EffectChoice, ...]:
+            return context.run_in_process(simulation_effects, plan, site_model, *request)
 
         def done(choices: tuple[EffectChoice, ...]) -> None:
             self.effectsChanged.emit(choices)

@@ -263,7 +263,7 @@ class ExportDialog(AnsweringDialog):
         site_model, (file_format, _) = self._site_model, self._form.value()
 
         def work(context: JobContext) -> tuple[tuple[Path, ...], Finding | None]:
-            return write_proved_export(prepared, site_model, file_format, path, context)
+            return write_proved_export(prepared, site_model, file_format, path, context.run_in_process)
 
         self._is_writing = True
         self._context.start(self.tr("Export"), work, self._when_written, self._when_failed)

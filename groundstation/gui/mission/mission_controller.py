@@ -104,7 +104,8 @@ class MissionController(QObject):
             return
 
         def work(context: JobContext) -> Preflight:
-            return preflight(plan, site_model, day, context)
+            found = context.run_in_process(preflight, plan, site_model, day)
+            return replace(found, plan=plan, site_model=site_model)
 
         self._check_id = self._context.start(self.tr("Check"), work, self.checked.emit).id
 
@@ -122,7 +123,7 @@ class MissionController(QObject):
         def work(context: JobContext) -> Proved:
             from groundstation.services.mission.proof import proved_as_saved
 
-            return Proved(plan, site_model, proved_as_saved(plan, site_model, context))
+            return Proved(plan, site_model, context.run_in_process(proved_as_saved, plan, site_model))
 
         self._proof_id = self._context.start(self.tr("Proof"), work, self.proved.emit).id
 

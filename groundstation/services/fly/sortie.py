@@ -18,7 +18,7 @@ from planning.base.effects import EffectSetting
 from planning.base.errors import MissionError
 from planning.base.findings import Severity
 from planning.base.messages import say
-from planning.base.progress import QUIET, Monitor
+from planning.base.progress import QUIET, Monitor, Stop, Trace, never
 from planning.checks import check_case
 from planning.checks.case import Case
 from planning.insight.flight_profile import LowFlight
@@ -139,9 +139,17 @@ def take_off_of(sortie: LiveSortie, autopilot: Autopilot | None) -> TakeOff:
 
 
 def simulation_effects(
-    plan: Plan, site_model: SiteModel, number: int, conditions: Conditions, settings: Mapping[str, EffectSetting]
+    plan: Plan,
+    site_model: SiteModel,
+    number: int,
+    conditions: Conditions,
+    settings: Mapping[str, EffectSetting],
+    *,
+    stop: Stop = never,
+    trace: Trace | None = None,
+    monitor: Monitor = QUIET,
 ) -> tuple[EffectChoice, ...]:
-    """What the simulation of a sortie, counted from 1, takes into account, and why."""
+    """What the simulation of a sortie, counted from 1, takes into account, and why; in a process of its own, too."""
     scene = flight_scene(plan, site_model, conditions, plan.sorties[number - 1])
     return tuple(
         EffectChoice(decision, settings.get(decision.effect, "auto")) for decision in decide_effects(scene, settings)

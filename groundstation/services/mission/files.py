@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -19,7 +20,7 @@ from missions.mission.export_choices import FileFormat
 from missions.mission.model import GeoPoint, ReadMission, distance_m
 from missions.mission.to_plan import viewpoints_and_sorties
 from planning.aircraft.catalogue import profile
-from planning.base.errors import GroundStationError, InputError
+from planning.base.errors import GroundStationError, InputError, OperationCancelled
 from planning.base.files import real_path
 from planning.base.findings import Finding, Severity
 from planning.base.messages import say
@@ -132,32 +133,40 @@ def write_export(prepared: PreparedExport, path: Path, beside: Mapping[Path, byt
 
 
 def write_proved_export(
-    prepared: PreparedExport, site_model: SiteModel, file_format: str, path: Path, monitor: Monitor = QUIET
+    prepared: PreparedExport, site_model: SiteModel, file_format: str, path: Path, run: Callable[..., Any]
 ) -> tuple[tuple[Path, ...], Finding | None]:
     """Write prepared mission files with their proof: paths of the missions, and what the verifier says of them.
 
     The finding is None where the verifier does not read the format. Missions fly without a proof: where none can be
     made, they are written alone, and the finding says so.
 
+    Parameters
+    ----------
+    run
+        Calls a function in a process of its own, as `JobContext.run_in_process` does: the proof takes seconds.
+
     Raises
     ------
     InputError, MissionError
         As `write_export`.
     OperationCancelled
-        From `monitor`; nothing is written then.
+        From `run`, before anything is written.
     """
-    from groundstation.services.mission.proof import open_mission_proof
+    from groundstation.services.mission.proof import judged, open_mission_proof
 
     if prepared.flown is None or file_format not in PROVED_FORMATS:
         return write_export(prepared, path), None
     try:
-        proof = open_mission_proof(prepared.flown, site_model, path, prepared.return_height_m, monitor)
+        proof = run(open_mission_proof, prepared.flown, site_model, path, prepared.return_height_m)
     except InputError as error:
         text = say("the mission is written without its proof: {}", str(error))
         return write_export(prepared, path), Finding(Severity.WARNING, "proof", text)
     paths = write_export(prepared, path, proof.files)
-    monitor.report(say("checking the proof"), 0, 1)
-    return paths, proof.judged(paths)
+    try:
+        return paths, run(judged, proof, paths)
+    except OperationCancelled:
+        text = say("the missions and their proof are written; the check of the proof was cancelled")
+        return paths, Finding(Severity.NOTE, "proof", text)
 
 
 def in_order_of_sorties(paths: Sequence[Path]) -> tuple[Path, ...]:

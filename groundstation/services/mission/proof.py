@@ -17,7 +17,7 @@ from planning.base.files import read_input_file
 from planning.base.findings import Finding, Severity
 from planning.base.json_file import JSON_FILE, parse_json, write_atomically
 from planning.base.messages import joined, say
-from planning.base.progress import QUIET, Monitor
+from planning.base.progress import QUIET, Monitor, Stop, Trace, never
 from planning.coverage.reachability import Reachability, find_reachable
 from planning.geo.mesh import MESH_FILE, write_mesh
 from planning.plan import Plan, plan_bytes, write_plan
@@ -97,8 +97,13 @@ def write_plan_proof(
     return path
 
 
-def proved_as_saved(plan: Plan, site_model: SiteModel, monitor: Monitor = QUIET) -> Finding:
+def proved_as_saved(
+    plan: Plan, site_model: SiteModel, *, stop: Stop = never, trace: Trace | None = None, monitor: Monitor = QUIET
+) -> Finding:
     """What the verifier says of an open plan, as it and its site are saved.
+
+    For a process of its own, like `open_mission_proof` and `judged`: the verifier is Python throughout, and a window
+    would stand still beside it. It cannot be stopped.
 
     Raises
     ------
@@ -130,7 +135,14 @@ def _write_open(plan: Plan, site_model: SiteModel, folder: Path, prefix: str) ->
 
 
 def open_mission_proof(
-    plan: Plan, site_model: SiteModel, mission: Path, return_height_m: float | None, monitor: Monitor = QUIET
+    plan: Plan,
+    site_model: SiteModel,
+    mission: Path,
+    return_height_m: float | None,
+    *,
+    stop: Stop = never,
+    trace: Trace | None = None,
+    monitor: Monitor = QUIET,
 ) -> MissionProof:
     """What `mission_proof` has, for missions of an open plan.
 
@@ -186,6 +198,19 @@ class MissionProof:
     def judged(self, missions: Sequence[Path]) -> Finding:
         """What the verifier says, once all is written."""
         return proof_finding(verified(self.site_path, self.plan_path, self.path, missions))
+
+
+def judged(
+    proof: MissionProof,
+    missions: Sequence[Path],
+    *,
+    stop: Stop = never,
+    trace: Trace | None = None,
+    monitor: Monitor = QUIET,
+) -> Finding:
+    """`MissionProof.judged`, for a process of its own."""
+    monitor.report(say("checking the proof"), 0, 1)
+    return proof.judged(missions)
 
 
 def mission_proof(

@@ -24,7 +24,7 @@ from missions.mavlink.items import photos_that_fit
 from planning.aircraft.camera_use import camera_use_of
 from planning.base.findings import Finding, Severity, is_flyable
 from planning.base.messages import Message, glue, say
-from planning.base.progress import QUIET, Monitor
+from planning.base.progress import QUIET, Monitor, Stop, Trace, never
 from planning.checks import check_case
 from planning.checks.case import Case, pose_of
 from planning.checks.zones import source_ages
@@ -446,8 +446,16 @@ class Preflight:
         return self.plan is plan and self.site_model is site_model
 
 
-def preflight(plan: Plan, site_model: SiteModel, day: FlightDay = UNKNOWN_DAY, monitor: Monitor = QUIET) -> Preflight:
-    """Check a plan on its site, for a day of which something is known or not."""
+def preflight(
+    plan: Plan,
+    site_model: SiteModel,
+    day: FlightDay = UNKNOWN_DAY,
+    monitor: Monitor = QUIET,
+    *,
+    stop: Stop = never,
+    trace: Trace | None = None,
+) -> Preflight:
+    """Check a plan on its site, for a day of which something is known or not; in a process of its own, too."""
     monitor.report(say("measuring"), 0, 1)
     case = Case.of(plan, at_time(site_model, day.at, plan.duration_s + PAUSE_S * len(plan.sorties)))
     seen = case.measures.seen

@@ -22,8 +22,8 @@ from missions.simulator.effects.noise import SmoothNoise
 from missions.simulator.scene import FlightScene
 from planning.base.effects import Assessment
 from planning.base.messages import say
+from planning.geo.bvh import build_bvh, first_hits
 from planning.geo.frames import Vec3
-from planning.geo.ray_casting import ray_types
 from planning.site.records import SiteModel, panel_corners, panel_triangles
 
 Floats = NDArray[np.float64]
@@ -40,11 +40,14 @@ MOVED_M = 1.0
 BLEND_S = 2.0
 """Time in which the error's size follows that of the place: nothing jumps where the sky is counted anew."""
 
+FARTHEST_M = 1e5
+"""Longer than any way on a site."""
+
 MAX_PLACES = 64
 """Views at which the size of the effect is estimated."""
 
 COST_PER_STEP_S = 6e-6
-COST_PER_METRE_S = 8e-4
+COST_PER_METRE_S = 1.5e-3
 
 
 def sphere(n: int) -> Floats:
@@ -84,14 +87,8 @@ class GlassSky:
         self._normals = across / np.linalg.norm(across, axis=1, keepdims=True)
         glass = panel_triangles(corners + GLASS_IN_FRONT_M * self._normals[:, None, :])
         walls = [mesh.corners_enu_m for mesh in (model.building, *model.obstacles) if len(mesh.triangles)]
-        triangles = np.concatenate([glass, *walls])
-        self._centre = triangles.reshape(-1, 3).mean(axis=0)
-        vertices = (triangles.reshape(-1, 3) - self._centre).astype(np.float32)
-        self._tensor, scene = ray_types()
-        self._scene = scene()
-        self._scene.add_triangles(
-            self._tensor(vertices), self._tensor(np.arange(len(vertices), dtype=np.uint32).reshape(-1, 3))
-        )
+        # Not Open3D, whose loading alone would hold the interpreter of a window for 0.2 s at a stretch.
+        self._bvh = build_bvh(np.concatenate([glass, *walls]))
         self._facts, self._rays = facts, sphere(N_RAYS)
         self._is_sky = self._rays[:, 2] > math.sin(math.radians(facts.mask_deg))
 
@@ -100,7 +97,7 @@ class GlassSky:
         facts, rays = self._facts, self._rays
         way_m, pane = self._cast(np.broadcast_to(np.array(position_enu_m), rays.shape), rays)
         hidden = float(np.mean(np.isfinite(way_m[self._is_sky])))
-        at_glass = np.flatnonzero((pane < len(self._normals)) & np.isfinite(way_m))
+        at_glass = np.flatnonzero((pane >= 0) & (pane < len(self._normals)))
         m, n = rays[at_glass], self._normals[pane[at_glass]]
         facing = np.einsum("ij,ij->i", m, n)
         d = m - 2.0 * facing[:, None] * n
@@ -123,11 +120,10 @@ class GlassSky:
         return Sky(hidden, len(at_glass) / n_sky, code_error_m, phase_m * math.sqrt(share))
 
     def _cast(self, origins: Floats, directions: Floats) -> tuple[Floats, NDArray[np.int64]]:
-        """Way to the first thing on each ray (infinite: none), and the pane it is (no pane: their number or more)."""
-        rays = np.concatenate([origins - self._centre, directions], axis=1).astype(np.float32)
-        found = self._scene.cast_rays(self._tensor(rays))
-        triangle = found["primitive_ids"].numpy().astype(np.int64)
-        return found["t_hit"].numpy().astype(np.float64), triangle // 2
+        """Way to the first thing on each ray (infinite: none), and which pane it is (none: -1, or their number)."""
+        way_m, triangle = np.empty(len(origins)), np.empty(len(origins), np.int64)
+        first_hits(self._bvh, np.ascontiguousarray(origins), directions, FARTHEST_M, way_m, triangle)
+        return way_m, triangle // 2
 
 
 def position_error_m(sky: Sky, kind: FixKind, facts: MultipathFacts, receivers: dict[str, ReceiverFacts]) -> Vec3:

@@ -14,12 +14,12 @@ from groundstation.services.mission.files import (
     write_export,
     write_proved_export,
 )
-from groundstation.services.mission.proof import PROVED, verified
+from groundstation.services.mission.proof import PROVED, judged, verified
 from groundstation.services.mission.readiness import preflight
 from missions.formats.options import ExportOptions
 from missions.formats.registry import FORMATS
 from missions.mission.export_choices import FileFormat, HeightReference, LinkLoss
-from planning.base.errors import InputError
+from planning.base.errors import InputError, OperationCancelled
 from planning.base.findings import Severity
 from planning.planner import plan_flight
 from planning.proof.reflight_verify import jobs_of
@@ -27,6 +27,11 @@ from planning.request import PlanRequest
 from tests.missions.plans import example_plan
 from tests.planning.plan_cases import kiosk
 from tests.planning.revision.cases import QUICK
+
+
+def at_once(function, *arguments):
+    """Call without a process of its own."""
+    return function(*arguments)
 
 
 @pytest.fixture(scope="module")
@@ -131,7 +136,7 @@ def test_two_exports_of_one_plan_share_it_out_alike(planned, monkeypatch):
 def test_written_missions_carry_a_proof_that_the_verifier_accepts_and_that_a_moved_place_breaks(planned, tmp_path):
     plan, model = planned
     prepared = prepare_export(plan, model, FileFormat.MAVLINK_PLAN)
-    _, found = write_proved_export(prepared, model, FileFormat.MAVLINK_PLAN, tmp_path / "out.plan")
+    _, found = write_proved_export(prepared, model, FileFormat.MAVLINK_PLAN, tmp_path / "out.plan", at_once)
     assert found is not None
     assert found.severity is Severity.OK, found
     jobs = jobs_of(tmp_path)
@@ -149,9 +154,26 @@ def test_written_missions_carry_a_proof_that_the_verifier_accepts_and_that_a_mov
     assert any(claim.verdict != PROVED for claim in verified(site, proved, proof, [mission]))
 
 
+def test_missions_whose_check_is_cancelled_are_written_and_said_to_be_unchecked(planned, tmp_path):
+    plan, model = planned
+    prepared = prepare_export(plan, model, FileFormat.MAVLINK_PLAN)
+
+    def leave_at_the_check(function, *arguments):
+        if function is judged:
+            raise OperationCancelled("cancelled")
+        return function(*arguments)
+
+    paths, found = write_proved_export(
+        prepared, model, FileFormat.MAVLINK_PLAN, tmp_path / "out.plan", leave_at_the_check
+    )
+    assert found is not None
+    assert (found.severity, "cancelled" in found.message) == (Severity.NOTE, True)
+    assert all(path.is_file() for path in (*paths, tmp_path / "out.plan.mission.proof"))
+
+
 def test_formats_that_the_verifier_does_not_read_get_no_proof(planned, tmp_path):
     plan, model = planned
     prepared = prepare_export(plan, model, FileFormat.KML)
-    paths, found = write_proved_export(prepared, model, FileFormat.KML, tmp_path / "out.kml")
+    paths, found = write_proved_export(prepared, model, FileFormat.KML, tmp_path / "out.kml", at_once)
     assert found is None
     assert list(tmp_path.iterdir()) == [*paths]
