@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from dataclasses import replace
-from pathlib import Path
+from pathlib import Path, PureWindowsPath
 from typing import Any
 
 import msgspec
@@ -23,6 +23,7 @@ from planning.base.json_file import (
 from planning.geo.mesh import TriangleMesh, empty_mesh, read_mesh
 from planning.site.records import SITE_FORMAT, Obstacle, Site, SiteModel, box_geometry
 from planning.site.zones.keep_out import read_site_zones
+from planning.site.zones.records import ZoneFile
 
 
 def read_site(path: Path) -> SiteModel:
@@ -100,6 +101,22 @@ def site_sha256(site: Site) -> str:
     return hashlib.sha256(site_bytes(site)).hexdigest()
 
 
+def zones_beside(model: SiteModel) -> tuple[Site, dict[str, bytes]]:
+    """A site that names its files of geo-zones as they lie beside a copy of it in a folder of its own, and these files.
+
+    A file whose content could not be had stays named, so that the copy says that it is missing.
+    """
+    sources: dict[ZoneFile, ZoneFile] = {}
+    files: dict[str, bytes] = {}
+    for number, each in enumerate(model.zones, 1):
+        name, mark = PureWindowsPath(each.source.file).name, f"zones-{number}-"
+        name = name if name.startswith(mark) else mark + name
+        sources[each.source] = replace(each.source, file=name)
+        if each.content:
+            files[name] = each.content
+    return replace(model.site, zones=tuple(sources.get(each, each) for each in model.site.zones)), files
+
+
 def is_planned_on(planned_sha256: str, model: SiteModel) -> bool:
     """Whether a plan was made for a site, by the checksum that the plan states; True where one of them states none.
 
@@ -127,7 +144,10 @@ def _without_tilts(site: Site) -> Site:
 
 
 def write_site(path: Path, site: Site) -> str:
-    """Write a site file, whole or not at all; returns the SHA-256 of what was written. Meshes are not touched."""
+    """Write a site file, whole or not at all; returns the SHA-256 of what was written.
+
+    Files that it names, meshes and geo-zones, are not touched.
+    """
     content = site_bytes(site)
     write_atomically(path, content)
     return hashlib.sha256(content).hexdigest()

@@ -88,7 +88,7 @@ def test_wishes_are_understood_together():
         (("--take-off",), "are for --link URL"),
         (("--set-parameters",), "are for --link URL"),
         (("--raise", 2), "are for --link URL"),
-        (("--link", "tcp:127.0.0.1:1", "--overrule", "battery"), "expected one of foreign-fence, home-height, parameters, return"),
+        (("--link", "tcp:127.0.0.1:1", "--overrule", "battery"), "expected one of foreign-fence, home-height, para"),
         (("--link", "tcp:127.0.0.1:5760", "--wind", 3), "are for --link sim"),
         (("--link", "tcp:127.0.0.1:1"), "cannot be opened"),
     ],

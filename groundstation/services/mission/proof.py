@@ -23,7 +23,7 @@ from planning.geo.mesh import MESH_FILE, write_mesh
 from planning.plan import Plan, plan_bytes, write_plan
 from planning.proof import reflight_verify
 from planning.proof.make import proof_of, proof_path
-from planning.site.file import write_site
+from planning.site.file import write_site, zones_beside
 from planning.site.free_space import free_space
 from planning.site.records import SiteModel
 from planning.viewpoints.prepare import coverage_model
@@ -118,8 +118,11 @@ def proved_as_saved(
 
 
 def _write_open(plan: Plan, site_model: SiteModel, folder: Path, prefix: str) -> tuple[Path, Path]:
-    """Write an open plan and its site with all meshes, as a set of files of its own: paths of site and plan."""
-    site = site_model.site
+    """Write an open plan and its site with all that it names, as a set of files of its own: paths of site and plan."""
+    site, zones = zones_beside(site_model)
+    site = replace(site, zones=tuple(replace(each, file=f"{prefix}{each.file}") for each in site.zones))
+    for name, content in zones.items():
+        write_atomically(folder / f"{prefix}{name}", content)
     meshes = [(site.building_mesh, site_model.building)]
     meshes += [(each.mesh, mesh) for each, mesh in zip(site.obstacles, site_model.obstacles, strict=True)]
     stored = {mesh: f"{prefix}mesh-{number}.ply" for number, (mesh, _) in enumerate(meshes) if mesh is not None}

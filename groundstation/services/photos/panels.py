@@ -236,17 +236,23 @@ def _place(
 def _rewritten(
     model: SiteModel, source: Path, out: Path, facades: tuple[Facade, ...], other_files: Mapping[Path, bytes]
 ) -> SiteModel:
-    """The site with other facades, and files that belong to it; its meshes stay where they are."""
+    """The site with other facades, and files that belong to it; its meshes and geo-zones stay where they are."""
 
-    def moved(name: str | None) -> str | None:
-        return None if name is None else Path(os.path.relpath(source.parent / name, out.parent)).as_posix()
+    def moved(name: str) -> str:
+        return Path(os.path.relpath(source.parent / name, out.parent)).as_posix()
 
+    def moved_mesh(name: str | None) -> str | None:
+        return None if name is None else moved(name)
+
+    sources = {each: replace(each, file=moved(each.file)) for each in model.site.zones}
     site = replace(
         model.site,
         facades=facades,
-        building_mesh=moved(model.site.building_mesh),
-        obstacles=tuple(replace(obstacle, mesh=moved(obstacle.mesh)) for obstacle in model.site.obstacles),
+        building_mesh=moved_mesh(model.site.building_mesh),
+        obstacles=tuple(replace(obstacle, mesh=moved_mesh(obstacle.mesh)) for obstacle in model.site.obstacles),
+        zones=tuple(sources.values()),
     )
     content = site_bytes(site)
     write_together({out: content, **other_files})
-    return replace(model, site=site, sha256=hashlib.sha256(content).hexdigest())
+    zones = tuple(replace(each, source=sources.get(each.source, each.source)) for each in model.zones)
+    return replace(model, site=site, zones=zones, sha256=hashlib.sha256(content).hexdigest())

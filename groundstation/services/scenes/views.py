@@ -24,7 +24,7 @@ from planning.geo.mesh import ply_bytes
 from planning.parameters import Constraints, GreedyParameters
 from planning.plan import Camera, Plan, Viewpoint, plan_to_json, read_plan
 from planning.request import PlanRequest
-from planning.site.file import is_planned_on, site_bytes, site_sha256
+from planning.site.file import is_planned_on, site_bytes, site_sha256, zones_beside
 from planning.site.records import SiteModel
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.scenes.parameters import DEFAULT_VIEWS, SceneRequest
@@ -174,7 +174,7 @@ def scene_of_request(request: SceneRequest) -> tuple[Scene, dict[str, Any]]:
 
 def as_written(model: SiteModel) -> tuple[SiteModel, dict[str, bytes]]:
     """A scene's site as it is written beside the photos, and the content of its files."""
-    site, files = model.site, {}
+    site, files = zones_beside(model)
     if site.building_mesh is not None:
         site = replace(site, building_mesh="building.ply")
         files["building.ply"] = ply_bytes(model.building)
@@ -185,7 +185,9 @@ def as_written(model: SiteModel) -> tuple[SiteModel, dict[str, bytes]]:
             files[f"obstacle-{number}.ply"] = ply_bytes(mesh)
         obstacles.append(obstacle)
     site = replace(site, obstacles=tuple(obstacles))
-    return replace(model, site=site, sha256=site_sha256(site)), {SITE_FILE: site_bytes(site), **files}
+    sources = dict(zip(model.site.zones, site.zones, strict=True))
+    zones = tuple(replace(each, source=sources.get(each.source, each.source)) for each in model.zones)
+    return replace(model, site=site, zones=zones, sha256=site_sha256(site)), {SITE_FILE: site_bytes(site), **files}
 
 
 def scene_views(request: SceneRequest, scene: Scene, written: SiteModel, folder: Path, monitor: Monitor) -> SceneViews:
