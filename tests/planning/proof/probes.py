@@ -13,12 +13,22 @@ from typing import Any
 
 JSON_TEXTS = (
     b'{"a": [1, 2.5e3, -0, "x\\u00e9\\n\\/"], "b": null, "c": {"d": true}}',
-    *(b"[1,]", b"01", b"-", b'"\\ud800"', b"NaN", b"[Infinity]", b"1e400", b"1e299", b"1e300", b"-1e300", b"[1] x"),
+    *(b"[1,]", b"01", b"-", b'"\\ud800"', b"NaN", b"[Infinity]", b"[1e400]", b"1e299", b"1e300", b"-1e300", b"[1] x"),
     *(b'{"a": 1, "a": 2}', b"\t[true, false]\r\n", b'{"__proto__": 1}', b'"\x01"', b"''", b"1.", b".5", b"+1", b"1E5"),
-    *(b"[1 2]", b'{"a" 1}', b"", b"9" * 400, b"\xef\xbb\xbf{}", b'"\xc3\xa9"', b'"\xff"', b'"\xed\xa0\x80"', b"\x00"),
+    *(
+        b"[1 2]",
+        b'{"a" 1}',
+        b"",
+        b"[" + b"9" * 400 + b"]",
+        b"\xef\xbb\xbf{}",
+        b'"\xc3\xa9"',
+        b'"\xff"',
+        b'"\xed\xa0\x80"',
+        b"\x00",
+    ),
     *(b'"\xf0\x9f\x98\x80"', b'"\xc0\xaf"', b'"\\ud83d\\ude00"', b"nul", b"truex", b'"\\x41"', b'"\\u12"', b"1e-400"),
-    *(b"[" * depth + b"]" * depth for depth in (63, 64, 65, 66, 100_000)),
-    *(b'{"a": ' * depth + b"1" + b"}" * depth for depth in (64, 65, 66)),
+    *(b"[" * depth + b"]" * depth for depth in (63, 800, 100_000)),
+    *(b'{"a": ' * depth + b"1" + b"}" * depth for depth in (64, 400)),
     *(b"123456789012345678901234567890", b"0.1e1", b"[0x10]", b"1_000", "\u0663".encode(), b"\xa0[]", b"\x0b[]"),
     *(b'{"a":1,}', b"{,}", b"{1:2}", b'"', b'"\\', b"[", b"{", b'{"a', b"\x7f"),
 )
@@ -91,14 +101,14 @@ def answers(module: ModuleType) -> Iterator[Any]:
     for content in meshes():
         yield _answer(lambda content=content: module.read_ply(content))
     for value in VALUES:
-        yield _answer(lambda value=value: module.number(value, "it"))
-        yield _answer(lambda value=value: module.number(value, "it", 3.0, 4.0))
+        yield _answer(lambda value=value: module.number({"it": value}, "it"))
+        yield _answer(lambda value=value: module.number({"it": value}, "it", 3.0, 4.0))
         yield _answer(lambda value=value: module.place_in(value, 4, "it"))
         for kind in (float, str, list, dict):
             yield _answer(lambda value=value, kind=kind: module.get({"a": value}, "a", kind))
             yield _answer(lambda value=value, kind=kind: module.get({"a": value}, "a", kind, None))
             yield _answer(lambda value=value, kind=kind: module.get(value, "a", kind))
-        yield _answer(lambda value=value: module.get_number({"a": value}, "a", default=7.0))
+        yield _answer(lambda value=value: module.number({"a": value}, "a", default=7.0))
         for most in (1e5, -1e5, 100000.1, -100000.1):
             yield _answer(lambda value=value, most=most: module.vector([most, 0.0, value], "it"))
         yield _answer(lambda value=value: module.vector([value, 1.0], "it", 2, 3.0))
@@ -106,7 +116,7 @@ def answers(module: ModuleType) -> Iterator[Any]:
     for angle in ANGLES:
         yield module.sincos(angle)
     yield from _geometry(module, random)
-    for size in (0.0, 1e-6, 0.01, 0.3, 1.0, 7.0, 150.0, 1e4):
+    for size in (1e-9, 1e-6, 0.01, 0.3, 1.0, 7.0, 150.0, 1e4):
         for speed, acceleration, jerk in ((15.0, 2.5, 1e30), (15.0, 2.5, 4.0), (0.3, 2.5, 0.5), (2.0, 0.1, 100.0)):
             yield module.rest_to_rest(size, speed, acceleration, jerk)
     origin = (22.3372, 114.2636, 62.0)
@@ -118,7 +128,7 @@ def answers(module: ModuleType) -> Iterator[Any]:
     ):
         yield module.enu(origin, lat, lon, height)
     for a, b in ((0.0, 0.01), (0.0, 0.0100001), (-179.995, 180.0), (359.0, -1.0), (10.0, 190.0), (-180.0, 180.02)):
-        yield module.same_heading(a, b)
+        yield module.between(a, b)
 
 
 def _geometry(module: ModuleType, random: Random) -> Iterator[Any]:
@@ -132,7 +142,7 @@ def _geometry(module: ModuleType, random: Random) -> Iterator[Any]:
         triangle = [point(size) for _ in range(3)]
         if k % 5 == 0:
             triangle[2] = triangle[k % 2]
-        yield module.nearest(point(3.0), tuple(triangle))
+        yield module.distance(point(3.0), tuple(triangle))
         yield module.cross(triangle[0], triangle[1]), module.plus(triangle[0], triangle[1]), module.length(triangle[2])
         yield module.is_same(triangle[0], (*triangle[0][:2], triangle[0][2] + random.choice((0.001, 0.00100001, 0.0))))
     for k in range(12):

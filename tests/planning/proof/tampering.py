@@ -234,7 +234,7 @@ def damaged(random: Random, files: dict[str, bytes]) -> None:
 def nested(random: Random, files: dict[str, bytes]) -> None:
     """Brackets in brackets."""
     name = random.choice(JSON_FILES)
-    depth = random.choice((50, 63, 64, 65, 66, 1000, 100_000))
+    depth = random.choice((50, 500, 2000, 100_000))
     files[name] = files[name].rstrip()[:-1] + b', "more": ' + b"[" * depth + b"]" * depth + b"}"
 
 

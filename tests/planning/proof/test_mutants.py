@@ -108,9 +108,7 @@ def test_a_mutant_without_a_check_is_told(tmp_path: Path) -> None:
     first = next(mutants(source))
     same = Mutant(0, "nothing", compile(source, str(PYTHON), "exec"))
     assert not _is_told(same, truth, folders, claims)
-    other = compile(
-        source.replace('"a key twice"', '"two keys"').replace("has a key twice", "is odd"), "mutant", "exec"
-    )
+    other = compile(source.replace("has a key twice", "is odd"), "mutant", "exec")
     assert _is_told(first._replace(code=other), truth, folders, claims)
 
 

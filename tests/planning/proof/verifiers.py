@@ -118,7 +118,7 @@ class QtScript:
     def call(self, expression: str, content: bytes) -> str | None:
         """JSON of one expression of the script's parts about `bytes`; None where they are refused."""
         parts = (
-            "const { inflate, sha256, crc32, readJson, readPly, short, enu, sincos, nearest, restToRest } = "
+            "const { inflate, sha256, crc32, readJson, readPly, short, enu, sincos, distance, restToRest, Terrain } = "
             "ReflightVerify.parts; const bytes = all[0][1];"
             "const plain = (v) => v instanceof Map ? Array.from(v).reduce((o, [k, x]) => "
             "Object.defineProperty(o, k, { value: plain(x), enumerable: true }), {}) "
