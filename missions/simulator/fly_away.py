@@ -142,6 +142,10 @@ def _starts(plan: Plan, n: int, rng: np.random.Generator) -> Floats:
     return np.asarray(leg[:, 0] + along * (leg[:, 1] - leg[:, 0]))
 
 
+TERRAIN_STEP_S = 0.1
+"""Between two looks at the terrain below what falls: it goes on by some 3 m, and evenly."""
+
+
 class _Flight:
     """One fly-away: draws its course and wind, and flies."""
 
@@ -188,10 +192,26 @@ class _Flight:
             self._airframe.step(stops_s, self._target(here))
             return self._airframe.truth.position_enu_m, 0.0
         off = self._target(here, motors_on=False)
-        while self._airframe.truth.velocity_enu_m_s != (0.0, 0.0, 0.0):
-            self._airframe.step(1.0, off)
-        place = self._airframe.truth.position_enu_m
+        place = self._fallen(off)
         return place, math.hypot(place[0] - here[0], place[1] - here[1])
+
+    def _fallen(self, off: Target) -> Vec3:
+        """Where it comes down: on the terrain where that is known, else on the lowest ground."""
+        truth, ground = self._airframe.truth, self._risk.ground
+        step_s = 1.0 if ground.terrain is None else TERRAIN_STEP_S
+        before, above_m = truth.position_enu_m, math.inf
+        while self._airframe.truth.velocity_enu_m_s != (0.0, 0.0, 0.0):
+            self._airframe.step(step_s, off)
+            here = self._airframe.truth.position_enu_m
+            if ground.terrain is not None:
+                now_m = here[2] - float(ground.terrain.lower.heights_m(np.array([here]))[0])
+                if now_m <= 0.0:
+                    share = above_m / (above_m - now_m) if math.isfinite(above_m) else 0.0
+                    x, y, z = (a + share * (b - a) for a, b in zip(before, here, strict=True))
+                    return x, y, z
+                above_m = now_m if math.isfinite(now_m) else math.inf
+            before = here
+        return self._airframe.truth.position_enu_m
 
     def _go(self, duration_s: float) -> None:
         """On along the course at full speed."""

@@ -4,12 +4,11 @@ Sizes follow the guidance of the German authority for multirotors (`LBA`): what 
 it flies before the pilot reacts and brakes (contingency), then how far it falls with its motors off (buffer). Its sum
 is extended where it would not hold: an aircraft that still climbs when the motors stop, and one that the wind carries.
 With both, the buffer holds for every fall that begins inside the contingency volume with at most the stated speeds, for
-any drag up to the stated one. With u the speed through the air, w the wind, c the climb and H the height:
+any drag up to the stated one (`falling.py`).
 
-    through the air it moves by x <= u T0, T0 = (c + sqrt(c^2 + 2 g H)) / g, since drag takes it down nearer (the slope
-    dz/dx changes by -g / u^2, and drag only lessens u), and by x <= ln(1 + k u T) / k, since u' <= -k u^2,
-    with the air it moves by w T, T(k) the longest fall with the drag k (`longest_fall_s`),
-    so that over the ground it is S <= max over k of min(u T0, ln(1 + k u T) / k) + w T.
+Over terrain each place has its own height. A body that falls from z over a place has reached the ground by the time it
+is as low as the lowest ground within its way, so that with R(H) the buffer for the height H, the disc about the place
+holds its way where R >= R(z - lowest ground in the disc); `_buffer_by_place` finds such an R for each.
 
 Offsets in the plane circumscribe: every polygon holds the exact one, and is wider by at most the arc tolerance. Nothing
 here is legal advice: what comes out is a filled draft that the operator has to check.
@@ -18,8 +17,8 @@ here is legal advice: what comes out is a filled draft that the operator has to 
 from __future__ import annotations
 
 import math
-from collections.abc import Generator, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Generator, Iterator
+from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -31,10 +30,12 @@ from planning.base.errors import InfeasibleError, InputError
 from planning.base.findings import Finding, Severity
 from planning.base.json_file import read_toml
 from planning.base.messages import joined, say
+from planning.geo.height_field import HeightField
+from planning.insight.falling import drag_per_m, fall_s, longest_fall_s, reach_m
 from planning.insight.ground_risk_request import Band, GroundRiskRequest, Robustness
 from planning.insight.population import People, open_population, people_below
 from planning.plan import Plan
-from planning.site.ground import ground_of
+from planning.site.ground import Ground, ground_of
 from planning.site.records import Site
 
 if TYPE_CHECKING:
@@ -42,12 +43,6 @@ if TYPE_CHECKING:
 
 GRAVITY_M_S2 = 9.81
 """In the sums of the guidance, so that its own examples come out."""
-
-LEAST_GRAVITY_M_S2 = 9.78
-"""At the equator, at sea level: things fall slowest there, and so furthest."""
-
-AIR_KG_M3 = 1.225
-"""ISA at sea level: the densest air that a flight is likely to meet carries a falling aircraft furthest."""
 
 LBA = "LBA guidance 1.7"
 SORA = "SORA 2.5, step 8"
@@ -96,10 +91,20 @@ class PeopleBand:
 
 
 @dataclass(frozen=True, slots=True)
+class Grid:
+    """Side of the cells in which people are counted, for flights up to a height above the ground."""
+
+    height_m: float
+    side_m: float
+
+
+@dataclass(frozen=True, slots=True)
 class GroundRiskTables:
     """See `data/ground_risk.toml`."""
 
     source: str
+    grid_source: str
+    grids: tuple[Grid, ...]
     mitigation_source: str
     drag_coefficient: float
     drag_source: str
@@ -173,6 +178,8 @@ class GroundRisk:
         Ground risk class before and after mitigations; None where it is not known, or beyond SORA.
     people
         What a population raster says of the buffer; None without one. It makes the band where nobody stated people.
+    ground
+        What lies below; with terrain, the buffer is as wide as the height above it asks for at each place.
     """
 
     request: GroundRiskRequest
@@ -188,6 +195,7 @@ class GroundRisk:
     final_class: int | None
     findings: tuple[Finding, ...]
     people: People | None = None
+    ground: Ground = field(default_factory=lambda: Ground(0.0))
 
     def value_of(self, symbol: str) -> float:
         """One of the numbers.
@@ -223,85 +231,6 @@ class GroundRisk:
             return say("an assembly of people")
         most = self.band.below_per_km2 * self.buffer.area / 1e6
         return say("fewer than {:g} per square kilometre, {:.1f} in the whole area", self.band.below_per_km2, most)
-
-
-# Falling.
-
-
-def fall_s(height_m: float, climb_m_s: float, gravity_m_s2: float = LEAST_GRAVITY_M_S2) -> float:
-    """Time from switching motors off to the ground without drag: g t = c + sqrt(c^2 + 2 g h)."""
-    return (climb_m_s + math.sqrt(climb_m_s * climb_m_s + 2.0 * gravity_m_s2 * height_m)) / gravity_m_s2
-
-
-def longest_fall_s(height_m: float, climb_m_s: float, level_m_s: float, drag_per_m: float) -> float:
-    """Longest time to the ground with quadratic drag, of a body that climbs and moves level through the air at first.
-
-    Upwards it takes no longer, and comes no higher, than without drag. Downwards from there, with k the drag,
-
-        v' = g - k sqrt(u^2 + v^2) v,   u <= u0 / (1 + k u0 t),
-
-    since drag on the level speed alone is already k u^2. k u grows with k and u0, so that less drag and less speed fall
-    faster: it holds for every drag up to that of `drag_per_m` and every level speed up to `level_m_s`.
-    """
-    g, k = LEAST_GRAVITY_M_S2, drag_per_m
-    apex_m, up_s = height_m + climb_m_s * climb_m_s / (2.0 * g), climb_m_s / g
-
-    def slope(t: float, v: float) -> float:
-        level = level_m_s / (1.0 + k * level_m_s * t)
-        return g - k * math.hypot(level, v) * v
-
-    def after(h: float) -> tuple[float, float]:
-        """Runge and Kutta's fourth order for v; z by Simpson's rule over the same stages."""
-        a = slope(t, v)
-        b = slope(t + 0.5 * h, v + 0.5 * h * a)
-        c = slope(t + 0.5 * h, v + 0.5 * h * b)
-        d = slope(t + h, v + h * c)
-        return v + h / 6.0 * (a + 2.0 * b + 2.0 * c + d), z + h * v + h * h / 6.0 * (a + b + c)
-
-    t, v, z, step_s = 0.0, 0.0, 0.0, FALL_STEP / math.sqrt(g * k)
-    for _ in range(FALL_STEPS):
-        next_v, next_z = after(step_s)
-        if next_z >= apex_m:
-            low, high = 0.0, step_s
-            for _ in range(60):
-                middle = 0.5 * (low + high)
-                low, high = (middle, high) if after(middle)[1] < apex_m else (low, middle)
-            return max(up_s + t + high, fall_s(height_m, climb_m_s))
-        t, v, z = t + step_s, next_v, next_z
-    # It only becomes faster from here on.
-    return up_s + t + (apex_m - z) / v
-
-
-FALL_STEP, FALL_STEPS = 0.02, 1000
-"""Steps of a fall in times of 1 / sqrt(g k), within which speeds change: 20 of them, after which it is as fast as it
-gets to seven digits. Against steps a tenth as long the time differs by less than 1e-6 of itself."""
-
-
-def reach_m(height_m: float, climb_m_s: float, level_m_s: float, wind_m_s: float, most_drag_per_m: float) -> float:
-    """How far over the ground a body can fall, whatever its drag up to the stated one; see the module.
-
-    Between two drags, the lower bounds the way through the air and the higher the time: the first term falls with the
-    drag and the second rises, so that nothing between them is missed.
-    """
-    drags = most_drag_per_m * np.linspace(0.0, 1.0, DRAGS) ** 2
-    through_m = level_m_s * fall_s(height_m, climb_m_s)
-    if wind_m_s == 0.0:
-        return through_m
-    furthest_m = 0.0
-    for less, more in zip(drags[:-1].tolist(), drags[1:].tolist(), strict=True):
-        time_s = longest_fall_s(height_m, climb_m_s, level_m_s, more)
-        slowed_m = math.log1p(less * level_m_s * time_s) / less if less > 0.0 else math.inf
-        furthest_m = max(furthest_m, min(through_m, slowed_m) + wind_m_s * time_s)
-    return furthest_m
-
-
-DRAGS = 33
-"""Drags that are tried, closer together where they are small: twice as many bring the reach down by 1 % at most."""
-
-
-def drag_per_m(mass_kg: float, drag_area_m2: float) -> float:
-    """Deceleration by drag over the square of the speed."""
-    return 0.5 * AIR_KG_M3 * drag_area_m2 / mass_kg
 
 
 # Areas.
@@ -391,10 +320,24 @@ def assess_ground_risk(
         ground_z_m = lower_z_m
     else:
         raise InfeasibleError.say("the ground falls away as far as the buffer is widened; limit speed or wind")
+    ground = ground_of(site)
+    narrowest_m = value["S_GRB"]
+    if ground.terrain is not None:
+
+        def width_m(height_m: float) -> float:
+            numbers = _buffer(request, body, wind_m_s, plan.aircraft.max_ascent_m_s, height_m)
+            return next(each.value for each in numbers if each.symbol == "S_GRB")
+
+        buffer, narrowest_m = _buffer_by_place(
+            contingency, ground.terrain.lower, ground_z_m + value["H_CV"], value, width_m, request.arc_tolerance_m
+        )
+        quantities = (*quantities, *_terrain_quantities(ground, ground_z_m, geography, value, narrowest_m))
+        value = {each.symbol: each.value for each in quantities}
     people = None
     if request.population_raster is not None:
         raster = open_population(Path(request.population_raster), request.population_counts)
         people = people_below(raster, buffer, site.origin)
+        quantities = (*quantities, *_grid_quantities(_above_place_m(value)))
     band = None if request.population is None else band_of(request.population)
     if band is None and people is not None and people.most_per_km2 is not None and people.unknown <= 0.0:
         band = band_of(f"{people.most_per_km2}")
@@ -415,11 +358,13 @@ def assess_ground_risk(
         intrinsic_class=intrinsic,
         final_class=final,
         findings=(
-            *_findings(request, plan, value, band, column, intrinsic, final, is_known),
+            *_findings(request, plan, value, band, column, intrinsic, final),
+            *_ground_findings(value, is_known),
             *_zone_findings(site, contingency, buffer),
-            *(() if people is None else _people_findings(people, request.population, buffer)),
+            *(() if people is None else _people_findings(people, request.population, buffer, value)),
         ),
         people=people,
+        ground=ground,
     )
 
 
@@ -486,10 +431,88 @@ def _areas(core: Geometry, value: dict[str, float], tolerance_m: float) -> tuple
     import shapely
 
     geography = grown(core, value["S_FG"], tolerance_m)
-    reach_m = value["S_FG"] + value["S_CV"]
+    stray_m = value["S_FG"] + value["S_CV"]
     # A ring narrower than the tolerance could lie inside the corners of the one before.
-    contingency = shapely.union(grown(core, reach_m, tolerance_m), geography)
-    return geography, contingency, shapely.union(grown(core, reach_m + value["S_GRB"], tolerance_m), contingency)
+    contingency = shapely.union(grown(core, stray_m, tolerance_m), geography)
+    return geography, contingency, shapely.union(grown(core, stray_m + value["S_GRB"], tolerance_m), contingency)
+
+
+TILES = 32
+"""Along the longer side of the contingency volume: each has one width of buffer."""
+
+WIDTHS = 24
+"""Heights for which the width is computed, evenly between the least and the greatest: each place takes the next."""
+
+
+def _buffer_by_place(
+    contingency: Polygon,
+    lower: HeightField,
+    top_z_m: float,
+    value: dict[str, float],
+    width_m: Callable[[float], float],
+    arc_tolerance_m: float,
+) -> tuple[Polygon, float]:
+    """The buffer over terrain, and how wide it is where it is narrowest.
+
+    Every tile of the contingency volume is grown by a width that holds every fall from it, which is never more than the
+    one for the lowest ground of all, `value["S_GRB"]`; that is taken where a part of the ground is not known.
+
+    Parameters
+    ----------
+    top_z_m
+        Of the contingency volume, ENU z.
+    width_m
+        Of the buffer by the height above the ground; grows with it.
+    """
+    import shapely
+
+    known = lower.z_m[np.isfinite(lower.z_m)]
+    least_m = top_z_m - float(known.max(initial=-math.inf))
+    low, high = np.array(contingency.bounds).reshape(2, 2)
+    heights_m = np.linspace(min(max(0.0, least_m), value["H_CV"]), value["H_CV"], WIDTHS)
+    widths_m = np.maximum.accumulate([width_m(float(each)) for each in heights_m])
+    side_m = max(float((high - low).max()) / TILES, arc_tolerance_m)
+    columns, rows = np.maximum(np.ceil((high - low) / side_m).astype(int), 1)
+    x, y = (
+        grid.ravel() for grid in np.meshgrid(low[0] + side_m * np.arange(columns), low[1] + side_m * np.arange(rows))
+    )
+    tiles = shapely.intersection(shapely.box(x, y, x + side_m, y + side_m), contingency)
+    by_width: dict[int, list[Geometry]] = {}
+    for tile in tiles[~shapely.is_empty(tiles)]:
+        number = 0
+        west_south, east_north = np.array(tile.bounds).reshape(2, 2)
+        while number < WIDTHS - 1:
+            below = lower.part_m(west_south - widths_m[number], east_north + widths_m[number])
+            needed = WIDTHS - 1
+            if np.isfinite(below).all():
+                needed = int(np.searchsorted(heights_m, top_z_m - float(below.min())))
+            if needed <= number:
+                break
+            number = min(needed, WIDTHS - 1)
+        by_width.setdefault(number, []).append(tile)
+    grown_tiles = [
+        grown(shapely.union_all(own), float(widths_m[number]), arc_tolerance_m) for number, own in by_width.items()
+    ]
+    return shapely.union_all([*grown_tiles, contingency]), float(widths_m[min(by_width)])
+
+
+def _terrain_quantities(
+    ground: Ground, ground_z_m: float, geography: Polygon, value: dict[str, float], narrowest_m: float
+) -> Iterator[Quantity]:
+    """What is otherwise at places where the ground lies higher."""
+    assert ground.terrain is not None
+    low, high = np.array(geography.bounds).reshape(2, 2)
+    below = ground.terrain.lower.part_m(low, high)
+    source = say("terrain of the site")
+    if np.isfinite(below).all():
+        above_m = value["H_FG"] + ground_z_m - float(below.min())
+        name, formula = (
+            say("top of the flight geography above the ground below it"),
+            "H_FG, less how much higher it lies",
+        )
+        yield Quantity("H_AGL", name, above_m, "m", formula, source)
+    name = say("ground-risk buffer, where the ground is highest")
+    yield Quantity("S_GRB-", name, narrowest_m, "m", "S_GRB, by the height at each place", source)
 
 
 GROUND_ROUNDS = 50
@@ -652,7 +675,6 @@ def _findings(
     column: int | None,
     intrinsic: int | None,
     final: int | None,
-    is_ground_known: bool,
 ) -> Iterator[Finding]:
     """What the operator has to decide or check."""
 
@@ -676,10 +698,10 @@ def _findings(
             "1:1 is not enough: it can fall {:.1f} m far, the buffer is {:.1f} m", value["S_ball"], value["S_GRB"]
         )
         yield found(Severity.WARNING, "sora-one-to-one", text)
-    if value["H_FG"] > HIGHEST_M:
+    if _above_place_m(value) > HIGHEST_M:
         text = say(
             "the flight geography reaches {:.1f} m above ground; above {:g} m other rules hold",
-            value["H_FG"],
+            _above_place_m(value),
             HIGHEST_M,
         )
         yield found(Severity.WARNING, "sora-height", text)
@@ -689,11 +711,6 @@ def _findings(
     if request.geography == "paths":
         text = say("a straight return home may leave the paths; set hover or land for lost links, or take the hull")
         yield found(Severity.NOTE, "sora-return", text)
-    if not is_ground_known:
-        text = say("the terrain has no heights for a part of the buffer: what lies lower there is not counted")
-        yield found(Severity.WARNING, "sora-terrain", text)
-    text = say("heights count from the lowest ground in the buffer, as if all of it lay as low")
-    yield found(Severity.NOTE, "sora-ground", text)
     slow_m_s = min(plan.aircraft.max_speed_m_s, plan.rules.max_speed_m_s or math.inf)
     if slow_m_s < value["v"] and request.speed_m_s is None:
         text = say(
@@ -704,11 +721,41 @@ def _findings(
         yield found(Severity.NOTE, "sora-speed", text)
 
 
+def _above_place_m(value: dict[str, float]) -> float:
+    """How far the flight geography reaches above the ground below it."""
+    return value.get("H_AGL", value["H_FG"])
+
+
+def _ground_findings(value: dict[str, float], is_known: bool) -> Iterator[Finding]:
+    """What heights count from."""
+    if not is_known:
+        text = say("the terrain has no heights for a part of the buffer: what lies lower there is not counted")
+        yield Finding(Severity.WARNING, "sora-terrain", text)
+    if "S_GRB-" not in value:
+        text = say("heights count from the lowest ground in the buffer, as if all of it lay as low")
+    else:
+        text = say(
+            "the buffer follows the terrain: {:.1f} m where the ground is highest, {:.1f} m where it is lowest; other "
+            "heights count from the lowest ground in it",
+            value["S_GRB-"],
+            value["S_GRB"],
+        )
+    yield Finding(Severity.NOTE, "sora-ground", text)
+
+
 def raster_text(people: People) -> str:
     """A raster by its file and product, and what its values count."""
     counted = say("people in a cell") if people.counts == "cell" else say("people per square kilometre")
     by = say("as stated") if people.is_stated else say("as its name says")
     return say("'{}' ({}{}, {})", people.file, f"{people.product}, " if people.product else "", counted, by)
+
+
+def _grid_quantities(above_m: float) -> Iterator[Quantity]:
+    """Cells that SORA suggests for people below, by the flight height above terrain; none above its first rows."""
+    tables = ground_risk_tables()
+    side_m = next((row.side_m for row in tables.grids if above_m <= row.height_m), None)
+    if side_m is not None:
+        yield Quantity("L_grid", say("cells of people that SORA suggests"), side_m, "m", "by H_AGL", tables.grid_source)
 
 
 def _people_quantities(people: People) -> Iterator[Quantity]:
@@ -721,11 +768,14 @@ def _people_quantities(people: People) -> Iterator[Quantity]:
     )
 
 
+GRID_SLACK = 1.25
+"""Cells of 3 or 9 arc seconds are as wide as named at some latitude only."""
+
 MOST_PER_KM2 = 1e6
 """No place has more residents: the densest blocks of Hong Kong and Dhaka have some 200 000."""
 
 
-def _people_findings(people: People, stated: str | None, buffer: Polygon) -> Iterator[Finding]:
+def _people_findings(people: People, stated: str | None, buffer: Polygon, value: dict[str, float]) -> Iterator[Finding]:
     """What a raster says, against what was stated; what it does not know is not nobody."""
     code, most = "sora-raster", people.most_per_km2
     if people.unknown > 0.0:
@@ -766,6 +816,15 @@ def _people_findings(people: People, stated: str | None, buffer: Polygon) -> Ite
     else:
         text = say("the raster has no more people than stated: {:.0f} per square kilometre in its fullest cell", most)
         yield Finding(Severity.OK, code, text, people.file, most, band.below_per_km2, "/km²")
+    for grid in _grid_quantities(_above_place_m(value)):
+        if people.cell_m > GRID_SLACK * grid.value:
+            text = say(
+                "cells of {:.0f} m are coarser than the {:.0f} m that SORA suggests up to this height; crowds in them "
+                "are evened out",
+                people.cell_m,
+                grid.value,
+            )
+            yield Finding(Severity.NOTE, code, text, people.file, people.cell_m, grid.value, "m")
     if people.cell_m**2 > buffer.area:
         text = say(
             "a cell of the raster ({:.0f} m) is larger than the whole buffer, and evens out crowds in it", people.cell_m

@@ -59,6 +59,15 @@ class GroundRiskRequest:
         group=PEOPLE,
         row="more",
     )
+    terrain_raster: str | None = parameter(
+        None,
+        "GeoTIFF of the ground's heights, for this assessment in place of the site's own terrain",
+        label="Ground from a raster",
+        option="--terrain-raster",
+        metavar="FILE",
+        group=ABOUT,
+        unset="the site's",
+    )
     wind_m_s: float | None = parameter(
         None,
         "strongest wind in which it flies, from any side",

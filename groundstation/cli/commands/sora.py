@@ -68,7 +68,7 @@ def run(options: argparse.Namespace) -> int:
     plan, site_model = read_input_plan(options.plan), read_input_site(options.site)
     n, name = options.fly_aways or N_FLY_AWAYS, options.plan.name
     draft = run_job("sora", lambda context: sora_draft(plan, site_model, request, name, None, n, context))
-    raster = [] if request.population_raster is None else [Path(request.population_raster)]
+    raster = [Path(each) for each in (request.population_raster, request.terrain_raster) if each is not None]
     sources = [options.plan, options.site, *raster]
     paths = write_sora(draft, options.out, worded, sources)
     if options.json:

@@ -11,7 +11,7 @@ import io
 import json
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -42,7 +42,7 @@ from planning.insight.ground_risk import (
 from planning.insight.ground_risk_request import GroundRiskRequest
 from planning.plan import Plan
 from planning.site.file import is_planned_on
-from planning.site.records import SiteModel
+from planning.site.records import Site, SiteModel
 
 Floats = NDArray[np.float64]
 
@@ -91,12 +91,42 @@ def sora_draft(
         As there, or the plan was made for another site.
     """
     changed = _site_findings(plan, site_model)
+    site = site_model.site
+    if request.terrain_raster is not None:
+        site, notes = _on_raster(site_model, Path(request.terrain_raster), monitor)
+        changed = (*changed, *notes)
     height_m = None
     if request.geography == "hull":
         height_m, _objections = return_height(plan, site_model, options or ExportOptions(site=site_model))
-    risk = assess_ground_risk(plan, site_model.site, request, height_m)
+    risk = assess_ground_risk(plan, site, request, height_m)
     fly_aways = simulate_fly_aways(plan, risk, n_fly_aways, monitor=monitor)
-    return SoraDraft(risk, fly_aways, site_model.site.origin, name, (*changed, *risk.findings))
+    return SoraDraft(risk, fly_aways, site.origin, name, (*changed, *risk.findings))
+
+
+RASTER_BEYOND_M = 1000.0
+"""Beyond the airspace, for the terrain below the buffer."""
+
+
+def _on_raster(site_model: SiteModel, path: Path, monitor: Monitor) -> tuple[Site, tuple[Finding, ...]]:
+    """The site with the ground of a raster beside it, for the assessment alone: the site itself stays as it is."""
+    from planning.site.importing.attach_terrain import TerrainRequest, attach_terrain
+
+    space = site_model.site.airspace
+    (x, y, z), (far_x, far_y, far_z) = space.min_enu_m, space.max_enu_m
+    wide = replace(
+        space,
+        min_enu_m=(x - RASTER_BEYOND_M, y - RASTER_BEYOND_M, z),
+        max_enu_m=(far_x + RASTER_BEYOND_M, far_y + RASTER_BEYOND_M, far_z),
+    )
+    model = replace(site_model, site=replace(site_model.site, airspace=wide))
+    try:
+        attached = attach_terrain(model, TerrainRequest((path,), use="on"), STEM, monitor)
+    except InputError as error:
+        raise InputError.say(
+            "{}; 'site terrain' takes what a file leaves open, and puts it into the site", error
+        ) from error
+    notes = tuple(Finding(Severity.NOTE, "sora-terrain", text, path.name) for text in attached.notes)
+    return replace(site_model.site, terrain=attached.model.site.terrain), notes
 
 
 def _site_findings(plan: Plan, site_model: SiteModel) -> tuple[Finding, ...]:
@@ -392,7 +422,10 @@ def sora_kml(draft: SoraDraft, words: Words = str) -> str:
         title = escape(words(name), quote=False)
         lines += ["  <Placemark>", f"   <name>{title}</name><styleUrl>#{_style(name)}</styleUrl>", "   <MultiGeometry>"]
         for part in area_rings(area, draft.origin, risk.ground_z_m):
-            rings = "".join(_kml_ring(ring, number == 0, top_m or 0.0) for number, ring in enumerate(part))
+            tops_m = [_tops_m(draft, ring, top_m) for ring in part]
+            rings = "".join(
+                _kml_ring(ring, n == 0, top) for n, (ring, top) in enumerate(zip(part, tops_m, strict=True))
+            )
             extrude = f"<extrude>{int(top_m is not None)}</extrude><altitudeMode>{mode}</altitudeMode>"
             lines.append(f"    <Polygon>{extrude}{rings}</Polygon>")
         lines += ["   </MultiGeometry>", "  </Placemark>"]
@@ -403,7 +436,23 @@ def _style(name: str) -> str:
     return name.replace(" ", "-")
 
 
-def _kml_ring(ring: Floats, is_outer: bool, top_m: float) -> str:
+def _tops_m(draft: SoraDraft, ring: Floats, top_m: float | None) -> Floats:
+    """Heights of a volume's level top above the ground below each corner of a ring."""
+    from planning.geo.enu import enu_from_geodetic
+
+    if top_m is None:
+        return np.zeros(len(ring))
+    risk, height_m = draft.risk, draft.origin.ellipsoid_height_m
+    if risk.ground.terrain is None:
+        return np.full(len(ring), top_m)
+    places = enu_from_geodetic(draft.origin, ring[:, 1], ring[:, 0], np.full(len(ring), height_m))
+    ground_m = risk.ground.heights_m(np.asarray(places))
+    above_m = np.maximum(risk.ground_z_m + top_m - ground_m, 0.0)
+    return np.where(np.isfinite(ground_m), above_m, top_m)
+
+
+def _kml_ring(ring: Floats, is_outer: bool, tops_m: Floats) -> str:
     kind = "outerBoundaryIs" if is_outer else "innerBoundaryIs"
-    points = " ".join(f"{lon:.9f},{lat:.9f},{top_m:.2f}" for lon, lat in ring.tolist())
+    places = zip(ring.tolist(), tops_m.tolist(), strict=True)
+    points = " ".join(f"{lon:.9f},{lat:.9f},{top_m:.2f}" for (lon, lat), top_m in places)
     return f"<{kind}><LinearRing><coordinates>{points}</coordinates></LinearRing></{kind}>"

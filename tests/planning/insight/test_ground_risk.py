@@ -3,31 +3,29 @@
 import itertools
 import math
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from planning.base.errors import InfeasibleError, InputError
 from planning.base.findings import Severity
 from planning.geo.height_field import HeightField
+from planning.insight.falling import LEAST_GRAVITY_M_S2, fall_s, longest_fall_s, reach_m
 from planning.insight.ground_risk import (
     BARO_ERROR_M,
     GNSS_HEIGHT_ERROR_M,
-    LEAST_GRAVITY_M_S2,
     assess_ground_risk,
-    fall_s,
     ground_risk_tables,
     grown,
-    longest_fall_s,
-    reach_m,
 )
 from planning.insight.ground_risk_request import BANDS, GroundRiskRequest
 from planning.site.records import NoFlyZone
-from planning.site.terrain import terrain_of
+from planning.site.terrain import surfaces, terrain_of
 from tests.planning.insight.ground_risk_cases import BENT, ROUND, flown, place
 
 CALM = GroundRiskRequest(wind_m_s=0.0)
@@ -316,3 +314,98 @@ def test_no_fly_zones_that_the_volumes_reach_are_named():
     )
     found = [(each.severity, each.place) for each in risk.findings if each.code == "sora-no-fly"]
     assert found == [(Severity.WARNING, "near"), (Severity.NOTE, "further")]
+
+
+# Over terrain, each place has its own height
+
+
+def hill(use="on", half=900.0, step=15.0):
+    """A ridge beside the flight and a valley on its other side."""
+    nodes = np.arange(-half, half + 0.5 * step, step)
+    x, y = np.meshgrid(nodes, nodes)
+    z = 25.0 * np.tanh((y - 120.0) / 60.0) - 30.0 / (1.0 + ((x - 150.0) / 70.0) ** 2)
+    return terrain_of(HeightField(-half, -half, step, z), z, z, use=use)
+
+
+SLOPES = pytest.mark.parametrize("terrain", [sloping("on", half=900.0), hill()])
+
+
+@SLOPES
+def test_over_terrain_the_buffer_is_no_wider_than_for_the_lowest_ground_and_no_narrower_than_for_the_highest(terrain):
+    risk = assess_ground_risk(flown(ROUND), replace(place(), terrain=terrain), CALM)
+    widest, narrowest = risk.value_of("S_GRB"), risk.value_of("S_GRB-")
+    assert 0.0 < narrowest < widest
+    tolerance_m = CALM.arc_tolerance_m
+    outer = grown(risk.contingency, widest, tolerance_m)
+    assert outer.buffer(tolerance_m).covers(risk.buffer)
+    assert risk.buffer.covers(risk.contingency.buffer(narrowest, quad_segs=32))
+    assert risk.buffer.area < 0.99 * outer.area
+
+
+@SLOPES
+@settings(deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_no_fall_from_the_contingency_volume_ends_outside_of_the_buffer_over_terrain(terrain, seed):
+    """A fall of any drag, followed step by step until it meets the terrain, by the equations of motion alone."""
+    rng = np.random.default_rng(seed)
+    request = replace(CALM, wind_m_s=8.0)
+    risk = _over(terrain, request)
+    low, high = np.array(risk.contingency.bounds).reshape(2, 2)
+    while True:
+        start = low + rng.random(2) * (high - low)
+        if risk.contingency.covers(shapely.Point(start)):
+            break
+    course, wind = rng.uniform(-math.pi, math.pi, 2)
+    speed, wind_m_s, drag = risk.value_of("v"), risk.value_of("w"), risk.value_of("k") * rng.random()
+    air = wind_m_s * np.array([math.cos(wind), math.sin(wind), 0.0])
+    velocity = np.array([speed * math.cos(course), speed * math.sin(course), risk.value_of("c") * rng.random()])
+    position = np.array([*start, risk.ground_z_m + risk.contingency_top_m])
+    step_s = 0.01
+    while position[2] > float(risk.ground.terrain.ground.heights_m(position[None])[0]):
+        velocity = velocity - step_s * (drag * np.linalg.norm(velocity) * velocity + np.array([0.0, 0.0, 9.81]))
+        position = position + step_s * (velocity + air)
+    assert risk.buffer.distance(shapely.Point(position[:2])) <= 0.0
+
+
+@lru_cache(maxsize=4)
+def _over(terrain, request):
+    return assess_ground_risk(flown(ROUND), replace(place(), terrain=terrain), request)
+
+
+def test_on_level_terrain_the_buffer_is_that_without_terrain():
+    nodes = np.zeros((121, 121))
+    flat = terrain_of(HeightField(-900.0, -900.0, 15.0, nodes), nodes, nodes, use="on")
+    with_terrain = assess_ground_risk(flown(ROUND), replace(place(), terrain=flat), CALM)
+    without = assess_ground_risk(flown(ROUND), place(), CALM)
+    assert with_terrain.value_of("S_GRB-") == with_terrain.value_of("S_GRB") == without.value_of("S_GRB")
+    assert with_terrain.buffer.symmetric_difference(without.buffer).area < 0.01 * without.buffer.area
+    assert "S_GRB-" not in {each.symbol for each in without.quantities}, "what is off costs nothing"
+
+
+def test_a_height_above_the_place_decides_on_other_rules_and_on_the_cells_of_people():
+    """30 m above a slope that falls 100 m within the buffer is not above 120 m."""
+    z = _falls(151, 20.0)
+    steep = terrain_of(HeightField(-1500.0, -1500.0, 20.0, z), z, z, use="on")
+    risk = assess_ground_risk(flown(ROUND), replace(place(), terrain=steep), replace(CALM, wind_m_s=8.0))
+    assert risk.value_of("H_FG") > 120.0 > risk.value_of("H_AGL")
+    assert "sora-height" not in {each.code for each in risk.findings}
+
+
+def _falls(n, step):
+    """Level below the flight, and far down some way east of it."""
+    x = -1500.0 + step * np.arange(n)
+    return np.tile(np.where(x > 150.0, -np.minimum(x - 150.0, 100.0), 0.0), (n, 1))
+
+
+def test_where_a_part_of_the_ground_is_not_known_the_width_for_the_lowest_is_kept():
+    terrain = sloping("on", half=900.0)
+    z = surfaces(terrain).ground.z_m.copy()
+    z[:, : z.shape[1] // 2] = np.nan
+    holes = terrain_of(HeightField(-900.0, -900.0, 10.0, z), z, z, use="on")
+    risk = assess_ground_risk(flown(ROUND), replace(place(), terrain=holes), CALM)
+    west = risk.contingency.bounds[0] - risk.value_of("S_GRB")
+    assert risk.buffer.bounds[0] <= west + 1e-6
+    nothing = np.full_like(z, np.nan)
+    unknown = terrain_of(HeightField(-900.0, -900.0, 10.0, nothing), nothing, nothing, use="on")
+    none = assess_ground_risk(flown(ROUND), replace(place(), terrain=unknown), CALM)
+    assert none.value_of("S_GRB-") == none.value_of("S_GRB")

@@ -26,8 +26,9 @@ from planning.geo.enu import enu_from_geodetic
 from planning.geo.mesh import empty_mesh
 from planning.insight.ground_risk_request import GroundRiskRequest
 from planning.site.bundled import ORIGIN
-from planning.site.records import SiteModel
+from planning.site.records import Airspace, SiteModel
 from tests.planning.insight.ground_risk_cases import ROUND, flown, place
+from tests.planning.site.importing.height_files import transform_at, write_heights
 
 KML = "{http://www.opengis.net/kml/2.2}"
 
@@ -128,3 +129,46 @@ def test_a_plan_of_another_site_is_refused_and_a_changed_site_is_told():
         replace(plan, site_sha256="0" * 64), SiteModel(place(), empty_mesh(), sha256="1" * 64), request, "x", None, 3
     )
     assert "has changed since" in changed.findings[0].message
+
+
+UTM, EGM96 = "EPSG:32650", "EPSG:32650+5773"
+
+
+def on_slope(path, **stated):
+    """A draft over ground that falls 1 m in 5 m to the east, of which the site itself knows nothing."""
+    at = {"origin": ORIGIN, "transform": transform_at(ORIGIN, UTM, 25.0), "horizontal": UTM}
+    write_heights(path, lambda x, y: -0.2 * x, crs=EGM96, geoid=True, **at)
+    space = Airspace((-200.0, -200.0, 0.0), (200.0, 200.0, 200.0), 0.0)
+    model = SiteModel(replace(place(), airspace=space), empty_mesh())
+    request = GroundRiskRequest(terrain_raster=str(path), speed_m_s=8.0, wind_m_s=5.0, **stated)
+    return sora_draft(flown(ROUND), model, request, "slope", n_fly_aways=60)
+
+
+def test_a_raster_of_the_ground_beside_a_site_makes_the_buffer_follow_it(tmp_path):
+    draft = on_slope(tmp_path / "dtm.tif")
+    risk = draft.risk
+    assert risk.value_of("S_GRB-") + 2.0 < risk.value_of("S_GRB")
+    assert risk.value_of("H_AGL") < risk.value_of("H_FG")
+    assert draft.fly_aways.share_inside == 1.0, draft.fly_aways.margins_m.min()
+    assert np.ptp(draft.fly_aways.ends_enu_m[draft.fly_aways.reach_m > 0.0, 2]) > 10.0, "they come down on the slope"
+    text = next(str(each.message) for each in draft.findings if each.code == "sora-ground")
+    assert text.startswith("the buffer follows the terrain: ")
+    # The volume's top is level: higher above the ground where that lies lower.
+    root = ElementTree.fromstring(sora_kml(draft))
+    marks = {mark.find(f"{KML}name").text: mark for mark in root.iter(f"{KML}Placemark")}
+    corners = [c.split(",") for c in marks["flight geography"].find(f".//{KML}coordinates").text.split()]
+    east = max(corners, key=lambda each: float(each[0]))
+    west = min(corners, key=lambda each: float(each[0]))
+    places = enu_from_geodetic(
+        ORIGIN, [float(east[1]), float(west[1])], [float(east[0]), float(west[0])], [ORIGIN.ellipsoid_height_m] * 2
+    )
+    assert float(east[2]) - float(west[2]) == pytest.approx(0.2 * (places[0, 0] - places[1, 0]), abs=0.3)
+
+
+def test_a_raster_that_leaves_its_heights_open_is_refused_with_a_way_out(tmp_path):
+    write_heights(
+        tmp_path / "dtm.tif", lambda x, y: 0.0 * x, origin=ORIGIN, crs=UTM, transform=transform_at(ORIGIN, UTM)
+    )
+    request = GroundRiskRequest(terrain_raster=str(tmp_path / "dtm.tif"), wind_m_s=5.0)
+    with pytest.raises(InputError, match="'site terrain' takes what a file leaves open"):
+        sora_draft(flown(ROUND), SiteModel(place(), empty_mesh()), request, "x", n_fly_aways=3)
