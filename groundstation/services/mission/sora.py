@@ -123,7 +123,7 @@ def _on_raster(site_model: SiteModel, path: Path, monitor: Monitor) -> tuple[Sit
         attached = attach_terrain(model, TerrainRequest((path,), use="on"), STEM, monitor)
     except InputError as error:
         raise InputError.say(
-            "{}; 'site terrain' takes what a file leaves open, and puts it into the site", error
+            "{}; or attach it to the site as its terrain, where what it leaves open can be stated", error
         ) from error
     notes = tuple(Finding(Severity.NOTE, "sora-terrain", text, path.name) for text in attached.notes)
     return replace(site_model.site, terrain=attached.model.site.terrain), notes

@@ -170,5 +170,5 @@ def test_a_raster_that_leaves_its_heights_open_is_refused_with_a_way_out(tmp_pat
         tmp_path / "dtm.tif", lambda x, y: 0.0 * x, origin=ORIGIN, crs=UTM, transform=transform_at(ORIGIN, UTM)
     )
     request = GroundRiskRequest(terrain_raster=str(tmp_path / "dtm.tif"), wind_m_s=5.0)
-    with pytest.raises(InputError, match="'site terrain' takes what a file leaves open"):
+    with pytest.raises(InputError, match="or attach it to the site as its terrain"):
         sora_draft(flown(ROUND), SiteModel(place(), empty_mesh()), request, "x", n_fly_aways=3)
