@@ -244,7 +244,12 @@ class Pose:
 
     def points_cam(self, points_enu_m: Array) -> Array:
         """Points, shape (n, 3), in camera axes."""
-        return (np.atleast_2d(points_enu_m) - self.position_enu_m) @ self.cam_from_enu.T
+        # Sums by column: for three numbers a row, a library's product takes ten times as long.
+        x, y, z = (np.atleast_2d(points_enu_m) - self.position_enu_m).T
+        found = np.empty((len(x), 3))
+        for axis, (a, b, c) in enumerate(self.cam_from_enu):
+            found[:, axis] = a * x + b * y + c * z
+        return found
 
     def directions_enu(self, rays_cam: Array) -> Array:
         """Directions, shape (n, 3), camera axes to ENU; the length stays."""

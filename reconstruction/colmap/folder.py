@@ -46,6 +46,8 @@ COUNT = struct.Struct("<Q")
 
 OBSERVATION = np.dtype([("px", "<f8", 2), ("point", "<i8")])
 TRACK = np.dtype([("image", "<u4"), ("index", "<u4")])
+POINT = np.dtype([("id", "<u8"), ("xyz", "<f8", 3), ("rgb", "u1", 3), ("error", "<f8"), ("length", "<u8")])
+"""As `POINT_HEAD`."""
 
 SMALLEST_IMAGE = IMAGE_HEAD.size + 1 + COUNT.size
 
@@ -56,25 +58,25 @@ class _Reader:
     """The bytes of one file, read from front to back."""
 
     def __init__(self, content: bytes, place: str) -> None:
-        self._content, self._at, self._place = content, 0, place
+        self._content, self.at, self._place = content, 0, place
 
     def take(self, layout: struct.Struct) -> tuple[int | float, ...]:
         """The next values."""
         self._need(layout.size)
-        values = layout.unpack_from(self._content, self._at)
-        self._at += layout.size
+        values = layout.unpack_from(self._content, self.at)
+        self.at += layout.size
         return values
 
     def count(self, smallest: int) -> int:
         """A number of entries of which each takes at least `smallest` bytes."""
         n = int(self.take(COUNT)[0])
-        left = len(self._content) - self._at
+        left = len(self._content) - self.at
         if n * smallest > left:
             raise InputError(
                 say(
                     "byte {} says that {} entries follow, but the {} bytes left hold at most {}; the file is damaged "
                     "or cut off: write it again",
-                    self._at - COUNT.size,
+                    self.at - COUNT.size,
                     n,
                     left,
                     left // smallest,
@@ -86,23 +88,28 @@ class _Reader:
     def array(self, dtype: np.dtype[np.void], n: int) -> np.ndarray:
         """The next `n` entries."""
         self._need(n * dtype.itemsize)
-        values = np.frombuffer(self._content, dtype, n, self._at)
-        self._at += n * dtype.itemsize
+        values = np.frombuffer(self._content, dtype, n, self.at)
+        self.at += n * dtype.itemsize
         return values
+
+    def skip(self, n: int) -> None:
+        """Pass over bytes, which have to be there."""
+        self._need(n)
+        self.at += n
 
     def name(self) -> str:
         """Text up to a zero byte."""
-        end = self._content.find(b"\0", self._at, self._at + MAX_NAME_BYTES)
+        end = self._content.find(b"\0", self.at, self.at + MAX_NAME_BYTES)
         if end < 0:
             raise InputError(
-                say("the image name at byte {} has no end; the file is damaged", self._at, place=self._place)
+                say("the image name at byte {} has no end; the file is damaged", self.at, place=self._place)
             )
-        text = self._content[self._at : end].decode("utf-8", "surrogateescape")
-        self._at = end + 1
+        text = self._content[self.at : end].decode("utf-8", "surrogateescape")
+        self.at = end + 1
         return text
 
     def _need(self, n: int) -> None:
-        if self._at + n > len(self._content):
+        if self.at + n > len(self._content):
             raise InputError(
                 say(
                     "ends at byte {} in the middle of an entry; write the file again",
@@ -154,10 +161,12 @@ def read_points_binary(content: bytes, place: str) -> ColmapPoints:
     n = reader.count(POINT_HEAD.size)
     if n == 0:
         return NO_POINTS
-    heads, tracks = [], []
-    for _ in range(n):
+    # Entries differ in length, so where each begins is known from all before it; all else is taken out at once.
+    starts, lengths = np.empty(n, np.int64), np.empty(n, np.int64)
+    for i in range(n):
+        starts[i] = reader.at
         *head, length = reader.take(POINT_HEAD)
-        if int(length) * TRACK.itemsize > len(content):
+        if length * TRACK.itemsize > len(content):
             raise InputError(
                 say(
                     "point {} says that {} observations follow, more than the file holds; it is damaged or cut off: "
@@ -167,16 +176,20 @@ def read_points_binary(content: bytes, place: str) -> ColmapPoints:
                     place=place,
                 )
             )
-        heads.append(head)
-        tracks.append(reader.array(TRACK, int(length)))
-    table = np.array([head[1:] for head in heads], np.float64)
-    every = np.concatenate(tracks)
+        lengths[i] = length
+        reader.skip(int(length) * TRACK.itemsize)
+    table, is_track = np.frombuffer(content, np.uint8)[: reader.at], np.ones(reader.at, bool)
+    places = starts[:, None] + np.arange(POINT_HEAD.size)
+    heads = table[places].view(POINT)[:, 0]
+    is_track[places] = False
+    is_track[: COUNT.size] = False
+    every = table[is_track].view(TRACK)
     return ColmapPoints(
-        np.array([head[0] for head in heads], np.uint64).astype(np.int64),
-        table[:, :3].copy(),
-        table[:, 3:6].astype(np.uint8),
-        table[:, 6].copy(),
-        np.concatenate([[0], np.cumsum([len(track) for track in tracks])]).astype(np.int64),
+        heads["id"].astype(np.int64),
+        heads["xyz"].astype(np.float64),
+        heads["rgb"].copy(),
+        heads["error"].astype(np.float64),
+        np.concatenate([[0], np.cumsum(lengths)]),
         np.stack([every["image"], every["index"]], axis=1).astype(np.int64),
     )
 

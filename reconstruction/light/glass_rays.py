@@ -228,10 +228,8 @@ def _kept(
         torch.from_numpy(panels),
         torch.from_numpy(colours),
     )
-    is_kept = torch.ones(len(rays), dtype=torch.bool)
-    for corner in CORNERS if which == "whole" else ((0.0, 0.0),):
-        is_kept &= table.inside(rays.hits(torch.tensor(corner, dtype=torch.float64)), rays.panels)
-    return rays[torch.nonzero(is_kept).squeeze(1)]
+    around = np.array(CORNERS if which == "whole" else ((0.0, 0.0),))
+    return rays[table.holds(rays.photos, rays.middles_px, rays.panels, around)]
 
 
 def _no_rays(table: RayTable) -> GlassRays:

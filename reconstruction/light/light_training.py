@@ -27,6 +27,7 @@ from planning.base.effects import decide
 from planning.base.errors import OperationCancelled, ReconstructionError
 from planning.base.messages import say
 from planning.base.progress import QUIET, Clock, Monitor
+from reconstruction.base.adam import Adam
 from reconstruction.base.out_of_memory import NotFinite, is_out_of_memory
 from reconstruction.light.config import Precision, ReflectionConfig
 from reconstruction.light.glass_rays import GlassRays
@@ -359,9 +360,7 @@ def _grids(panels: ReflectivePanels) -> list[RadianceGrid]:
     return [module for module in panels.modules() if isinstance(module, RadianceGrid)]
 
 
-def _optimiser(
-    panels: ReflectivePanels, config: ReflectionConfig, before: torch.optim.Adam | None = None
-) -> torch.optim.Adam:
+def _optimiser(panels: ReflectivePanels, config: ReflectionConfig, before: Adam | None = None) -> Adam:
     """With what one `before` remembers of the parameters that are still there."""
     own: list[Tensor] = [panels.corner_loss]
     groups: list[dict[str, Any]] = [{"params": [*panels.diffuse.parameters()], "lr": config.table_rate}]
@@ -370,7 +369,7 @@ def _optimiser(
         groups += panels.light.parameter_groups(config)
     groups.append({"params": own, "lr": config.panel_rate})
     groups = [{**group, "rate": group["lr"]} for group in groups]
-    optimiser = torch.optim.AdamW(groups, betas=BETAS, weight_decay=0.0, fused=True)
+    optimiser = Adam(groups, betas=BETAS)
     for group in optimiser.param_groups if before is not None else ():
         for value in group["params"]:
             if before is not None and value in before.state:

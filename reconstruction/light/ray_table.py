@@ -25,6 +25,7 @@ from reconstruction.light.photo_set import PanelPlanes
 Array = NDArray[np.float64]
 Single = NDArray[np.float32]
 Index = NDArray[np.int64]
+Flags = NDArray[np.bool_]
 Number = np.float32
 
 ONE, TWO, NONE = np.float32(1.0), np.float32(2.0), np.float32(0.0)
@@ -92,6 +93,53 @@ def meet(
             ex, ey, ez = end[0] - corner[0, 0], end[1] - corner[0, 1], end[2] - corner[0, 2]
             along = ex * (px - corner[0, 0]) + ey * (py - corner[0, 1]) + ez * (pz - corner[0, 2])
             shares[ray, number] = along / max(ex * ex + ey * ey + ez * ez, 1e-20)
+
+
+@kernel
+def lie_inside(
+    photos: Index, places: Array, panels: Index, around: Array, positions: Array, turns: Array, lenses: Array,
+    distortions: Array, corners: Array, normals: Array, n_steps: int, least: float, found: Flags,
+) -> None:  # fmt: skip
+    """Whether rays through all places around each of some meet the fronts of their panels inside their edges, written.
+
+    Parameters
+    ----------
+    around
+        Off each place, pixels, shape (k, 2).
+    found
+        Shape (n,).
+    """
+    for ray in range(len(photos)):
+        photo, panel = photos[ray], panels[ray]
+        turn, corner = turns[photo], corners[panel]
+        ox, oy, oz = positions[photo, 0], positions[photo, 1], positions[photo, 2]
+        nx, ny, nz = normals[panel, 0], normals[panel, 1], normals[panel, 2]
+        height = (ox - corner[0, 0]) * nx + (oy - corner[0, 1]) * ny + (oz - corner[0, 2]) * nz
+        is_inside = True
+        for number in range(len(around)):
+            x = (places[ray, 0] + around[number, 0] - lenses[photo, 2]) / lenses[photo, 0]
+            y = (places[ray, 1] + around[number, 1] - lenses[photo, 3]) / lenses[photo, 1]
+            if n_steps > 0:
+                x, y = undistorted(x, y, distortions[photo], n_steps)
+            dx = turn[0, 0] * x + turn[0, 1] * y + turn[0, 2]
+            dy = turn[1, 0] * x + turn[1, 1] * y + turn[1, 2]
+            dz = turn[2, 0] * x + turn[2, 1] * y + turn[2, 2]
+            length = math.sqrt(dx * dx + dy * dy + dz * dz)
+            cosine = -(dx * nx + dy * ny + dz * nz) / length
+            if not cosine > least:
+                is_inside = False
+                break
+            distance = height / cosine / length
+            px, py, pz = ox + distance * dx, oy + distance * dy, oz + distance * dz
+            for first in range(4):
+                a, b = corner[first], corner[(first + 1) % 4]
+                ex, ey, ez = b[0] - a[0], b[1] - a[1], b[2] - a[2]
+                fx, fy, fz = px - a[0], py - a[1], pz - a[2]
+                left = (ey * fz - ez * fy) * nx + (ez * fx - ex * fz) * ny + (ex * fy - ey * fx) * nz
+                is_inside = is_inside and left >= 0.0
+            if not is_inside:
+                break
+        found[ray] = is_inside
 
 
 @kernel
@@ -330,14 +378,27 @@ class RayTable:
         shares = _shares(points_m, self.corners_m[panels])
         return PaneHits(points_m, directions, cosines, shares, torch.full_like(cosines, torch.inf))
 
-    def inside(self, hits: PaneHits, panels: Tensor) -> Tensor:
-        """Whether rays meet the fronts of their panels, which are convex, inside their edges, shape (n,), bool."""
-        corners, normals = self.corners_m[panels], self.normals[panels]
-        found = hits.cosines > LEAST_COSINE
-        for number in range(4):
-            first, second = corners[:, number], corners[:, (number + 1) % 4]
-            found = found & ((torch.linalg.cross(second - first, hits.points_m - first) * normals).sum(dim=1) >= 0.0)
-        return found
+    def holds(self, photos: Tensor, places_px: Tensor, panels: Tensor, around_px: Array) -> Tensor:
+        """Whether rays meet the fronts of their panels, which are convex, inside their edges, shape (n,), bool.
+
+        On a processor.
+
+        Parameters
+        ----------
+        photos, places_px, panels
+            As for `meet`.
+        around_px
+            Off each place, shape (k, 2): all of its rays have to.
+        """
+        found = np.empty(len(photos), np.bool_)
+        parts = self.positions_m, self.enu_from_cam, self.lenses, self.distortions, self.corners_m, self.normals
+        run: Any = lie_inside
+        run(
+            photos.long().numpy(), places_px.double().contiguous().numpy(), panels.long().numpy(), around_px,
+            *(np.ascontiguousarray(part.numpy()) for part in parts),
+            UNDISTORT_STEPS if bool(self.distortions.any()) else 0, LEAST_COSINE, found,
+        )  # fmt: skip
+        return torch.from_numpy(found)
 
     def off_axis(self, photos: Tensor, places_px: Tensor) -> Tensor:
         """Squared distance from the principal point, 1 in the corners of a picture around it, shape (n,)."""

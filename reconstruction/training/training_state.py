@@ -26,6 +26,7 @@ from planning.base.errors import InputError, ReconstructionError
 from planning.base.files import check_json_size
 from planning.base.json_file import write_atomically
 from planning.base.messages import say
+from reconstruction.base.adam import Adam
 from reconstruction.base.tensor_files import tensor_bytes
 from reconstruction.light.radiance_grid import RadianceGrid
 from reconstruction.splats.densification.strategy import Densification
@@ -46,9 +47,7 @@ EPSILON = 1e-15
 MEANS = "means"
 
 
-def adam_of(
-    model: SceneModel, gains: nn.Module, poses: nn.Module, config: TrainConfig, extent_m: float
-) -> torch.optim.Adam:
+def adam_of(model: SceneModel, gains: nn.Module, poses: nn.Module, config: TrainConfig, extent_m: float) -> Adam:
     """Adam over model, gains and poses of photos, each group with its `name` and its full rate, `full`.
 
     With decoupled decay (AdamW) where a group asks for it. Fused: a quarter of the time on a processor, the same bits
@@ -85,7 +84,7 @@ def adam_of(
             for number, group in enumerate(model.light.parameter_groups(learned))
         ]
     groups = [group for group in groups if group["params"]]
-    return torch.optim.AdamW(groups, lr=0.0, eps=EPSILON, weight_decay=0.0, fused=True)
+    return Adam(groups, lr=0.0, eps=EPSILON)
 
 
 def _of_splats(splats: Splats, rates: Rates) -> Sequence[tuple[str, list[Tensor], float]]:
@@ -101,7 +100,7 @@ def _of_splats(splats: Splats, rates: Rates) -> Sequence[tuple[str, list[Tensor]
 
 
 @torch.no_grad()
-def take_step(optimiser: torch.optim.Adam, splats: Splats, rates: Rates) -> None:
+def take_step(optimiser: Adam, splats: Splats, rates: Rates) -> None:
     """A step of Adam, in which some of what splats have goes only a share of it.
 
     That is the bands of spherical harmonics above the first (`colour_details`), and places and rotations of splats on
@@ -116,7 +115,7 @@ def take_step(optimiser: torch.optim.Adam, splats: Splats, rates: Rates) -> None
         value[glass] = torch.lerp(old, value[glass], rates.glass_geometry)
 
 
-def set_rates(optimiser: torch.optim.Adam, rates: Rates, step: int, progress: float, factor: float) -> None:
+def set_rates(optimiser: Adam, rates: Rates, step: int, progress: float, factor: float) -> None:
     """Give each group the rate of this step.
 
     Parameters

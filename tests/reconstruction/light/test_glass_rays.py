@@ -8,9 +8,17 @@ import pytest
 import torch
 
 from planning.base.errors import OperationCancelled
-from reconstruction.light.glass_rays import BYTES_PER_RAY, COLUMNS, glass_rays, joined, rays_of_photo, rays_of_pixels
+from reconstruction.light.glass_rays import (
+    BYTES_PER_RAY,
+    COLUMNS,
+    CORNERS,
+    glass_rays,
+    joined,
+    rays_of_photo,
+    rays_of_pixels,
+)
 from reconstruction.light.photo_set import read_photo_set
-from reconstruction.light.ray_table import RayTable
+from reconstruction.light.ray_table import LEAST_COSINE, RayTable
 from tests.reconstruction.light.synthetic_folder import LENS, far, mirror_directions, write_folder
 
 BENT = replace(LENS, distortion=(-0.12, 0.03, 0.002, -0.001, 0.0))
@@ -44,6 +52,28 @@ def test_rays_are_those_that_plain_torch_makes(source):
     expected = rays.hits(moves=torch.zeros(n_photos, 6, dtype=torch.float64))
     for name in ("points_m", "directions", "cosines", "shares", "distances_m"):
         assert torch.allclose(getattr(found, name), getattr(expected, name), rtol=1e-12, atol=1e-12)
+
+
+def test_pixels_that_lie_whole_on_a_panel_are_those_of_plain_torch(source):
+    table = RayTable.of(source.photos, source.panels, {})
+    rng = np.random.default_rng(3)
+    n, n_panels = 4000, len(source.panels.corners_enu_m)
+    photos = torch.from_numpy(rng.integers(len(source.photos), size=n))
+    panels = torch.from_numpy(rng.integers(n_panels, size=n))
+    # Also places outside of the picture, and rays that go away from the panels.
+    places = torch.from_numpy(rng.uniform(-0.3, 1.3, (n, 2)) * (LENS.width_px, LENS.height_px))
+    found = table.holds(photos, places, panels, np.array(CORNERS))
+    expected = torch.ones(n, dtype=torch.bool)
+    corners, normals = table.corners_m[panels], table.normals[panels]
+    for around in CORNERS:
+        hits = table.meet(photos, places + torch.tensor(around, dtype=torch.float64), panels)
+        expected &= hits.cosines > LEAST_COSINE
+        for number in range(4):
+            edge = corners[:, (number + 1) % 4] - corners[:, number]
+            left = torch.linalg.cross(edge, hits.points_m - corners[:, number])
+            expected &= (left * normals).sum(dim=1) >= 0.0
+    assert torch.equal(found, expected)
+    assert 0.02 < found.double().mean() < 0.98
 
 
 def test_rays_meet_the_glass_at_the_middles_of_pixels_and_go_on_from_the_cameras_mirror_image(source):
