@@ -100,7 +100,7 @@ class _NoQuestions(Questions):
 class _ReadyToFly(FlightQuestions):
     """Everybody is clear of the simulated aircraft."""
 
-    def start(self, parent: QWidget, take_off: TakeOff, units: UnitSystem) -> bool:
+    def start(self, parent: QWidget, take_off: TakeOff, units: UnitSystem, wait_s: float = 0.0) -> bool:
         return True
 
     def leave_in_flight(self, parent: QWidget) -> bool:

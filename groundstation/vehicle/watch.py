@@ -10,11 +10,14 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from groundstation.vehicle.commands import MISSION_MODE
 from groundstation.vehicle.state import LINK_LOST_S, Landed, Motion, VehicleState
 from groundstation.vehicle.surroundings import Surroundings
 from planning.base.findings import Severity
 from planning.base.messages import say
+from planning.geo.bvh import segment_segment_d2
 from planning.geo.frames import Vec3
 
 HOLD_S = 3.0
@@ -24,6 +27,9 @@ DISTANCE_TOLERANCE_M = 0.5
 """Of the minimum distance: plans use it to the full, and a vehicle with RTK keeps its path to some 0.3 m."""
 
 DISTANCE_SLACK_M = 0.25
+APART_TOLERANCE_M, APART_SLACK_M = 2.0 * DISTANCE_TOLERANCE_M, 2.0 * DISTANCE_SLACK_M
+"""Of the distance between two aircraft: each is off its path by its own error."""
+
 REACTION_S = 1.5
 """Of a pilot: how much longer the aircraft flies on when no mission brakes it."""
 
@@ -110,6 +116,28 @@ class Watch:
 
 
 @dataclass(frozen=True, slots=True)
+class OtherAircraft:
+    """Another aircraft in the air over the same site, as it was heard last.
+
+    Parameters
+    ----------
+    number
+        By which it is called on the screen.
+    motion
+        In the site's frame.
+    stop_enu_m
+        Where it can come to rest.
+    age_s
+        Since it was heard there.
+    """
+
+    number: int
+    motion: Motion
+    stop_enu_m: Vec3
+    age_s: float
+
+
+@dataclass(frozen=True, slots=True)
 class WatchRules:
     """What the pilot may choose, and what is known besides the vehicle's state.
 
@@ -119,10 +147,13 @@ class WatchRules:
         Say so when the fix is less than RTK float.
     has_other_mission
         The mission on board was read in flight, and is not the one that was uploaded.
+    others
+        Other aircraft in the air.
     """
 
     needs_rtk: bool = False
     has_other_mission: bool = False
+    others: tuple[OtherAircraft, ...] = ()
 
 
 def watched(
@@ -187,18 +218,56 @@ def _impostor(
 def _distance(
     watch: Watch, state: VehicleState, around: Surroundings, now_s: float, rules: WatchRules
 ) -> Iterator[Watched]:
-    motion = _flying(state, now_s)
+    motion = motion_in_air(state, now_s)
     if motion is None:
         return
     limit_m = around.space.min_distance_m - DISTANCE_TOLERANCE_M
-    # A mission brakes by itself before each waypoint; only without one does the pilot's reaction count.
-    end = stop_point(motion, around.aircraft.max_acceleration_m_s2, 0.0 if _flies_mission(state) else REACTION_S)
+    end = stop_of(state, motion, around)
     ahead_m = around.facade_distance_m(motion.position_enu_m, end)
     here_m = around.facade_distance_m(motion.position_enu_m, motion.position_enu_m)
     severity = Severity.ERROR if here_m < limit_m else Severity.WARNING
     text = say("the facade is {:.1f} m away and will be {:.1f} m away where the aircraft can stop", here_m, ahead_m)
     excess_m = limit_m - ahead_m
     yield Watched("facade-distance", severity, text, excess_m, DISTANCE_SLACK_M, ahead_m, limit_m, "m")
+
+
+def _apart(
+    watch: Watch, state: VehicleState, around: Surroundings, now_s: float, rules: WatchRules
+) -> Iterator[Watched]:
+    """Distance to the nearest other aircraft, and whether all of them are heard."""
+    motion = motion_in_air(state, now_s)
+    if motion is None or not rules.others:
+        return
+    silent = max(rules.others, key=lambda other: other.age_s)
+    text = say(
+        "aircraft {} was last heard {:.0f} s ago: the distance to it is not watched", silent.number, silent.age_s
+    )
+    excess_s = silent.age_s - STALE_S
+    yield Watched("aircraft-unheard", Severity.WARNING, text, excess_s, 0.0, silent.age_s, STALE_S, "s")
+    heard = [other for other in rules.others if other.age_s <= STALE_S]
+    if not heard:
+        return
+    limit_m = around.rules.apart_m - APART_TOLERANCE_M
+    end = stop_of(state, motion, around)
+    ahead_m, other = min(((ways_apart_m(motion.position_enu_m, end, each), each) for each in heard), key=lambda p: p[0])
+    here_m = min(math.dist(motion.position_enu_m, each.motion.position_enu_m) for each in heard)
+    severity = Severity.ERROR if here_m < limit_m else Severity.WARNING
+    text = say(
+        "aircraft {} is {:.1f} m away; where both can stop it may be {:.1f} m",
+        *(other.number, math.dist(motion.position_enu_m, other.motion.position_enu_m), ahead_m),
+    )
+    yield Watched("aircraft-apart", severity, text, limit_m - ahead_m, APART_SLACK_M, ahead_m, limit_m, "m")
+
+
+def stop_of(state: VehicleState, motion: Motion, around: Surroundings) -> Vec3:
+    """Where an aircraft in the air can come to rest; a mission brakes by itself, else the pilot's reaction counts."""
+    return stop_point(motion, around.aircraft.max_acceleration_m_s2, 0.0 if _flies_mission(state) else REACTION_S)
+
+
+def ways_apart_m(start_enu_m: Vec3, end_enu_m: Vec3, other: OtherAircraft) -> float:
+    """Smallest distance of a straight way to the other aircraft's way to where it can stop, whoever is where first."""
+    ends = (start_enu_m, end_enu_m, other.motion.position_enu_m, other.stop_enu_m)
+    return math.sqrt(segment_segment_d2(*(np.array(end, np.float64) for end in ends)))
 
 
 def _wind(
@@ -221,7 +290,7 @@ def _battery(
     if level is None:
         return
     reserve = around.rules.battery_reserve
-    motion = _flying(state, now_s)
+    motion = motion_in_air(state, now_s)
     home = 0.0 if motion is None else around.way_home_s(motion.position_enu_m) / around.aircraft.endurance_s
     needed = reserve + home
     if level <= reserve:
@@ -243,10 +312,10 @@ def _battery(
 def _airspace(
     watch: Watch, state: VehicleState, around: Surroundings, now_s: float, rules: WatchRules
 ) -> Iterator[Watched]:
-    motion = _flying(state, now_s)
+    motion = motion_in_air(state, now_s)
     if motion is None:
         return
-    end = stop_point(motion, around.aircraft.max_acceleration_m_s2, 0.0 if _flies_mission(state) else REACTION_S)
+    end = stop_of(state, motion, around)
     room_m = around.airspace_room_m(end)
     here_m = around.airspace_room_m(motion.position_enu_m)
     severity = Severity.ERROR if here_m < 0.0 else Severity.WARNING
@@ -354,7 +423,7 @@ def _photos(
 def _deviation(
     watch: Watch, state: VehicleState, around: Surroundings, now_s: float, rules: WatchRules
 ) -> Iterator[Watched]:
-    motion = _flying(state, now_s)
+    motion = motion_in_air(state, now_s)
     if motion is None or not _flies_mission(state):
         return
     off_m = around.off_path_m(motion.position_enu_m)
@@ -375,7 +444,7 @@ def _board(
 Rule = Callable[[Watch, VehicleState, Surroundings, float, WatchRules], Iterator[Watched]]
 
 _RULES: tuple[Rule, ...] = (
-    *(_link, _impostor, _position, _board, _distance, _airspace, _gnss),
+    *(_link, _impostor, _position, _board, _distance, _apart, _airspace, _gnss),
     *(_battery, _wind, _deviation, _gimbal, _photos),
 )
 
@@ -393,7 +462,7 @@ def _passed(watch: Watch, state: VehicleState, around: Surroundings, now_s: floa
             yield expected.viewpoint_id, known.get(expected.viewpoint_id, now_s)
 
 
-def _flying(state: VehicleState, now_s: float) -> Motion | None:
+def motion_in_air(state: VehicleState, now_s: float) -> Motion | None:
     """Motion of a vehicle that is in the air, where it is known."""
     if state.motion is None or state.motion.age_s(now_s) > STALE_S or not state.is_armed:
         return None

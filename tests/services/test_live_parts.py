@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from groundstation.services.fly.events import LinkState, Request, ViewState
-from groundstation.services.fly.flight import LiveCoverage, matching_view
+from groundstation.services.fly.fleet import LiveCoverage, matching_view
 from groundstation.services.fly.options import (
     ConnectionChoice,
     FlightSettings,

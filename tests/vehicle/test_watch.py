@@ -20,11 +20,23 @@ from groundstation.vehicle.state import (
     VehicleState,
 )
 from groundstation.vehicle.surroundings import ExpectedPhoto, Surroundings
-from groundstation.vehicle.watch import HOLD_S, PHOTO_LATE_S, Watch, WatchRules, stop_point, watched
+from groundstation.vehicle.watch import (
+    APART_TOLERANCE_M,
+    HOLD_S,
+    PHOTO_LATE_S,
+    STALE_S,
+    OtherAircraft,
+    Watch,
+    WatchRules,
+    stop_point,
+    watched,
+    ways_apart_m,
+)
 from missions.flight.record import TakenPhoto
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.messages import Address
 from planning.base.findings import Severity
+from planning.base.messages import plain
 from planning.parameters import FlightRules
 from planning.plan import Aircraft
 from planning.site.bundled import single_panel
@@ -320,3 +332,58 @@ def test_a_stuck_gimbal_is_told_at_the_second_photo_that_looks_elsewhere(around,
     right = tuple(TakenPhoto(n, float(n), places[n], 0.0, pitch + 0.5) for n, pitch in enumerate(planned))
     told = {w.code for w in watched(Watch(), flying(places[-1], photos=right), space, 100.0).warnings}
     assert "gimbal" not in told
+
+
+def beside(place, velocity=(0.0, 0.0, 0.0), age_s=0.0, number=2):
+    motion = Motion(tuple(map(float, place)), tuple(map(float, velocity)), 20.0)
+    return OtherAircraft(number, motion, stop_point(motion, AIRCRAFT.max_acceleration_m_s2, 0.0), age_s)
+
+
+def apart(around, place, other, velocity=(0.0, 0.0, 0.0), now_s=100.0, **changes):
+    rules = WatchRules(others=(other,))
+    found = watched(Watch(), flying(place, velocity, now_s=now_s, **changes), around, now_s, rules).warnings
+    return {warning.code: warning for warning in found}
+
+
+def test_another_aircraft_is_warned_of_where_both_can_stop_and_is_danger_once_it_is_near(around, outwards):
+    centre, normal = outwards
+    here, limit_m = centre + 20.0 * normal, RULES.apart_m - APART_TOLERANCE_M
+    away = here + np.array([0.0, 0.0, limit_m + 4.0])
+    assert "aircraft-apart" not in apart(around, here, beside(away))
+    # 5 m/s are stopped after 5 m at 2.5 m/s^2: 4 + limit - 5 m from here.
+    (found,) = (apart(around, here, beside(away, (0.0, 0.0, -5.0)))[each] for each in ["aircraft-apart"])
+    assert found.severity is Severity.WARNING
+    assert found.value == pytest.approx(limit_m - 1.0)
+    assert "aircraft 2 is" in found.text
+    near = apart(around, here, beside(here + np.array([0.0, 0.0, limit_m - 0.1])))["aircraft-apart"]
+    assert near.severity is Severity.ERROR
+    crossing = apart(around, here, beside(away, (0.0, 0.0, -5.0)), (0.0, 0.0, 4.0))["aircraft-apart"]
+    assert crossing.value < found.value
+
+
+def test_on_the_ground_nobody_is_too_near_and_who_is_not_heard_is_named(around, outwards):
+    centre, normal = outwards
+    here = centre + 20.0 * normal
+    assert not apart(around, here, beside(here), landed=Timed(Landed.ON_GROUND, 100.0))
+    silent = apart(around, here, beside(here, age_s=STALE_S + 3.0, number=3))
+    assert set(silent) == {"aircraft-unheard"}
+    assert "aircraft 3 was last heard 8 s ago" in plain(silent["aircraft-unheard"].text)
+
+
+@given(
+    st.lists(st.floats(-20.0, 20.0), min_size=12, max_size=12),
+    st.booleans(),
+)
+@settings(max_examples=60, deadline=None)
+def test_ways_to_where_aircraft_stop_are_no_further_apart_than_any_points_of_them(numbers, is_paused):
+    place, velocity, other, towards = np.array(numbers).reshape(4, 3)
+    start = Motion(tuple(place), tuple(0.3 * velocity), 0.0)
+    end = stop_point(start, 2.5, 1.5 if is_paused else 0.0)
+    known = beside(other, 0.3 * towards)
+    found = ways_apart_m(start.position_enu_m, end, known)
+    share = np.linspace(0.0, 1.0, 101)[:, None]
+    one = place + share * (np.array(end) - place)
+    two = other + share * (np.array(known.stop_enu_m) - other)
+    sampled = np.linalg.norm(one[:, None] - two, axis=-1).min()
+    assert found <= sampled + 1e-9
+    assert found >= sampled - 0.5 * (np.linalg.norm(one[1] - one[0]) + np.linalg.norm(two[1] - two[0])) - 1e-9

@@ -237,6 +237,7 @@ class FlightButtons(QWidget):
         super().__init__(parent)
         self._actions: dict[Request, QAction] = {}
         self._buttons: dict[Request, QPushButton] = {}
+        self._number: int | None = None
         layout = self._grid = QGridLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         for request, text, key, tip in self._rows():
@@ -270,6 +271,18 @@ class FlightButtons(QWidget):
             # Not End, the neighbour of Home: one is no slip of the other.
             (Request.LAND, self.tr("Land"), "Ctrl+Shift+L", self.tr("Land here and now")),
         )
+
+    def set_aircraft(self, number: int | None) -> None:
+        """Say on Return and Land which of several aircraft they are for; None where there is one."""
+        if number == self._number:
+            return
+        self._number = number
+        for request, text, _, _ in self._rows():
+            if request in (Request.RETURN, Request.LAND):
+                button = self._buttons[request]
+                button.setText(text if number is None else self.tr("{0}: {1}").format(number, text))
+                button.setAccessibleName("" if number is None else self.tr("Aircraft {0}: {1}").format(number, text))
+        self._fit()
 
     def set_allowed(self, allowed: frozenset[Request]) -> None:
         """Enable what can be asked for."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from PySide6.QtCore import QMargins, QObject, QRect, QSignalBlocker, Qt, Signal
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QPushButton, QSizePolicy, QVBoxLayout, QWidget
 
@@ -10,7 +12,7 @@ from groundstation.gui.fly.instruments import AttitudeView, FlightFigures
 from groundstation.gui.fly.live_camera import LiveCamera
 from groundstation.gui.shared_view import SharedView, SharedViewPage
 from groundstation.gui.widgets.theme import colours
-from groundstation.services.fly.announce import ordered_warnings
+from groundstation.services.fly.announce import AgedWarning, ordered_warnings
 from groundstation.services.fly.events import LinkState, LiveView
 from groundstation.services.fly.sortie import LiveSortie
 from groundstation.services.units import UnitSystem, minutes_text
@@ -63,7 +65,7 @@ class WarningBanner(QFrame):
         row.setSpacing(4)
         row.addLayout(texts, 1)
         row.addWidget(self.mute, 0, Qt.AlignmentFlag.AlignTop)
-        self.set_view(None)
+        self.set_warnings(())
 
     def set_units(self, units: UnitSystem) -> None:
         """Show lengths in other units."""
@@ -76,14 +78,15 @@ class WarningBanner(QFrame):
         del blocker
         self.mute.setVisible(has_voice)
 
-    def set_view(self, view: LiveView | None) -> bool:
-        """Show the warnings of a flight as it stands; returns whether another size is needed."""
-        warnings = () if view is None else ordered_warnings(view.warnings)
+    def set_warnings(self, aged: Sequence[AgedWarning]) -> bool:
+        """Show these warnings; returns whether another size is needed."""
+        ages_s = {each.warning.code: each.age_s for each in aged}
+        warnings = ordered_warnings([each.warning for each in aged])
         before = [(label.isHidden(), label.text()) for label in (*self._labels, self._more)]
         for number, label in enumerate(self._labels):
             label.setVisible(number < len(warnings))
-            if number < len(warnings) and view is not None:
-                self._fill(label, warnings[number], _age_s(warnings[number], view))
+            if number < len(warnings):
+                self._fill(label, warnings[number], ages_s[warnings[number].code])
             else:
                 label.setText("")
         n_more = len(warnings) - MAX_SHOWN
@@ -119,14 +122,6 @@ class WarningBanner(QFrame):
             label.setStyleSheet(style)
 
 
-def _age_s(warning: FlightWarning, view: LiveView) -> float:
-    """How long a warning has been shown, by the clock of the link."""
-    heartbeat = view.state.heartbeat
-    if heartbeat is None or view.silent_s is None:
-        return 0.0
-    return max(0.0, heartbeat.time_s + view.silent_s - warning.since_s)
-
-
 class FlightOverlay(QObject):
     """Lays it over a shared view, and keeps the view's own marks free of it."""
 
@@ -136,6 +131,7 @@ class FlightOverlay(QObject):
         self.figures, self.attitude = FlightFigures(shared_view), AttitudeView(shared_view)
         self.banner, self.camera = WarningBanner(shared_view), LiveCamera(shared_view)
         self._view: LiveView | None = None
+        self._warnings: tuple[AgedWarning, ...] = ()
         self._is_shown = self._has_sides = self._is_stale = False
         self._is_large = False
         self._n_drawn = 0
@@ -168,6 +164,10 @@ class FlightOverlay(QObject):
         """The flight as it stands; drawn with the next `draw`."""
         self._view, self._is_stale = view, True
 
+    def set_warnings(self, warnings: tuple[AgedWarning, ...]) -> None:
+        """The warnings of all flights; drawn with the next `draw`."""
+        self._warnings, self._is_stale = warnings, True
+
     def show(self, *, is_shown: bool, has_sides: bool = True) -> None:
         """Appear or go; without its sides there are warnings alone, for the lists have the figures, too."""
         if (is_shown, has_sides) != (self._is_shown, self._has_sides):
@@ -190,7 +190,7 @@ class FlightOverlay(QObject):
             attitude = None if state is None or state.attitude is None else state.attitude.value
             pointing = None if state is None or state.camera is None else state.camera.value
             self.attitude.set_angles(attitude, pointing, is_old=view is not None and view.link is LinkState.LOST)
-            if self.banner.set_view(view) or is_wider:
+            if self.banner.set_warnings(self._warnings) or is_wider:
                 self._place()
         if self.camera.isVisible():
             self.camera.show_video()

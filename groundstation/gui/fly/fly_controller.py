@@ -6,17 +6,19 @@ Events of a flight come from its thread as Qt signals, in the window's thread; n
 from __future__ import annotations
 
 import itertools
-import math
-from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from groundstation.gui.application.context import ApplicationContext
+from groundstation.gui.fly.after_flight import AfterFlight, ItemLimit
+from groundstation.gui.fly.live_aircraft import ActiveFlight, LiveAircraft, n_aircraft, sortie_of
 from groundstation.gui.fly.signing_controller import SigningController
 from groundstation.gui.fly.simulation_controller import SimulationController
+from groundstation.services.fly.announce import AgedWarning, aged_warnings
 from groundstation.services.fly.connection import Connection, VehicleAt, flights_folder
 from groundstation.services.fly.corrections import Corrections
 from groundstation.services.fly.events import (
@@ -35,6 +37,7 @@ from groundstation.services.fly.events import (
     WarningCleared,
     WarningRaised,
 )
+from groundstation.services.fly.fleet import Fleet, ReturnAll
 from groundstation.services.fly.flight import LiveFlight
 from groundstation.services.fly.flying import report_of_log
 from groundstation.services.fly.joystick import JoystickButtons, joystick_path, read_joystick_buttons
@@ -42,6 +45,7 @@ from groundstation.services.fly.options import (
     ConnectionChoice,
     FlightSettings,
     LinkKind,
+    beside,
     choice_path,
     flight_settings_path,
     read_choice,
@@ -49,278 +53,19 @@ from groundstation.services.fly.options import (
 )
 from groundstation.services.fly.readouts import BEFORE_TAKE_OFF, flight_state
 from groundstation.services.fly.signing import link_signer
-from groundstation.services.fly.sortie import LiveSortie, is_same_place, prepare_sortie
+from groundstation.services.fly.sortie import LiveSortie, prepare_sortie
 from groundstation.services.jobs.runner import JobContext
-from groundstation.services.mission.readiness import TooLong, split_to_fit, too_long
-from groundstation.services.plan.top_up import flown_plan, resume_flight, top_up_flight
-from groundstation.services.project.document import Document, PlanEntry
+from groundstation.services.mission.readiness import TooLong
 from groundstation.services.project.steps import FlightState
 from groundstation.services.settings import write_preferences
 from groundstation.services.site.edits import move_home
 from groundstation.vehicle.preflight import stands_enu_m
 from groundstation.vehicle.setup import ParameterChange
-from groundstation.vehicle.state import VehicleText
-from missions.flight.flight_file import flight_of
-from missions.flight.record import FlightRecord
-from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.ntrip import caster_of
-from missions.mission.resume import Resumed
 from planning.base.errors import InputError
-from planning.base.findings import Finding, Severity
+from planning.base.findings import Severity
 from planning.checks.case import Case
-from planning.geo.frames import Vec3
 from planning.plan import Plan
-from planning.revision.top_up import TopUp, TopUpRequest
-from planning.site.records import SiteModel
-
-# What is known of the flight that is shown, also after it ended.
-
-
-@dataclass(slots=True)
-class ActiveFlight:
-    """Grows as the flight tells.
-
-    Parameters
-    ----------
-    track_enu_m
-        Where the aircraft was, ten times a second at most.
-    link_problem
-        Why both ends of an open link do not understand each other; empty where nothing shows it.
-    photos
-        By the view that they are of.
-    notes
-        What happened: how long after take-off (None on the ground), how severe, and the text.
-    took_off_s
-        When the motors started, by the vehicle's own clock; None on the ground.
-    """
-
-    sortie: LiveSortie
-    view: LiveView | None = None
-    link: LinkState = LinkState.OPENING
-    link_problem: str = ""
-    track_enu_m: list[Vec3] = field(default_factory=list)
-    photos: dict[str, PhotoCounted] = field(default_factory=dict)
-    counted: PhotoCounted | None = None
-    ended: FlightEnded | None = None
-    notes: list[tuple[float | None, Severity, str]] = field(default_factory=list)
-    last_text_s: float = -math.inf
-    battery: float | None = None
-    took_off_s: float | None = None
-
-    def take_view(self, view: LiveView) -> tuple[VehicleText, ...]:
-        """The flight as it stands now; returns the autopilot's texts that are new."""
-        self.view = view
-        state = view.state
-        if self.took_off_s is None and state.is_armed:
-            self.took_off_s = state.boot_time_s
-        if state.motion is not None and view.link is LinkState.ALIVE:
-            place = state.motion.value.position_enu_m
-            if not self.track_enu_m or self.track_enu_m[-1] != place:
-                self.track_enu_m.append(place)
-        if view.readouts.battery is not None:
-            self.battery = view.readouts.battery
-        # Those that a state keeps are the last ones of all.
-        texts = tuple(text for text in state.texts if text.time_s > self.last_text_s)
-        if texts:
-            self.last_text_s = texts[-1].time_s
-        return texts
-
-    def since_take_off_s(self, view: LiveView) -> float | None:
-        """How long the motors have been running, as plans and reports count; None on the ground."""
-        now_s = view.state.boot_time_s
-        return None if self.took_off_s is None or now_s is None else max(0.0, now_s - self.took_off_s)
-
-    def take_photo(self, counted: PhotoCounted) -> None:
-        """A photo was taken."""
-        self.counted = counted
-        if counted.view_id:
-            self.photos[counted.view_id] = counted
-
-
-# What comes after a flight, as new plans: a top-up for what it missed, or the rest of an interrupted sortie.
-
-MOST_BATTERIES = 20
-"""Full batteries that a top-up may take at most; more than anybody has with them."""
-
-
-class AfterFlight(QObject):
-    """Keeps what was flown of each plan, and plans what is left, as jobs.
-
-    Signals
-    -------
-    restFound(TopUp)
-        So little is missing that a flight for it wants a decision; `take` makes it a plan.
-    """
-
-    restFound = Signal(object)  # noqa: N815  (Qt's own way of naming)
-
-    def __init__(self, context: ApplicationContext, parent: QObject) -> None:
-        super().__init__(parent)
-        self._context = context
-        self._flown: dict[int, tuple[Plan, tuple[FlightRecord, ...]]] = {}
-        self._last: tuple[Plan, SiteModel] | None = None
-        self._battery: float | None = None
-        self._on_board: tuple[Plan, float] | None = None
-
-    def flown(self, plan: Plan) -> tuple[FlightRecord, ...]:
-        """What was flown of a plan since the program was started."""
-        _, records = self._flown.get(id(plan), (plan, ()))
-        return records
-
-    def add(self, plan: Plan, site_model: SiteModel, record: FlightRecord, battery: float | None) -> None:
-        """A sortie of a plan was flown over a site; `battery` is what it left of the charge, 1 full."""
-        self._flown[id(plan)] = (plan, (*self.flown(plan), record))
-        self._last, self._battery = (plan, site_model), battery
-        self._on_board = None
-
-    def correct(self, plan: Plan, record: FlightRecord) -> None:
-        """The sortie that was flown last, as the vehicle's own log tells it: what the link lost is in it."""
-        known = self.flown(plan)
-        if known:
-            told = replace(record, sortie=known[-1].sortie, vehicle=known[-1].vehicle)
-            self._flown[id(plan)] = (plan, (*known[:-1], told))
-
-    def charge(self, plan: Plan, number: int) -> float:
-        """Charge of the battery that a sortie, from 1, begins with, 1 full: of a top-up, what the flight before left.
-
-        Further sorties, other plans, and a top-up that is flown again have a full one.
-        """
-        if self._on_board is None or number != 1:
-            return 1.0
-        top_up, battery = self._on_board
-        return battery if top_up is plan else 1.0
-
-    def top_up(self) -> None:
-        """Plan the shortest flight that closes what is missing, with the battery that is left, as a new plan."""
-        flown = self._flown_here()
-        if flown is None:
-            return
-        plan, site_model, records = flown
-        battery = self._battery
-        # Full ones come into it where the one on board does not suffice.
-        request = TopUpRequest(battery=battery, n_batteries=None if battery is None else MOST_BATTERIES)
-
-        def work(context: JobContext) -> tuple[TopUp, tuple[Finding, ...]]:
-            found = flown_plan(flight_of(plan, site_model, records), plan, site_model)
-            return top_up_flight(found, request, monitor=context)
-
-        def done(result: tuple[TopUp, tuple[Finding, ...]]) -> None:
-            found, findings = result
-            for finding in findings:
-                self._context.say(finding.severity, self._context.localized(finding.message))
-            if found.wanted == 0:
-                self._context.say(Severity.OK, self.tr("Nothing is missing: the photos show all that was planned."))
-            elif found.is_negligible and found.plan is not None:
-                self.restFound.emit(found)
-            else:
-                self.take(found)
-
-        self._context.start(self.tr("Top-up flight"), work, done)
-
-    def take(self, found: TopUp) -> None:
-        """Make a top-up a plan of the project."""
-        if found.plan is None:
-            return
-        battery = self._battery
-        text = self.tr("Top-up planned, photos: {0}; it closes {1} of {2} missing sections").format(
-            len(found.plan.viewpoints), found.closed, found.wanted
-        )
-        on_board = found.on_board and battery is not None
-        needed = (
-            self.tr("Fly it before the battery is changed.")
-            if on_board and len(found.plan.sorties) == 1
-            else self.tr("Fly the first sortie before the battery is changed, the others with full ones.")
-            if on_board
-            else self.tr("It needs a full battery: change it first.")
-        )
-        self._add_plan(self.tr("Top-up"), found.plan, self.tr("{0}. {1}").format(text, needed))
-        self._on_board = (found.plan, battery) if on_board and battery is not None else None
-
-    def resume_sortie(self) -> None:
-        """Plan the rest of the sortie that was interrupted, for a full battery, as a new plan."""
-        flown = self._flown_here()
-        if flown is None:
-            return
-        plan, site_model, records = flown
-
-        def work(context: JobContext) -> Resumed:
-            found = flown_plan(flight_of(plan, site_model, records), plan, site_model)
-            return resume_flight(found, monitor=context)
-
-        def done(rest: Resumed) -> None:
-            text = self.tr("Rest of sortie {0} planned, photos: {1}. It needs a full battery: change it first.").format(
-                rest.mission.number, len(rest.plan.viewpoints)
-            )
-            self._add_plan(self.tr("Rest of sortie {0}").format(rest.mission.number), rest.plan, text)
-
-        self._context.start(self.tr("Resume sortie"), work, done)
-
-    def _flown_here(self) -> tuple[Plan, SiteModel, tuple[FlightRecord, ...]] | None:
-        """The plan that was flown last, the site as it is now, and all that was flown of the plan."""
-        site_model = self._context.document.site
-        if self._last is None or site_model is None:
-            return None
-        plan, flown_over = self._last
-        if not is_same_place(flown_over.site, site_model.site):
-            text = self.tr("This flight was over the site {0}: open its project first.").format(flown_over.site.name)
-            self._context.say(Severity.WARNING, text)
-            return None
-        return plan, site_model, self.flown(plan)
-
-    def _add_plan(self, title: str, plan: Plan, text: str) -> None:
-        document: Document = self._context.document
-        entry = PlanEntry(document.free_plan_id(), title, plan)
-        self._context.change(title, document.with_plan(entry))
-        self._context.say(Severity.OK, text)
-
-
-# Plans with more photos in a sortie than the autopilot keeps items for: found, and shared out anew as a plan.
-
-
-class ItemLimit(QObject):
-    """Works on the current plan of the document."""
-
-    def __init__(self, context: ApplicationContext, parent: QObject) -> None:
-        super().__init__(parent)
-        self._context = context
-
-    def exceeded(self, choice: ConnectionChoice) -> TooLong | None:
-        """Whether a sortie has more photos than the autopilot, or any that may answer at a link, has room for."""
-        entry = self._context.document.current
-        if entry is None:
-            return None
-        is_simulation = choice.kind is LinkKind.SIMULATION
-        return too_long(entry.plan, [choice.autopilot] if is_simulation else tuple(Autopilot))
-
-    def share_out(self, found: TooLong, then: Callable[[], None]) -> int:
-        """Share the views out among sorties that fit, as a plan of its own; returns the job's number, 0 for none.
-
-        Parameters
-        ----------
-        then
-            Called once that is the current plan.
-        """
-        site_model, entry = self._context.document.site, self._context.document.current
-        if site_model is None or entry is None:
-            return 0
-
-        def work(context: JobContext) -> Plan:
-            return split_to_fit(entry.plan, site_model, found, context)
-
-        def done(anew: Plan) -> None:
-            document = self._context.document
-            if document.site is not site_model:
-                return
-            title = self.tr("{0}, shared out").format(entry.title)
-            added = document.with_plan(PlanEntry(document.free_plan_id(), title, anew))
-            self._context.change(self.tr("Share views out"), added)
-            text = self.tr("Views shared out anew, sorties: {0}").format(len(anew.sorties))
-            self._context.say(Severity.OK, text)
-            then()
-
-        job_id: int = self._context.start(self.tr("Share views out"), work, done).id
-        return job_id
-
 
 BEFORE_FLIGHT = (Request.UPLOAD, Request.START)
 
@@ -329,7 +74,9 @@ CLOSE_S = 5.0
 
 
 class FlyController(QObject):
-    """One vehicle at a time.
+    """One vehicle, or one for each aircraft of a plan that flies several at once; one of them is selected.
+
+    What is asked for is asked of the selected one, and the signals below but for the last two tell of it alone.
 
     Signals
     -------
@@ -339,6 +86,10 @@ class FlyController(QObject):
         As the flight publishes them.
     noted(object, Severity, str)
         Something to be remembered: how long after take-off (None on the ground), how severe, and the text.
+    aircraftSelected()
+        Another one is selected.
+    fleetChanged()
+        Something of any aircraft has changed, or there are more or fewer.
     """
 
     stateChanged = Signal()  # noqa: N815  (Qt's own way of naming)
@@ -347,27 +98,30 @@ class FlyController(QObject):
     linkChanged = Signal(object)  # noqa: N815
     flightEnded = Signal(object)  # noqa: N815
     noted = Signal(object, object, str)
+    aircraftSelected = Signal()  # noqa: N815
+    fleetChanged = Signal()  # noqa: N815
     _published = Signal(int, object)
 
     def __init__(self, context: ApplicationContext) -> None:
         super().__init__(context)
         self._context = context
-        self._flight: LiveFlight | None = None
         self._ids = itertools.count(1)
-        self._flight_id = 0
         self._case: Case | None = None
-        self._preparing_id = 0
-        self.choice = read_choice(choice_path(), self._say_soon)
-        self.settings = read_flight_settings(flight_settings_path(), self._say_soon)
+        choice = read_choice(choice_path(), self._say_soon)
+        settings = read_flight_settings(flight_settings_path(), self._say_soon)
+        self._aircraft = {1: LiveAircraft(1, choice, settings)}
+        self._selected = 1
+        self._returning = ReturnAll()
         self.joystick = read_joystick_buttons(joystick_path(), self._say_soon)
         self.simulation, self.limit = SimulationController(context, self), ItemLimit(context, self)
-        self.number, self.corrections_password = 1, ""
-        self.active: ActiveFlight | None = None
+        self.corrections_password = ""
         self.after, self.signing = AfterFlight(context, self), SigningController(context, self)
         self._published.connect(self._take)
-        context.count_as_busy(lambda: self.is_in_flight)
+        context.count_as_busy(lambda: self.is_any_in_flight)
         self.stateChanged.connect(self._tell_state)
-        context.documentChanged.connect(lambda *_: self._tell_state())
+        self._shown_plan = self.plan
+        self._assign()
+        context.documentChanged.connect(self._document_changed)
 
     @classmethod
     def of(cls, context: ApplicationContext) -> FlyController:
@@ -384,24 +138,126 @@ class FlyController(QObject):
         return None if document.site is None or document.current is None else document.current.plan
 
     @property
+    def aircraft(self) -> tuple[LiveAircraft, ...]:
+        """All that the shown plan flies with, and that are connected, by their numbers."""
+        n_shown = max([n_aircraft(self.plan), *(n for n, each in self._aircraft.items() if each.flight is not None)])
+        for number in range(1, n_shown + 1):
+            if number not in self._aircraft:
+                self._aircraft[number] = self._made(number)
+        return tuple(self._aircraft[number] for number in range(1, n_shown + 1))
+
+    @property
+    def selected(self) -> LiveAircraft:
+        """The aircraft that the screen shows in full."""
+        return self._aircraft[self._selected]
+
+    @property
+    def active(self) -> ActiveFlight | None:
+        """The last flight of the selected aircraft."""
+        return self.selected.active
+
+    @property
+    def choice(self) -> ConnectionChoice:
+        """How the selected aircraft is reached."""
+        return self.selected.choice
+
+    @property
+    def settings(self) -> FlightSettings:
+        """What the pilot chose for the selected aircraft."""
+        return self.selected.settings
+
+    @property
+    def number(self) -> int:
+        """Sortie, from 1, that the selected aircraft flies next."""
+        return self.selected.sortie_number
+
+    @property
     def is_connected(self) -> bool:
+        """Whether a link to the selected aircraft is open, or being opened."""
+        return self.selected.flight is not None
+
+    @property
+    def is_any_connected(self) -> bool:
         """Whether a link is open, or being opened."""
-        return self._flight is not None
+        return any(each.flight is not None for each in self._aircraft.values())
 
     @property
     def is_for_shown_plan(self) -> bool:
         """Whether the connection was made for the plan that is shown; only that one may be uploaded and started."""
-        return self.active is not None and self.active.sortie.case.plan is self.plan
+        return self.selected.flies(self.plan)
 
     @property
     def is_preparing(self) -> bool:
         """Whether a connection is about to be made."""
-        return self._runs(self._preparing_id)
+        return self._runs(self.selected.job_id)
 
     @property
     def is_in_flight(self) -> bool:
+        """Whether the selected aircraft is in the air, as far as is known."""
+        return self.selected.is_in_flight
+
+    @property
+    def is_any_in_flight(self) -> bool:
         """Whether an aircraft is in the air, as far as is known."""
-        return self._flight is not None and self._flight.is_in_flight
+        return any(each.is_in_flight for each in self._aircraft.values())
+
+    def select(self, number: int) -> None:
+        """Show another aircraft in full, and ask it from now on."""
+        if number != self._selected and any(each.number == number for each in self.aircraft):
+            self._selected = number
+            self._tell_state()
+            self.aircraftSelected.emit()
+
+    def views(self) -> dict[int, LiveView]:
+        """The flights of all connected aircraft as they stand, by number."""
+        return {each.number: each.view for each in self._aircraft.values() if each.view is not None}
+
+    def warnings(self) -> tuple[AgedWarning, ...]:
+        """Warnings of all connected aircraft; of several, each with its number."""
+        views = self.views()
+        several = len(self.aircraft) > 1
+        return tuple(
+            aged for number, view in sorted(views.items()) for aged in aged_warnings(view, number if several else None)
+        )
+
+    def wait_s(self, aircraft: LiveAircraft) -> float:
+        """How long an aircraft on the ground has to wait for its start, to keep apart from those in the air."""
+        fleet = aircraft.fleet
+        if fleet is None or aircraft.active is None or aircraft.view is None or aircraft.view.state.is_armed:
+            return 0.0
+        in_air, slower = {}, {aircraft.active.sortie.orders.number: aircraft.active.slower}
+        for each in self._aircraft.values():
+            since_s = None if each is aircraft or each.fleet is not fleet else each.since_take_off_s()
+            if each.active is not None and since_s is not None:
+                number = each.active.sortie.orders.number
+                in_air[number], slower[number] = since_s, each.active.slower
+        return fleet.wait_s(aircraft.active.sortie.orders.number, in_air, slower)
+
+    def _made(self, number: int) -> LiveAircraft:
+        """Another aircraft, which is reached beside the first one, and has its own battery and serial number."""
+        first = self._aircraft[1]
+        own = replace(first.settings, serial_number="", battery="", video="")
+        choice = read_choice(choice_path(number), self._say_soon, beside(first.choice, number))
+        settings = read_flight_settings(flight_settings_path(number), self._say_soon, own)
+        return LiveAircraft(number, choice, settings, sortie_of(self.plan, number))
+
+    def _document_changed(self, *_: object) -> None:
+        if self.plan is not self._shown_plan:
+            self._shown_plan = self.plan
+            self._assign()
+        self._tell_state()
+
+    def _assign(self) -> None:
+        """Give each aircraft that is not connected its own sortie of the plan that is shown."""
+        n_sorties = 0 if self.plan is None else len(self.plan.sorties)
+        for each in self.aircraft:
+            is_own = n_aircraft(self.plan) > 1 or each.sortie_number > n_sorties
+            if each.flight is None and is_own:
+                each.sortie_number = sortie_of(self.plan, each.number)
+        if self._selected > len(self.aircraft):
+            self._selected = 1
+            self.aircraftSelected.emit()
+        self.fleetChanged.emit()
 
     def _tell_state(self) -> None:
         """Note where the flight of the plan that is shown stands."""
@@ -417,15 +273,19 @@ class FlyController(QObject):
 
     def set_choice(self, choice: ConnectionChoice) -> None:
         """Connect in another way the next time; kept for the next start of the program too."""
-        self.choice = choice
-        self._keep(choice_path(), choice)
+        self.selected.choice = choice
+        self._keep(choice_path(self._selected), choice)
 
     def set_settings(self, settings: FlightSettings) -> None:
-        """The pilot decided otherwise; kept for the next start of the program too."""
-        self.settings = settings
-        self._keep(flight_settings_path(), settings)
-        if self._flight is not None:
-            self._flight.set_settings(settings)
+        """The pilot decided otherwise; kept for the next start of the program too. Speech is for all aircraft alike."""
+        for each in self.aircraft:
+            is_own = each is self.selected
+            wanted = settings if is_own else replace(each.settings, speaks=settings.speaks)
+            if is_own or wanted != each.settings:
+                each.settings = wanted
+                self._keep(flight_settings_path(each.number), wanted)
+                if each.flight is not None:
+                    each.flight.set_settings(wanted)
 
     def set_joystick(self, buttons: JoystickButtons) -> None:
         """The buttons of the joystick do something else; kept for the next start of the program too."""
@@ -439,7 +299,7 @@ class FlyController(QObject):
     def share_out(self, found: TooLong) -> None:
         """Share the views out among sorties that fit, and connect for that plan."""
         if not self.is_preparing:
-            self._preparing_id = self.limit.share_out(found, self.connect_vehicle)
+            self.selected.job_id = self.limit.share_out(found, self.connect_vehicle)
             self.stateChanged.emit()
 
     def parameter_changes(self) -> tuple[ParameterChange, ...]:
@@ -449,19 +309,19 @@ class FlyController(QObject):
 
     def set_parameters(self, changes: tuple[ParameterChange, ...]) -> None:
         """The pilot agrees that these are set."""
-        if self._flight is not None:
-            self._flight.set_parameters(changes)
+        if self.selected.flight is not None:
+            self.selected.flight.set_parameters(changes)
 
     def overrule(self, code: str) -> None:
         """The pilot overrules a check before take-off, until the next upload."""
-        if self._flight is not None:
-            self._flight.overrule(code)
+        if self.selected.flight is not None:
+            self.selected.flight.overrule(code)
 
     def raise_flight(self, by_m: float) -> None:
         """Fly the same places from a take-off that lies so much lower; to be uploaded again."""
         active = self.active
-        if self._flight is not None and active is not None and self.is_for_shown_plan:
-            self._prepare(self._take_on, active.sortie.orders.raised_m + by_m)
+        if self.is_connected and active is not None and self.is_for_shown_plan:
+            self._prepare(self.selected, self._take_on, active.sortie.orders.raised_m + by_m)
 
     def plan_from_here(self) -> None:
         """Make the place where the aircraft stands the site's home."""
@@ -481,30 +341,71 @@ class FlyController(QObject):
 
     def set_sortie(self, number: int) -> None:
         """Fly another sortie of the plan, from 1; connected, it becomes the next one."""
-        self.number = number
-        if self._flight is not None and self.is_for_shown_plan:
-            self._prepare(self._take_on)
+        aircraft = self.selected
+        before, aircraft.sortie_number = aircraft.sortie_number, number
+        if self.is_connected and self.is_for_shown_plan:
+            if self._is_free(aircraft):
+                self._prepare(aircraft, self._take_on)
+            else:
+                aircraft.sortie_number = before
         self.stateChanged.emit()
 
     def connect_vehicle(self) -> None:
         """Prepare the sortie, then open the link."""
-        if self._flight is None:
-            self._prepare(self._connect)
+        if not self.is_connected and self._is_free(self.selected):
+            self._prepare(self.selected, self._connect)
 
     def disconnect_vehicle(self) -> None:
         """Close the link; the aircraft goes on by itself."""
         self.request(Request.DISCONNECT)
 
     def request(self, request: Request) -> None:
-        """Ask the flight for something."""
-        if self._flight is not None and (self.is_for_shown_plan or request not in BEFORE_FLIGHT):
-            self._flight.request(request)
+        """Ask the selected aircraft for something."""
+        self._returning = self._returning.without(self._selected)
+        self._ask(self.selected, request)
+
+    def return_all(self) -> None:
+        """Ask all in the air to return to home, one after the other, the rest hovering: they all land there."""
+        self._returning, asked = ReturnAll.of(self.views())
+        self._ask_each(asked)
+        for number in self._returning.waiting:
+            self._note(self._aircraft[number], Severity.NOTE, self.tr("returns once the others have landed"))
+
+    def _ask_each(self, asked: Sequence[tuple[int, Request]]) -> None:
+        for number, request in asked:
+            self._ask(self._aircraft[number], request)
+
+    def _ask(self, aircraft: LiveAircraft, request: Request) -> None:
+        if aircraft.flight is not None and (aircraft.flies(self.plan) or request not in BEFORE_FLIGHT):
+            aircraft.flight.request(request)
+
+    def _is_free(self, aircraft: LiveAircraft) -> bool:
+        """Whether no other aircraft has its sortie or its address; says so where one has."""
+        for each in self._aircraft.values():
+            if each is aircraft or each.flight is None:
+                continue
+            is_same = each.flies(self.plan) and each.sortie_number == aircraft.sortie_number
+            text = self.tr("Aircraft {0} has sortie {1} already: choose another sortie.")
+            if (
+                not is_same
+                and aircraft.flight is None
+                and aircraft.choice.url
+                and aircraft.choice.url == each.choice.url
+            ):
+                is_same = True
+                text = self.tr("Aircraft {0} is connected at that address: give this one an address of its own.")
+            if is_same:
+                self._say(Severity.ERROR, text.format(each.number, each.sortie_number), "fleet")
+                return False
+        self._context.withdraw("fleet")
+        return True
 
     def close(self) -> None:
-        """End the flight's thread; what was flown is kept."""
-        flight, self._flight = self._flight, None
-        self._flight_id = 0
-        if flight is not None:
+        """End the flights' threads; what was flown is kept."""
+        flights = [each.flight for each in self._aircraft.values() if each.flight is not None]
+        for each in self._aircraft.values():
+            each.flight, each.flight_id = None, 0
+        for flight in flights:
             flight.close(CLOSE_S)
 
     def _keep(self, path: Path, record: object) -> None:
@@ -517,9 +418,12 @@ class FlyController(QObject):
         """Say it once there is a window that can show it."""
         QTimer.singleShot(0, self, lambda: self._say(Severity.WARNING, text))
 
-    def _prepare(self, then: Callable[[LiveSortie], None], raised_m: float = 0.0) -> None:
-        plan, site_model, number, known = self.plan, self._context.document.site, self.number, self._case
-        if plan is None or site_model is None or self.is_preparing:
+    def _prepare(
+        self, aircraft: LiveAircraft, then: Callable[[LiveAircraft, LiveSortie], None], raised_m: float = 0.0
+    ) -> None:
+        plan, site_model, known = self.plan, self._context.document.site, self._case
+        number = aircraft.sortie_number
+        if plan is None or site_model is None or self._runs(aircraft.job_id):
             return
 
         def work(context: JobContext) -> LiveSortie:
@@ -527,52 +431,56 @@ class FlyController(QObject):
 
         def done(sortie: LiveSortie) -> None:
             self._case = sortie.case
-            then(sortie)
-            self.stateChanged.emit()
+            then(aircraft, sortie)
+            self._state_changed(aircraft)
 
-        self._preparing_id = self._context.start(self.tr("Prepare the flight"), work, done).id
+        aircraft.job_id = self._context.start(self.tr("Prepare the flight"), work, done).id
         self.stateChanged.emit()
 
     def _runs(self, job_id: int) -> bool:
         return any(job.id == job_id for job in self._context.jobs())
 
-    def _take_on(self, sortie: LiveSortie) -> None:
-        active = self.active
-        is_free = active is not None and active.view is not None and active.view.phase in BEFORE_TAKE_OFF
-        if self._flight is not None and is_free and not self.is_in_flight and self.is_for_shown_plan:
-            self._flight.set_next_sortie(sortie)
-            self.active = ActiveFlight(sortie)
+    def _take_on(self, aircraft: LiveAircraft, sortie: LiveSortie) -> None:
+        view = aircraft.view
+        is_free = view is not None and view.phase in BEFORE_TAKE_OFF
+        if aircraft.flight is not None and is_free and not aircraft.is_in_flight and aircraft.flies(self.plan):
+            aircraft.flight.set_next_sortie(sortie)
+            aircraft.active = ActiveFlight(sortie)
 
-    def _connect(self, sortie: LiveSortie) -> None:
-        if self._flight is not None:
+    def _connect(self, aircraft: LiveAircraft, sortie: LiveSortie) -> None:
+        if aircraft.flight is not None:
             return
-        plan = sortie.case.plan
+        plan, number = sortie.case.plan, aircraft.number
         charge = self.after.charge(plan, sortie.orders.number)
-        self._flight_id = flight_id = next(self._ids)
+        aircraft.flight_id = flight_id = next(self._ids)
         for topic in ("link", "flight."):
-            self._context.withdraw(topic)
-        self.active = ActiveFlight(sortie)
-        self._flight = LiveFlight(
+            self._context.withdraw(_topic(aircraft, topic))
+        aircraft.active = ActiveFlight(sortie)
+        folder = flights_folder(self._context.session.folder)
+        beside = (each.fleet for each in self._aircraft.values() if each.flight is not None and each.flies(plan))
+        aircraft.fleet = next(beside, None) or Fleet(sortie.case, folder, self.after.flown(plan))
+        aircraft.flight = LiveFlight(
             sortie,
-            self._connection(sortie, charge),
+            self._connection(sortie, charge, aircraft),
             lambda event: self._published.emit(flight_id, event),
-            flights_folder(self._context.session.folder),
-            flown=self.after.flown(plan),
-            settings=self.settings,
-            corrections=self._corrections_for(sortie),
+            folder,
+            fleet=aircraft.fleet,
+            number=number,
+            settings=aircraft.settings,
+            corrections=self._corrections_for(sortie, aircraft.settings),
         )
-        self._flight.start()
-        self._note(Severity.NOTE, self.tr("connecting"))
-        if charge < 1.0 and self.choice.kind is LinkKind.SIMULATION:
+        aircraft.flight.start()
+        self._note(aircraft, Severity.NOTE, self.tr("connecting"))
+        if charge < 1.0 and aircraft.choice.kind is LinkKind.SIMULATION:
             text = self.tr("simulated battery: {0:.0%}, as the flight before left it").format(charge)
-            self._note(Severity.NOTE, text)
+            self._note(aircraft, Severity.NOTE, text)
 
-    def _corrections_for(self, sortie: LiveSortie) -> Corrections | None:
+    def _corrections_for(self, sortie: LiveSortie, settings: FlightSettings) -> Corrections | None:
         """RTK corrections for a flight, connected; None where none are wanted, or their address is none."""
-        if not self.settings.corrections:
+        if not settings.corrections:
             return None
         try:
-            caster = caster_of(self.settings.corrections)
+            caster = caster_of(settings.corrections)
         except InputError as error:
             self._say(Severity.WARNING, str(error))
             return None
@@ -580,130 +488,158 @@ class FlyController(QObject):
         corrections.start()
         return corrections
 
-    def _connection(self, sortie: LiveSortie, charge: float) -> Connection:
-        choice = self.choice
+    def _connection(self, sortie: LiveSortie, charge: float, aircraft: LiveAircraft) -> Connection:
+        choice = aircraft.choice
         if choice.kind is LinkKind.SIMULATION:
-            return self.simulation.connection(sortie, choice, charge)
+            return self.simulation.connection(sortie, choice, charge, aircraft.number - 1)
         return VehicleAt(choice.url, signer=cache(link_signer) if choice.is_signed else None)
 
     # Events
 
     def _take(self, flight_id: int, event: LiveEvent) -> None:
-        active = self.active
-        if flight_id != self._flight_id or active is None:
+        aircraft = next((each for each in self._aircraft.values() if each.flight_id == flight_id), None)
+        active = None if aircraft is None else aircraft.active
+        if aircraft is None or active is None:
             return
         match event:
             case FlightChanged():
-                self._take_view(active, event.view)
+                self._take_view(aircraft, active, event.view)
             case PhotoCounted():
                 active.take_photo(event)
-                self.photoCounted.emit(event)
+                if aircraft is self.selected:
+                    self.photoCounted.emit(event)
             case LinkChanged():
-                self._take_link(active, event)
+                self._take_link(aircraft, active, event)
             case Answered():
-                self._note(Severity.OK if event.is_accepted else Severity.ERROR, self._words(event.text))
+                severity = Severity.OK if event.is_accepted else Severity.ERROR
+                self._note(aircraft, severity, self._words(event.text))
                 if event.is_accepted:
-                    self._context.withdraw("order")
+                    self._context.withdraw(_topic(aircraft, "order"))
                 else:
-                    self._say(Severity.ERROR, event.text, "order")
+                    self._tell(aircraft, Severity.ERROR, event.text, "order")
             case WarningRaised():
-                self._note(event.warning.severity, self._words(event.warning.text))
-                self._say(event.warning.severity, event.warning.text, f"flight.warning.{event.warning.code}")
+                self._note(aircraft, event.warning.severity, self._words(event.warning.text))
+                topic = f"flight.warning.{event.warning.code}"
+                self._tell(aircraft, event.warning.severity, event.warning.text, topic)
             case WarningCleared():
-                self._context.withdraw(f"flight.warning.{event.code}")
+                self._context.withdraw(_topic(aircraft, f"flight.warning.{event.code}"))
             case LinkProblem():
                 active.link_problem = event.text
-                self._note(Severity.ERROR, self._words(event.text))
-                self._say(Severity.ERROR, event.text, "link")
-                self.stateChanged.emit()
+                self._note(aircraft, Severity.ERROR, self._words(event.text))
+                self._tell(aircraft, Severity.ERROR, event.text, "link")
+                self._state_changed(aircraft)
             case LogProblem():
-                self._note(Severity.WARNING, self._words(event.text))
-                self._say(Severity.WARNING, event.text, "flight.log")
+                self._note(aircraft, Severity.WARNING, self._words(event.text))
+                self._tell(aircraft, Severity.WARNING, event.text, "flight.log")
             case LogFetched():
-                self._take_log(active, event)
+                self._take_log(aircraft, active, event)
             case FlightEnded():
-                self._take_end(active, event)
+                self._take_end(aircraft, active, event)
+        self.fleetChanged.emit()
 
-    def _take_view(self, active: ActiveFlight, view: LiveView) -> None:
+    def _take_view(self, aircraft: LiveAircraft, active: ActiveFlight, view: LiveView) -> None:
         for text in active.take_view(view):
             severity = (
                 Severity.ERROR if text.severity <= 3 else Severity.WARNING if text.severity == 4 else Severity.NOTE
             )
-            self._note(severity, self.tr("autopilot: {0}").format(text.text))
-        self._tell_state()
-        self.viewChanged.emit(view)
+            self._note(aircraft, severity, self.tr("autopilot: {0}").format(text.text))
+        if aircraft is self.selected:
+            self._tell_state()
+            self.viewChanged.emit(view)
+        if self._returning.waiting:
+            self._returning, asked = self._returning.after(self.views())
+            self._ask_each(asked)
 
-    def _take_link(self, active: ActiveFlight, event: LinkChanged) -> None:
+    def _take_link(self, aircraft: LiveAircraft, active: ActiveFlight, event: LinkChanged) -> None:
         before, active.link = active.link, event.link
         text = self._words(event.text)
         if event.link is LinkState.LOST:
-            self._note(Severity.ERROR, self.tr("link lost") if not text else self.tr("link lost: {0}").format(text))
+            words = self.tr("link lost") if not text else self.tr("link lost: {0}").format(text)
+            self._note(aircraft, Severity.ERROR, words)
         elif event.link is LinkState.ALIVE:
-            self._context.withdraw("link")
-            self._note(
-                Severity.OK, self.tr("link alive") if before is not LinkState.LOST else self.tr("link found again")
-            )
+            self._context.withdraw(_topic(aircraft, "link"))
+            words = self.tr("link alive") if before is not LinkState.LOST else self.tr("link found again")
+            self._note(aircraft, Severity.OK, words)
         elif event.link is LinkState.CLOSED:
-            self._note(Severity.NOTE, self.tr("disconnected"))
+            self._note(aircraft, Severity.NOTE, self.tr("disconnected"))
             for topic in ("order", "flight.warning.", "flight.log"):
-                self._context.withdraw(topic)
+                self._context.withdraw(_topic(aircraft, topic))
             if text:
-                self._say(Severity.ERROR, event.text, "link")
-            self._flight = None
-            self.stateChanged.emit()
-        self.linkChanged.emit(event.link)
+                self._tell(aircraft, Severity.ERROR, event.text, "link")
+            aircraft.flight = None
+            self._state_changed(aircraft)
+        if aircraft is self.selected:
+            self.linkChanged.emit(event.link)
 
-    def _take_end(self, active: ActiveFlight, event: FlightEnded) -> None:
+    def _take_end(self, aircraft: LiveAircraft, active: ActiveFlight, event: FlightEnded) -> None:
         active.ended = event
         if event.record is not None:
             case = active.sortie.case
             self.after.add(case.plan, case.site_model, event.record, active.battery)
             flown = {record.sortie for record in self.after.flown(case.plan)}
-            if self.is_for_shown_plan and len(flown) >= len(case.plan.sorties):
+            if case.plan is self.plan and len(flown) >= len(case.plan.sorties):
                 self._context.note(is_flown=True)
             # Only a simulated vehicle tells with which effects it flew.
-            if self.is_for_shown_plan and event.path is not None and event.record.effects:
+            if case.plan is self.plan and event.path is not None and event.record.effects:
                 self._context.note(simulated=event.path)
         if event.error is not None:
-            self._note(Severity.ERROR, self._words(str(event.error)))
-            self._say(Severity.ERROR, str(event.error), "flight.ended")
+            self._note(aircraft, Severity.ERROR, self._words(str(event.error)))
+            self._tell(aircraft, Severity.ERROR, str(event.error), "flight.ended")
         else:
-            self._note(Severity.OK, self.tr("landed"))
+            self._note(aircraft, Severity.OK, self.tr("landed"))
         if event.problem:
-            self._say(Severity.WARNING, event.problem, "flight.kept")
+            self._tell(aircraft, Severity.WARNING, event.problem, "flight.kept")
         active.took_off_s = None
-        self.flightEnded.emit(event)
+        if aircraft is self.selected:
+            self.flightEnded.emit(event)
+        elif event.report is not None:
+            self._tell(aircraft, Severity.OK, self.tr("landed; select it for its report"), "flight.landed")
 
-    def _take_log(self, active: ActiveFlight, event: LogFetched) -> None:
+    def _take_log(self, aircraft: LiveAircraft, active: ActiveFlight, event: LogFetched) -> None:
         """The vehicle's own log is here: report from it."""
         path, case = event.path, active.sortie.case
         if path is None:
-            self._note(Severity.ERROR, self._words(event.problem))
-            self._say(Severity.ERROR, event.problem, "flight.log")
+            self._note(aircraft, Severity.ERROR, self._words(event.problem))
+            self._tell(aircraft, Severity.ERROR, event.problem, "flight.log")
             return
         proof = self.tr("proved by its checksum") if event.is_checked else self.tr("not proved: it knows no checksums")
-        self._note(Severity.OK, self.tr("vehicle's log: {0}, {1}").format(path, proof))
+        self._note(aircraft, Severity.OK, self.tr("vehicle's log: {0}, {1}").format(path, proof))
+        number = active.sortie.orders.number
 
         def work(context: JobContext) -> FlightEnded:
             record, report, out = report_of_log(case, path, context)
-            return FlightEnded(active.sortie.orders.number, None, record, report, out)
+            return FlightEnded(number, None, record, report, out)
 
         def done(ended: FlightEnded) -> None:
-            if self.active is active and ended.record is not None:
+            if aircraft.active is active and ended.record is not None:
                 active.ended = ended
-                self.after.correct(case.plan, ended.record)
+                self.after.correct(case.plan, number, ended.record)
                 self._context.say(Severity.OK, self.tr("The report is made from the vehicle's own log."))
-                self.flightEnded.emit(ended)
+                if aircraft is self.selected:
+                    self.flightEnded.emit(ended)
 
         self._context.start(self.tr("Report"), work, done)
 
-    def _note(self, severity: Severity, text: str) -> None:
-        active = self.active
+    def _state_changed(self, aircraft: LiveAircraft) -> None:
+        if aircraft is self.selected:
+            self.stateChanged.emit()
+        self.fleetChanged.emit()
+
+    def _note(self, aircraft: LiveAircraft, severity: Severity, text: str) -> None:
+        active = aircraft.active
         view = None if active is None else active.view
         when = None if active is None or view is None else active.since_take_off_s(view)
         if active is not None:
             active.notes.append((when, severity, text))
-        self.noted.emit(when, severity, text)
+        if aircraft is self.selected:
+            self.noted.emit(when, severity, text)
+
+    def _tell(self, aircraft: LiveAircraft, severity: Severity, text: str, about: str) -> None:
+        """Say something of an aircraft; of one of several with its number."""
+        words = self._words(text)
+        if len(self.aircraft) > 1:
+            words = self.tr("Aircraft {0}: {1}").format(aircraft.number, words)
+        self._context.say(severity, words, about=_topic(aircraft, about))
 
     def _say(self, severity: Severity, text: str, about: str = "") -> None:
         self._context.say(severity, self._words(text), about=about)
@@ -711,3 +647,8 @@ class FlyController(QObject):
     def _words(self, text: str) -> str:
         words: str = self._context.localized(text)
         return words
+
+
+def _topic(aircraft: LiveAircraft, about: str) -> str:
+    """The topic of a message about an aircraft: what holds for one does not settle what another said."""
+    return about if aircraft.number == 1 else f"aircraft-{aircraft.number}.{about}"

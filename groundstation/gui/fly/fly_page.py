@@ -21,11 +21,13 @@ from PySide6.QtWidgets import (
 from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.application.translate import translated
 from groundstation.gui.fly.connection_box import ConnectionBox
+from groundstation.gui.fly.fleet_box import FleetBox, FleetTexts
 from groundstation.gui.fly.flight_buttons import APART_PX, FlightButtons, PreflightList
 from groundstation.gui.fly.flight_overlay import FlightOverlay
 from groundstation.gui.fly.flight_settings_page import SettingsPage
-from groundstation.gui.fly.fly_controller import BEFORE_FLIGHT, ActiveFlight, FlyController
+from groundstation.gui.fly.fly_controller import BEFORE_FLIGHT, FlyController
 from groundstation.gui.fly.joystick_controller import JoystickController
+from groundstation.gui.fly.live_aircraft import ActiveFlight
 from groundstation.gui.fly.live_pictures import LivePictures, PhotoStrip, ScrolledStrip
 from groundstation.gui.fly.log_book_dialog import LogBookDialog
 from groundstation.gui.fly.questions import FlightQuestions
@@ -146,8 +148,8 @@ class LinkBand(QLabel):
         else:
             self.setParent(page)
 
-    def show_lost(self, silent_s: float | None) -> None:
-        """Appear; `silent_s` since the vehicle was last heard."""
+    def show_lost(self, silent_s: float | None, number: int | None = None) -> None:
+        """Appear; `silent_s` since the vehicle was last heard, `number` of one of several aircraft."""
         look = colours()
         self.setStyleSheet(f"background: {look.error}; color: {look.base};")
         if silent_s is None:
@@ -156,6 +158,8 @@ class LinkBand(QLabel):
             text = self.tr("SIGNAL LOST for {0:.0f} s. What is shown is old; the aircraft continues by itself.").format(
                 silent_s
             )
+        if number is not None:
+            text = self.tr("Aircraft {0}: {1}").format(number, text)
         if self.text() != text:
             self.setText(text)
         self.setVisible(True)
@@ -259,12 +263,14 @@ class FlyPage(QObject):
         self._context, self._shared_view = context, shared_view
         self.controller, self.questions = FlyController.of(context), FlightQuestions()
         self._words = FlightTexts(context, self.controller, self)
+        self._fleet_words = FleetTexts(context, self.controller, self)
         self.connection, self.sortie = ConnectionBox(), ChoiceBox()
         self.buttons, self.checks = FlightButtons(), PreflightList()
         self.readouts, self.warnings = ReadoutsView(), WarningsView()
         self.simulation, self.settings, self.strip = SimulationPage(), SettingsPage(), PhotoStrip()
         self.findings = FindingsList()
         self.notes, self.report, self.band = FlightNotes(), ReportView(), LinkBand()
+        self.fleet = FleetBox()
         self.pictures, self.overlay = LivePictures(shared_view, self), FlightOverlay(shared_view, self)
         self.lists = QPushButton(self.tr("Lists"))
         self.lists.setCheckable(True)
@@ -362,6 +368,7 @@ class FlyPage(QObject):
             below.addWidget(widget)
         below.addStretch(1)
         # At the top and never scrolled: texts below grow and shrink with the phase, and must not move a button.
+        layout.addWidget(self.fleet)
         layout.addWidget(self.buttons)
         layout.addSpacing(APART_PX - layout.spacing())
         area = scrolled(rest)
@@ -422,7 +429,11 @@ class FlyPage(QObject):
         controller.after.restFound.connect(self._rest_found)
         self.report.resumeRequested.connect(controller.after.resume_sortie)
         self.report.logRequested.connect(lambda: controller.request(Request.LOG))
-        controller.stateChanged.connect(self._show_all)
+        controller.stateChanged.connect(self._state_changed)
+        controller.aircraftSelected.connect(self._show_selected)
+        controller.fleetChanged.connect(self._show_fleet)
+        self.fleet.selected.connect(controller.select)
+        self.fleet.returnAllRequested.connect(controller.return_all)
         controller.viewChanged.connect(self._show_view)
         self.overlay.camera.videoAccepted.connect(self.settings.take_video)
         controller.photoCounted.connect(self._show_photo)
@@ -443,12 +454,12 @@ class FlyPage(QObject):
     def _focus_moved(self, _window: object) -> None:
         """Let the keys of Return and Land work in a dialog, too, while it keeps the window from being used."""
         dialog = QApplication.activeModalWidget()
-        if dialog is not None and self.controller.is_connected:
+        if dialog is not None and self.controller.is_any_connected:
             dialog.addActions(self.buttons.emergency_actions())
 
     def _make_room(self) -> None:
         """While connected the view has the room of the lists, unless these are wanted; what matters lies over it."""
-        is_connected = self._is_shown and self.controller.is_connected
+        is_connected = self._is_shown and self.controller.is_any_connected
         self.lists.setVisible(is_connected)
         for action in self._view_actions:
             action.setEnabled(is_connected)
@@ -539,16 +550,17 @@ class FlyPage(QObject):
             return False
         autopilot = None if active.view is None else active.view.state.autopilot
         take_off = take_off_of(active.sortie, autopilot)
-        return self.questions.start(self._shared_view.window(), take_off, self._context.units)
+        wait_s = self.controller.wait_s(self.controller.selected)
+        return self.questions.start(self._shared_view.window(), take_off, self._context.units, wait_s)
 
     def _disconnect(self) -> None:
         if not self.controller.is_in_flight or self.questions.leave_in_flight(self._shared_view.window()):
             self.controller.disconnect_vehicle()
 
     def _window_closing(self, event: QCloseEvent) -> None:
-        if not event.isAccepted() or not self.controller.is_connected:
+        if not event.isAccepted() or not self.controller.is_any_connected:
             return
-        if self.controller.is_in_flight and not self.questions.leave_in_flight(self._shared_view.window()):
+        if self.controller.is_any_in_flight and not self.questions.leave_in_flight(self._shared_view.window()):
             event.ignore()
             return
         self.controller.close()
@@ -570,14 +582,18 @@ class FlyPage(QObject):
         self._show_document()
         pictured = self._pictured()
         self.pictures.set_flight(pictured)
+        self._show_fleet()
         self.overlay.set_sortie(None if pictured is None else pictured.sortie)
 
     def _pictured(self) -> ActiveFlight | None:
         """The flight, where it is over the site that is shown."""
-        active, shown = self.controller.active, self._context.document.site
+        return self.controller.active if self._is_over_shown(self.controller.active) else None
+
+    def _is_over_shown(self, active: ActiveFlight | None) -> bool:
+        shown = self._context.document.site
         if active is None or shown is None:
-            return None
-        return active if is_same_place(active.sortie.case.site_model.site, shown.site) else None
+            return False
+        return is_same_place(active.sortie.case.site_model.site, shown.site)
 
     def _show_document(self) -> None:
         """Offer the sorties of the current plan, and the wind that it expects."""
@@ -598,19 +614,65 @@ class FlyPage(QObject):
         if [self.sortie.itemText(i) for i in range(self.sortie.count())] != texts:
             self.sortie.clear()
             self.sortie.addItems(texts)
-            if self.controller.number > len(texts):
-                self.controller.number = 1
         self.sortie.setCurrentIndex(min(self.controller.number, len(texts)) - 1)
         active = self.controller.active
         if active is not None and active.view is not None:
             self._show_view(active.view)
         self._show_state()
 
+    def _state_changed(self) -> None:
+        self.lists.setChecked(False)
+        self._show_all()
+
+    def _show_selected(self) -> None:
+        """Show another aircraft, with how it is reached and what was chosen for it."""
+        controller = self.controller
+        self.connection.setValue(controller.choice)
+        self.settings.setValue(controller.settings)
+        self._take_settings(controller.settings)
+        controller.signing.look(controller.choice)
+        self._show_document()
+        self._show_all()
+        self._show_fleet()
+
+    def _show_fleet(self) -> None:
+        """Show all aircraft beside the selected one, and warnings of any."""
+        controller = self.controller
+        found = controller.aircraft
+        several = len(found) > 1
+        self.fleet.set_rows(self._fleet_words.rows() if several else (), controller.selected.number)
+        others = [each for each in found if each is not controller.selected and each.view is not None]
+        number = controller.selected.number if several else None
+        self.buttons.set_aircraft(number)
+        shown = [(each.number, each.active) for each in others if each.active and self._is_over_shown(each.active)]
+        self.pictures.set_others(number, tuple(shown))
+        self._show_warnings()
+
+    def _show_warnings(self) -> None:
+        aged = self.controller.warnings()
+        warnings = tuple(each.warning for each in aged)
+        self.overlay.set_warnings(aged)
+        self.warnings.set_warnings(warnings)
+        if self.controller.is_any_connected:
+            worded = {each.code: translated(each.text, self._context.units) for each in warnings}
+            self._speaker.take(warnings, worded)
+        self._show_band()
+
+    def _show_band(self) -> None:
+        """Say that a link is lost, whichever aircraft's it is; the selected one's first."""
+        selected = self.controller.selected
+        found = self.controller.aircraft
+        lost = [each for each in found if each.view is not None and each.view.link is LinkState.LOST]
+        first = next((each for each in lost if each is selected), lost[0] if lost else None)
+        if first is not None and first.view is not None:
+            self.band.show_lost(first.view.silent_s, first.number if len(found) > 1 else None)
+        elif not self.band.isHidden():
+            self.band.hide()
+
     def _show_all(self) -> None:
         """Show the active flight from its beginning: a new one, or this page is new."""
         active = self.controller.active
         self.notes.clear()
-        self.lists.setChecked(False)
         pictured = self._pictured()
         self.overlay.set_sortie(None if pictured is None else pictured.sortie)
         for note in () if active is None else active.notes:
@@ -623,16 +685,16 @@ class FlyPage(QObject):
             self._show_view(active.view)
         else:
             self._clear_view()
+        self.sortie.setCurrentIndex(self.controller.number - 1)
         self._show_state()
+        self._show_warnings()
 
     def _clear_view(self) -> None:
         self.readouts.set_view(None)
         self.overlay.set_view(None)
-        self.warnings.set_warnings(())
         self.strip.set_states(())
         self.checks.set_checks(())
         self.buttons.set_allowed(frozenset())
-        self.band.hide()
 
     def _show_state(self) -> None:
         """What can be done, and where things stand, in words."""
@@ -650,7 +712,7 @@ class FlyPage(QObject):
             self.buttons.set_allowed(frozenset())
             self.report.set_log(may_fetch=False, is_fetching=False)
             self.checks.set_checks(())
-            self.band.hide()
+            self._show_band()
         self._phase.setText(self._words.where_it_stands())
 
     def _show_view(self, view: LiveView) -> None:
@@ -658,10 +720,6 @@ class FlyPage(QObject):
         self.overlay.set_view(view)
         self.overlay.camera.offer_video(view.video)
         self.settings.offer_video(view.video)
-        self.warnings.set_warnings(view.warnings)
-        if self.controller.is_connected:
-            worded = {each.code: translated(each.text, self._context.units) for each in view.warnings}
-            self._speaker.take(view.warnings, worded)
         self.strip.set_states(view.view_states)
         note = self.tr("In flight; the list comes back after the landing.") if view.state.is_armed else ""
         is_connected = self.controller.is_connected
@@ -677,10 +735,6 @@ class FlyPage(QObject):
         if self._phase.text() != text:
             self._phase.setText(text)
         set_enabled(self.sortie, not view.state.is_armed)
-        if view.link is LinkState.LOST and self.controller.is_connected:
-            self.band.show_lost(view.silent_s)
-        elif not self.band.isHidden():
-            self.band.hide()
         self.pictures.take_view(view)
 
     def _show_photo(self, counted: PhotoCounted) -> None:
@@ -692,7 +746,8 @@ class FlyPage(QObject):
 
     def _show_link(self, link: LinkState) -> None:
         if link is LinkState.LOST:
-            self.band.show_lost(None)
+            selected, several = self.controller.selected, len(self.controller.aircraft) > 1
+            self.band.show_lost(None, selected.number if several else None)
         self._show_state()
 
     def _show_end(self, ended: FlightEnded) -> None:

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
 import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,10 +14,10 @@ from PySide6.QtGui import QColor, QHelpEvent, QKeyEvent, QMouseEvent, QPainter, 
 from PySide6.QtWidgets import QFrame, QScrollArea, QSizePolicy, QToolTip, QWidget
 
 from groundstation.gui.fly.aircraft_shape import aircraft_drawables, paint_aircraft
-from groundstation.gui.fly.fly_controller import ActiveFlight
+from groundstation.gui.fly.live_aircraft import ActiveFlight
 from groundstation.gui.map.map_view import MapView
 from groundstation.gui.shared_view import SharedView, SharedViewPage
-from groundstation.gui.view3d.drawables import ON_TOP, Drawable, frusta, joined, polyline
+from groundstation.gui.view3d.drawables import ON_TOP, Drawable, Label, Layer, frusta, joined, polyline
 from groundstation.gui.view3d.paint import ColourScale, flat
 from groundstation.gui.view3d.scene_view import SceneView
 from groundstation.gui.widgets.theme import Colours, colours
@@ -22,9 +25,9 @@ from groundstation.services.fly.events import LiveView, PhotoCounted, ViewState
 from groundstation.services.fly.readouts import flies_mission
 from groundstation.services.map.web_mercator import world_from_geodetic
 from groundstation.services.units import UnitSystem, length_unit
-from groundstation.vehicle.state import Angles, VehicleState
+from groundstation.vehicle.state import Angles, Motion, VehicleState
 from planning.geo.enu import geodetic_from_enu
-from planning.geo.frames import Origin
+from planning.geo.frames import Origin, Vec3
 from planning.plan import Camera, Viewpoint, ViewpointArrays
 
 # A time line of the sortie's photos: planned, next, taken with the error of its place, or missing.
@@ -253,6 +256,15 @@ Array = NDArray[np.float64]
 AIRCRAFT_PX, MAP_DOT_PX = 17.0, 5.0
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class OnMap:
+    """Another aircraft: its name, its track in the map's plane, shape (n, 2), and its heading."""
+
+    name: str
+    track: Array
+    heading_rad: float
+
+
 class LiveMap(QWidget):
     """Lies over a map, lets the pointer through, and moves with it."""
 
@@ -264,6 +276,8 @@ class LiveMap(QWidget):
         self._next: NDArray[np.float64] = np.zeros((0, 2))
         self._heading_rad = 0.0
         self._camera_rad: float | None = None
+        self._name = ""
+        self._others: tuple[OnMap, ...] = ()
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
         self.setGeometry(map_view.rect())
         map_view.installEventFilter(self)
@@ -284,6 +298,12 @@ class LiveMap(QWidget):
         """
         self._track, self._heading_rad, self._camera_rad = _world(origin, track_enu_m), heading_rad, camera_rad
         self._next = _world(origin, np.zeros((0, 3)) if next_enu_m is None else next_enu_m[None])
+        self.update()
+
+    def set_others(self, origin: Origin, name: str, others: Sequence[tuple[str, Array, float]]) -> None:
+        """Show the others that fly at once: name, track, shape (n, 3), and heading; `name` is that of the first one."""
+        self._name = name
+        self._others = tuple(OnMap(each, _world(origin, track), heading) for each, track, heading in others)
         self.update()
 
     def set_views(self, origin: Origin, views: tuple[tuple[tuple[float, float, float], ViewState], ...]) -> None:
@@ -308,6 +328,13 @@ class LiveMap(QWidget):
             painter.setPen(QPen(QColor(look.base), 1))
             painter.setBrush(state_colour(state, look))
             painter.drawEllipse(QPointF(x, y), radius, radius)
+        for other in self._others:
+            if len(other.track):
+                along = [QPointF(x, y) for x, y in viewport.screen(other.track).tolist()]
+                painter.setPen(QPen(QColor(look.muted), 2))
+                painter.drawPolyline(QPolygonF(along))
+                paint_aircraft(painter, along[-1], other.heading_rad, None, AIRCRAFT_PX, look)
+                _paint_name(painter, along[-1], other.name, look)
         if len(self._track):
             points = [QPointF(x, y) for x, y in viewport.screen(self._track).tolist()]
             painter.setPen(QPen(QColor(look.accent), 3))
@@ -317,7 +344,20 @@ class LiveMap(QWidget):
                     painter.setPen(QPen(QColor(colour), width, Qt.PenStyle.DashLine))
                     painter.drawLine(points[-1], QPointF(x, y))
             paint_aircraft(painter, points[-1], self._heading_rad, self._camera_rad, AIRCRAFT_PX, look)
+            _paint_name(painter, points[-1], self._name, look)
         painter.end()
+
+
+def _paint_name(painter: QPainter, at: QPointF, name: str, look: Colours) -> None:
+    """A name on a plate above an aircraft."""
+    if not name:
+        return
+    metrics = painter.fontMetrics()
+    wide, high = metrics.horizontalAdvance(name) + 10, metrics.height() + 4
+    plate = QRectF(at.x() - wide / 2.0, at.y() - 2.0 * AIRCRAFT_PX - high, wide, high)
+    painter.fillRect(plate, QColor(look.base))
+    painter.setPen(QColor(look.text))
+    painter.drawText(plate, Qt.AlignmentFlag.AlignCenter, name)
 
 
 def _world(origin: Origin, points_enu_m: Array) -> Array:
@@ -346,12 +386,39 @@ DOT_PX = {
 NAMES = ("live-track", "live-next", "live-aircraft", "live-picture", "live-footprint", "live-views")
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class OtherInScene:
+    """Another aircraft: its name, where it is and how it lies, where its camera points, and its track, shape (n, 3)."""
+
+    name: str
+    motion: Motion
+    attitude: Angles
+    camera: Angles | None
+    track_enu_m: Array
+
+
 class LiveScene:
     """Draws onto a 3-D view until it is cleared."""
 
     def __init__(self, scene: SceneView) -> None:
         self._scene = scene
         self._drawn_states: tuple[tuple[str, ViewState], ...] | None = None
+        self._n_others = 0
+
+    def draw_others(self, name: str, own: Motion | None, others: Sequence[OtherInScene]) -> None:
+        """The others that fly at once, each with its track and its name; `name` is that of the first one."""
+        canvas, look = self._scene.canvas(), colours()
+        labels = [] if own is None or not name else [_label(name, own.position_enu_m, look.accent)]
+        for number, other in enumerate(others):
+            place = np.array(other.motion.position_enu_m)
+            span_m = max(LEAST_AIRCRAFT_M, AIRCRAFT_ON_SCREEN_PX * self._scene.metres_per_px(place))
+            drawn = aircraft_drawables(place, other.attitude, other.camera, span_m, look)
+            canvas.draw(f"live-other-{number}", [*_track(other.track_enu_m, look.muted), *drawn])
+            labels.append(_label(other.name, other.motion.position_enu_m, look.muted))
+        for number in range(len(others), self._n_others):
+            canvas.draw(f"live-other-{number}", ())
+        self._n_others = len(others)
+        self._scene.set_live_labels(labels)
 
     def draw_views(self, states: tuple[tuple[str, ViewState], ...], by_id: dict[str, Viewpoint]) -> None:
         """A dot on each view of the sortie, by its state."""
@@ -382,7 +449,7 @@ class LiveScene:
     ) -> None:
         """Where it is, was and flies next, and what its camera sees: a pyramid, and its border on the site."""
         canvas, look = self._scene.canvas(), colours()
-        canvas.draw("live-track", _track(track_enu_m, look))
+        canvas.draw("live-track", _track(track_enu_m, look.accent))
         if state.motion is None:
             return
         place = np.array(state.motion.value.position_enu_m)
@@ -407,15 +474,20 @@ class LiveScene:
     def clear(self) -> None:
         """Take everything away."""
         self._drawn_states = None
+        self.draw_others("", None, ())
         for name in NAMES:
             self._scene.canvas().draw(name, ())
 
 
-def _track(track_enu_m: NDArray[np.float64], look: Colours) -> list[Drawable]:
+def _label(name: str, place_enu_m: Vec3, colour: str) -> Label:
+    return Label(name, place_enu_m, Layer.LABELS, colour)
+
+
+def _track(track_enu_m: NDArray[np.float64], colour: str) -> list[Drawable]:
     points, cells = polyline(track_enu_m)
     if len(cells) == 0:
         return []
-    return [Drawable(points, cells, flat(look.accent, len(cells)), width_px=TRACK_PX)]
+    return [Drawable(points, cells, flat(colour, len(cells)), width_px=TRACK_PX)]
 
 
 def _lines(pieces: list[NDArray[np.float64]], look: Colours) -> list[Drawable]:
@@ -453,6 +525,9 @@ class LivePictures(QObject):
         super().__init__(parent)
         self._shared_view = shared_view
         self._flight: ActiveFlight | None = None
+        self._number: int | None = None
+        self._others: tuple[tuple[int, ActiveFlight], ...] = ()
+        self._n_other_photos = 0
         self._scene: LiveScene | None = None
         self._map: LiveMap | None = None
         self._is_shown = False
@@ -466,6 +541,13 @@ class LivePictures(QObject):
         if self._is_shown and flight is not self._flight:
             self._clear()
         self._flight, self._is_stale, self._has_photo = flight, True, flight is not None and flight.counted is not None
+
+    def set_others(self, number: int | None, others: tuple[tuple[int, ActiveFlight], ...]) -> None:
+        """Show these beside the flight, whose aircraft has a number among them; None where it is alone."""
+        if number is not None or self._number is not None:
+            n_photos = sum(len(flight.photos) for _, flight in others)
+            self._has_photo |= n_photos != self._n_other_photos
+            self._number, self._others, self._n_other_photos, self._is_stale = number, others, n_photos, True
 
     def show(self, flight: ActiveFlight | None) -> None:
         """Draw, and go on drawing."""
@@ -507,12 +589,37 @@ class LivePictures(QObject):
 
     def _draw_scene(self, scene: LiveScene, flight: ActiveFlight, view: LiveView) -> None:
         plan = flight.sortie.case.plan
-        scene.draw_views(view.view_states, {viewpoint.id: viewpoint for viewpoint in plan.viewpoints})
+        scene.draw_views(self._states(view), {viewpoint.id: viewpoint for viewpoint in plan.viewpoints})
         following = _next_place(flight, view)
         scene.draw_aircraft(view.state, _thinned(flight), plan.camera, view.readouts.facade_m, following)
-        if self._has_photo and flight.counted is not None:
+        own = None if view.state.motion is None else view.state.motion.value
+        scene.draw_others(self._name(self._number), own, tuple(self._beside()))
+        counted = max(self._counted(flight), key=lambda each: each.covered, default=None)
+        if self._has_photo and counted is not None:
             self._has_photo = False
-            self._paint_coverage(flight, flight.counted)
+            self._paint_coverage(flight, counted)
+
+    def _counted(self, flight: ActiveFlight) -> list[PhotoCounted]:
+        """What the flights counted last; those of one plan count together, so the largest is the latest."""
+        plan = flight.sortie.case.plan
+        flights = [flight, *(each for _, each in self._others if each.sortie.case.plan is plan)]
+        return [each.counted for each in flights if each.counted is not None]
+
+    def _name(self, number: int | None) -> str:
+        return "" if number is None else self.tr("Aircraft {0}").format(number)
+
+    def _states(self, view: LiveView) -> tuple[tuple[str, ViewState], ...]:
+        """How the views of all sorties that are flown now stand."""
+        views = (view, *(each.view for _, each in self._others if each.view is not None))
+        return tuple(itertools.chain.from_iterable(each.view_states for each in views))
+
+    def _beside(self) -> Iterator[OtherInScene]:
+        for number, flight in self._others:
+            state = None if flight.view is None else flight.view.state
+            if state is not None and state.motion is not None:
+                attitude = LEVEL if state.attitude is None else state.attitude.value
+                camera = None if state.camera is None else state.camera.value
+                yield OtherInScene(self._name(number), state.motion.value, attitude, camera, _thinned(flight))
 
     def _paint_coverage(self, flight: ActiveFlight, counted: PhotoCounted) -> None:
         view = self._shared_view.scene()
@@ -533,10 +640,14 @@ class LivePictures(QObject):
             self._map = LiveMap(map_view)
         origin = flight.sortie.case.site_model.site.origin
         by_id = {viewpoint.id: viewpoint.position_enu_m for viewpoint in flight.sortie.case.plan.viewpoints}
-        self._map.set_views(origin, tuple((by_id[view_id], state) for view_id, state in view.view_states))
+        self._map.set_views(
+            origin, tuple((by_id[view_id], state) for view_id, state in self._states(view) if view_id in by_id)
+        )
         heading = 0.0 if view.state.attitude is None else view.state.attitude.value.heading_rad
         camera = None if view.state.camera is None else view.state.camera.value.heading_rad
         self._map.set_aircraft(origin, _thinned(flight), heading, camera, _next_place(flight, view))
+        others = [(other.name, other.track_enu_m, other.attitude.heading_rad) for other in self._beside()]
+        self._map.set_others(origin, self._name(self._number), others)
         self._map.show()
 
     def _clear(self) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from PySide6.QtCore import QObject
@@ -19,9 +20,14 @@ from planning.revision.top_up import TopUp
 class FlightQuestions(QObject):
     """Asks by dialogs; a class of its own so that whoever drives the window without a user can answer."""
 
-    def start(self, parent: QWidget, take_off: TakeOff, units: UnitSystem) -> bool:
-        """Whether to take off."""
-        return agrees(parent, self.tr("Start the flight"), self.start_text(take_off, units))
+    def start(self, parent: QWidget, take_off: TakeOff, units: UnitSystem, wait_s: float = 0.0) -> bool:
+        """Whether to take off; `wait_s` until it keeps apart from aircraft in the air, infinity where nobody knows."""
+        text = self.start_text(take_off, units)
+        if wait_s > 0.0:
+            when = minutes_text(wait_s) if math.isfinite(wait_s) else self.tr("until the others have landed")
+            early = self.tr("TOO EARLY: now it may come too near to an aircraft in the air. Wait {0}.").format(when)
+            text = f"{early}\n\n{text}"
+        return agrees(parent, self.tr("Start the flight"), text, warns=wait_s > 0.0)
 
     def start_text(self, take_off: TakeOff, units: UnitSystem) -> str:
         """What will happen."""

@@ -110,8 +110,11 @@ class SimulationController(QObject):
         self._expected_wind_m_s = CALM.wind_m_s
         self.effect_settings: dict[str, EffectSetting] = {}
 
-    def connection(self, sortie: LiveSortie, choice: ConnectionChoice, charge: float) -> Simulation:
-        """The simulation of a sortie, as it was chosen; `charge` of the battery that it begins with, 1 full."""
+    def connection(self, sortie: LiveSortie, choice: ConnectionChoice, charge: float, seed: int = 0) -> Simulation:
+        """The simulation of a sortie, as it was chosen; `charge` of the battery that it begins with, 1 full.
+
+        Each aircraft has errors of its own, by its `seed`.
+        """
         self.expect_wind_of(sortie.case.plan)
         return Simulation(
             sortie.case.plan,
@@ -121,6 +124,7 @@ class SimulationController(QObject):
             conditions=self.conditions,
             effects=dict(self.effect_settings),
             charge=charge,
+            seed=seed,
         )
 
     def choose(

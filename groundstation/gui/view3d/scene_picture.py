@@ -21,6 +21,7 @@ from groundstation.gui.view3d.canvas import Canvas, image_array
 from groundstation.gui.view3d.drawables import (
     ON_TOP,
     Drawable,
+    Label,
     Layer,
     Shape,
     box_edges,
@@ -286,6 +287,7 @@ class ScenePicture(QWidget):
         self._selection: tuple[Item, ...] = ()
         self._hover: Item | None = None
         self._hidden: frozenset[Layer] = frozenset({Layer.FRUSTA, Layer.SURROUNDINGS, Layer.PHOTOS})
+        self._live_labels: tuple[Label, ...] = ()
         self._surfaces: tuple[Surface, ...] = ()
         self._has_photos = False
         self._opacities: dict[Layer, float] = {}
@@ -758,8 +760,14 @@ class ScenePicture(QWidget):
         self._canvas.draw("footprint", self._footprint())
         self._canvas.draw("hover", self._marks((self._hover,) if self._hover is not None else (), HOVERED_PX))
 
+    def set_live_labels(self, labels: Sequence[Label]) -> None:
+        """Texts at what moves, before all others; none: take them away."""
+        if tuple(labels) != self._live_labels:
+            self._live_labels = tuple(labels)
+            self._show_labels()
+
     def _show_labels(self) -> None:
-        self._overlay.set_labels(self._texts.labels(self._site, self._plan, self._hidden))
+        self._overlay.set_labels([*self._live_labels, *self._texts.labels(self._site, self._plan, self._hidden)])
 
     def _show_legend(self) -> None:
         painted = (self._panel_values, self._route_values)

@@ -6,8 +6,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 
+from groundstation.services.fly.events import LiveView
 from groundstation.vehicle.watch import FlightWarning
 from planning.base.findings import Severity
+from planning.base.messages import say
 
 AGAIN_S = {Severity.ERROR: 12.0, Severity.WARNING: 45.0}
 """Between two times that the same warning is spoken: a sentence takes some 5 s, and a pilot has to hear his crew."""
@@ -16,6 +18,31 @@ AGAIN_S = {Severity.ERROR: 12.0, Severity.WARNING: 45.0}
 def ordered_warnings(warnings: Sequence[FlightWarning]) -> tuple[FlightWarning, ...]:
     """The worst first, the newest of these first."""
     return tuple(sorted(warnings, key=lambda each: (each.severity is not Severity.ERROR, -each.since_s)))
+
+
+@dataclass(frozen=True, slots=True)
+class AgedWarning:
+    """A warning, and for how long it has been shown."""
+
+    warning: FlightWarning
+    age_s: float
+
+
+def aged_warnings(view: LiveView, number: int | None = None) -> tuple[AgedWarning, ...]:
+    """The warnings of a flight; of one of several aircraft, with its number in code and text.
+
+    Each link has a clock of its own, so warnings of several are compared by their ages.
+    """
+    heartbeat, silent_s = view.state.heartbeat, view.silent_s
+    now_s = None if heartbeat is None or silent_s is None else heartbeat.time_s + silent_s
+    found = []
+    for each in view.warnings:
+        age_s = 0.0 if now_s is None else max(0.0, now_s - each.since_s)
+        if number is not None:
+            text = say("aircraft {}: {}", number, each.text)
+            each = replace(each, code=f"{number}:{each.code}", text=text, since_s=-age_s)
+        found.append(AgedWarning(each, age_s))
+    return tuple(found)
 
 
 @dataclass(frozen=True, slots=True)

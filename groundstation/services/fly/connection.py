@@ -41,6 +41,7 @@ from missions.simulator.server import MAX_SPEEDUP, FlownClock, serve
 from missions.simulator.vehicle import SimulatedVehicle
 from planning.base.effects import Decision, EffectSetting
 from planning.base.errors import GroundStationError, InputError
+from planning.base.findings import Finding
 from planning.base.messages import say
 from planning.base.progress import Clock
 from planning.checks.case import Case
@@ -393,12 +394,12 @@ def flights_folder(project: Path | None) -> Path:
     return (data_folder() if project is None else project) / FLIGHTS
 
 
-def open_log(folder: Path, unix_time_s: float) -> tuple[TelemetryLog | None, str]:
+def open_log(folder: Path, unix_time_s: float, name: str) -> tuple[TelemetryLog | None, str]:
     """A new telemetry log: in the folder, else in the user's data folder; and what went wrong, else empty."""
     problem = ""
     for place in dict.fromkeys((folder, flights_folder(None))):
         try:
-            return TelemetryLog(new_log_path(place, unix_time_s)), problem
+            return TelemetryLog(new_log_path(place, unix_time_s, name)), problem
         except InputError as error:
             problem = problem or str(error)
     return None, problem
@@ -424,8 +425,9 @@ class FlightRecordings:
         error: GroundStationError | None,
         opened: OpenedLink | None,
         name: str,
+        findings: tuple[Finding, ...] = (),
     ) -> FlightEnded:
-        """A sortie is over: write what was flown, under this name.
+        """A sortie is over: write what was flown, under this name; `findings` of the flight go into its report.
 
         A simulated one is recorded as it truly was.
         """
@@ -437,12 +439,16 @@ class FlightRecordings:
         autopilot = run.state.autopilot or Autopilot.ARDUPILOT
         self._expected_s[orders.number] = items_duration_s(orders, autopilot)
         path = self._folder / f"{name}.json"
-        report, kept, problem = store_flight(self._case, self._records, self._expected_s, path)
+        report, kept, problem = store_flight(self._case, self._records, self._expected_s, path, findings)
         return FlightEnded(orders.number, error, record, report, kept, problem)
 
 
 def store_flight(
-    case: Case, records: tuple[FlightRecord, ...], expected_s: Mapping[int, float], path: Path
+    case: Case,
+    records: tuple[FlightRecord, ...],
+    expected_s: Mapping[int, float],
+    path: Path,
+    findings: tuple[Finding, ...] = (),
 ) -> tuple[FlightReport, Path | None, str]:
     """Report on what was flown, and write both; returns where, and why not where it could not be.
 
@@ -450,8 +456,11 @@ def store_flight(
     ----------
     expected_s
         How long the items of sorties take by their number; plans reckon with an aircraft that turns at its waypoints.
+    findings
+        Of the live flight, besides those of the report.
     """
     report = report_case(case.with_plan(timed_by_items(case.plan, expected_s)), records)
+    report = replace(report, findings=(*report.findings, *findings))
     problem = ""
     for place in dict.fromkeys((path, flights_folder(None) / path.name)):
         try:
@@ -482,6 +491,8 @@ class LoggedLink:
         Where the log goes; where it cannot be written, the user's data folder takes its place.
     problem
         Called with what is wrong with the log, when that changes to something.
+    name
+        That the log's begins with.
 
     Attributes
     ----------
@@ -490,10 +501,16 @@ class LoggedLink:
     """
 
     def __init__(
-        self, connection: Connection, folder: Path, problem: Callable[[str], None], clock: Clock, unix_clock: Clock
+        self,
+        connection: Connection,
+        folder: Path,
+        problem: Callable[[str], None],
+        clock: Clock,
+        unix_clock: Clock,
+        name: str = "flight",
     ) -> None:
         self._connection, self._folder, self._problem = connection, folder, problem
-        self._clock, self._unix_clock = clock, unix_clock
+        self._clock, self._unix_clock, self._prefix = clock, unix_clock, name
         self._log: TelemetryLog | None = None
         self._log_problem = ""
         self._retry_s = 0.0
@@ -503,11 +520,11 @@ class LoggedLink:
     @property
     def name(self) -> str:
         """Of the log without its suffix; a name made of the time where there is no log."""
-        return f"flight-{self._unix_clock():.0f}" if self._log is None else self._log.path.stem
+        return f"{self._prefix}-{self._unix_clock():.0f}" if self._log is None else self._log.path.stem
 
     def open_log(self) -> None:
         """Begin the log."""
-        self._log, problem = open_log(self._folder, self._unix_clock())
+        self._log, problem = open_log(self._folder, self._unix_clock(), self._prefix)
         self._say(problem)
 
     def open(self, orders: SortieOrders) -> None:

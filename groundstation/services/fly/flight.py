@@ -14,13 +14,10 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
-from numpy.typing import NDArray
-
-from groundstation.services.fly.connection import WAIT_S, Connection, FlightRecordings, LoggedLink, OpenedLink
+from groundstation.services.fly.connection import WAIT_S, Connection, LoggedLink, OpenedLink
 from groundstation.services.fly.corrections import Corrections, corrections_check
 from groundstation.services.fly.events import (
     Answered,
@@ -39,6 +36,7 @@ from groundstation.services.fly.events import (
     WarningCleared,
     WarningRaised,
 )
+from groundstation.services.fly.fleet import Fleet, LiveCoverage
 from groundstation.services.fly.log_book import book_path, enter, entry_of
 from groundstation.services.fly.onboard_logs import keep_logs
 from groundstation.services.fly.options import USUAL, FlightSettings
@@ -58,9 +56,7 @@ from groundstation.vehicle.sortie.run_records import ORDER_MODES, Phase, PilotOr
 from groundstation.vehicle.state import VehicleState
 from groundstation.vehicle.telemetry import LocalFrame, updated_state
 from groundstation.vehicle.watch import PHOTO_LATE_S, FlightWarning, Watch
-from missions.flight.matching import DEFAULT_GATES, Gates, pose_of_photo
 from missions.flight.record import FlightRecord, TakenPhoto
-from missions.flight.report_rules import DEFAULT_LIMITS, Limits
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.link import GROUND_HEARTBEAT, GROUND_STATION, HEARTBEAT_EVERY_S
 from missions.mavlink.messages import Address, Message, Received
@@ -69,131 +65,6 @@ from missions.mavlink.transfer.exchange import Route
 from planning.base.errors import GroundStationError, LinkError
 from planning.base.messages import say
 from planning.base.progress import Clock
-from planning.checks.case import Case, pose_of
-from planning.coverage.evaluate import sights
-from planning.geo.frames import heading_difference_rad
-from planning.plan import Viewpoint
-
-# Coverage growing photo by photo: each photo is counted as it was really taken, not as its view was planned.
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class CountedPhoto:
-    """A photo, the view that it is of (None for none), and what it added."""
-
-    photo: TakenPhoto
-    view: Viewpoint | None
-    n_new: int
-    position_error_m: float | None
-    heading_error_deg: float | None
-    gimbal_pitch_error_deg: float | None
-
-
-class LiveCoverage:
-    """Counts the photos of one or more sorties of a plan.
-
-    Parameters
-    ----------
-    case
-        The plan, measured.
-    """
-
-    def __init__(self, case: Case) -> None:
-        self._case = case
-        self._by_id = {view.id: view for view in case.plan.viewpoints}
-        self._planned = np.zeros(case.model.n_elements, np.bool_)
-        self._counts = np.zeros(case.model.n_elements, np.int64)
-        self.photo_of: dict[str, CountedPhoto] = {}
-
-    @property
-    def covered(self) -> int:
-        """Sections that at least one photo shows."""
-        return int(np.count_nonzero(self._counts))
-
-    @property
-    def covered_planned(self) -> int:
-        """Sections that the sorties so far cover as they were planned."""
-        return int(np.count_nonzero(self._planned))
-
-    def planned(self) -> NDArray[np.bool_]:
-        """Whether the sorties so far cover each section as they were planned, shape (m, n_sections)."""
-        return self._planned.copy().reshape(len(self._case.model.frames), -1)
-
-    def counts(self) -> NDArray[np.int64]:
-        """Photos that show each section, shape (m, n_sections); a copy."""
-        return self._counts.copy().reshape(len(self._case.model.frames), -1)
-
-    def add_sortie(self, viewpoint_ids: Sequence[str]) -> None:
-        """Another sortie is flown; what it covers as planned counts from now on."""
-        for viewpoint_id in viewpoint_ids:
-            self._planned[self._case.measures.seen[pose_of(self._by_id[viewpoint_id])].elements] = True
-
-    def add(self, photo: TakenPhoto, viewpoint_ids: Sequence[str], gates: Gates = DEFAULT_GATES) -> CountedPhoto:
-        """Count a photo, as the view of these that it fits best and that has none yet.
-
-        A photo whose direction its source does not say is taken to look where its view does; without a view it counts
-        for no section.
-        """
-        views = [self._by_id[viewpoint_id] for viewpoint_id in viewpoint_ids if viewpoint_id not in self.photo_of]
-        view = matching_view(photo, views, gates)
-        pose = pose_of_photo(photo, view)
-        n_new = 0
-        if pose is not None:
-            (sight,) = sights(self._case.model, (pose,))
-            n_new = int(np.count_nonzero(self._counts[sight.elements] == 0))
-            self._counts[sight.elements] += 1
-        counted = CountedPhoto(photo, view, n_new, *_errors(photo, view))
-        if view is not None:
-            self.photo_of[view.id] = counted
-        return counted
-
-    def states(
-        self, viewpoint_ids: Sequence[str], missing: Sequence[str], limits: Limits = DEFAULT_LIMITS
-    ) -> tuple[tuple[str, ViewState], ...]:
-        """How each view of a sortie stands, in the order of flight; `missing` were passed without a photo."""
-        states: list[tuple[str, ViewState]] = []
-        has_next = False
-        for viewpoint_id in viewpoint_ids:
-            counted = self.photo_of.get(viewpoint_id)
-            if counted is not None:
-                error_m = counted.position_error_m or 0.0
-                state = ViewState.OFF if error_m > limits.position_m else ViewState.TAKEN
-            elif viewpoint_id in missing:
-                state = ViewState.MISSING
-            else:
-                state = ViewState.TO_COME if has_next else ViewState.NEXT
-                has_next = True
-            states.append((viewpoint_id, state))
-        return tuple(states)
-
-
-def matching_view(photo: TakenPhoto, views: Sequence[Viewpoint], gates: Gates) -> Viewpoint | None:
-    """The view that a photo fits best: the largest of its errors, in parts of the gates, is least and within them."""
-    best, least = None, 1.0
-    for view in views:
-        position_m, heading_deg, pitch_deg = _errors(photo, view)
-        misfit = max(
-            (position_m or 0.0) / gates.position_m,
-            abs(heading_deg or 0.0) / gates.angle_deg,
-            abs(pitch_deg or 0.0) / gates.angle_deg,
-        )
-        if misfit < least:
-            best, least = view, misfit
-    return best
-
-
-def _errors(photo: TakenPhoto, view: Viewpoint | None) -> tuple[float | None, float | None, float | None]:
-    """Distance in metres, heading and pitch in degrees, taken less planned; None where not known."""
-    if view is None:
-        return None, None, None
-    heading = pitch = None
-    if photo.heading_deg is not None:
-        turned = heading_difference_rad(math.radians(view.heading_deg), math.radians(photo.heading_deg))
-        heading = math.degrees(float(turned))
-    if photo.gimbal_pitch_deg is not None:
-        pitch = photo.gimbal_pitch_deg - view.gimbal_pitch_deg
-    return math.dist(photo.position_enu_m, view.position_enu_m), heading, pitch
-
 
 # Hears a vehicle while no sortie of ours is under way, and passes the pilot's orders on, as a state machine.
 
@@ -385,6 +256,9 @@ class LiveFlight:
         Where telemetry log and flight file go; where it cannot be written, the user's data folder takes its place.
     flown
         Records of the same plan from before, such as on another battery; photos and coverage count on.
+    fleet, number
+        What other flights of the same plan share with this one, `flown` too, and the aircraft's number among them; None
+        for an aircraft that flies alone.
     corrections
         Of RTK, begun already; they end with the flight.
     clock, unix_clock
@@ -400,6 +274,8 @@ class LiveFlight:
         folder: Path,
         *,
         flown: tuple[FlightRecord, ...] = (),
+        fleet: Fleet | None = None,
+        number: int = 1,
         settings: FlightSettings = USUAL,
         corrections: Corrections | None = None,
         clock: Clock = time.perf_counter,
@@ -410,15 +286,16 @@ class LiveFlight:
         self._asked: queue.SimpleQueue[_Asked] = queue.SimpleQueue()
         self._thread = threading.Thread(target=self._live, name="live-flight", daemon=True)
         self._is_closing = False
-        self._wire = LoggedLink(connection, folder, lambda text: publish(LogProblem(text)), clock, unix_clock)
-        self._recordings = FlightRecordings(sortie.case, folder, flown)
+        self._fleet = Fleet(sortie.case, folder, flown) if fleet is None else fleet
+        self._number, name = number, "flight" if number == 1 else f"flight-aircraft-{number}"
+        self._wire = LoggedLink(connection, folder, lambda text: publish(LogProblem(text)), clock, unix_clock, name)
         self._folder, self._unix_clock = folder, unix_clock
         self._log: NewestLog | None = None
         self._corrections = corrections
         self._link = LinkState.OPENING
         self._view: LiveView | None = None
         self._shown_s = -math.inf
-        self._coverage = LiveCoverage(sortie.case)
+        self._coverage = self._fleet.coverage
         self._run: FlightRun | None = None
         self._awaited: Request | None = None
         self._ordered: deque[Request] = deque()
@@ -427,9 +304,6 @@ class LiveFlight:
         self._remote_id = RemoteIdSender(settings.identity, sortie.orders.home, unix_clock)
         self._video = VideoFinder()
         self._activate(sortie, VehicleState())
-        for record in flown:
-            for photo in record.photos:
-                self._coverage.add(photo, self._plan_order())
 
     # For whoever watches, from any thread
 
@@ -478,6 +352,7 @@ class LiveFlight:
             self._wire.open(self._sortie.orders)
             while not self._is_closing:
                 self._take_requests()
+                self._look_around()
                 self._serve()
                 self._notice()
         except GroundStationError as error:
@@ -489,10 +364,19 @@ class LiveFlight:
             raise
         finally:
             self._keep_unfinished()
+            self._fleet.traffic.leave(self._number)
             self._wire.close()
             if self._corrections is not None:
                 self._corrections.close()
             self._say_link(LinkState.CLOSED, problem)
+
+    def _look_around(self) -> None:
+        """Tell the other flights where this aircraft is, and hear where theirs are."""
+        state, traffic, orders = self._machine.state, self._fleet.traffic, self._sortie.orders
+        around = orders.surroundings[state.autopilot or Autopilot.ARDUPILOT]
+        traffic.tell(self._number, orders.number, state, around, self._wire.now_s())
+        if self._run is not None:
+            self._run.others = traffic.others(self._number)
 
     def _serve(self) -> None:
         """Take what came in, and let time pass; a broken link is opened again."""
@@ -690,7 +574,7 @@ class LiveFlight:
         if record is None:
             self._publish(FlightEnded(run.orders.number, error, None, None, None))
         else:
-            ended = self._recordings.ended(run, record, error, self._wire.opened, self._wire.name)
+            ended = self._fleet.ended(run, record, error, self._wire.opened, self._wire.name)
             self._publish(ended)
             self._enter(run, ended)
 
@@ -736,9 +620,6 @@ class LiveFlight:
         self._run = self._awaited = None
         self._ordered.clear()
         self._events.begin()
-
-    def _plan_order(self) -> tuple[str, ...]:
-        return tuple(view_id for sortie in self._sortie.case.plan.sorties for view_id in sortie.viewpoint_ids)
 
     def _now(self) -> LiveView:
         """The flight as it stands."""

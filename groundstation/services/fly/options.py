@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
@@ -72,14 +73,30 @@ class ConnectionChoice:
         return replace(self, signed=(*others, url) if is_signed and url else others)
 
 
-def choice_path() -> Path:
-    """Where the last choice is kept: beside the settings."""
-    return settings_path().with_name("connection.toml")
+FIRST_CHOICE = ConnectionChoice()
+
+PORT_STEP = 10
+"""Between the ports of aircraft at one address, as ArduPilot's simulators count them."""
 
 
-def read_choice(path: Path, tell: Tell = lambda _: None) -> ConnectionChoice:
-    """The last choice, as `read_preferences`; the first one where none was kept."""
-    return read_preferences(path, ConnectionChoice(), tell)
+def beside(choice: ConnectionChoice, number: int) -> ConnectionChoice:
+    """The choice for another aircraft, from 1, beside the first one: a port or a device of its own."""
+    is_serial = choice.kind is LinkKind.SERIAL
+    found = re.fullmatch(r"(.*?)(\d+)(:\d+)" if is_serial else r"(.*:)(\d+)()", choice.address)
+    if found is None:
+        return replace(choice, signed=())
+    own = int(found[2]) + (number - 1) * (1 if is_serial else PORT_STEP)
+    return replace(choice, address=f"{found[1]}{own}{found[3]}", signed=())
+
+
+def choice_path(number: int = 1) -> Path:
+    """Where the last choice for an aircraft, from 1, is kept: beside the settings."""
+    return settings_path().with_name("connection.toml" if number == 1 else f"connection-{number}.toml")
+
+
+def read_choice(path: Path, tell: Tell = lambda _: None, usual: ConnectionChoice = FIRST_CHOICE) -> ConnectionChoice:
+    """The last choice, as `read_preferences`; the usual one where none was kept."""
+    return read_preferences(path, usual, tell)
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,11 +139,11 @@ class FlightSettings:
 USUAL = FlightSettings()
 
 
-def flight_settings_path() -> Path:
-    """Where they are kept for the next start: beside the settings of the program."""
-    return settings_path().with_name("flight.toml")
+def flight_settings_path(number: int = 1) -> Path:
+    """Where they are kept for the next start of an aircraft, from 1: beside the settings of the program."""
+    return settings_path().with_name("flight.toml" if number == 1 else f"flight-{number}.toml")
 
 
-def read_flight_settings(path: Path, tell: Tell = lambda _: None) -> FlightSettings:
-    """What was kept, as `read_preferences`."""
-    return read_preferences(path, USUAL, tell)
+def read_flight_settings(path: Path, tell: Tell = lambda _: None, usual: FlightSettings = USUAL) -> FlightSettings:
+    """What was kept, as `read_preferences`; the usual ones where nothing was."""
+    return read_preferences(path, usual, tell)

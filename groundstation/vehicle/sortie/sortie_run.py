@@ -29,7 +29,7 @@ from groundstation.vehicle.sortie.board import (
 from groundstation.vehicle.sortie.run_records import ORDER_MODES, Phase, PilotOrder, RunOptions, RunOutcome, RunView
 from groundstation.vehicle.state import VehicleState
 from groundstation.vehicle.telemetry import LocalFrame, updated_state
-from groundstation.vehicle.watch import Watch, WatchRules, watched
+from groundstation.vehicle.watch import OtherAircraft, Watch, WatchRules, watched
 from missions.flight.record import FlightEvent
 from missions.mavlink.link import GROUND_HEARTBEAT, GROUND_STATION, HEARTBEAT_EVERY_S
 from missions.mavlink.messages import (
@@ -176,6 +176,11 @@ class SortieRun:
     """A sortie being flown; give it what is received and the time, and send what it returns.
 
     What is done, step by step, is told by `steps`: see `flight_run.FlightRun`.
+
+    Attributes
+    ----------
+    others
+        Other aircraft in the air, told by whoever hears them.
     """
 
     def __init__(
@@ -186,6 +191,7 @@ class SortieRun:
         self.state = VehicleState()
         self.phase = Phase.CONNECTING
         self.watch = Watch()
+        self.others: tuple[OtherAircraft, ...] = ()
         self.on_board = OnBoard()
         self.lists: tuple[BoardList, ...] = ()
         self.now_s = self._started_s = 0.0
@@ -416,7 +422,8 @@ class SortieRun:
         self._watch_s = self.now_s
         before = self.watch.codes()
         around = self.orders.surroundings[autopilot]
-        rules = WatchRules(self.options.needs_rtk, has_other_mission=self.on_board.mission is False)
+        has_other = self.on_board.mission is False
+        rules = WatchRules(self.options.needs_rtk, has_other_mission=has_other, others=self.others)
         self.watch = watched(self.watch, self.state, around, self.now_s, rules)
         for warning in self.watch.warnings:
             if warning.code not in before:

@@ -13,7 +13,7 @@ from groundstation.gui.fly.aircraft_shape import aircraft_drawables, body_axes, 
 from groundstation.gui.fly.flight_overlay import WarningBanner
 from groundstation.gui.fly.instruments import AttitudeView, FlightFigures
 from groundstation.gui.widgets.theme import LIGHT
-from groundstation.services.fly.announce import ordered_warnings
+from groundstation.services.fly.announce import aged_warnings, ordered_warnings
 from groundstation.services.fly.events import LinkState, LiveView, Readouts, ViewState
 from groundstation.services.units import UnitSystem
 from groundstation.vehicle.preflight import OnBoard
@@ -143,15 +143,15 @@ def test_warnings_stand_until_they_are_over_the_worst_and_newest_first(applicati
         warning("airspace", Severity.ERROR, 95.0),
     )
     assert [each.code for each in ordered_warnings(found)] == ["airspace", "battery", "gnss", "wind"]
-    assert banner.set_view(view_of(found))
+    assert banner.set_warnings(aged_warnings(view_of(found)))
     lines = banner.text().splitlines()
     assert lines[0].startswith("DANGER (0:06): the wind is 9.0 m/s")
     assert lines[1].startswith("DANGER (0:51)")
     assert lines[3] == "1 more in the list"
-    assert not banner.set_view(view_of(found)), "nothing is different"
+    assert not banner.set_warnings(aged_warnings(view_of(found))), "nothing is different"
     wide, narrow = banner.height_for(700), banner.height_for(200)
     assert 4 * banner.fontMetrics().height() < wide < narrow, "all lines have room"
-    banner.set_view(view_of())
+    banner.set_warnings(aged_warnings(view_of()))
     assert banner.is_empty()
 
 

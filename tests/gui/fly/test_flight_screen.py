@@ -6,6 +6,7 @@ import pytest
 from PySide6.QtTest import QTest
 
 from groundstation.gui.shared_view import SharedViewPage
+from groundstation.services.fly.announce import aged_warnings
 from groundstation.services.fly.events import Request
 from groundstation.services.fly.joystick import JoystickAction
 from groundstation.vehicle.watch import FlightWarning
@@ -32,7 +33,7 @@ def test_in_flight_the_view_has_the_room_of_the_lists_and_a_joystick_returns_by_
     assert "to the facade, min 10.0 m" in page.overlay.figures.text()
     assert page.overlay.attitude.text().startswith("heading ")
     warned = FlightWarning("wind", Severity.ERROR, say("the wind is {:.1f} m/s", 9.0), 0.0, 9.0, 8.0, "m/s")
-    page.overlay.set_view(replace(page.controller.active.view, warnings=(warned,)))
+    page.overlay.set_warnings(aged_warnings(replace(page.controller.active.view, warnings=(warned,))))
     page.overlay.draw()
     banner = page.overlay.banner
     assert banner.isVisible()

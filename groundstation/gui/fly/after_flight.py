@@ -1,0 +1,212 @@
+"""What comes after a flight: plans for what was missed, for the rest of a sortie, and for fewer photos in each."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+from PySide6.QtCore import QObject, Signal
+
+from groundstation.gui.application.context import ApplicationContext
+from groundstation.services.fly.options import (
+    ConnectionChoice,
+    LinkKind,
+)
+from groundstation.services.fly.sortie import is_same_place
+from groundstation.services.jobs.runner import JobContext
+from groundstation.services.mission.readiness import TooLong, split_to_fit, too_long
+from groundstation.services.plan.top_up import flown_plan, resume_flight, top_up_flight
+from groundstation.services.project.document import Document, PlanEntry
+from missions.flight.flight_file import flight_of
+from missions.flight.record import FlightRecord
+from missions.mavlink.autopilots import Autopilot
+from missions.mission.resume import Resumed
+from planning.base.findings import Finding, Severity
+from planning.plan import Plan
+from planning.revision.top_up import TopUp, TopUpRequest
+from planning.site.records import SiteModel
+
+# What comes after a flight, as new plans: a top-up for what it missed, or the rest of an interrupted sortie.
+
+MOST_BATTERIES = 20
+"""Full batteries that a top-up may take at most; more than anybody has with them."""
+
+
+class AfterFlight(QObject):
+    """Keeps what was flown of each plan, and plans what is left, as jobs.
+
+    Signals
+    -------
+    restFound(TopUp)
+        So little is missing that a flight for it wants a decision; `take` makes it a plan.
+    """
+
+    restFound = Signal(object)  # noqa: N815  (Qt's own way of naming)
+
+    def __init__(self, context: ApplicationContext, parent: QObject) -> None:
+        super().__init__(parent)
+        self._context = context
+        self._flown: dict[int, tuple[Plan, tuple[FlightRecord, ...]]] = {}
+        self._last: tuple[Plan, SiteModel] | None = None
+        self._battery: float | None = None
+        self._on_board: tuple[Plan, float] | None = None
+
+    def flown(self, plan: Plan) -> tuple[FlightRecord, ...]:
+        """What was flown of a plan since the program was started."""
+        _, records = self._flown.get(id(plan), (plan, ()))
+        return records
+
+    def add(self, plan: Plan, site_model: SiteModel, record: FlightRecord, battery: float | None) -> None:
+        """A sortie of a plan was flown over a site; `battery` is what it left of the charge, 1 full."""
+        self._flown[id(plan)] = (plan, (*self.flown(plan), record))
+        self._last, self._battery = (plan, site_model), battery
+        self._on_board = None
+
+    def correct(self, plan: Plan, number: int, record: FlightRecord) -> None:
+        """A sortie, from 1, as the vehicle's own log tells its last flight: what the link lost is in it."""
+        known = self.flown(plan)
+        last = max((n for n, each in enumerate(known) if each.sortie == number), default=None)
+        if last is not None:
+            told = replace(record, sortie=number, vehicle=known[last].vehicle)
+            self._flown[id(plan)] = (plan, (*known[:last], told, *known[last + 1 :]))
+
+    def charge(self, plan: Plan, number: int) -> float:
+        """Charge of the battery that a sortie, from 1, begins with, 1 full: of a top-up, what the flight before left.
+
+        Further sorties, other plans, and a top-up that is flown again have a full one.
+        """
+        if self._on_board is None or number != 1:
+            return 1.0
+        top_up, battery = self._on_board
+        return battery if top_up is plan else 1.0
+
+    def top_up(self) -> None:
+        """Plan the shortest flight that closes what is missing, with the battery that is left, as a new plan."""
+        flown = self._flown_here()
+        if flown is None:
+            return
+        plan, site_model, records = flown
+        battery = self._battery
+        # Full ones come into it where the one on board does not suffice.
+        request = TopUpRequest(battery=battery, n_batteries=None if battery is None else MOST_BATTERIES)
+
+        def work(context: JobContext) -> tuple[TopUp, tuple[Finding, ...]]:
+            found = flown_plan(flight_of(plan, site_model, records), plan, site_model)
+            return top_up_flight(found, request, monitor=context)
+
+        def done(result: tuple[TopUp, tuple[Finding, ...]]) -> None:
+            found, findings = result
+            for finding in findings:
+                self._context.say(finding.severity, self._context.localized(finding.message))
+            if found.wanted == 0:
+                self._context.say(Severity.OK, self.tr("Nothing is missing: the photos show all that was planned."))
+            elif found.is_negligible and found.plan is not None:
+                self.restFound.emit(found)
+            else:
+                self.take(found)
+
+        self._context.start(self.tr("Top-up flight"), work, done)
+
+    def take(self, found: TopUp) -> None:
+        """Make a top-up a plan of the project."""
+        if found.plan is None:
+            return
+        battery = self._battery
+        text = self.tr("Top-up planned, photos: {0}; it closes {1} of {2} missing sections").format(
+            len(found.plan.viewpoints), found.closed, found.wanted
+        )
+        on_board = found.on_board and battery is not None
+        needed = (
+            self.tr("Fly it before the battery is changed.")
+            if on_board and len(found.plan.sorties) == 1
+            else self.tr("Fly the first sortie before the battery is changed, the others with full ones.")
+            if on_board
+            else self.tr("It needs a full battery: change it first.")
+        )
+        self._add_plan(self.tr("Top-up"), found.plan, self.tr("{0}. {1}").format(text, needed))
+        self._on_board = (found.plan, battery) if on_board and battery is not None else None
+
+    def resume_sortie(self) -> None:
+        """Plan the rest of the sortie that was interrupted, for a full battery, as a new plan."""
+        flown = self._flown_here()
+        if flown is None:
+            return
+        plan, site_model, records = flown
+
+        def work(context: JobContext) -> Resumed:
+            found = flown_plan(flight_of(plan, site_model, records), plan, site_model)
+            return resume_flight(found, monitor=context)
+
+        def done(rest: Resumed) -> None:
+            text = self.tr("Rest of sortie {0} planned, photos: {1}. It needs a full battery: change it first.").format(
+                rest.mission.number, len(rest.plan.viewpoints)
+            )
+            self._add_plan(self.tr("Rest of sortie {0}").format(rest.mission.number), rest.plan, text)
+
+        self._context.start(self.tr("Resume sortie"), work, done)
+
+    def _flown_here(self) -> tuple[Plan, SiteModel, tuple[FlightRecord, ...]] | None:
+        """The plan that was flown last, the site as it is now, and all that was flown of the plan."""
+        site_model = self._context.document.site
+        if self._last is None or site_model is None:
+            return None
+        plan, flown_over = self._last
+        if not is_same_place(flown_over.site, site_model.site):
+            text = self.tr("This flight was over the site {0}: open its project first.").format(flown_over.site.name)
+            self._context.say(Severity.WARNING, text)
+            return None
+        return plan, site_model, self.flown(plan)
+
+    def _add_plan(self, title: str, plan: Plan, text: str) -> None:
+        document: Document = self._context.document
+        entry = PlanEntry(document.free_plan_id(), title, plan)
+        self._context.change(title, document.with_plan(entry))
+        self._context.say(Severity.OK, text)
+
+
+# Plans with more photos in a sortie than the autopilot keeps items for: found, and shared out anew as a plan.
+
+
+class ItemLimit(QObject):
+    """Works on the current plan of the document."""
+
+    def __init__(self, context: ApplicationContext, parent: QObject) -> None:
+        super().__init__(parent)
+        self._context = context
+
+    def exceeded(self, choice: ConnectionChoice) -> TooLong | None:
+        """Whether a sortie has more photos than the autopilot, or any that may answer at a link, has room for."""
+        entry = self._context.document.current
+        if entry is None:
+            return None
+        is_simulation = choice.kind is LinkKind.SIMULATION
+        return too_long(entry.plan, [choice.autopilot] if is_simulation else tuple(Autopilot))
+
+    def share_out(self, found: TooLong, then: Callable[[], None]) -> int:
+        """Share the views out among sorties that fit, as a plan of its own; returns the job's number, 0 for none.
+
+        Parameters
+        ----------
+        then
+            Called once that is the current plan.
+        """
+        site_model, entry = self._context.document.site, self._context.document.current
+        if site_model is None or entry is None:
+            return 0
+
+        def work(context: JobContext) -> Plan:
+            return split_to_fit(entry.plan, site_model, found, context)
+
+        def done(anew: Plan) -> None:
+            document = self._context.document
+            if document.site is not site_model:
+                return
+            title = self.tr("{0}, shared out").format(entry.title)
+            added = document.with_plan(PlanEntry(document.free_plan_id(), title, anew))
+            self._context.change(self.tr("Share views out"), added)
+            text = self.tr("Views shared out anew, sorties: {0}").format(len(anew.sorties))
+            self._context.say(Severity.OK, text)
+            then()
+
+        job_id: int = self._context.start(self.tr("Share views out"), work, done).id
+        return job_id
