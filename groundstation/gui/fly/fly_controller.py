@@ -18,7 +18,7 @@ from groundstation.gui.fly.after_flight import AfterFlight, ItemLimit
 from groundstation.gui.fly.live_aircraft import ActiveFlight, LiveAircraft, n_aircraft, sortie_of
 from groundstation.gui.fly.signing_controller import SigningController
 from groundstation.gui.fly.simulation_controller import SimulationController
-from groundstation.services.fly.announce import AgedWarning, aged_warnings
+from groundstation.services.fly.announce import AgedWarning, aged_warnings, fleet_warnings
 from groundstation.services.fly.connection import Connection, VehicleAt, flights_folder
 from groundstation.services.fly.corrections import Corrections
 from groundstation.services.fly.events import (
@@ -215,10 +215,9 @@ class FlyController(QObject):
     def warnings(self) -> tuple[AgedWarning, ...]:
         """Warnings of all connected aircraft; of several, each with its number."""
         views = self.views()
-        several = len(self.aircraft) > 1
-        return tuple(
-            aged for number, view in sorted(views.items()) for aged in aged_warnings(view, number if several else None)
-        )
+        if len(self.aircraft) == 1:
+            return tuple(aged for view in views.values() for aged in aged_warnings(view))
+        return fleet_warnings(views)
 
     def wait_s(self, aircraft: LiveAircraft) -> float:
         """How long an aircraft on the ground has to wait for its start, to keep apart from those in the air."""

@@ -45,6 +45,14 @@ def aged_warnings(view: LiveView, number: int | None = None) -> tuple[AgedWarnin
     return tuple(found)
 
 
+def fleet_warnings(views: Mapping[int, LiveView]) -> tuple[AgedWarning, ...]:
+    """The warnings of several aircraft, by their numbers; that two are near each other is said once."""
+    found = [aged for number, view in sorted(views.items()) for aged in aged_warnings(view, number)]
+    near = [aged for aged in found if aged.warning.code.endswith(":aircraft-apart")]
+    spare = near[1:] if len(near) == 2 else []
+    return tuple(aged for aged in found if aged not in spare)
+
+
 @dataclass(frozen=True, slots=True)
 class Spoken:
     """How severe a warning was when it was spoken last, and when."""

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from groundstation.services.fly.announce import Announcements, aged_warnings
+from groundstation.services.fly.announce import Announcements, aged_warnings, fleet_warnings
 from groundstation.services.fly.events import LinkState, LiveView, Readouts, Request
 from groundstation.services.fly.fleet import Fleet, ReturnAll, Traffic, distances_m
 from groundstation.services.fly.options import ConnectionChoice, LinkKind, beside
@@ -139,6 +139,13 @@ def test_warnings_of_several_aircraft_are_told_apart_and_spoken_each():
     said = Announcements().with_spoken(first, 0.0)
     assert {first.code, said.next(warnings, 0.0).code} == {"1:battery", "2:battery"}
     assert aged_warnings(view(state, warnings=(low,)))[0].warning is low
+
+
+def test_that_two_are_near_each_other_is_said_once():
+    near = FlightWarning("aircraft-apart", Severity.ERROR, "near", 0.0, 9.0, 11.0, "m")
+    views = {number: view(in_air((0, 0, 20)), warnings=(near,)) for number in (1, 2, 3)}
+    assert [each.warning.code for each in fleet_warnings({2: views[2], 1: views[1]})] == ["1:aircraft-apart"]
+    assert len(fleet_warnings(views)) == 3, "of three, each may be near to another one"
 
 
 def test_distances_are_to_the_nearest_that_flies():
