@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,7 +11,7 @@ from random import Random
 from tests.planning.proof.claims import Case, judged
 from tests.planning.proof.exact import Point
 from tests.planning.proof.tampering import tampered
-from tests.planning.proof.verifiers import Claim
+from tests.planning.proof.verifiers import Claim, mission_names
 
 Verifier = Callable[[Mapping[str, bytes]], list[Claim]]
 
@@ -46,6 +47,57 @@ def attack(seed: int, kind: str, files: Mapping[str, bytes], places: Places, ver
     changed = tampered(Random(seed), files, kind)
     claims = verifier(changed)
     return Outcome(kind, changed, claims, wrongly_proved(changed, claims, places))
+
+
+SPEAKS_OF: dict[str, tuple[str, ...]] = {
+    "distance": ("sorties", "constraints"),
+    "no-fly": ("sorties",),
+    "return": ("sorties", "constraints"),
+    "battery": ("sorties", "viewpoints", "aircraft", "rules"),
+    "coverage": ("viewpoints", "camera", "constraints", "coverage"),
+    "reachable": ("camera", "constraints", "coverage"),
+    "mission": ("sorties", "viewpoints", "aircraft", "camera", "origin", "home_enu_m"),
+    "missions": ("sorties", "viewpoints", "aircraft", "camera", "origin", "home_enu_m"),
+}
+"""Parts of the plan that claims speak of, beside the whole site with its meshes: the claims that take long to judge."""
+
+
+class Judge:
+    """A judge that remembers: most tamperings leave most of what a claim speaks of as it was."""
+
+    def __init__(self, places: Places) -> None:
+        self.places = places
+        self._known: dict[tuple[object, ...], bool | None] = {}
+
+    def wrongly_proved(self, files: Mapping[str, bytes], claims: Sequence[Claim]) -> list[Claim]:
+        """As the function of that name."""
+        case = Case(files, self.places)
+        return [claim for claim in claims if claim.verdict == "proved" and self._judged(case, claim.id) is False]
+
+    def _judged(self, case: Case, claim: str) -> bool | None:
+        key = _spoken_of(case, claim)
+        if key is None:
+            return judged(case, claim)
+        if key not in self._known:
+            self._known[key] = judged(case, claim)
+        return self._known[key]
+
+
+def _spoken_of(case: Case, claim: str) -> tuple[object, ...] | None:
+    """Everything that the truth of a claim depends on; None where it is soon judged, or what it is cannot be read."""
+    parts = SPEAKS_OF.get(claim.split(" ", maxsplit=1)[0])
+    if parts is None:
+        return None
+    missions = mission_names(case.files)
+    read = [name for name in case.files if name not in ("plan.json", "plan.proof", *missions)]
+    read += missions if claim == "missions" else [name for name in missions if claim == f"mission {name}"]
+    try:
+        proof, plan = case.json("plan.proof"), case.plan
+        of_plan = tuple(json.dumps(plan.get(part)) for part in parts)
+        of_proof = json.dumps([proof.get(name) for name in ("return_height_m", "return_kept_m")])
+    except Exception:  # a damaged file breaks readers in ways without number
+        return None
+    return claim, of_plan, of_proof, *((name, case.files[name]) for name in read)
 
 
 def wrongly_proved(files: Mapping[str, bytes], claims: Sequence[Claim], places: Places) -> list[Claim]:

@@ -40,11 +40,13 @@ from tests.planning.proof.judge import (
     in_picture,
     is_in_solid,
     keeps,
+    least_above,
     legs,
     line_is_free,
     most_covered,
     rest_to_rest_s,
     ring_and_sector,
+    upper_heights,
 )
 
 Files = Mapping[str, bytes]
@@ -218,10 +220,19 @@ def gimbal(case: Case) -> bool:
 
 def floor_z(case: Case) -> Fraction:
     """Lowest height of flights beside the column."""
-    airspace = case.site["airspace"]
-    wanted = (case.plan["constraints"].get("min_height_above_ground_m"), airspace.get("min_height_above_ground_m"), 5)
-    lowest = next(number(value) for value in wanted if value is not None)
-    return max(number(airspace["min_enu_m"][2]), number(airspace["ground_z_m"]) + lowest)
+    airspace, lowest = case.site["airspace"], lowest_height(case)
+    terrain = case.scene.terrain
+    if terrain is None:
+        return max(number(airspace["min_enu_m"][2]), number(airspace["ground_z_m"]) + lowest)
+    known = [height for row in upper_heights(terrain) for height in row if height is not None]
+    return max(number(airspace["min_enu_m"][2]), min(known) + lowest)
+
+
+def lowest_height(case: Case) -> Fraction:
+    """That flights keep above the ground."""
+    of_plan = case.plan["constraints"].get("min_height_above_ground_m")
+    wanted = (of_plan, case.site["airspace"].get("min_height_above_ground_m"), 5)
+    return next(number(value) for value in wanted if value is not None)
 
 
 def airspace(case: Case) -> bool:
@@ -238,12 +249,12 @@ def airspace(case: Case) -> bool:
             beside = not in_column[k] or any(not in_column[j] for j in neighbours)
             if vertex[2] < (floor if beside else min(home[2], floor)) - (0 if beside else HOME_M):
                 return False
+        if case.scene.terrain is not None:
+            for k, (a, b) in enumerate(legs(path)):
+                above = None if in_column[k] and in_column[k + 1] else least_above(case.scene.terrain, a, b)
+                if not (in_column[k] and in_column[k + 1]) and (above is None or above < lowest_height(case)):
+                    return False
     return True
-
-
-def ground(case: Case) -> bool:
-    """Without terrain there is level ground, of which `airspace` speaks."""
-    return case.site.get("terrain") is None
 
 
 def column(case: Case) -> bool:
@@ -460,7 +471,6 @@ CLAIMS: dict[str, Callable[[Case], bool | None]] = {
     "sorties": sorties,
     "gimbal": gimbal,
     "airspace": airspace,
-    "ground": ground,
     "column": column,
     "distance": distance,
     "no-fly": no_fly,

@@ -6,8 +6,11 @@ make of it. All triangles are looked at for each leg and each line of sight; not
 
 from __future__ import annotations
 
+import base64
 import itertools
 import math
+import struct
+import zlib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -135,6 +138,12 @@ class Scene:
         """Take-off and landing."""
         return _point(self.site["home_enu_m"])
 
+    @property
+    def terrain(self) -> Json | None:
+        """The terrain that heights count from."""
+        found = self.site.get("terrain")
+        return None if found is None or found.get("use", "auto") == "off" else found
+
 
 @lru_cache(maxsize=10_000)
 def _panel(corners: str) -> Panel:
@@ -200,6 +209,48 @@ def enters_no_fly(scene: Scene, a: Point, b: Point) -> bool:
 
 
 # What a view sees.
+
+
+def upper_heights(terrain: Json) -> list[list[Fraction | None]]:
+    """Upper bounds of the ground by rows from the south, None where nothing is known."""
+    content = zlib.decompress(base64.b64decode(terrain["upper"], validate=True))
+    columns, rows = int(terrain["columns"]), int(terrain["rows"])
+    if len(content) != 4 * columns * rows or min(columns, rows) < 2 or terrain["accuracy_m"] < 0:
+        raise ValueError("the terrain is damaged")
+    accuracy = Fraction(terrain["accuracy_m"])
+    heights = [None if mm == -(2**31) else Fraction(mm, 1000) + accuracy for (mm,) in struct.iter_unpack("<i", content)]
+    return [heights[k * columns : (k + 1) * columns] for k in range(rows)]
+
+
+def least_above(terrain: Json, a: Point, b: Point) -> Fraction | None:
+    """Least height of a leg above the terrain, exact; None where it is not known."""
+    z = upper_heights(terrain)
+    low, step, sizes = [Fraction(x) for x in terrain["west_south_m"]], Fraction(terrain["step_m"]), (len(z[0]), len(z))
+    ends = [[(Fraction(p[i]) - low[i]) / step for p in (a, b)] for i in range(2)]
+    cuts = {Fraction(0), Fraction(1)}
+    for (x, y), n in zip(ends, sizes, strict=True):
+        if min(x, y) < 0 or max(x, y) > n - 1:
+            return None
+        cuts |= {(k - x) / (y - x) for k in range(math.ceil(min(x, y)), math.floor(max(x, y)) + 1) if x != y}
+    found = []
+    for s, t in itertools.pairwise(sorted(cuts)):
+        cell = [min(int(x + (y - x) * (s + t) / 2), n - 2) for (x, y), n in zip(ends, sizes, strict=True)]
+        nodes = [height for row in z[cell[1] : cell[1] + 2] for height in row[cell[0] : cell[0] + 2]]
+        if None in nodes:
+            return None
+        above = []
+        for way in (s, (s + t) / 2, t):
+            u, v = (x + (y - x) * way - k for (x, y), k in zip(ends, cell, strict=True))
+            shares = ((1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v)
+            ground = sum((share * (node or 0) for share, node in zip(shares, nodes, strict=True)), Fraction(0))
+            above.append(Fraction(a[2]) + (Fraction(b[2]) - Fraction(a[2])) * way - ground)
+        first, middle, last = above
+        bend = 2 * (first + last) - 4 * middle
+        slope = last - first - bend
+        found += [first, last]
+        if bend > 0 and 0 < -slope < 2 * bend:
+            found.append(first - slope**2 / (4 * bend))
+    return min(found)
 
 
 class UndecidedError(Exception):

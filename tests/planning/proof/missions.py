@@ -123,7 +123,11 @@ def _kmz(content: bytes, origin: Any, home: Sequence[float]) -> list[Stop]:
         for node in (*_all(lines, name), *_all(template, name)):
             _expect(node.text or "", "1")
     start = height_of(origin, home)
-    stops, drafts = [], [_coordinates(mark) for mark in _all(template, "Placemark")]
+    # The app on the controller makes its waylines anew from the template.
+    name_of_height = "height" if mode == "relativeToStartPoint" else "ellipsoidHeight"
+    stops, drafts = [], list[tuple[float, float, float, Photos]]()
+    for k, mark in enumerate(_all(template, "Placemark")):
+        drafts.append((*_coordinates(mark), float(_text(mark, name_of_height)), _dji_photos(mark, k)))
     for k, mark in enumerate(_all(lines, "Placemark")):
         _text(mark, "waypointTurnMode")
         _text(mark, "useStraightLine")
@@ -132,7 +136,7 @@ def _kmz(content: bytes, origin: Any, home: Sequence[float]) -> list[Stop]:
         height = float(_text(mark, "executeHeight"))
         above = mpmath.mpf(height) + (start if mode == "relativeToStartPoint" else 0)
         stops.append(Stop(enu(origin, lat, lon, above), _dji_photos(mark, k)))
-        if k >= len(drafts) or drafts[k] != (lon, lat):
+        if k >= len(drafts) or drafts[k] != (lon, lat, height, stops[-1].photos):
             raise NotThePlanError("template and waylines differ")
     return stops
 

@@ -7,145 +7,40 @@ nothing: there a claim is lost or kept by rounding alone.
 
 from __future__ import annotations
 
+import base64
 import copy
-import hashlib
-import io
 import json
 import math
 import re
 import struct
-import zipfile
-from collections.abc import Callable, Iterator
+import zlib
+from collections.abc import Iterator
 from random import Random
 from typing import Any
 
-from tests.planning.proof.claims import Case, Files, duration_s
+from tests.planning.proof import tampering_missions
+from tests.planning.proof.claims import Case, duration_s
 from tests.planning.proof.exact import segment_triangle_d2
 from tests.planning.proof.judge import legs
-
-Tampering = Callable[[Random, dict[str, bytes]], None]
-
-TAMPERINGS: dict[str, Tampering] = {}
-"""By kind; each changes the files in place."""
-
-JSON_FILES = ("site.json", "plan.json", "plan.proof")
-
-
-def kind(name: str) -> Callable[[Tampering], Tampering]:
-    """Register a kind of tampering."""
-
-    def register(tampering: Tampering) -> Tampering:
-        TAMPERINGS[name] = tampering
-        return tampering
-
-    return register
-
-
-def tampered(random: Random, files: Files, name: str) -> dict[str, bytes]:
-    """Files after a tampering of a kind, mostly with hashes that fit again."""
-    changed = dict(files)
-    TAMPERINGS[name](random, changed)
-    return sealed(changed) if random.random() < 0.9 else changed
-
-
-def sealed(files: Files) -> dict[str, bytes]:
-    """The same files with all hashes right, as far as they can be read."""
-    changed = dict(files)
-    try:
-        digest = hashlib.sha256(changed["site.json"]).hexdigest()
-        # Texts are replaced, not rewritten: what is odd about a file must stay odd.
-        plan = re.sub(
-            rb'"site_sha256": *"[0-9a-f]*"', b'"site_sha256": "' + digest.encode() + b'"', changed["plan.json"]
-        )
-        changed["plan.json"] = plan
-        proof = json.loads(changed["plan.proof"])
-        proof["site"]["sha256"] = digest
-        proof["plan"]["sha256"] = hashlib.sha256(plan).hexdigest()
-        for entry in proof["meshes"]:
-            if entry["name"] in changed:
-                entry["sha256"] = hashlib.sha256(changed[entry["name"]]).hexdigest()
-        changed["plan.proof"] = dumped(proof)
-    except (ValueError, KeyError, TypeError, RecursionError):
-        pass
-    return changed
-
-
-def dumped(content: Any) -> bytes:
-    """JSON as Python writes it, NaN and Infinity included."""
-    return json.dumps(content).encode()
-
-
-def amount(random: Random) -> float:
-    """A length from a nanometre to 10 m, of either sign, m."""
-    return float(random.choice((-1, 1)) * 10.0 ** random.uniform(-9.0, 1.0))
-
-
-def next_to_nothing(random: Random) -> float:
-    """A relative or absolute change that rounding could hide."""
-    return float(random.choice((-1, 1)) * 10.0 ** random.uniform(-16.0, -5.0))
-
-
-# Everywhere in a JSON file.
-
-ODD: tuple[Any, ...] = (
-    math.nan,
-    math.inf,
-    -math.inf,
-    1e308,
-    -1e308,
-    1e-308,
-    5e-324,
-    1e16,
-    -1.0,
-    0,
-    -0.0,
-    10**400,
-    2**53 + 1,
-    True,
-    False,
-    None,
-    "",
-    "1",
-    "NaN",
-    [],
-    {},
-    [[[]]],
-    "\ud800",
-    "__proto__",
-    "constructor",
+from tests.planning.proof.tamper import (
+    JSON_FILES,
+    ODD,
+    TAMPERINGS,
+    amount,
+    dumped,
+    edit,
+    kind,
+    next_to_nothing,
+    parent_of,
+    places,
+    sealed,
+    somewhere,
+    tampered,
 )
 
+__all__ = ["TAMPERINGS", "of_kinds", "sealed", "tampered", "tampering_missions"]
 
-def places(value: Any, path: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
-    """Paths of all values in a JSON file."""
-    if path:
-        yield path
-    children = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
-    for key, child in children:
-        yield from places(child, (*path, key))
-
-
-def _parent(content: Any, path: tuple[Any, ...]) -> Any:
-    for key in path[:-1]:
-        content = content[key]
-    return content
-
-
-def _somewhere(random: Random, content: Any) -> tuple[Any, ...]:
-    """A path that is as likely to be near the top as deep down."""
-    value, path = content, ()
-    while isinstance(value, (dict, list)) and value:
-        key = random.choice(list(value) if isinstance(value, dict) else range(len(value)))
-        path, value = (*path, key), value[key]
-        if random.random() < 0.15:
-            break
-    return path
-
-
-def _edit(files: dict[str, bytes], name: str, change: Callable[[Any], None]) -> None:
-    content = json.loads(files[name])
-    change(content)
-    files[name] = dumped(content)
+# Everywhere in a JSON file.
 
 
 @kind("odd values")
@@ -154,10 +49,10 @@ def odd_value(random: Random, files: dict[str, bytes]) -> None:
     name = random.choice(JSON_FILES)
 
     def change(content: Any) -> None:
-        path = _somewhere(random, content)
-        _parent(content, path)[path[-1]] = random.choice(ODD)
+        path = somewhere(random, content)
+        parent_of(content, path)[path[-1]] = random.choice(ODD)
 
-    _edit(files, name, change)
+    edit(files, name, change)
 
 
 @kind("numbers scaled")
@@ -167,14 +62,14 @@ def scaled_number(random: Random, files: dict[str, bytes]) -> None:
 
     def change(content: Any) -> None:
         for _ in range(20):
-            path = _somewhere(random, content)
-            value = _parent(content, path)[path[-1]]
+            path = somewhere(random, content)
+            value = parent_of(content, path)[path[-1]]
             if isinstance(value, (int, float)) and not isinstance(value, bool):
                 factor = random.choice((1 + next_to_nothing(random), 0.5, 2.0, -1.0, 1e3, 1e-3))
-                _parent(content, path)[path[-1]] = random.choice((value * factor, value + amount(random)))
+                parent_of(content, path)[path[-1]] = random.choice((value * factor, value + amount(random)))
                 return
 
-    _edit(files, name, change)
+    edit(files, name, change)
 
 
 @kind("parts missing, doubled or swapped")
@@ -183,8 +78,8 @@ def structure(random: Random, files: dict[str, bytes]) -> None:
     name = random.choice(JSON_FILES)
 
     def change(content: Any) -> None:
-        path = _somewhere(random, content)
-        parent = _parent(content, path)
+        path = somewhere(random, content)
+        parent = parent_of(content, path)
         what = random.choice(("drop", "double", "swap"))
         if what == "drop":
             del parent[path[-1]]
@@ -196,7 +91,7 @@ def structure(random: Random, files: dict[str, bytes]) -> None:
         else:
             parent[f"{path[-1]} "] = parent.pop(path[-1])
 
-    _edit(files, name, change)
+    edit(files, name, change)
 
 
 @kind("doubled keys")
@@ -248,7 +143,7 @@ def _panels(site: Any) -> list[Any]:
 @kind("site: a corner moved")
 def corner(random: Random, files: dict[str, bytes]) -> None:
     """A corner of a panel somewhere else."""
-    _edit(
+    edit(
         files,
         "site.json",
         lambda site: _move(random, random.choice(random.choice(_panels(site))["corners_enu_m"])),
@@ -278,7 +173,7 @@ def panels(random: Random, files: dict[str, bytes]) -> None:
             a, b, c, _ = one["corners_enu_m"]
             one["corners_enu_m"][3] = [a[k] + c[k] - b[k] + amount(random) for k in range(3)]
 
-    _edit(files, "site.json", change)
+    edit(files, "site.json", change)
 
 
 @kind("site: obstacles moved, grown or added")
@@ -301,7 +196,7 @@ def obstacles(random: Random, files: dict[str, bytes]) -> None:
             high = [x + s + size for x, s in zip(at, shift, strict=True)]
             site["obstacles"].append({"id": "new", "box_enu_m": [low, high]})
 
-    _edit(files, "site.json", change)
+    edit(files, "site.json", change)
 
 
 @kind("site: borders, ground and home moved")
@@ -317,7 +212,7 @@ def borders(random: Random, files: dict[str, bytes]) -> None:
         else:
             _move(random, site["home_enu_m"])
 
-    _edit(files, "site.json", change)
+    edit(files, "site.json", change)
 
 
 @kind("site: no-fly volumes moved or added")
@@ -337,7 +232,34 @@ def no_fly(random: Random, files: dict[str, bytes]) -> None:
             polygon.insert(2, [x + dx, y + dy])
         zones.append({"id": "new", "polygon_enu_m": polygon, "floor_m": z + amount(random) - 1, "ceiling_m": z + 2})
 
-    _edit(files, "site.json", change)
+    edit(files, "site.json", change)
+
+
+@kind("site: terrain below, as high as flights allow")
+def terrain(random: Random, files: dict[str, bytes]) -> None:
+    """Heights that the paths keep by next to nothing, or miss; with holes, too few nodes, or other steps."""
+    paths = [sortie["path_enu_m"] for sortie in json.loads(files["plan.json"])["sorties"]]
+    lowest = json.loads(files["plan.json"])["constraints"].get("min_height_above_ground_m") or 5.0
+    shape, step, by = (12, 12), 5.0, random.choice((-0.5, -0.1, -0.002, 0.0, 0.001, 0.3))
+    heights = [random.uniform(-2.0, 0.2) for _ in range(shape[0] * shape[1])]
+    for x, y, z in random.choice(paths)[1:-1]:
+        column, row = min(max(int((x + 29.0) / step), 0), 10), min(max(int((y + 29.0) / step), 0), 10)
+        for node in (12 * row + column, 12 * row + column + 1, 12 * row + column + 12, 12 * row + column + 13):
+            if random.random() < 0.5:
+                heights[node] = z - lowest + by
+    packed = struct.pack("<144i", *(round(1000.0 * height) for height in heights))
+    if random.random() < 0.2:
+        at = 4 * random.randrange(144)
+        packed = packed[:at] + random.choice((b"\0\0\0\x80", b"", b"\0\0\0\x7f")) + packed[at + 4 :]
+    text = base64.b64encode(zlib.compress(packed)).decode()
+    record = {"west_south_m": [-29.0, -29.0], "step_m": step, "columns": 12, "rows": 12, "upper": text}
+    record |= {"ground": text, "lower": text, "accuracy_m": random.choice((0.0, 0.0, 0.1)), "use": "auto"}
+    if random.random() < 0.2:
+        name, value = random.choice(
+            (("use", "off"), ("rows", 11), ("columns", 24), ("step_m", 2.0), ("accuracy_m", -1.0))
+        )
+        record[name] = value
+    edit(files, "site.json", lambda site: site.update(terrain=record))
 
 
 @kind("site: a mesh damaged or renamed")
@@ -350,7 +272,7 @@ def mesh(random: Random, files: dict[str, bytes]) -> None:
         other = random.choice(
             ("../x.ply", "/etc/passwd", "x.ply", "a\\b.ply", "C:x.ply", "", ".", "x.obj", "x\0.ply", "a//b")
         )
-        _edit(files, "site.json", lambda site: site.update(building_mesh=other))
+        edit(files, "site.json", lambda site: site.update(building_mesh=other))
         return
     content = bytearray(files[name])
     start = content.index(b"end_header\n") + 11
@@ -413,7 +335,7 @@ def view(random: Random, files: dict[str, bytes]) -> None:
         if random.random() < 0.7:
             _carry(plan, old, chosen["position_enu_m"])
 
-    _edit(files, "plan.json", change)
+    edit(files, "plan.json", change)
 
 
 def _carry(plan: Any, old: list[float], new: list[float]) -> None:
@@ -432,7 +354,7 @@ def angles(random: Random, files: dict[str, bytes]) -> None:
             (chosen[name] + amount(random), chosen[name] + 360.0, -chosen[name], 180.0, -180.0)
         )
 
-    _edit(files, "plan.json", change)
+    edit(files, "plan.json", change)
 
 
 @kind("plan: a vertex moved, left out or swapped")
@@ -456,7 +378,7 @@ def vertex(random: Random, files: dict[str, bytes]) -> None:
         else:
             random.shuffle(sortie["viewpoint_ids"])
 
-    _edit(files, "plan.json", change)
+    edit(files, "plan.json", change)
 
 
 @kind("plan: limits weakened or tightened")
@@ -490,7 +412,7 @@ def limits(random: Random, files: dict[str, bytes]) -> None:
         record, name, values = random.choice(choices)
         plan[record][name] = random.choice(values)
 
-    _edit(files, "plan.json", change)
+    edit(files, "plan.json", change)
 
 
 @kind("plan: more is stated than there is")
@@ -511,7 +433,7 @@ def stated(random: Random, files: dict[str, bytes]) -> None:
         else:
             random.choice(plan["sorties"])["length_m"] *= random.choice((0.5, 0.995, 2.0))
 
-    _edit(files, "plan.json", change)
+    edit(files, "plan.json", change)
 
 
 @kind("plan: sorties and names mixed up")
@@ -533,7 +455,7 @@ def names(random: Random, files: dict[str, bytes]) -> None:
         else:
             sortie["in_passing_ids"] = [sortie["viewpoint_ids"][0]]
 
-    _edit(files, "plan.json", change)
+    edit(files, "plan.json", change)
 
 
 # The proof.
@@ -552,9 +474,9 @@ def witnesses(random: Random, files: dict[str, bytes]) -> None:
             chosen = random.choice(proof["witnesses"])
             chosen[random.randrange(4)] += random.choice((1, amount(random)))
 
-    _edit(files, "plan.proof", change)
+    edit(files, "plan.proof", change)
     if random.random() < 0.5:
-        _edit(files, "plan.json", lambda plan: plan["coverage"].update(covered=plan["coverage"]["covered"] + 1))
+        edit(files, "plan.json", lambda plan: plan["coverage"].update(covered=plan["coverage"]["covered"] + 1))
 
 
 @kind("proof: false directions")
@@ -574,7 +496,7 @@ def directions(random: Random, files: dict[str, bytes]) -> None:
             legs_of = random.choice(proof[random.choice(("legs", "no_fly", "returns"))])
             legs_of[random.randrange(len(legs_of))] = random.choice(legs_of)
 
-    _edit(files, "plan.proof", change)
+    edit(files, "plan.proof", change)
 
 
 @kind("proof: boxes that exclude too much")
@@ -602,9 +524,9 @@ def boxes(random: Random, files: dict[str, bytes]) -> None:
             leaf = random.choice(("n", "l", "h", "o", "i", "g", "G", "f", "d0.", "q0.", "d1.", ""))
             trees.append([random.randrange(len(proof["seen"])), leaf])
 
-    _edit(files, "plan.proof", change)
+    edit(files, "plan.proof", change)
     by = random.choice((1, 1, 2, 20))
-    _edit(
+    edit(
         files,
         "plan.json",
         lambda plan: plan["coverage"].update(reachable_upper_bound=plan["coverage"]["reachable_upper_bound"] - by),
@@ -626,7 +548,7 @@ def way_home(random: Random, files: dict[str, bytes]) -> None:
         else:
             proof["outside"] = [[random.uniform(-50, 50) for _ in range(3)]]
 
-    _edit(files, "plan.proof", change)
+    edit(files, "plan.proof", change)
 
 
 # Limits that are set to what is measured.
@@ -639,7 +561,7 @@ def graze_distance(random: Random, files: dict[str, bytes]) -> None:
     triangles = case.scene.triangles
     nearest = min(segment_triangle_d2(a, b, t) for path in case.paths for a, b in legs(path) for t in triangles)
     value = math.sqrt(nearest) + random.choice((0.0, next_to_nothing(random), 1e-6, 1e-7, -1e-7))
-    _edit(files, "plan.json", lambda plan: plan["constraints"].update(min_distance_m=value))
+    edit(files, "plan.json", lambda plan: plan["constraints"].update(min_distance_m=value))
 
 
 @kind("grazing: borders")
@@ -658,7 +580,7 @@ def graze_borders(random: Random, files: dict[str, bytes]) -> None:
         else:
             air["min_enu_m" if side is min else "max_enu_m"][axis] = end + by
 
-    _edit(files, "site.json", change)
+    edit(files, "site.json", change)
 
 
 @kind("grazing: no-fly volumes")
@@ -675,7 +597,7 @@ def graze_no_fly(random: Random, files: dict[str, bytes]) -> None:
     else:
         polygon, low, high = [[x - 5, y - 5], [x + 5, y - 5], [x + 5, y + 5], [x - 5, y + 5]], z + by, z + by + 3
     zone = {"id": "near", "polygon_enu_m": polygon, "floor_m": low, "ceiling_m": high}
-    _edit(files, "site.json", lambda site: site["airspace"]["no_fly"].append(zone))
+    edit(files, "site.json", lambda site: site["airspace"]["no_fly"].append(zone))
 
 
 @kind("grazing: the battery")
@@ -688,7 +610,7 @@ def graze_battery(random: Random, files: dict[str, bytes]) -> None:
     def change(plan: Any) -> None:
         plan["aircraft"]["endurance_s"] = (longest + by) / (1.0 - plan["rules"]["battery_reserve"])
 
-    _edit(files, "plan.json", change)
+    edit(files, "plan.json", change)
 
 
 @kind("grazing: a view on a border")
@@ -715,7 +637,7 @@ def graze_view(random: Random, files: dict[str, bytes]) -> None:
         else:
             plan["constraints"]["max_distance_m"] = math.dist(centroid, old) + by
 
-    _edit(files, "plan.json", change)
+    edit(files, "plan.json", change)
 
 
 @kind("grazing: far from the origin")
@@ -736,14 +658,14 @@ def graze_far(random: Random, files: dict[str, bytes]) -> None:
 def _shift(content: Any, path: tuple[Any, ...], shift: list[float]) -> None:
     """Move what stands at a path, if it is the first or second coordinate of a place."""
     kinds = [key for key in path if isinstance(key, str)]
-    value, axis = _parent(content, path)[path[-1]], path[-1]
+    value, axis = parent_of(content, path)[path[-1]], path[-1]
     if not isinstance(value, float) or not isinstance(axis, int):
         return
     if kinds[-1].endswith("_enu_m") or kinds == ["outside"]:
         if axis < 2:
-            _parent(content, path)[axis] = value + shift[axis]
+            parent_of(content, path)[axis] = value + shift[axis]
     elif kinds == ["witnesses"] and len(path) == 3 and axis in (1, 2):
-        _parent(content, path)[axis] = value + shift[axis - 1]
+        parent_of(content, path)[axis] = value + shift[axis - 1]
 
 
 def _shifted_mesh(content: bytes, shift: list[float]) -> bytes:
@@ -754,219 +676,6 @@ def _shifted_mesh(content: bytes, shift: list[float]) -> bytes:
         x, y, z = struct.unpack_from("<3f", content, start + 12 * k)
         struct.pack_into("<3f", moved, start + 12 * k, x + shift[0], y + shift[1], z)
     return bytes(moved)
-
-
-# Missions.
-
-
-def _missions(files: Files, *endings: str) -> list[str]:
-    return [name for name in files if name.endswith(endings)]
-
-
-def _rewrite_kmz(content: bytes, change: Callable[[str, str], str]) -> bytes:
-    source, target = zipfile.ZipFile(io.BytesIO(content)), io.BytesIO()
-    with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name in source.namelist():
-            archive.writestr(name, change(name, source.read(name).decode()))
-    return target.getvalue()
-
-
-def _metres(random: Random) -> float:
-    return random.choice((amount(random), random.choice((-1, 1)) * 0.01 * (1 + next_to_nothing(random))))
-
-
-@kind("mission: a waypoint moved")
-def waypoint(random: Random, files: dict[str, bytes]) -> None:
-    """By a nanometre to 10 m, or by about the tolerance."""
-    name = random.choice(_missions(files, ".kmz", ".plan", ".waypoints"))
-    metres, axis = _metres(random), random.randrange(3)
-    degrees = metres / (111_000.0 if axis == 0 else 103_000.0)
-    if name.endswith(".kmz"):
-        which = random.randrange(1000)
-
-        def change(member: str, text: str) -> str:
-            if axis == 2:
-                found = list(re.finditer(r"<wpml:(executeHeight|height|ellipsoidHeight)>([^<]*)<", text))
-                if member.endswith("kml") or not found:
-                    return text
-                one = found[which % len(found)]
-                return text[: one.start(2)] + repr(float(one.group(2)) + metres) + text[one.end(2) :]
-            found = list(re.finditer(r"<coordinates>([^,]*),([^<]*)<", text))
-            one = found[which % len(found)]
-            group = 2 if axis == 0 else 1
-            return text[: one.start(group)] + repr(float(one.group(group)) + degrees) + text[one.end(group) :]
-
-        files[name] = _rewrite_kmz(files[name], change)
-    elif name.endswith(".plan"):
-
-        def edit(content: Any) -> None:
-            item = random.choice([each for each in content["mission"]["items"] if each["frame"] == 3])
-            item["params"][4 + axis] += metres if axis == 2 else degrees
-            if axis == 2 and "Altitude" in item:
-                item["Altitude"] = item["params"][6]
-
-        _edit(files, name, edit)
-    else:
-        lines = files[name].decode().split("\n")
-        k = random.choice([k for k, line in enumerate(lines) if k > 1 and line.split("\t")[2:3] == ["3"]])
-        fields = lines[k].split("\t")
-        fields[8 + axis] = repr(float(fields[8 + axis]) + (metres if axis == 2 else degrees))
-        lines[k] = "\t".join(fields)
-        files[name] = "\n".join(lines).encode()
-
-
-@kind("mission: what is done on the way changed")
-def actions(random: Random, files: dict[str, bytes]) -> None:
-    """Angles, modes, commands and frames; parts left out, doubled or swapped."""
-    name = random.choice(_missions(files, ".kmz", ".plan", ".waypoints"))
-    seed = random.randrange(10**9)
-    if name.endswith(".kmz"):
-        only = random.choice(("template.kml", "waylines.wpml", "l"))
-        files[name] = _rewrite_kmz(
-            files[name], lambda member, text: _changed_xml(Random(seed), text) if member.endswith(only) else text
-        )
-    elif name.endswith(".plan"):
-
-        def edit(content: Any) -> None:
-            items = content["mission"]["items"]
-            k, how = random.randrange(len(items)), random.randrange(6)
-            if how == 0:
-                del items[k]
-            elif how == 1:
-                j = random.randrange(len(items))
-                items[j], items[k] = items[k], items[j]
-            elif how == 2:
-                items[k]["command"] = random.choice(
-                    (16, 17, 18, 19, 20, 21, 22, 82, 92, 93, 112, 115, 177, 178, 206, 2001)
-                )
-            elif how == 3:
-                items[k]["frame"] = random.choice((0, 1, 2, 3, 5, 6, 8, 10, 11))
-            elif how == 4:
-                items[k]["params"][random.randrange(7)] = random.choice((None, 0.0, 1.0, -1.0, 90.0, 1e308, True, "1"))
-            else:
-                path = _somewhere(random, content)
-                _parent(content, path)[path[-1]] = random.choice(ODD)
-
-        _edit(files, name, edit)
-    else:
-        lines = files[name].decode().split("\n")
-        k, how = random.randrange(len(lines) - 1), random.randrange(4)
-        if how == 0:
-            del lines[k]
-        elif how == 1:
-            j = random.randrange(len(lines) - 1)
-            lines[j], lines[k] = lines[k], lines[j]
-        elif how == 2:
-            fields = re.split(r"\t", lines[k])
-            j = random.randrange(len(fields))
-            fields[j] = random.choice(
-                ("0", "1", "-1", "nan", "inf", "1e400", "1_0", "16", "17", "177", "10", "\u0663", "", " 1", "0x10")
-            )
-            lines[k] = "\t".join(fields)
-        else:
-            lines[k] = lines[k].replace("\t", random.choice((" ", "\x0b", "\u2003", ",", "\t\t")))
-        files[name] = "\n".join(lines).encode()
-
-
-def _changed_xml(random: Random, text: str) -> str:
-    how = random.randrange(9)
-    tags = list(re.finditer(r"<([A-Za-z:]+)>([^<]*)</\1>", text))
-    one, other = random.choice(tags), random.choice(tags)
-    if how == 0:
-        value = random.choice(
-            (
-                "0",
-                "1",
-                "-1",
-                "90",
-                "nan",
-                "1e400",
-                "",
-                "x",
-                "goHome",
-                "noAction",
-                "pointToPoint",
-                "coordinateTurn",
-                "WGS84",
-            )
-        )
-        return text[: one.start(2)] + value + text[one.end(2) :]
-    if how == 1:
-        return text[: one.start()] + text[one.end() :]
-    if how == 2:
-        return text[: one.end()] + one.group() + text[one.end() :]
-    if how == 3:
-        return text[: one.start(2)] + other.group(2) + text[one.end(2) :]
-    if how == 4:
-        angles = list(re.finditer(r"<wpml:(aircraftHeading|gimbalPitchRotateAngle)>([^<]*)<", text))
-        one = random.choice(angles) if angles else one
-        changed = (
-            repr(float(one.group(2)) + random.choice((amount(random), 0.01 * (1 + next_to_nothing(random)))))
-            if angles
-            else ""
-        )
-        return text[: one.start(2)] + changed + text[one.end(2) :]
-    if how == 5:
-        entity = '<!DOCTYPE kml [<!ENTITY x "0"><!ENTITY y "&x;&x;&x;">]>'
-        return text.replace("?>", "?>" + entity, 1).replace(f">{one.group(2)}<", ">&y;<", 1)
-    if how == 6:
-        return (
-            text[: one.start()]
-            + random.choice(("<!-- x -->", "<![CDATA[x]]>", "<?x y?>", "&amp;", "&#48;", "x"))
-            + text[one.start() :]
-        )
-    if how == 7:
-        marks = list(re.finditer(r"(?s)\s*<Placemark>.*?</Placemark>", text))
-        mark = random.choice(marks)
-        again = random.choice(("", mark.group() * 2, random.choice(marks).group()))
-        return text[: mark.start()] + again + text[mark.end() :]
-    return text[: random.randrange(len(text))]
-
-
-@kind("mission: archives damaged or doubled")
-def archive(random: Random, files: dict[str, bytes]) -> None:
-    """Members twice, cut off, with other sizes, or with another file behind or before."""
-    found = _missions(files, ".kmz")
-    if not found:
-        return
-    name = random.choice(found)
-    content, how = files[name], random.randrange(5)
-    if how == 0:
-        target = io.BytesIO(content)
-        import warnings
-
-        with warnings.catch_warnings(), zipfile.ZipFile(target, "a") as more:
-            warnings.simplefilter("ignore")
-            member = random.choice(("wpmz/waylines.wpml", "wpmz/other.kml", "../x", "wpmz/res/a.jpg"))
-            more.writestr(member, zipfile.ZipFile(io.BytesIO(content)).read("wpmz/waylines.wpml"))
-        files[name] = target.getvalue()
-    elif how == 1:
-        files[name] = content[: random.randrange(len(content))]
-    elif how == 2:
-        changed = bytearray(content)
-        at = random.choice((content.index(b"PK\1\2"), content.index(b"PK\5\6"), 0)) + random.randrange(30)
-        changed[min(at, len(changed) - 1)] ^= 1 << random.randrange(8)
-        files[name] = bytes(changed)
-    elif how == 3:
-        files[name] = random.choice((b"x", b"PK\5\6" + bytes(18))) + content
-    else:
-        files[name] = content + random.choice((b"x", content))
-
-
-@kind("mission: left out, doubled or renamed")
-def set_of_missions(random: Random, files: dict[str, bytes]) -> None:
-    """One file fewer, one twice, one under another ending."""
-    name = random.choice(_missions(files, ".kmz", ".plan", ".waypoints"))
-    how = random.randrange(3)
-    if how == 0:
-        del files[name]
-    elif how == 1:
-        stem, ending = name.rsplit(".", 1)
-        files[f"{stem}-again.{ending}"] = files[name]
-    else:
-        files[f"{name.rsplit('.', 1)[0]}-x.{random.choice(('kmz', 'plan', 'waypoints', 'txt', 'kml'))}"] = files.pop(
-            name
-        )
 
 
 def of_kinds(random: Random, n: int) -> Iterator[str]:

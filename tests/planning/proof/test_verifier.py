@@ -250,7 +250,7 @@ def test_plans_on_bundled_sites_are_proved(tmp_path: Path, scene: str) -> None:
     assert {claim.verdict for claim in found} == {"proved"}, found
 
 
-MOST_LINES, MOST_COLUMNS = 829, 120
+MOST_LINES, MOST_COLUMNS = 830, 120
 """Of the verifier: what can be read in an hour or two. docs/concepts/proof.md states the number."""
 
 
