@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 from pathlib import Path
 
+import cv2
 import numpy as np
 import torch
 
@@ -24,6 +25,7 @@ from reconstruction.light.ray_table import RayTable
 from reconstruction.light.reflective_panels import ReflectivePanels
 from reconstruction.metrics.overlaps import index_image, pixel_overlaps
 from reconstruction.panels.segment import segment_rectified
+from reconstruction.photos.decode import check_whole
 from reconstruction.photos.quality import sharpness
 from reconstruction.scenes.parameters import NEAR_FIELD, RenderSettings
 from reconstruction.scenes.photos.renderer import Renderer
@@ -47,6 +49,7 @@ def compile_kernels() -> None:
     grid = np.where(frame, 60, 180) + np.random.default_rng(0).integers(0, 9, x.shape)
     picture = grid.astype(np.uint8)
     sharpness(picture)
+    check_whole(cv2.imencode(".jpg", picture)[1].tobytes(), "")
     segment_rectified(picture)
     index = index_image([np.array([[1.0, 1.0], [9.0, 1.0], [9.0, 9.0]])], 12, 12)
     pixel_overlaps(index, index)

@@ -12,6 +12,7 @@ import math
 import shutil
 import time
 from collections.abc import Hashable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -23,6 +24,7 @@ from planning.base.effects import Decision, EffectSetting, decide
 from planning.base.errors import InputError
 from planning.base.files import make_folder, open_input_file
 from planning.base.findings import Finding, Severity
+from planning.base.jit import n_threads
 from planning.base.json_file import read_json, write_atomically
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
@@ -69,7 +71,7 @@ from reconstruction.colmap.pycolmap_run import (
 )
 from reconstruction.colmap.receivers import Receiver, placed_by_receivers
 from reconstruction.colmap.record import ColmapModel
-from reconstruction.photos.decode import Scale, grey_picture
+from reconstruction.photos.decode import Scale, grey_picture, whole_content
 from reconstruction.photos.lens import CameraKind, camera_kind, lens_of, of_camera
 from reconstruction.photos.poses import DEFAULT_ACCURACY, measured_pose
 
@@ -224,9 +226,11 @@ def build_coarse(
     """
     stated, parameters = stated or Stated(), parameters or CoarseParameters()
     clock = _Clock()
+    photos, damaged = _whole(photos, monitor)
     taken = _taken(folder, photos, stated)
     if len(taken.names) < LEAST_PHOTOS:
-        raise InputError(_too_few(photos, taken))
+        raise InputError(_too_few(photos, taken, damaged))
+    taken = replace(taken, findings=(*damaged, *taken.findings))
     colmap = load_colmap()
     _prepare_folder(kept, taken, parameters)
     run = _run(colmap, kept, folder, taken, parameters, monitor)
@@ -284,8 +288,16 @@ def build_coarse(
     )
 
 
-def _too_few(photos: Sequence[PhotoMetadata], taken: _Taken) -> Any:
+def _too_few(photos: Sequence[PhotoMetadata], taken: _Taken, damaged: Sequence[Finding]) -> Any:
     n_others = len(photos) - len(taken.names)
+    if damaged and n_others == 0:
+        return say(
+            "a coarse model needs at least {} photos, and {} of {} are whole; the first other: {}",
+            LEAST_PHOTOS,
+            len(photos),
+            len(photos) + len(damaged),
+            damaged[0].message,
+        )
     if n_others == 0:
         return say("a coarse model needs at least {} photos, got {}", LEAST_PHOTOS, len(taken.names))
     kind = (camera_kind(taken.metadata[0]) or CameraKind.WIDE) if taken.metadata else CameraKind.WIDE
@@ -339,6 +351,25 @@ def _taken(folder: Path, photos: Sequence[PhotoMetadata], stated: Stated) -> _Ta
         text = say("{} of {} photos do not say their focal length: it is found with the model", n_unknown, len(names))
         findings += (Finding(Severity.NOTE, "lens-found", text, "", float(n_unknown), None, "photos"),)
     return _Taken(names, tuple(chosen), lenses, groups, measured, origin, (*findings, *lately))
+
+
+def _whole(photos: Sequence[PhotoMetadata], monitor: Monitor) -> tuple[tuple[PhotoMetadata, ...], tuple[Finding, ...]]:
+    """Photos all of whose pictures are there, and findings about the others: matches in half a picture mislead."""
+
+    def finding(photo: PhotoMetadata) -> Finding | None:
+        try:
+            whole_content(photo)
+        except InputError as error:
+            return Finding(Severity.WARNING, "photo-unreadable", str(error), str(photo.path))
+        return None
+
+    found: list[Finding | None] = []
+    with ThreadPoolExecutor(n_threads()) as pool:
+        for result in pool.map(finding, photos):
+            monitor.report(say("reading photos"), len(found), len(photos))
+            found.append(result)
+    kept = tuple(photo for photo, result in zip(photos, found, strict=True) if result is None)
+    return kept, tuple(result for result in found if result is not None)
 
 
 def _name(photo: PhotoMetadata, folder: Path) -> str:

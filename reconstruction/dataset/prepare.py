@@ -31,7 +31,7 @@ from reconstruction.base.cameras import Intrinsics, PosedPhoto
 from reconstruction.dataset.layers import IN_FRONT_M, Scene, draw_layers, facing, normals_to_16_bit, straightened
 from reconstruction.dataset.records import ColouredPoints, start_points, write_records
 from reconstruction.dataset.refined_mesh import RefineParameters, grown_corners, refine_mesh
-from reconstruction.photos.decode import PICTURE_FILE, decoded
+from reconstruction.photos.decode import PICTURE_FILE, check_whole, decoded
 
 Array = NDArray[np.float64]
 
@@ -265,11 +265,12 @@ def _photo(
     """Write one photo's layers; a photo that cannot be read is a finding."""
     lens = photo.intrinsics
     try:
-        content = decoded(read_input_file(photo.path, PICTURE_FILE), cv2.IMREAD_COLOR, str(photo.path))
+        stored = read_input_file(photo.path, PICTURE_FILE)
+        check_whole(stored, str(photo.path))
+        content = decoded(stored, cv2.IMREAD_COLOR, str(photo.path))
     except InputError:
-        return Finding(
-            Severity.WARNING, "photo-unreadable", say("the picture cannot be decoded; it was left out"), photo.name
-        )
+        text = say("the picture is damaged, or cannot be decoded; it was left out")
+        return Finding(Severity.WARNING, "photo-unreadable", text, photo.name)
     if content.shape[:2] != (lens.height_px, lens.width_px):
         found = f"{content.shape[1]} x {content.shape[0]}"
         text = say(

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import struct
 import zlib
+from dataclasses import dataclass
 from typing import Any, Literal
 
 import cv2
@@ -16,6 +17,7 @@ from numpy.typing import NDArray
 
 from planning.base.errors import InputError
 from planning.base.files import MIB, FileLimit, read_input_file
+from planning.base.jit import inline, kernel
 from planning.base.messages import say
 from planning.photos.jpeg import MAX_STRAY_BYTES, PHOTO_FILE
 from planning.photos.record import PhotoMetadata
@@ -74,7 +76,14 @@ def colour_picture(photo: PhotoMetadata, scale: Scale = 1) -> NDArray[np.uint8]:
     return _picture(photo, COLOUR_FLAGS[scale], scale)
 
 
-def _picture(photo: PhotoMetadata, flag: int, scale: Scale) -> NDArray[np.uint8]:
+def whole_content(photo: PhotoMetadata) -> bytes:
+    """The content of a photo's file, all of whose picture is there.
+
+    Raises
+    ------
+    InputError
+        As `grey_picture`, but for headers that the decoder alone finds fault with.
+    """
     place = str(photo.path)
     _check_size((photo.width_px, photo.height_px), place, MAX_PIXELS)
     content = read_input_file(photo.path, PHOTO_FILE)
@@ -82,6 +91,12 @@ def _picture(photo: PhotoMetadata, flag: int, scale: Scale) -> NDArray[np.uint8]
         raise InputError(
             say("the file was cut off, so that part of the picture is missing; copy it again", place=place)
         )
+    check_whole(content, place)
+    return content
+
+
+def _picture(photo: PhotoMetadata, flag: int, scale: Scale) -> NDArray[np.uint8]:
+    content, place = whole_content(photo), str(photo.path)
     picture = decoded(content, flag | cv2.IMREAD_IGNORE_ORIENTATION, place)
     expected = -(-photo.height_px // scale), -(-photo.width_px // scale)
     if picture.shape[:2] != expected:
@@ -236,3 +251,206 @@ def _size_of_tiff(content: bytes, order: str) -> tuple[int, int] | None:
     except struct.error:
         return None
     return (sides[256], sides[257]) if len(sides) == 2 else None
+
+
+# Whether all of a JPEG file's picture is there.
+#
+# Of a card with a bad sector, a file keeps its header and its end, and the decoder goes on over the damage: half of the
+# picture is grey or shifted, and nobody is told. So the codes of a sequential picture (ITU-T T.81, F.2.2) are read
+# once, without making a picture of them: they have to give all of its units, and to end where these do.
+
+HUFFMAN_FRAMES = (0xC0, 0xC1)
+"""Sequential frames with Huffman codes, which cameras write; others are decoded as they are."""
+
+DHT, DRI, SOS, RST0 = 0xC4, 0xDD, 0xDA, 0xD0
+
+SHORT_BITS = 9
+"""Codes up to this length are looked up at once; nearly all are."""
+
+MOST_LEFT_BYTES = 8
+"""Behind the last unit: of 808 public photos that are whole one leaves a byte there, all others none."""
+
+Codes = tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int32], NDArray[np.uint8]]
+"""Of eight Huffman tables, four for constant parts and four for others: what short codes mean, as `length << 8 |
+symbol`; the last code of each length; what is added to a code of each length for its place among the symbols; these."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Scan:
+    """Codes of a picture in one sequential scan.
+
+    Parameters
+    ----------
+    start
+        Place of the first code in the file.
+    tables
+        For the constant and the other parts of each block of a unit, shape (n_blocks, 2).
+    n_units
+        Of the picture, the smallest parts that repeat.
+    restart
+        Units between two restart markers; 0 for none.
+    """
+
+    start: int
+    codes: Codes
+    tables: NDArray[np.int64]
+    n_units: int
+    restart: int
+
+
+def check_whole(content: bytes, place: str) -> None:
+    """Refuse a JPEG file whose picture is spoiled on the way; whatever is no such file passes.
+
+    Raises
+    ------
+    InputError
+        Codes of the picture are missing or make no sense.
+    """
+    scan = _scan_of(content) if content.startswith(JPEG_START) else None
+    if scan is None:
+        return
+    data = np.frombuffer(content, np.uint8)
+    if not is_whole(data, scan.start, scan.codes, scan.tables, scan.n_units, scan.restart):
+        raise InputError(say("a part of the picture is damaged; copy the file again, and check the card", place=place))
+
+
+def _scan_of(content: bytes) -> _Scan | None:
+    """The codes of a picture; None of other kinds of pictures, and of headers that the decoder refuses by itself."""
+    codes: Codes = (
+        np.zeros((8, 1 << SHORT_BITS), np.int32),
+        np.full((8, 17), -1, np.int32),
+        np.zeros((8, 17), np.int32),
+        np.zeros((8, 256), np.uint8),
+    )
+    size_hw, samplings, restart = (0, 0), dict[int, tuple[int, int]](), 0
+    at, n_stray = 2, 0
+    while at + 4 <= len(content) and n_stray <= MAX_STRAY_BYTES:
+        marker = content[at + 1]
+        if content[at] != 0xFF or marker in (0x00, 0xFF):
+            at, n_stray = at + 1, n_stray + 1
+            continue
+        length = int.from_bytes(content[at + 2 : at + 4], "big")
+        part = content[at + 4 : at + 2 + length]
+        at += 2 + length
+        if marker in HUFFMAN_FRAMES and len(part) >= 6 and len(part) >= 6 + 3 * part[5]:
+            size_hw = int.from_bytes(part[1:3], "big"), int.from_bytes(part[3:5], "big")
+            samplings = {part[k]: (part[k + 1] >> 4, part[k + 1] & 15) for k in range(6, 6 + 3 * part[5], 3)}
+        elif marker == DHT and not _take_up(part, codes):
+            return None
+        elif marker == DRI and len(part) == 2:
+            restart = int.from_bytes(part, "big")
+        elif marker == SOS:
+            return _scan(part, at, codes, size_hw, samplings, restart)
+    return None
+
+
+def _scan(
+    part: bytes,
+    start: int,
+    codes: Codes,
+    size_hw: tuple[int, int],
+    samplings: dict[int, tuple[int, int]],
+    restart: int,
+) -> _Scan | None:
+    """The scan that a SOS segment opens, of a frame's size and samplings; None where it does not hold all of them."""
+    n = part[0] if part else 0
+    named = {part[k]: (part[k + 1] >> 4, 4 + (part[k + 1] & 15)) for k in range(1, min(1 + 2 * n, len(part) - 1), 2)}
+    if not named or named.keys() != samplings.keys() or not all(map(all, samplings.values())):
+        return None
+    if any(
+        constant > 3 or other > 7 or (codes[1][[constant, other]] < 0).all(axis=1).any()
+        for constant, other in named.values()
+    ):
+        return None
+    wide, high = (max(each) if n > 1 else 1 for each in zip(*samplings.values(), strict=True))
+    n_blocks = {name: across * down if n > 1 else 1 for name, (across, down) in samplings.items()}
+    tables = [each for name, each in named.items() for _ in range(n_blocks[name])]
+    n_units = -(-size_hw[0] // (8 * high)) * -(-size_hw[1] // (8 * wide))
+    return _Scan(start, codes, np.array(tables, np.int64), n_units, restart)
+
+
+def _take_up(part: bytes, codes: Codes) -> bool:
+    """Take up the Huffman tables of a DHT segment (annex C, F.2.2.3); whether it holds some."""
+    short, last, added, symbols = codes
+    at = 0
+    while at + 17 <= len(part):
+        kind, number, counts = part[at] >> 4, part[at] & 15, part[at + 1 : at + 17]
+        values = part[at + 17 : at + 17 + sum(counts)]
+        if kind > 1 or number > 3 or len(values) != sum(counts) or len(values) > symbols.shape[1]:
+            return False
+        table, code, k = 4 * kind + number, 0, 0
+        short[table], last[table] = 0, -1
+        symbols[table, : len(values)] = np.frombuffer(values, np.uint8)
+        for length, count in enumerate(counts, 1):
+            if code + count > 1 << length:
+                return False
+            added[table, length] = k - code
+            if length <= SHORT_BITS:
+                share = 1 << SHORT_BITS - length
+                for symbol in values[k : k + count]:
+                    short[table, code * share : (code + 1) * share] = length << 8 | symbol
+                    code += 1
+            else:
+                code += count
+            if count:
+                last[table, length] = code - 1
+            code, k = code << 1, k + count
+        at += 17 + len(values)
+    return at == len(part)
+
+
+@inline
+def _symbol(bits: Any, table: Any, codes: Any) -> Any:
+    """Symbol and length of the code that 16 bits begin with, as `length << 8 | symbol`; 0 for none."""
+    short, last, added, symbols = codes
+    found = np.int64(short[table, bits >> (16 - SHORT_BITS)])
+    if found == 0:
+        for length in range(SHORT_BITS + 1, 17):
+            code = bits >> (16 - length)
+            if code <= last[table, length]:
+                found = np.int64(length << 8) | np.int64(symbols[table, added[table, length] + code])
+                break
+    return found
+
+
+@kernel
+def is_whole(
+    data: NDArray[np.uint8], start: int, codes: Codes, tables: NDArray[np.int64], n_units: int, restart: int
+) -> bool:
+    """Whether the codes of a picture give all of its units, and end with them; see `_Scan`.
+
+    Bits are read from the left into a store of up to 56. A zero behind 0xFF belongs to it, anything else is a marker.
+    """
+    at, end = start, len(data)
+    held, n_held = np.int64(0), 0
+    for unit in range(n_units):
+        if restart > 0 and unit > 0 and unit % restart == 0:
+            while at + 1 < end and data[at] == 0xFF and data[at + 1] == 0xFF:
+                at += 1
+            if at + 1 >= end or data[at] != 0xFF or data[at + 1] != RST0 + (unit // restart - 1) % 8:
+                return False
+            at, held, n_held = at + 2, np.int64(0), 0
+        for block in range(len(tables)):
+            k = 0
+            while k < 64:
+                while n_held <= 48 and at < end:
+                    byte = np.int64(data[at])
+                    if byte == 0xFF:
+                        if at + 1 >= end or data[at + 1] != 0:
+                            break
+                        at += 1
+                    at += 1
+                    held, n_held = (held << 8 | byte) & 0xFFFFFFFFFFFFFF, n_held + 8
+                bits = (held >> (n_held - 16) if n_held >= 16 else held << (16 - n_held)) & 0xFFFF
+                found = _symbol(bits, tables[block, 0 if k == 0 else 1], codes)
+                run, n_more = (0, found & 0xFF) if k == 0 else (found >> 4 & 15, found & 15)
+                n_held -= (found >> 8) + n_more
+                if found == 0 or n_more > 16 or n_held < 0 or k + run > 63:
+                    return False
+                if k > 0 and n_more == 0 and run < 15:
+                    break
+                k += run + 1
+    left = at
+    while left + 1 < end and (data[left] != 0xFF or data[left + 1] == 0):
+        left += 1
+    return left - at + n_held // 8 <= MOST_LEFT_BYTES

@@ -30,3 +30,15 @@ def test_too_few_photos_of_a_camera_are_told_with_the_others(tmp_path):
     write(tmp_path / "card", "4.jpg", ImageSource="WideCamera")
     with pytest.raises(InputError, match=r"of 5 photos, 1 are of the wide camera; choose another camera"):
         coarse_files(CoarseRequest(tmp_path / "card", tmp_path / "out"))
+
+
+def test_damaged_photos_are_left_out_and_told_before_they_are_too_few(tmp_path):
+    for number in range(4):
+        write(tmp_path / "card", f"{number}.jpg")
+    for number in range(2):
+        path = tmp_path / "card" / f"{number}.jpg"
+        path.write_bytes(path.read_bytes()[:-20] + path.read_bytes()[-2:])
+    with pytest.raises(
+        InputError, match=r"needs at least 3 photos, and 2 of 4 are whole; the first other: .*0\.jpg: a p"
+    ):
+        coarse_files(CoarseRequest(tmp_path / "card", tmp_path / "out"))
