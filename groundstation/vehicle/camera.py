@@ -9,22 +9,29 @@
     VERIFYING -> VERIFYING  no answer in time: asked again
               -> ended      the camera names the value wanted, or another, or nothing
 
-The camera is a component of the vehicle; which one it is, its first answer says.
+The camera is a component of the vehicle; which one it is, its first answer says. A camera that tells of its own
+definition file (`CameraInformationCall`) is set by the names and options in it.
 """
 
 from __future__ import annotations
 
 import math
+import re
 import struct
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from enum import Enum
 from functools import cache
 from pathlib import Path
+from typing import Literal
 
 from groundstation.vehicle.parameters import ParameterOutcome, ParameterStatus
 from groundstation.vehicle.repeated_request import RepeatedRequest
+from missions.mavlink.camera_definition import SAME_EV, CameraDefinition, find_parameter, value_of
 from missions.mavlink.messages import (
+    Address,
+    CameraInformation,
+    CommandLong,
     Message,
     ParamExtAck,
     ParamExtRequestRead,
@@ -63,6 +70,8 @@ class CameraNames:
     white_balance: str
     modes: dict[str, float]
     white_balances: dict[str, float]
+    others: dict[str, tuple[str, ...]]
+    described: dict[str, tuple[str, ...]]
 
 
 @cache
@@ -95,28 +104,77 @@ def encoded(value: float, param_type: int) -> bytes:
         raise ValueError(f"{value:g} does not fit the type {param_type} of the camera's parameter") from error
 
 
-def wanted_settings(mission: Mission) -> dict[str, float]:
+Role = Literal["mode", "shutter", "aperture", "iso", "compensation", "white_balance"]
+"""What a parameter sets; a field of `CameraNames`."""
+
+
+@dataclass(frozen=True, slots=True)
+class WantedSetting:
+    """A parameter that has to have a value.
+
+    Parameters
+    ----------
+    text
+        What that means, for the pilot.
+    value
+        None where the camera has none such.
+    """
+
+    name: str
+    text: str
+    value: float | None
+
+
+def speaks_parameters(mission: Mission) -> bool:
+    """Whether the camera of a mission's profile takes parameters."""
+    return mission.camera_controls is not None and "parameters" in mission.camera_controls.mavlink
+
+
+def _wanted(mission: Mission) -> Iterator[tuple[Role, float | str]]:
+    """What a mission's camera settings set, as numbers and words; the mode first: it decides what else is taken."""
+    controls, settings, known = mission.camera_controls, mission.camera_settings, names()
+    if controls is None:
+        return
+    yield "mode", "manual" if settings.exposure == "manual" else "auto"
+    if settings.exposure == "manual":
+        if settings.shutter_s is not None:
+            yield "shutter", settings.shutter_s
+        if controls.aperture[0] != controls.aperture[1] and mission.f_number is not None:
+            yield "aperture", mission.f_number
+        if settings.iso is not None:
+            yield "iso", float(settings.iso)
+    else:
+        yield "compensation", settings.compensation_ev
+    if settings.white_balance in known.white_balances:
+        yield "white_balance", settings.white_balance
+
+
+def wanted_settings(mission: Mission, definition: CameraDefinition | None = None) -> tuple[WantedSetting, ...]:
     """Parameters for a mission's camera settings, as far as there are names for them; none where it has no such camera.
 
-    The mode comes first: cameras take the others in their mode only.
+    Parameters
+    ----------
+    definition
+        Of the camera; None: it has the names and numbers of the guide's example.
     """
-    controls, settings, known = mission.camera_controls, mission.camera_settings, names()
-    if controls is None or "parameters" not in controls.mavlink:
-        return {}
-    wanted = {known.mode: known.modes[settings.exposure]}
-    if settings.exposure == "manual":
-        is_fixed = controls.aperture[0] == controls.aperture[1]
-        values = (
-            (known.shutter, settings.shutter_s),
-            (known.aperture, None if is_fixed else mission.f_number),
-            (known.iso, settings.iso),
-        )
-        wanted |= {name: float(value) for name, value in values if value is not None}
-    else:
-        wanted[known.compensation] = settings.compensation_ev
-    if settings.white_balance in known.white_balances:
-        wanted[known.white_balance] = known.white_balances[settings.white_balance]
-    return wanted
+    if definition is None and not speaks_parameters(mission):
+        return ()
+    known = names()
+    found = []
+    for role, wanted in _wanted(mission):
+        text, standard = setting_text(role, wanted), getattr(known, role)
+        if definition is None:
+            numbers = known.modes if role == "mode" else known.white_balances
+            value = numbers[wanted] if isinstance(wanted, str) else wanted
+            found.append(WantedSetting(standard, text, value))
+            continue
+        parameter = find_parameter(definition, (standard, *known.others[role]), known.described[role])
+        if parameter is None:
+            found.append(WantedSetting("", text, None))
+            continue
+        option = value_of(parameter, wanted, SAME_EV if role == "compensation" else 0.0)
+        found.append(WantedSetting(parameter.name, text, None if option is None else option.value))
+    return tuple(found)
 
 
 class _Step(Enum):
@@ -195,31 +253,70 @@ class CameraSettingCall(RepeatedRequest):
         return []
 
 
-def setting_texts(values: Iterable[tuple[str, float]]) -> Iterator[str]:
-    """Settings in words."""
-    known = names()
-    modes = {number: name for name, number in known.modes.items() if name != "locked"}
-    balances = {number: name for name, number in known.white_balances.items()}
-    for name, value in values:
-        if name == known.mode:
-            yield say("manual exposure") if modes.get(value) == "manual" else say("automatic exposure")
-        elif name == known.shutter:
-            yield shutter_text(value)
-        elif name == known.aperture:
-            yield f"f/{value:g}"
-        elif name == known.iso:
-            yield f"ISO {value:g}"
-        elif name == known.compensation:
-            yield say("exposure compensation {} EV", f"{value:+g}" if value else "0")
-        else:
-            words = {
-                "sunny": say("white balance for sun"),
-                "cloudy": say("white balance for clouds"),
-                "auto": say("automatic white balance"),
-            }
-            yield words[balances[value]]
+def setting_text(role: Role, wanted: float | str) -> str:
+    """A setting in words."""
+    if isinstance(wanted, str):
+        balances = {
+            "sunny": say("white balance for sun"),
+            "cloudy": say("white balance for clouds"),
+            "auto": say("automatic white balance"),
+        }
+        if role == "white_balance":
+            return balances[wanted]
+        return say("manual exposure") if wanted == "manual" else say("automatic exposure")
+    if role == "shutter":
+        return shutter_text(wanted)
+    if role == "compensation":
+        return say("exposure compensation {} EV", f"{wanted:+g}" if wanted else "0")
+    return f"f/{wanted:g}" if role == "aperture" else f"ISO {wanted:g}"
 
 
-def settings_text(values: Iterable[tuple[str, float]]) -> str:
+def settings_text(settings: Iterable[WantedSetting]) -> str:
     """Settings in words, in one line."""
-    return joined(", ", setting_texts(values))
+    return joined(", ", (setting.text for setting in settings))
+
+
+# The camera's own definition file: asked for once, and fetched from the camera itself, never from anywhere else.
+
+MAV_CMD_REQUEST_MESSAGE, CAMERA_INFORMATION, ALL_COMPONENTS = 512, 259.0, 0
+
+_ON_BOARD = re.compile(
+    r"(?:mftp|mavlinkftp)://(?:\[;comp=(?P<component>\d{1,3})\])?(?P<path>[^\[\]\0]{1,200})", re.ASCII
+)
+
+
+class CameraInformationCall(RepeatedRequest):
+    """Asks the vehicle's cameras who they are; `outcome` holds who answered first, and what: None where none did.
+
+    Parameters
+    ----------
+    system
+        The vehicle's.
+    """
+
+    def __init__(self, system: int) -> None:
+        super().__init__(N_ATTEMPTS, ATTEMPT_S)
+        self._system = system
+        self.outcome: tuple[Address, CameraInformation | None] | None = None
+
+    def receive(self, received: Received) -> list[Message]:
+        """Take a message."""
+        message = received.message
+        if self.outcome is None and isinstance(message, CameraInformation) and received.source.system == self._system:
+            self.outcome = (received.source, message)
+        return []
+
+    def _messages(self) -> list[Message]:
+        return [CommandLong(self._system, ALL_COMPONENTS, MAV_CMD_REQUEST_MESSAGE, CAMERA_INFORMATION)]
+
+    def _give_up(self) -> None:
+        self.outcome = (Address(self._system, ALL_COMPONENTS), None)
+
+
+def definition_place(information: CameraInformation, source: Address) -> tuple[Address, str] | None:
+    """Component and path of a camera's definition file on board; None where it has none there."""
+    found = _ON_BOARD.fullmatch(information.cam_definition_uri.strip())
+    if found is None:
+        return None
+    component = source.component if found["component"] is None else int(found["component"])
+    return Address(source.system, component), found["path"]

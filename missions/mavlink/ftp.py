@@ -433,7 +433,18 @@ class Pieces:
 
 @dataclass(slots=True)
 class FileRead(FtpTransfer):
-    """Reads a file, and proves it by the vehicle's checksum."""
+    """Reads a file, and proves it by the vehicle's checksum.
+
+    Parameters
+    ----------
+    most_bytes
+        A larger file is refused.
+    doing
+        What is done, for the pilot.
+    """
+
+    most_bytes: int = field(default=MAX_FILE_BYTES, kw_only=True)
+    doing: str = field(default=say("fetching the log"), kw_only=True)
 
     state: ReadState = field(init=False, default=ReadState.READY)
     outcome: FileOutcome | None = field(init=False, default=None)
@@ -451,7 +462,7 @@ class FileRead(FtpTransfer):
     @property
     def progress(self) -> tuple[str, float, float]:
         """Bytes that came so far."""
-        return say("fetching the log"), self._pieces.size - self._pieces.n_missing, self._pieces.size
+        return self.doing, self._pieces.size - self._pieces.n_missing, self._pieces.size
 
     def start(self, now_s: float) -> list[Message]:
         """Open it."""
@@ -492,7 +503,7 @@ class FileRead(FtpTransfer):
         if len(frame.data) != 4:
             return self._end(Ending.OUT_OF_STEP)
         size, pieces = int.from_bytes(frame.data, "little"), self._pieces
-        if size > MAX_FILE_BYTES:
+        if size > self.most_bytes:
             return self._end(Ending.REFUSED, FtpError.INVALID_DATA_SIZE)
         if self._differed and size == pieces.size:
             pieces.forget()

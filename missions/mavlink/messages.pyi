@@ -563,6 +563,25 @@ class WindCov(Message):
     horiz_accuracy: float  # m/s
     vert_accuracy: float  # m/s
 
+# CAMERA_INFORMATION (259).
+@dataclass(frozen=True, slots=True)
+class CameraInformation(Message):
+    time_boot_ms: int  # ms
+    vendor_name: tuple[int, ...]
+    model_name: tuple[int, ...]
+    firmware_version: int
+    focal_length: float  # mm
+    sensor_size_h: float  # mm
+    sensor_size_v: float  # mm
+    resolution_h: int  # pix
+    resolution_v: int  # pix
+    lens_id: int
+    flags: int  # CAMERA_CAP_FLAGS
+    cam_definition_version: int
+    cam_definition_uri: str
+    gimbal_device_id: int = ...
+    camera_device_id: int = ...
+
 # VIDEO_STREAM_INFORMATION (269).
 @dataclass(frozen=True, slots=True)
 class VideoStreamInformation(Message):

@@ -121,6 +121,7 @@ MESSAGES: Mapping[str, Mapping[str, Any]] = {
     "Wind": {},
     "WindCov": {},
     # Camera and gimbal
+    "CameraInformation": {},
     "VideoStreamInformation": {"encoding": 0},
     "CameraFeedback": {"foc_len": 0.0, "flags": 0},
     "CameraCaptureStatus": _zeros("image_status video_status")

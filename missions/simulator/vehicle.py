@@ -174,7 +174,7 @@ class SimulatedVehicle:
         )  # fmt: skip
         self._telemetry = Telemetry(self.instruments)
         self.log = OnboardLog(autopilot, self.place, unix_start_s)
-        self._file_server = FileServer(self.log.files)
+        self._file_server = FileServer(self._files)
         self._log_server = LogServer(autopilot, self.log.files, unix_start_s, lambda: self.modes.is_armed)
         self.has_file_transfer = True
         self.video_streams: tuple[VideoStreamInformation, ...] = ()
@@ -209,6 +209,8 @@ class SimulatedVehicle:
                 self._out += self.stores.receive(received, self.now_s)
             case CommandLong(command=2504) if self.video_streams:
                 self._out += [CommandAck(2504, 0), *self.video_streams]
+            case CommandLong(command=512, param1=259.0) if self.camera_parameters is not None:
+                self._out += [CommandAck(512, 0), self.camera_parameters.information]
             case CommandLong() | CommandInt():
                 self._out += self._commands.receive(message, source)
             case SetMode():
@@ -276,6 +278,10 @@ class SimulatedVehicle:
         self._out += self._telemetry.due()
 
     # Inside
+
+    def _files(self) -> dict[str, bytes]:
+        """What can be fetched: logs, and what its camera has."""
+        return {**self.log.files(), **({} if self.camera_parameters is None else self.camera_parameters.files)}
 
     def _said(self) -> list[Message]:
         messages, self._out = self._out, []

@@ -26,6 +26,18 @@ def test_settings_are_changed_and_nothing_else_of_the_plan(reflight, pane, tmp_p
     assert again["settings"]["iso"] == 200
 
 
+def test_a_definition_file_says_what_would_be_set_on_that_camera(reflight, pane, tmp_path):
+    shutter = '<parameter name="SHUT" type="uint8"><options><option name="1/500" value="2"/></options></parameter>'
+    shutter = shutter.replace("<options>", "<description>Shutter speed</description><options>")
+    (tmp_path / "q7.xml").write_text(f"<mavlinkcamera><parameters>{shutter}</parameters></mavlinkcamera>")
+    typed = ("--exposure", "manual", "--shutter", "1/500", "--iso", 200, "--definition", tmp_path / "q7.xml")
+    out = reflight("camera", pane / "plan.json", *typed).out
+    assert "set on the camera: 'SHUT' to 2, 1/500 s" in out
+    assert "the camera's definition has no parameter for this, set it by hand: ISO 200" in out
+    found = reflight("camera", pane / "plan.json", *typed, "--json").json["parameters"]
+    assert {"name": "SHUT", "text": "1/500 s", "value": 2.0} in found
+
+
 def test_a_mission_brings_the_focus_back_into_a_plan(reflight, pane, tmp_path):
     plan, kmz, back = tmp_path / "plan.json", tmp_path / "m.kmz", tmp_path / "back.json"
     reflight("camera", pane / "plan.json", "--focus", "infinity", "-o", plan)

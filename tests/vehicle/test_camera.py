@@ -20,11 +20,19 @@ from groundstation.vehicle.camera import (
     settings_text,
     wanted_settings,
 )
+from groundstation.vehicle.orders import sortie_orders
 from groundstation.vehicle.parameters import ParameterStatus
+from groundstation.vehicle.sortie.conduct import conduct
+from groundstation.vehicle.sortie.flight_run import FlightRun
+from groundstation.vehicle.sortie.run_records import RunOptions, RunView
+from missions.mavlink.autopilots import Autopilot
+from missions.mavlink.camera_definition import parse_definition
 from missions.mavlink.messages import Address, Message, ParamExtAck, ParamExtSet, ParamExtValue, Received
 from missions.mission.build import missions_from_plan
 from missions.mission.model import Mission
 from missions.simulator.autopilot.camera_parameters import CAMERA_COMPONENT, CameraParameters
+from missions.simulator.server import DirectLink
+from missions.simulator.vehicle import SimulatedVehicle
 from planning.aircraft.camera_use import controls_of
 from planning.parameters import CameraSettings
 from planning.plan import Plan
@@ -32,6 +40,7 @@ from planning.planner import plan_flight
 from planning.request import PlanRequest
 from planning.site.bundled import single_panel
 from tests.missions.plans import example_plan
+from tests.missions.simulator.ground import PointMass
 from tests.planning.revision.cases import QUICK
 
 CAMERA = Address(1, CAMERA_COMPONENT)
@@ -46,6 +55,10 @@ def obedient(plan: Plan, settings: CameraSettings) -> Plan:
 
 def mission_with(settings: CameraSettings) -> Mission:
     return missions_from_plan(obedient(example_plan("ardupilot"), settings))[0]
+
+
+def values_of(settings: CameraSettings) -> dict[str, float | None]:
+    return {each.name: each.value for each in wanted_settings(mission_with(settings))}
 
 
 Answer = Callable[[Message], list[Message]]
@@ -69,18 +82,18 @@ def driven(call: CameraSettingCall, answer: Answer, source: Address = CAMERA) ->
 
 
 def test_what_is_wanted_follows_the_settings_and_only_a_camera_that_takes_it_is_asked() -> None:
-    assert wanted_settings(mission_with(MANUAL)) == {
+    assert values_of(MANUAL) == {
         **{"CAM_EXPMODE": 1, "CAM_SHUTTERSPD": 1 / 500, "CAM_APERTURE": 5.6, "CAM_ISO": 200, "CAM_WBMODE": 4},
     }
-    usual = wanted_settings(mission_with(CameraSettings(compensation_ev=-0.5)))
+    usual = values_of(CameraSettings(compensation_ev=-0.5))
     assert usual == {"CAM_EXPMODE": 0, "CAM_EV": -0.5}, "kelvins and locks have no name in the protocol"
-    assert wanted_settings(missions_from_plan(example_plan("ardupilot"))[0]) == {}
+    assert wanted_settings(missions_from_plan(example_plan("ardupilot"))[0]) == ()
 
 
 @pytest.mark.parametrize("settings", [MANUAL, CameraSettings(compensation_ev=-1.5, white_balance="cloudy")])
 def test_the_simulated_camera_has_what_was_set_when_it_is_read_back(settings: CameraSettings) -> None:
     camera = CameraParameters()
-    for name, value in wanted_settings(mission_with(settings)).items():
+    for name, value in values_of(settings).items():
         call = CameraSettingCall(name, value, 1)
         driven(call, camera.receive)
         assert call.outcome is not None
@@ -214,6 +227,100 @@ def test_what_the_camera_does_not_take_is_told_and_the_flight_goes_on() -> None:
 
 
 def test_settings_are_put_into_words() -> None:
-    assert settings_text([("CAM_EXPMODE", 0), ("CAM_EV", 0.5), ("CAM_WBMODE", 0)]) == (
+    settings = CameraSettings(compensation_ev=0.5, white_balance="auto")
+    assert settings_text(wanted_settings(mission_with(settings))) == (
         "automatic exposure, exposure compensation +0.5 EV, automatic white balance"
     )
+
+
+# A camera with a definition file of its own: other names, values that are numbers of options, other types
+
+OTHER = b"""<?xml version="1.0"?>
+<mavlinkcamera>
+ <definition version="3"><model>Q7</model><vendor>Acme</vendor></definition>
+ <parameters>
+  <parameter name="EXP_MODE" type="uint8" default="0"><description>Exposure mode</description>
+   <options><option name="Program" value="0"/><option name="Manual" value="3"/></options></parameter>
+  <parameter name="SHUT" type="uint16" default="2"><description>Shutter speed of the mechanical shutter</description>
+   <options><option name="1/60" value="1"/><option name="1/500 s" value="2"/><option name="1/1000" value="3"/></options>
+  </parameter>
+  <parameter name="CAM_ISO" type="int32" default="100"><description>ISO</description>
+   <options><option name="ISO 100" value="1"/><option name="ISO 200" value="2"/></options></parameter>
+  <parameter name="FNO" type="float" default="4" min="2.8" max="11"><description>Aperture</description></parameter>
+  <parameter name="WB_MODE" type="int8" default="0"><description>White balance</description>
+   <options><option name="Auto" value="0"/><option name="Daylight" value="-2"/></options></parameter>
+  <parameter name="CAM_EV" type="float" readonly="1"><description>EV</description></parameter>
+ </parameters>
+</mavlinkcamera>
+"""
+
+
+def other_camera() -> CameraParameters:
+    values = {"EXP_MODE": 0, "SHUT": 1, "CAM_ISO": 1, "FNO": 4.0, "WB_MODE": 0}
+    kinds = {"EXP_MODE": 1, "SHUT": 3, "CAM_ISO": 6, "WB_MODE": 2}
+    return CameraParameters(dict(values), OTHER, takes_all=True, kinds=kinds)
+
+
+def test_a_definition_says_what_the_camera_calls_it() -> None:
+    found = wanted_settings(mission_with(MANUAL), parse_definition(OTHER, "camera"))
+    assert [(each.name, each.value) for each in found] == [
+        ("EXP_MODE", 3.0), ("SHUT", 2.0), ("FNO", 5.6), ("CAM_ISO", 2.0), ("WB_MODE", -2.0),
+    ]  # fmt: skip
+    odd = replace(MANUAL, shutter_s=1 / 777, white_balance="cloudy")
+    by_name = {each.name: each.value for each in wanted_settings(mission_with(odd), parse_definition(OTHER, "camera"))}
+    assert by_name["SHUT"] is None
+    assert by_name["WB_MODE"] is None
+    automatic = wanted_settings(mission_with(CameraSettings(compensation_ev=1.0)), parse_definition(OTHER, "camera"))
+    assert [(each.name, each.value) for each in automatic] == [("EXP_MODE", 0.0), ("", None)], "EV is to be read only"
+
+
+@pytest.mark.few(1)
+@pytest.mark.parametrize("uri", ["mftp:///camera/definition.xml", "mftp://[;comp=1]/camera/definition.xml"])
+def test_in_a_flight_the_definition_is_fetched_and_the_camera_set_by_it(uri: str) -> None:
+    camera = other_camera()
+    camera.uri = uri
+    notes = prepared(camera)
+    assert camera.values == {"EXP_MODE": 3, "SHUT": 2, "CAM_ISO": 2, "FNO": pytest.approx(5.6), "WB_MODE": -2}
+    assert notes == [
+        "the camera's definition was fetched (Acme Q7): 6 parameters",
+        "the camera is set, and read back: manual exposure, 1/500 s, f/5.6, ISO 200, white balance for sun",
+    ]
+
+
+@pytest.mark.few(1)
+@pytest.mark.parametrize(
+    ("uri", "definition", "told"),
+    [
+        ("https://acme.example/q7.xml", OTHER, "is not on board (https://acme.example/q7.xml); name its file"),
+        ("mftp:///camera/other.xml", OTHER, "could not be fetched (refused)"),
+        ("mftp:///camera/definition.xml", b"<mavlinkcamera", "is not taken"),
+        ("mftp:///camera/definition.xml", b" " * (2 << 20), "could not be fetched (refused)"),
+    ],
+)
+def test_without_a_definition_that_is_one_the_standard_names_are_tried(uri: str, definition: bytes, told: str) -> None:
+    camera = CameraParameters(definition=definition, uri=uri)
+    notes = prepared(camera)
+    assert told in notes[0]
+    assert notes[1].startswith("the camera is set, and read back: manual exposure")
+    assert camera.values["CAM_SHUTTERSPD"] == pytest.approx(1 / 500)
+
+
+def prepared(camera: CameraParameters) -> list[str]:
+    """What is noted of the camera before take-off."""
+    model = single_panel()
+    plan = obedient(plan_flight(model, PlanRequest(n_views=2, greedy=QUICK, profile_id="ardupilot")).plan, MANUAL)
+    (mission,) = missions_from_plan(plan, model.site.origin, model.site.home_enu_m)
+    orders = sortie_orders(plan, model, mission)
+    vehicle = SimulatedVehicle(
+        Autopilot.ARDUPILOT, PointMass(), model.site.origin, model.site.home_enu_m, camera=camera
+    )
+    link = DirectLink(vehicle)
+    run = FlightRun(orders, RunOptions(sets_parameters=True, starts_itself=False), "simulation")
+
+    def show(view: RunView) -> None:
+        if view.on_board.camera is not None:
+            raise InterruptedError
+
+    with pytest.raises(InterruptedError):
+        conduct(run, link, link.clock, show=show)
+    return [note.text for note in run.notes if note.code == "camera"]

@@ -34,12 +34,14 @@ def add_parser(subparsers: Any) -> None:
     group = parser.add_argument_group("settings, those of the plan where not given")
     for each in declared(CameraSettings).values():
         add_parameter(group, each)
+    definition = "definition file of a MAVLink camera: what a flight would set on it"
+    parser.add_argument("--definition", type=Path, metavar="FILE", help=definition)
     parser.add_argument("--json", action="store_true", help="print one JSON object instead of text")
 
 
 def run(options: argparse.Namespace) -> int:
     """Change and show; returns the exit status."""
-    from groundstation.services.mission.camera import camera_files
+    from groundstation.services.mission.camera import camera_files, set_by_definition
     from groundstation.services.plan.planning import finding_summary
     from planning.base.json_file import plain_values
 
@@ -48,9 +50,11 @@ def run(options: argparse.Namespace) -> int:
         report = run_job(
             "camera", lambda context: camera_files(options.plan, options.site, values, options.out, context)
         )
+    by_camera = () if options.definition is None else set_by_definition(report.plan, options.definition)
     if options.json:
         print_json(
             {
+                "parameters": [plain_values(each) for each in by_camera],
                 "file": None if options.out is None else str(options.out),
                 "settings": plain_values(report.plan.camera_settings),
                 "summary": report.summary,
@@ -66,6 +70,13 @@ def run(options: argparse.Namespace) -> int:
         show(report.cost)
     for step in report.steps.by_mission:
         tell("set by the mission: {}", step)
+    for each in by_camera:
+        if not each.name:
+            tell("the camera's definition has no parameter for this, set it by hand: {}", each.text)
+        elif each.value is None:
+            tell("'{}' of the camera cannot be set so: {}", each.name, each.text)
+        else:
+            tell("set on the camera: '{}' to {:g}, {}", each.name, each.value, each.text)
     for step in report.steps.by_hand:
         tell("set by hand: {}", step)
     for finding in report.findings:

@@ -87,6 +87,7 @@ def add_parser(subparsers: Any) -> None:
     add("--signed", action="store_true", help="sign the link with this computer's key ('signing set')")
     add("--operator", metavar="NUMBER", help="operator's registration number, for vehicles with remote ID")
     add("--serial-number", default="", metavar="TEXT", help="of the aircraft, for remote ID (default: its module's)")
+    add("--camera-definition", type=Path, metavar="FILE", help="definition file of its camera, to be set by")
     add("--ntrip", metavar="CASTER", help="RTK corrections for the vehicle: [ntrips://]USER@HOST:PORT/MOUNTPOINT")
     add("--logs", type=Path, metavar="DIR", help="folder for telemetry logs of a link (default: beside FLIGHT)")
     add("--json", action="store_true", help="print one JSON object instead of text")
@@ -131,6 +132,7 @@ def _request(options: argparse.Namespace) -> FlightRequest:
     from groundstation.services.fly.flying import SIMULATED, FlightRequest
     from groundstation.services.fly.signing import link_signer
     from missions.mavlink.autopilots import Autopilot
+    from missions.mavlink.camera_definition import read_definition
     from missions.mavlink.ntrip import caster_of
 
     if options.speedup is not None and not options.speedup > 0.0:
@@ -142,7 +144,8 @@ def _request(options: argparse.Namespace) -> FlightRequest:
         raise InputError(
             say("--take-off, --set-parameters, --raise and --overrule are for --link URL; nothing real moves here")
         )
-    for option, value in (("--signed", options.signed), ("--operator", options.operator), ("--ntrip", options.ntrip)):
+    only_linked = ("signed", "operator", "ntrip", "camera_definition")
+    for option, value in ((f"--{name.replace('_', '-')}", getattr(options, name)) for name in only_linked):
         if is_simulated and value:
             raise InputError(
                 say("is for --link URL; the simulation in this program has no link to listen to", place=option)
@@ -167,6 +170,7 @@ def _request(options: argparse.Namespace) -> FlightRequest:
         log_folder=None if is_simulated else (options.logs or options.out.parent / "logs"),
         signer=link_signer() if options.signed else None,
         identity=_identity(options),
+        camera_definition=(None if options.camera_definition is None else read_definition(options.camera_definition)),
         caster=None if options.ntrip is None else caster_of(options.ntrip),
         caster_password=_caster_password(options),
     )

@@ -39,6 +39,7 @@ from missions.flight.report import report_case, report_flight
 from missions.formats.encode import default_autopilot
 from missions.formats.options import ExportOptions
 from missions.mavlink.autopilots import Autopilot
+from missions.mavlink.camera_definition import CameraDefinition
 from missions.mavlink.link import ChannelLink, open_link
 from missions.mavlink.ntrip import Caster
 from missions.mavlink.remote_id import NOBODY, RemoteId, RemoteIdSender
@@ -397,6 +398,8 @@ class FlightRequest:
         At a link: signs what is sent, and lets nothing in that the vehicle did not sign; None: unsigned.
     identity
         What the operator says of itself to vehicles with remote identification.
+    camera_definition
+        At a link: definition file of the camera, which is set by the names in it; None: the camera is asked for it.
     caster, caster_password
         At a link: where RTK corrections come from; None: from nowhere.
     """
@@ -415,6 +418,7 @@ class FlightRequest:
     log_folder: Path | None = None
     signer: Signer | None = None
     identity: RemoteId = NOBODY
+    camera_definition: CameraDefinition | None = None
     caster: Caster | None = None
     caster_password: str = ""
 
@@ -634,6 +638,7 @@ class _Case:
             needs_rtk=request.needs_rtk,
             overrules=request.overrules,
             own_fences=fences,
+            camera_definition=request.camera_definition,
         )
         companions: list[Companion] = [RemoteIdSender(request.identity, orders.home, time.time)]
         with ExitStack() as stack:

@@ -10,10 +10,13 @@ from typing import Any
 from groundstation.services.mission.export import find_site
 from groundstation.services.project.input_files import read_input_plan
 from groundstation.services.project.project_file import check_not_index
+from groundstation.vehicle.camera import WantedSetting, wanted_settings
 from missions.formats.camera_steps import CameraSteps, camera_steps
+from missions.mavlink.camera_definition import read_definition
+from missions.mission.build import missions_from_plan
 from planning.aircraft.camera_use import camera_use_of, controls_of
 from planning.aircraft.catalogue import profile
-from planning.base.errors import GroundStationError
+from planning.base.errors import GroundStationError, InputError
 from planning.base.findings import Finding
 from planning.base.json_file import check_output
 from planning.base.parameters import with_values
@@ -98,6 +101,21 @@ def settable(plan: Plan | None, profile_id: str) -> CameraControls | None:
         return profile(profile_id).controls
     except GroundStationError:  # its file is gone, as the form of the plan says
         return None
+
+
+def set_by_definition(plan: Plan, path: Path) -> tuple[WantedSetting, ...]:
+    """Parameters of a camera that a flight of a plan would set, by the camera's definition file.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, is none, or nobody knows what the plan's camera can set.
+    """
+    definition = read_definition(path)
+    settings = wanted_settings(missions_from_plan(plan)[0], definition)
+    if not settings:
+        raise InputError.say("the plan has no camera whose settings are known; name an aircraft profile with one")
+    return settings
 
 
 def camera_files(

@@ -22,7 +22,14 @@ from collections.abc import Callable, Generator
 from dataclasses import replace
 from typing import Any
 
-from groundstation.vehicle.camera import CameraSettingCall, settings_text, wanted_settings
+from groundstation.vehicle.camera import (
+    CameraInformationCall,
+    CameraSettingCall,
+    WantedSetting,
+    definition_place,
+    settings_text,
+    wanted_settings,
+)
 from groundstation.vehicle.commands import (
     MAV_RESULT_TEMPORARILY_REJECTED,
     MISSION_MODE,
@@ -68,12 +75,15 @@ from groundstation.vehicle.state import Landed, VehicleState, after_restart
 from groundstation.vehicle.watch import STALE_S
 from missions.flight.report_rules import FRESH_S
 from missions.mavlink.autopilots import Autopilot
+from missions.mavlink.camera_definition import MAX_BYTES as DEFINITION_BYTES
+from missions.mavlink.camera_definition import CameraDefinition, parse_definition
+from missions.mavlink.ftp import FileOutcome, FileRead
 from missions.mavlink.messages import Address, CommandLong
 from missions.mavlink.remote_id import refusal_text
 from missions.mavlink.transfer.exchange import Download, DownloadOutcome, Ending, MissionType, Route
 from missions.mavlink.transfer.verified import NotVerified, Verified, VerifiedUpload
 from missions.mavlink.transfer.wire_items import compare, to_wire
-from planning.base.errors import LinkRejected, LinkTimeout, MissionError
+from planning.base.errors import InputError, LinkRejected, LinkTimeout, MissionError
 from planning.base.messages import glue, joined, say
 
 MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, MAV_CMD_MISSION_START = 246, 300
@@ -211,19 +221,25 @@ def _set_parameters(run: SortieRun, changes: tuple[ParameterChange, ...]) -> Ste
 def _set_camera(run: SortieRun) -> Steps:
     """Set a camera that speaks the camera protocol, and believe what it says when it is read back."""
     _, address = vehicle_of(run)
-    taken: list[tuple[str, float]] = []
-    left: list[tuple[str, float]] = []
-    wanted = wanted_settings(run.orders.mission)
+    taken: list[WantedSetting] = []
+    left: list[WantedSetting] = []
+    definition = run.options.camera_definition
+    if definition is None and wanted_settings(run.orders.mission):
+        definition = yield from _camera_definition(run)
+    wanted = wanted_settings(run.orders.mission, definition)
     if not wanted:
         return
-    for name, value in wanted.items():
-        outcome: ParameterOutcome = yield CameraSettingCall(name, value, address.system)
+    for each in wanted:
+        if each.value is None:
+            left.append(each)
+            continue
+        outcome: ParameterOutcome = yield CameraSettingCall(each.name, each.value, address.system)
         if outcome.status is ParameterStatus.UNKNOWN and not taken and not left:
-            text = say("no camera answers by the camera protocol; set it by hand: {}", settings_text(wanted.items()))
+            text = say("no camera answers by the camera protocol; set it by hand: {}", settings_text(wanted))
             run.on_board = replace(run.on_board, camera=PreflightCheck("camera", Verdict.WARN, text))
             run.note("camera", text)
             return
-        (taken if outcome.is_as_set else left).append((name, value))
+        (taken if outcome.is_as_set else left).append(each)
     texts = [say("the camera is set, and read back: {}", settings_text(taken))] if taken else []
     if left:
         texts.append(say("the camera does not take this, set it by hand: {}", settings_text(left)))
@@ -231,6 +247,35 @@ def _set_camera(run: SortieRun) -> Steps:
     verdict = Verdict.WARN if left else Verdict.OK
     run.on_board = replace(run.on_board, camera=PreflightCheck("camera", verdict, text))
     run.note("camera", text)
+
+
+def _camera_definition(run: SortieRun) -> Generator[Any, Any, CameraDefinition | None]:
+    """The camera's own definition file, where it has one on board; None where it is not known, which is told."""
+    autopilot, address = vehicle_of(run)
+    del autopilot
+    source, information = yield CameraInformationCall(address.system)
+    if information is None or not information.cam_definition_uri:
+        return None
+    place = definition_place(information, source)
+    uri = "".join(letter for letter in information.cam_definition_uri if letter.isprintable())
+    if place is None:
+        run.note("camera", say("the camera's definition is not on board ({}); name its file to set it by that", uri))
+        return None
+    where, path = place
+    read: FileOutcome = yield FileRead(
+        Route(run.own, where), path, most_bytes=DEFINITION_BYTES, doing=say("fetching the camera's definition")
+    )
+    if read.ending is not Ending.DONE:
+        run.note("camera", say("the camera's definition could not be fetched ({}): {}", read.ending.value, uri))
+        return None
+    try:
+        definition = parse_definition(read.content, uri)
+    except InputError as error:
+        run.note("camera", say("the camera's definition is not taken: {}", error))
+        return None
+    name = " ".join(filter(None, (definition.vendor, definition.model)))
+    run.note("camera", say("the camera's definition was fetched ({}): {} parameters", name, len(definition.parameters)))
+    return definition
 
 
 def _ask_for_telemetry(run: SortieRun, *, must_answer: bool = True) -> Steps:

@@ -11,6 +11,7 @@ from groundstation.vehicle.state import VehicleState
 from groundstation.vehicle.watch import Watch
 from missions.flight.record import FlightEvent, FlightRecord
 from missions.mavlink.autopilots import Autopilot
+from missions.mavlink.camera_definition import CameraDefinition
 from missions.mavlink.messages import MissionItemInt
 from planning.base.errors import GroundStationError
 
@@ -67,6 +68,8 @@ class RunOptions:
         Codes of checks that shall not ground the flight (`preflight.OVERRULABLE`).
     own_fences
         Fences that this ground station has put on vehicles: only these are cleared without the pilot's word.
+    camera_definition
+        Of the camera, from a file; None: the camera is asked for its own.
     connect_s, ready_s
         Longest waits for the first heartbeat, and for the pre-flight list.
     link_lost_s
@@ -80,6 +83,7 @@ class RunOptions:
     needs_rtk: bool = False
     overrules: frozenset[str] = frozenset()
     own_fences: tuple[tuple[MissionItemInt, ...], ...] = ()
+    camera_definition: CameraDefinition | None = None
     connect_s: float = 30.0
     ready_s: float = 180.0
     link_lost_s: float = 300.0

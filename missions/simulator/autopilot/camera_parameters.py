@@ -11,13 +11,29 @@ from dataclasses import dataclass, field
 
 from pymavlink.dialects.v20 import common as mavlink
 
-from missions.mavlink.messages import Message, ParamExtAck, ParamExtRequestRead, ParamExtSet, ParamExtValue
+from missions.mavlink.messages import (
+    CameraInformation,
+    Message,
+    ParamExtAck,
+    ParamExtRequestRead,
+    ParamExtSet,
+    ParamExtValue,
+)
 from missions.mission.model import Mission
 
 CAMERA_COMPONENT = 100
 """MAV_COMP_ID_CAMERA; the simulated vehicle speaks for its camera, as autopilots do for cameras without a link."""
 
 UINT32, REAL32 = mavlink.MAV_PARAM_EXT_TYPE_UINT32, mavlink.MAV_PARAM_EXT_TYPE_REAL32
+LAYOUTS = {
+    mavlink.MAV_PARAM_EXT_TYPE_UINT8: "<B",
+    mavlink.MAV_PARAM_EXT_TYPE_INT8: "<b",
+    mavlink.MAV_PARAM_EXT_TYPE_UINT16: "<H",
+    mavlink.MAV_PARAM_EXT_TYPE_INT16: "<h",
+    UINT32: "<I",
+    mavlink.MAV_PARAM_EXT_TYPE_INT32: "<i",
+    REAL32: "<f",
+}
 FIELD_BYTES = 128
 MANUAL = 1
 
@@ -44,11 +60,42 @@ def simulated_camera(mission: Mission) -> CameraParameters | None:
     return CameraParameters() if controls is not None and "parameters" in controls.mavlink else None
 
 
+DEFINITION_PATH = "/camera/definition.xml"
+
+
 @dataclass(slots=True)
 class CameraParameters:
-    """Values by name; whole numbers are UINT32, others REAL32."""
+    """Values by name.
+
+    Parameters
+    ----------
+    kinds
+        MAV_PARAM_EXT_TYPE by name; of others, whole numbers are UINT32, and the rest REAL32.
+    definition
+        Its definition file, which the vehicle serves; empty: it has none.
+    takes_all
+        Every value is taken that the type holds.
+    uri
+        Where it says that the file is.
+    """
 
     values: dict[str, float] = field(default_factory=_usual)
+    definition: bytes = b""
+    takes_all: bool = False
+    kinds: dict[str, int] = field(default_factory=dict)
+    uri: str = f"mftp://{DEFINITION_PATH}"
+
+    @property
+    def information(self) -> CameraInformation:
+        """Who it is."""
+        name = tuple(b"simulated".ljust(32, b"\0"))
+        uri = self.uri if self.definition else ""
+        return CameraInformation(0, name, name, 1, 12.29, 17.3, 13.0, 5280, 3956, 0, 0, 1, uri)
+
+    @property
+    def files(self) -> dict[str, bytes]:
+        """What it has to be fetched, by path."""
+        return {DEFINITION_PATH: self.definition} if self.definition else {}
 
     def receive(self, message: ParamExtSet | ParamExtRequestRead) -> list[Message]:
         """The answer; none for a name that it does not have."""
@@ -64,15 +111,15 @@ class CameraParameters:
 
     def _content(self, name: str) -> tuple[bytes, int]:
         value = self.values[name]
-        kind = UINT32 if isinstance(value, int) else REAL32
-        return struct.pack("<I" if kind == UINT32 else "<f", value).ljust(FIELD_BYTES, b"\0"), kind
+        kind = self.kinds.get(name, UINT32 if isinstance(value, int) else REAL32)
+        return struct.pack(LAYOUTS[kind], value).ljust(FIELD_BYTES, b"\0"), kind
 
     def _set(self, message: ParamExtSet) -> ParamExtAck:
         name = message.param_id
         content, kind = self._content(name)
         if message.param_type != kind:
             return ParamExtAck(name, content, kind, mavlink.PARAM_ACK_FAILED)
-        (value,) = struct.unpack_from("<I" if kind == UINT32 else "<f", message.param_value)
+        (value,) = struct.unpack_from(LAYOUTS[kind], message.param_value)
         if not self._takes(name, value):
             return ParamExtAck(name, content, kind, mavlink.PARAM_ACK_VALUE_UNSUPPORTED)
         self.values[name] = value
@@ -80,6 +127,8 @@ class CameraParameters:
         return ParamExtAck(name, content, kind, mavlink.PARAM_ACK_ACCEPTED)
 
     def _takes(self, name: str, value: float) -> bool:
+        if self.takes_all:
+            return True
         is_manual = self.values["CAM_EXPMODE"] == MANUAL
         if name in (IN_AUTOMATIC if is_manual else IN_MANUAL):
             return False

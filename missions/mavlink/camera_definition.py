@@ -1,0 +1,269 @@
+"""Camera definition files: the parameters of a camera that speaks MAVLink's camera protocol, with their options.
+
+The file is XML (mavlink.io, "Camera Definition File"), as it stands or packed by xz. It comes from whoever is on the
+link or made the camera: document types, entities, what is nested deeply or unpacks to more than `MAX_BYTES` is refused,
+and so is a definition that contradicts itself. Its texts are shown, never interpreted.
+"""
+
+from __future__ import annotations
+
+import lzma
+import math
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from planning.base.errors import InputError
+from planning.base.files import FileLimit, HostileXml, parse_xml, read_input_file
+from planning.base.messages import say
+
+if TYPE_CHECKING:
+    from xml.etree.ElementTree import Element
+
+MAX_BYTES = 1 << 20
+"""Of the XML; those of real cameras have some 10 to 100 kB."""
+
+MAX_PARAMETERS, MAX_OPTIONS = 500, 1000
+MAX_TEXT = 100
+XZ_MAGIC, XZ_MEMORY = b"\xfd7zXZ\0", 64 << 20
+
+KINDS = {
+    "uint8": 1, "int8": 2, "uint16": 3, "int16": 4, "uint32": 5, "int32": 6, "uint64": 7, "int64": 8, "float": 9,
+    "double": 10, "custom": 11, "string": 11, "bool": 1,
+}  # fmt: skip
+"""MAV_PARAM_EXT_TYPE by the word of the file."""
+
+CUSTOM = 11
+
+_NAME = re.compile(r"[A-Za-z0-9_.\-]{1,16}", re.ASCII)
+
+
+@dataclass(frozen=True, slots=True)
+class CameraOption:
+    """A value that a parameter can have, by its name for people."""
+
+    name: str
+    value: float
+
+
+@dataclass(frozen=True, slots=True)
+class CameraParameter:
+    """A parameter of a camera.
+
+    Parameters
+    ----------
+    kind
+        MAV_PARAM_EXT_TYPE.
+    options
+        All that it can have; empty where any number between `least` and `most` may be set.
+    is_settable
+        It is not to be read only, and a number.
+    """
+
+    name: str
+    kind: int
+    description: str = ""
+    options: tuple[CameraOption, ...] = ()
+    least: float = -math.inf
+    most: float = math.inf
+    is_settable: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class CameraDefinition:
+    """What a camera says of itself."""
+
+    model: str
+    vendor: str
+    parameters: tuple[CameraParameter, ...]
+
+
+def parse_definition(content: bytes, place: object) -> CameraDefinition:
+    """A camera's definition.
+
+    Parameters
+    ----------
+    place
+        File or camera that it is from, for messages.
+
+    Raises
+    ------
+    InputError
+        It is none, too large, hostile or contradicts itself.
+    """
+    try:
+        root = parse_xml(_unpacked(content, place), place)
+    except HostileXml as error:
+        raise InputError.say("{}; no camera needs that", error, place=place) from error
+    except ValueError as error:
+        raise InputError.say("is no camera definition: no XML ({})", str(error), place=place) from error
+    if root.tag != "mavlinkcamera":
+        raise InputError.say(
+            "is no camera definition: expected <mavlinkcamera>, got <{}>", _text(root.tag), place=place
+        )
+    elements = root.findall("parameters/parameter")
+    if len(elements) > MAX_PARAMETERS:
+        raise InputError.say("names {} parameters; expected at most {}", len(elements), MAX_PARAMETERS, place=place)
+    parameters = tuple(_parameter(element, place) for element in elements)
+    names = [parameter.name for parameter in parameters]
+    if len(set(names)) < len(names):
+        twice = next(name for name in names if names.count(name) > 1)
+        raise InputError.say("names the parameter '{}' twice", twice, place=place)
+    model, vendor = (_text(root.findtext(f"definition/{name}") or "") for name in ("model", "vendor"))
+    return CameraDefinition(model, vendor, parameters)
+
+
+def _unpacked(content: bytes, place: object) -> bytes:
+    if content.startswith(XZ_MAGIC):
+        try:
+            unpacker = lzma.LZMADecompressor(lzma.FORMAT_XZ, memlimit=XZ_MEMORY)
+            content = unpacker.decompress(content, MAX_BYTES + 1)
+        except (lzma.LZMAError, EOFError) as error:
+            raise InputError.say("cannot be unpacked ({})", str(error), place=place) from error
+    if len(content) > MAX_BYTES:
+        raise InputError.say("is larger than {} kB, which no camera definition is", MAX_BYTES >> 10, place=place)
+    return content
+
+
+def _parameter(element: Element, place: object) -> CameraParameter:
+    name, kind = element.get("name", ""), KINDS.get(element.get("type", "").strip().lower())
+    if not _NAME.fullmatch(name):
+        raise InputError.say("has a parameter without a name that MAVLink can carry: '{}'", _text(name), place=place)
+    if kind is None:
+        found = _text(element.get("type", ""))
+        raise InputError.say("'{}' has the type '{}', which MAVLink does not know", name, found, place=place)
+    elements = element.findall("options/option")
+    if len(elements) > MAX_OPTIONS:
+        raise InputError.say("'{}' has {} options; expected at most {}", name, len(elements), MAX_OPTIONS, place=place)
+    options = tuple(CameraOption(*each) for each in _options(elements, name, kind, place))
+    least, most = (_number(element.get(key), unset) for key, unset in (("min", -math.inf), ("max", math.inf)))
+    if math.isnan(least) or math.isnan(most) or least > most:
+        raise InputError.say("'{}' has a range that is none", name, place=place)
+    is_read_only = element.get("readonly", "0").strip() not in ("", "0", "false")
+    description = _text(element.findtext("description") or "")
+    is_settable = kind != CUSTOM and not is_read_only
+    return CameraParameter(name, kind, description, options, least, most, is_settable)
+
+
+def _options(elements: Sequence[Element], name: str, kind: int, place: object) -> Iterator[tuple[str, float]]:
+    for each in elements:
+        value = _number(each.get("value"), math.nan)
+        if kind != CUSTOM and math.isnan(value):
+            raise InputError.say("'{}' has an option that is no number", name, place=place)
+        if not math.isnan(value):
+            yield _text(each.get("name", "")), value
+
+
+def _number(text: str | None, unset: float) -> float:
+    """A number, also in hexadecimal; `unset` where there is none, NaN where it is no finite number."""
+    if text is None or not text.strip():
+        return unset
+    words = text.strip().lower()
+    if words in ("true", "false"):
+        return float(words == "true")
+    try:
+        value = float(int(words, 16)) if re.fullmatch(r"0x[0-9a-f]{1,16}", words) else float(words)
+    except ValueError:
+        return math.nan
+    return value if math.isfinite(value) else math.nan
+
+
+def _text(text: str) -> str:
+    """A text of the file, for people: one line, at most `MAX_TEXT` letters."""
+    return "".join(letter if letter.isprintable() else " " for letter in " ".join(text.split()))[:MAX_TEXT]
+
+
+# Which of a camera's parameters means what, and which of its options a value is
+
+SAME = 0.02
+"""Of shutter times, apertures and ISO: files write 0.016666 for 1/60. Steps of a third are 12 to 26 % apart."""
+
+SAME_EV = 0.06
+"""Of compensations, which go through 0: thirds of a stop are written as 0.3."""
+
+_FRACTION = re.compile(r"(\d+)\s*/\s*(\d+(?:\.\d+)?)")
+_DECIMAL = re.compile(r"[-+]?\d+(?:\.\d+)?")
+
+
+def find_parameter(definition: CameraDefinition, names: Sequence[str], words: Sequence[str]) -> CameraParameter | None:
+    """The parameter of one of some names; else the only one that can be set whose description begins so or holds it.
+
+    Parameters
+    ----------
+    words
+        Regular expressions over descriptions, without regard to case.
+    """
+    by_name = {parameter.name.upper(): parameter for parameter in definition.parameters if parameter.is_settable}
+    named = next((by_name[name] for name in names if name in by_name), None)
+    if named is not None:
+        return named
+    found = [
+        parameter
+        for parameter in by_name.values()
+        if any(re.search(word, parameter.description, re.IGNORECASE) for word in words)
+    ]
+    return found[0] if len(found) == 1 else None
+
+
+def value_of(parameter: CameraParameter, wanted: float | str, absolute: float = 0.0) -> CameraOption | None:
+    """The value that a parameter has to have for a number or a word; None where the camera has none such.
+
+    Of options the name tells, since values may be no more than their numbers; the value itself where no name does.
+
+    Parameters
+    ----------
+    absolute
+        How far a number may lie from the one that is wanted; 0: `SAME` of it.
+    """
+    if isinstance(wanted, str):
+        return next((each for each in parameter.options if _is_word(each.name, wanted)), None)
+
+    def is_same(found: float) -> bool:
+        return math.isclose(found, wanted, rel_tol=0.0 if absolute else SAME, abs_tol=absolute)
+
+    if not parameter.options:
+        return CameraOption(f"{wanted:g}", wanted) if parameter.least <= wanted <= parameter.most else None
+    named = [(each, _quantity(each.name)) for each in parameter.options]
+    meant = [each for each, quantity in named if quantity is not None and is_same(quantity)]
+    if not meant and all(quantity is None for _, quantity in named):
+        meant = [each for each in parameter.options if is_same(each.value)]
+    return meant[0] if meant else None
+
+
+def _quantity(name: str) -> float | None:
+    """The number in the name of an option: '1/500 s', 'f/5.6', 'ISO 100', '+0.3 EV'; None for none."""
+    fraction = _FRACTION.search(name)
+    if fraction:
+        divisor = float(fraction[2])
+        return float(fraction[1]) / divisor if divisor else None
+    number = _DECIMAL.search(name)
+    return None if number is None else float(number[0])
+
+
+WORDS = {
+    "manual": ("manual", "m"),
+    "auto": ("auto", "automatic", "program", "p"),
+    "sunny": ("sunny", "daylight", "sun", "sunlight"),
+    "cloudy": ("cloudy", "cloud", "overcast"),
+}
+"""How cameras name what is wanted."""
+
+
+def _is_word(name: str, wanted: str) -> bool:
+    return name.strip().lower().removesuffix(" mode").removesuffix(" exposure") in WORDS.get(wanted, (wanted,))
+
+
+DEFINITION_FILE = FileLimit(say("a camera definition"), MAX_BYTES)
+
+
+def read_definition(path: Path) -> CameraDefinition:
+    """The definition in a file.
+
+    Raises
+    ------
+    InputError
+        As `parse_definition`, or it cannot be read.
+    """
+    return parse_definition(read_input_file(path, DEFINITION_FILE), path)
