@@ -29,8 +29,8 @@ from planning.base.progress import QUIET, Monitor
 from reconstruction.exports.component_parts import Ellipsoids, ellipsoids_of_all
 from reconstruction.exports.compression import whole_file
 from reconstruction.exports.gaussian_blocks import raster_of
-from reconstruction.exports.page_mirrors import PaneMirrors
 from reconstruction.exports.page_records import Row, by_object, columns_of, files_of
+from reconstruction.gpu.shaders import shader
 from reconstruction.objects.gs_scene import GsElement, GsScene
 from reconstruction.objects.store import largest, middle_of, outward
 from reconstruction.splats.harmonic_colour import light_of_display
@@ -38,6 +38,7 @@ from reconstruction.splats.rasterising.raster_types import RasterSettings
 from reconstruction.splats.rasterising.rasteriser import rasterise
 from reconstruction.splats.rasterising.views import View
 from reconstruction.splats.sky import Sky
+from reconstruction.training.model.pane_mirrors import PaneMirrors
 
 # Gaussians as a web page has them: 32 bytes each and a byte per coefficient of direction, the most visible ones
 # first.
@@ -397,7 +398,8 @@ SCRIPTS = (
 )
 LAST = "scripting"
 SHADERS = ("view", "splats", "mirrors", "overlays")
-"""Of WebGPU, in one piece."""
+SHARED = ("mirrored", "network")
+"""Of WebGPU, in one piece; the window's pictures by a graphics card are made with the shared ones, too."""
 
 PAGE_FILE = FileLimit(say("a web page"), 4096 * MIB)
 
@@ -642,7 +644,7 @@ def _head(described: Mapping[str, Any], title: str) -> bytes:
 
 def wgsl() -> str:
     """The page's programs for WebGPU."""
-    return "".join(_source(f"{name}.wgsl") for name in SHADERS)
+    return "".join([*(_source(f"{name}.wgsl") for name in SHADERS), *(shader(name, {}) for name in SHARED)])
 
 
 def _source(name: str) -> str:

@@ -13,7 +13,7 @@ import struct
 import tempfile
 import threading
 import weakref
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cache
@@ -247,6 +247,44 @@ class Device:
             raise ValueError(f"a table of {texels} texels: the device has {self.most_texels} at most")
         return self._taken(kind, rows, rows * TEXELS_A_ROW * TEXEL_BYTES)
 
+    def picture(self, levels: Sequence[NDArray[Any]]) -> Piece:
+        """A texture that is no table, to be read between its texels; of the caller, and never of the pool.
+
+        Parameters
+        ----------
+        levels
+            Shape (h, w, 4) or (d, h, w, 4), float16, each half as large as the one before; or one of (d, h, w), uint8.
+        """
+        library = _library()
+        is_bytes = levels[0].dtype == np.uint8
+        sizes = [level.shape if is_bytes else level.shape[:-1] for level in levels]
+        extents = [(*size[::-1], 1)[:3] for size in sizes]
+        use = library.TextureUsage
+        raw = self.raw.create_texture(
+            size=extents[0],
+            format="r8uint" if is_bytes else "rgba16float",
+            usage=use.TEXTURE_BINDING | use.COPY_DST,
+            dimension=f"{len(sizes[0])}d",
+            mip_level_count=len(levels),
+        )
+        for number, (level, extent) in enumerate(zip(levels, extents, strict=True)):
+            layout = {"bytes_per_row": level.nbytes // (extent[1] * extent[2]), "rows_per_image": extent[1]}
+            place = {"texture": raw, "mip_level": number}
+            self.raw.queue.write_texture(place, np.ascontiguousarray(level), layout, extent)
+        return Piece(raw, levels[0].nbytes, raw.create_view())
+
+    def sampler(self, *, is_round: bool) -> Piece:
+        """Reads pictures, linear between texels; at their ends it goes on at the other side, or stays."""
+        across = "repeat" if is_round else "clamp-to-edge"
+        raw = self.raw.create_sampler(
+            address_mode_u=across,
+            address_mode_v="clamp-to-edge",
+            address_mode_w="clamp-to-edge",
+            mag_filter="linear",
+            min_filter="linear",
+        )
+        return Piece(raw, 0, raw)
+
     def _taken(self, kind: str, size: int, n_bytes: int) -> Piece:
         library = _library()
         with self._lock:
@@ -313,14 +351,18 @@ class Device:
     def _compiled(self, text: str) -> _Kernel:
         library = _library()
         entries = []
+        # Tables are read texel by texel; kernels with a sampler have pictures.
+        of_floats = "float" if ": sampler;" in text else "unfilterable-float"
         for number, space, what in BINDING.findall(text):
             entry: dict[str, Any] = {"binding": int(number), "visibility": library.ShaderStage.COMPUTE}
             if what.startswith("texture_storage_2d"):
                 texel, access = what[len("texture_storage_2d<") :].rstrip(">").split(", ")
                 entry["storage_texture"] = {"format": texel, "access": f"{access}-only", "view_dimension": "2d"}
-            elif what.startswith("texture_2d"):
-                kind = "uint" if "u32" in what else "unfilterable-float"
-                entry["texture"] = {"sample_type": kind, "view_dimension": "2d"}
+            elif what.startswith(("texture_2d", "texture_3d")):
+                kind = "uint" if "u32" in what else of_floats
+                entry["texture"] = {"sample_type": kind, "view_dimension": what[len("texture_") :][:2]}
+            elif what == "sampler":
+                entry["sampler"] = {"type": "filtering"}
             else:
                 kinds = {"uniform": "uniform", "storage, read": "read-only-storage", "storage, read_write": "storage"}
                 entry["buffer"] = {"type": kinds[space]}

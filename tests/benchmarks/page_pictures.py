@@ -12,7 +12,6 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from reconstruction.exports.page_mirrors import mirrors_of
 from reconstruction.exports.web import WebOptions, sky_light, write_web
 from reconstruction.light.photo_set import PhotoSet
 from reconstruction.light.shading import display_from_linear, linear_from_display
@@ -20,6 +19,7 @@ from reconstruction.metrics.image_metrics import score_picture
 from reconstruction.objects.gs_scene import GsScene
 from reconstruction.splats.rasterising.views import View
 from reconstruction.training.model.joint_model import SceneModel
+from reconstruction.training.model.pane_mirrors import mirrors_of
 from reconstruction.training.model.render import render_view
 from reconstruction.training.model.saved import TrainedModel
 from reconstruction.training.photos.photo_stream import PhotoStream, Sample, StreamSettings

@@ -31,7 +31,7 @@ GROUP = "models"
 TWO_LAYERS = say("CesiumJS: show gaussians.json and panels.json as two layers")
 MIRRORS = say("browsers with WebGPU show panes that mirror as in the model, others these colours")
 NO_MIRRORS = say(
-    "browsers cannot mirror as this model does, by a network or by normals of splats: they show these colours"
+    "browsers cannot mirror as this model does, by normals of splats or by a wide network: they show these colours"
 )
 NO_CESIUM = say(
     "CesiumJS stops at Gaussians that are not compressed: for it, show panels.json alone, or write --gaussians spz"
@@ -251,9 +251,9 @@ def _web(export: ModelToExport) -> list[str]:
 
     from groundstation.services.model.facility_records import open_records, records_path
     from reconstruction.exports.mesh import needs_baking
-    from reconstruction.exports.page_mirrors import mirrors_of
     from reconstruction.exports.web import WebOptions, sky_light, write_web
     from reconstruction.records.stored_files import DOCUMENT_FILE, stored_path
+    from reconstruction.training.model.pane_mirrors import mirrors_of
 
     mirrors = mirrors_of(export.trained.model) if export.wanted.baked else None
     notes: list[str] = []

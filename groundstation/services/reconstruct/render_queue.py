@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from reconstruction.splats.splats import Splats
     from reconstruction.training.callbacks import TrainingSnapshot
     from reconstruction.training.devices import Draw
+    from reconstruction.training.model.card_pictures import CardPictures
     from reconstruction.training.model.joint_model import SceneModel
     from reconstruction.training.model.render import PhotoErrors, Rendered
     from reconstruction.training.model.saved import TrainedModel
@@ -342,6 +343,7 @@ class PictureDevices:
     def __init__(self) -> None:
         self._decided: OrderedDict[object, Decision] = OrderedDict()
         self._undecided: tuple[object, Draw, int] | None = None
+        self._on_card: OrderedDict[SceneModel, CardPictures] = OrderedDict()
         self._lost: tuple[str, str] | None = None
 
     def by_card(self, shown: ShownModel, wanted: str) -> tuple[bool, str]:
@@ -383,8 +385,23 @@ class PictureDevices:
             self._decided.popitem(last=False)
         return True
 
+    def on_card(self, model: SceneModel) -> CardPictures | None:
+        """A finished model, or what a section leaves of it, that stays on the card; None where it cannot."""
+        from reconstruction.gpu.device import open_device
+        from reconstruction.training.model.card_pictures import CardPictures, can_stay
+
+        if model not in self._on_card:
+            if not can_stay(model):
+                return None
+            self._on_card[model] = CardPictures(model, open_device())
+        self._on_card.move_to_end(model)
+        while len(self._on_card) > MOST_MODELS:
+            self._on_card.popitem(last=False)
+        return self._on_card[model]
+
     def leave(self, wanted: str, reason: str) -> str:
         """Draw by the processor from now on, as the card has failed; what to tell the user."""
+        self._on_card.clear()
         self._lost = wanted, say("the processor goes on: {}", reason)
         return self._lost[1]
 
@@ -511,6 +528,10 @@ class RenderQueue:
 
         models, is_quick = self._models, look.is_quick and not on_card
         model = models.quick(shown, look.section, view) if is_quick else models.cut(shown, look.section)
+        if on_card and shown.quads is not None and look.layer == PICTURE:
+            staying = self._devices.on_card(model)
+            if staying is not None:
+                return staying.picture(view, gain, shown.settings)
         return render_view(model, view, layers, gain, replace(shown.settings, on_gpu=on_card))
 
     def prepare(self) -> bool:

@@ -81,13 +81,14 @@ async function load() {
     await pause(0);
     if (own && first === 0) {
       const [cells, skips, far] = [await bytesOfBlock("l0"), await bytesOfBlock("l1"), await bytesOfBlock("l2")];
-      const light = [inRows(await inflated(cells)), await inflated(skips), inRows(await inflated(far))];
+      const network = mirrors.network ? await inflated(await bytesOfBlock("l3")) : new Uint8Array(0);
+      const light = [inRows(await inflated(cells)), await inflated(skips), inRows(await inflated(far)), network];
       if (picture !== shown) return undefined;
       if (!isLight(mirrors, light)) return false;
       shown.addLight(...light);
       ask();
     } else if (first === 0) {
-      await drop("l0", "l1", "l2");
+      await drop("l0", "l1", "l2", ...(mirrors?.network ? ["l3"] : []));
     }
   }
   state.isLoaded = true;
@@ -103,7 +104,8 @@ function countOnPanes(words) {
   return found;
 }
 
-function isLight({ counts: [x, y, z], far: [width, height], far_levels }, [cells, skips, far]) {
+function isLight({ counts: [x, y, z], far: [width, height], far_levels, network }, [cells, skips, far, weights]) {
+  if (weights.length !== 4 * (network?.n_words ?? 0)) return false;
   const ofLevels = Array.from({ length: far_levels }, (_, level) => 8 * (width >> level) * (height >> level));
   return cells.length === 8 * x * y * z && skips.length === (x - 1) * (y - 1) * (z - 1) && far.length === ofLevels.reduce((a, b) => a + b);
 }

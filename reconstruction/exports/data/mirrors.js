@@ -5,6 +5,7 @@ const MIXED = { srcFactor: "one", dstFactor: "one-minus-src-alpha" };
 const BLEND = { color: MIXED, alpha: MIXED };
 const WORDS_OF_DEGREE = [0, 3, 6, 12];
 const MOST_RAYS = 4; // through a pixel, along each side
+const MOST_LISTED = 2 ** 18; // rays that a network is asked about at once: 12 MB
 const STRIP_MS = 50; // of shading: systems take a graphics card that is busy for 2 s for a hung one, and reset it
 
 class MirrorPicture {
@@ -67,6 +68,7 @@ class MirrorPicture {
     this.order = this.buffer(4 * most, STORAGE);
     this.tints = this.buffer(4 * (panes.panes.length + 1), STORAGE);
     this.steps = this.filled(new Float32Array([...padded(model.rest_steps), ...padded(model.mirrors.own_steps)]), UNIFORM);
+    this.makeNetwork(model.mirrors.network);
     this.light = this.filled(lightNumbers(model.mirrors), UNIFORM);
     this.panes = this.filled(paneNumbers(panes, model.mirrors), STORAGE);
     this.paneCorners = this.filled(paneVertices(panes, model.panes), VERTEX);
@@ -74,6 +76,20 @@ class MirrorPicture {
     this.marks = this.buffer(0, VERTEX);
     this.nMarks = 0;
     this.lines = this.buffer(4 * 11 * 4 * 3, VERTEX);
+  }
+
+  // What a network is asked with; one number each where the light is of another kind.
+  makeNetwork(network) {
+    const { STORAGE, UNIFORM, COPY_DST } = GPUBufferUsage;
+    this.weights = this.buffer(network ? 4 * network.n_words : 0, STORAGE);
+    this.answers = this.buffer(network ? 16 * MOST_LISTED : 0, STORAGE);
+    this.firsts = this.buffer(0, STORAGE);
+    if (!network) return;
+    this.network = this.filled(new Uint32Array(network.numbers), UNIFORM);
+    this.raysAGroup = 4 * network.numbers.at(-1);
+    this.rays = this.buffer(32 * MOST_LISTED, STORAGE);
+    this.nRays = this.buffer(4, STORAGE | COPY_DST);
+    this.strip = this.buffer(16, UNIFORM);
   }
 
   filled(values, usage) {
@@ -128,6 +144,8 @@ class MirrorPicture {
     const triangles = { topology: "triangle-list" };
     this.pipelines = {
       colour: device.createComputePipeline({ layout: "auto", compute: { module, entryPoint: "colour_splats" } }),
+      list: device.createComputePipeline({ layout: "auto", compute: { module, entryPoint: "list_rays" } }),
+      ask: device.createComputePipeline({ layout: "auto", compute: { module, entryPoint: "ask_network" } }),
       splats: drawn("splat_corner", "splat_pixel", [0, 1, 2].map(() => ({ format: HALF, blend: BLEND }))),
       // Panels seen from behind neither mirror nor hide.
       numbers: drawn("pane_corner", "pane_number", [{ format: "r32uint" }], { buffers: corners, depthStencil: deep(true), primitive: { ...triangles, cullMode: "back" } }),
@@ -171,12 +189,24 @@ class MirrorPicture {
     this.size = [this.canvas.width, this.canvas.height] = [width, height];
     this.version++;
     const found = (this.target = this.targets(width, height));
+    if (this.network) this.resizeNetwork(width * height);
     this.groups.shade = this.group(this.pipelines.shade, {
       0: this.view, 10: this.light, 11: this.panes, 12: this.cells, 13: this.skips, 14: this.far, 15: this.between, 16: this.sky,
-      17: this.around, 18: found.light, 19: found.mirrored, 20: found.reflectivity, 21: found.numbers,
+      17: this.around, 18: found.light, 19: found.mirrored, 20: found.reflectivity, 21: found.numbers, 24: this.answers, 25: this.firsts,
     });
     this.groups.show = this.group(this.pipelines.show, { 23: found.whole });
     this.groups.read = this.group(this.pipelines.read, { 23: found.whole });
+  }
+
+  resizeNetwork(nPixels) {
+    this.firsts.destroy();
+    this.firsts = this.buffer(4 * nPixels, GPUBufferUsage.STORAGE);
+    const { target, pipelines: { list, ask } } = this;
+    this.groups.list = this.group(list, {
+      0: this.view, 10: this.light, 11: this.panes, 20: target.reflectivity, 21: target.numbers, 31: this.rays, 32: this.nRays,
+      33: this.firsts, 34: this.strip,
+    });
+    this.groups.ask = this.group(ask, { 26: this.network, 27: this.weights, 28: this.rays, 29: this.nRays, 30: this.answers });
   }
 
   // The next Gaussians: 8 words each, bytes of their harmonics, and own values of those on panes.
@@ -197,10 +227,11 @@ class MirrorPicture {
   }
 
   // What panes mirror: density and light of the grid, what may be leapt over, and what is far away.
-  addLight(cells, skips, far) {
+  addLight(cells, skips, far, weights) {
     this.write(this.cells, cells, 8);
     this.write(this.skips, skips, 1);
     this.write(this.far, far, 8);
+    this.device.queue.writeBuffer(this.weights, 0, weights);
     this.hasLight = true;
     this.haveChanged();
   }
@@ -271,9 +302,12 @@ class MirrorPicture {
   // Strip by strip, each a piece of work of its own: so slow cards are not taken for hung ones.
   shade(rays) {
     const [width, height] = this.size;
-    const rows = Math.max(1, Math.floor(STRIP_MS / (this.rayMs * width * (this.hasLight ? rays * rays : 1))));
+    const each = width * (this.hasLight ? rays * rays : 1);
+    const most = this.network ? Math.floor(MOST_LISTED / each) : height;
+    const rows = Math.max(1, Math.min(most, Math.floor(STRIP_MS / (this.rayMs * each))));
     for (let top = 0; top < height; top += rows) {
       const encoder = this.device.createCommandEncoder();
+      if (this.network && this.hasLight) this.askNetwork(encoder, top * width, Math.min(rows, height - top) * width, rays * rays);
       const colorAttachments = [{ ...cleared(this.target.shaded), loadOp: top ? "load" : "clear" }];
       const pass = encoder.beginRenderPass({ colorAttachments });
       pass.setPipeline(this.pipelines.shade);
@@ -283,6 +317,19 @@ class MirrorPicture {
       pass.end();
       this.device.queue.submit([encoder.finish()]);
     }
+  }
+
+  // Light that mirrored rays of some pixels bring.
+  askNetwork(encoder, first, n, raysEach) {
+    this.device.queue.writeBuffer(this.strip, 0, new Uint32Array([first, n, 0, 0]));
+    encoder.clearBuffer(this.nRays);
+    const pass = encoder.beginComputePass();
+    for (const [name, groups] of [["list", n / 64], ["ask", (n * raysEach) / this.raysAGroup]]) {
+      pass.setPipeline(this.pipelines[name]);
+      pass.setBindGroup(0, this.groups[name]);
+      pass.dispatchWorkgroups(Math.ceil(groups));
+    }
+    pass.end();
   }
 
   drawOver(encoder, nEdges) {
@@ -424,13 +471,13 @@ function halfNumber(bits) {
   return exponent ? 2 ** (exponent - 15) * (1 + fraction / 1024) : 2 ** -14 * (fraction / 1024);
 }
 
-// As `Light` in mirrors.wgsl has them.
+// As `Light` in mirrored.wgsl has them.
 function lightNumbers({ numbers }) {
-  const { middle, half_side, inner, cell, over, outer, turn, reach, unit, far_side, far_times, density_scale, opaque, environment } = numbers;
-  return new Float32Array([...middle, half_side, ...inner, cell, ...over, outer, ...turn, reach, unit, far_side, far_times, density_scale, opaque, environment, 0, 0, 0]);
+  const { middle, half_side, inner, cell, over, outer, turn, reach, unit, far_side, far_times, density_scale, opaque, kind } = numbers;
+  return new Float32Array([...middle, half_side, ...inner, cell, ...over, outer, ...turn, reach, unit, far_side, far_times, density_scale, opaque, kind, 0, 0, 0]);
 }
 
-// As `Pane` in mirrors.wgsl has them.
+// As `Pane` in mirrored.wgsl has them.
 function paneNumbers(panes, { tilts, bows }) {
   const ofEdge = (edge) => edge.map((value) => value / Math.max(dot(edge, edge), 1e-20));
   return new Float32Array(panes.panes.flatMap(({ corners, normal }, pane) => [

@@ -1,162 +1,14 @@
-// Panes as mirrors (paper Eqs. 19 to 21): each pixel's ray meets its pane's plane, is mirrored by the pane's normal, which
-// leans and is bowed a little, and marches through the radiance grid; what is left of its light comes from far away.
-// Where the model has an environment map, all light does.
-//
-// The formulas are those of `reconstruction.light`: `ray_table` (rays and planes), `glass_light` (tilts, bows, several
-// rays for a pixel), `radiance_grid` (the march), `environment_map`, and `joint_model` (the sum). Cost: some tens of places for each ray,
-// as empty cells are leapt over.
-struct Light {
-  middle: vec3f,    // of the cube that places are rescaled by, metres
-  half_side: f32,
-  inner: vec3f,     // middle of the grid's inner box, along its own axes, rescaled as all that follows
-  cell: f32,        // shortest side of a cell
-  over: vec3f,      // 1 over the inner box's half sides
-  outer: f32,       // what is around it, of its half sides
-  turn: vec2f,      // cosine and sine of the box's heading
-  reach: f32,       // up to which steps are equally long
-  unit: f32,        // density of a ramp of 1
-  far_side: f32,    // pixels of the square picture of what is far away, without its rim
-  far_times: f32,   // times `reach`, to where rays are followed
-  density_scale: f32,
-  opaque_share: f32,
-  environment: f32, // 1 where there is no grid, but a picture of all directions
-}
-@group(0) @binding(10) var<uniform> light: Light;
-
-struct Pane {
-  corner: vec4f, // first corner, metres; lean along the lower edge, radians
-  normal: vec4f, // outward, unit; lean upwards
-  right: vec4f,  // lower edge over its squared length; bow along it, radians at the pane's edges
-  up: vec4f,     // left edge, the same
-}
-@group(0) @binding(11) var<storage, read> panes: array<Pane>;
-@group(0) @binding(12) var cells: texture_3d<f32>; // density, and square roots of light
-@group(0) @binding(13) var skips: texture_3d<u32>; // cells that a ray may leap
-@group(0) @binding(14) var far: texture_2d<f32>;   // square roots of light by direction, an octahedron folded out; or an
-                                                   // environment map's pictures, whose sum is logits of light
-@group(0) @binding(15) var between: sampler;       // linear, clamped
+// The sums of splats, shaded with what panes mirror (mirrored.wgsl), and the sky behind them.
 @group(0) @binding(16) var sky: texture_2d<f32>;   // linear light of all directions
-@group(0) @binding(17) var around: sampler;        // linear, round without a seam
 @group(0) @binding(18) var own_light: texture_2d<f32>;
 @group(0) @binding(19) var own_mirrored: texture_2d<f32>;
 @group(0) @binding(20) var own_reflectivity: texture_2d<f32>;
 @group(0) @binding(21) var pane_numbers: texture_2d<u32>; // + 1, 0 for none
-
-const LEAST_COSINE = 1e-3;
-const LEAST_REFLECTIVITY = 1e-3;
-const SKY_SEEN = 1.0 / 512.0;
-
-// -1 to 1 stays; what is beyond, up to infinity, goes on to 1 + `outer` on either side.
-fn contracted(place: vec3f) -> vec3f {
-  let size = max(abs(place), vec3f(1.0));
-  return select(sign(place) * (1.0 + light.outer * (1.0 - 1.0 / size)), place, abs(place) <= vec3f(1.0));
-}
-
-fn ramp(raw: f32) -> f32 {
-  if (raw >= 1.0) { return raw; }
-  let above = max(0.5 * (raw + 1.0), 0.0);
-  return above * above;
-}
-
-fn in_box(enu: vec3f) -> vec3f {
-  return vec3f(light.turn.x * enu.x - light.turn.y * enu.y, light.turn.y * enu.x + light.turn.x * enu.y, enu.z);
-}
-
-fn far_light(d: vec3f) -> vec3f {
-  var place = d.xy / (abs(d.x) + abs(d.y) + abs(d.z));
-  if (d.z < 0.0) {
-    place = (1.0 - abs(place.yx)) * select(vec2f(-1.0), vec2f(1.0), place >= vec2f(0.0));
-  }
-  let at = ((place + 1.0) * 0.5 * light.far_side + 1.0) / (light.far_side + 2.0);
-  let root = textureSampleLevel(far, between, at, 0.0).rgb;
-  return root * root;
-}
-
-// Light that comes along a ray from a rescaled place, ENU; the direction is unit.
-fn marched(place: vec3f, direction: vec3f) -> vec3f {
-  let turned_direction = in_box(direction);
-  let p = (in_box(place) - light.inner) * light.over;
-  let q = turned_direction * light.over;
-  let counts = vec3f(textureDimensions(cells));
-  let last = vec3i(textureDimensions(skips)) - 1;
-  let scale = 0.5 / (1.0 + light.outer) * (counts - 1.0);
-  let end = light.far_times * light.reach;
-  var through = 1.0;
-  var found = vec3f(0.0);
-  var time = 0.0;
-  while (time < end) {
-    let step = light.cell * max(1.0, time / light.reach);
-    let at = (contracted(p + (time + 0.5 * step) * q) + (1.0 + light.outer)) * scale;
-    let leap = textureLoad(skips, clamp(vec3i(at), vec3i(0), last), 0).r;
-    time += step;
-    if (leap > 0u) {
-      let goal = time - step + f32(leap - 1u) * light.cell;
-      while (time < goal && time < end) { time += light.cell * max(1.0, time / light.reach); }
-      continue;
-    }
-    let value = textureSampleLevel(cells, between, (at + 0.5) / counts, 0.0);
-    let raw = light.density_scale * value.x;
-    if (raw <= -1.0) { continue; }
-    let share = through * (1.0 - exp(-ramp(raw) * light.unit * step));
-    found += share * value.yzw * value.yzw;
-    through -= share;
-    if (through < light.opaque_share) { break; }
-  }
-  return found + through * far_light(turned_direction);
-}
-
-// Where a picture of all directions shows one: turns clockwise from north, and 0 at the zenith to 1 at the nadir. A unit
-// direction: east, north, up.
-fn map_place(d: vec3f) -> vec2f {
-  let north = select(1.0, d.y, abs(d.x) + abs(d.y) > 1e-6);
-  return vec2f(atan2(d.x, north) / 6.2831853, 0.5 - asin(clamp(d.z, -1.0, 1.0)) / 3.1415927);
-}
-
-fn arriving(place: vec3f, direction: vec3f) -> vec3f {
-  if (light.environment == 0.0) { return marched(place, direction); }
-  let at = map_place(direction);
-  var logits = vec3f(0.0);
-  for (var level = 0u; level < textureNumLevels(far); level++) {
-    logits += textureSampleLevel(far, around, at, f32(level)).rgb;
-  }
-  return 1.0 / (1.0 + exp(-logits));
-}
-
-struct Mirrored { light: vec3f, cosine: f32 }
-
-// What a pane shows of its surroundings to a pixel, on average over the rays that meet it inside its edges; where none
-// does, over all of them, as if the pane went on. Pixels are counted from the middle of the picture.
-fn mirrored_by(number: u32, pixel: vec2f) -> Mirrored {
-  let pane = panes[number];
-  let lower = normalize(pane.right.xyz);
-  let upward = cross(pane.normal.xyz, lower);
-  let height = dot(view.eye - pane.corner.xyz, pane.normal.xyz);
-  let side = i32(view.rays);
-  var inside = Mirrored(vec3f(0.0), 0.0);
-  var every = Mirrored(vec3f(0.0), 0.0);
-  var n_inside = 0.0;
-  for (var k = 0; k < side * side; k++) {
-    let offset = (vec2f(f32(k % side), f32(k / side)) + 0.5) / view.rays - 0.5;
-    let tangent = (pixel + offset) / view.focal;
-    let d = normalize(view.forward + tangent.x * view.right + tangent.y * view.down);
-    let met = view.eye + height / max(-dot(d, pane.normal.xyz), LEAST_COSINE) * d;
-    let shares = vec2f(dot(pane.right.xyz, met - pane.corner.xyz), dot(pane.up.xyz, met - pane.corner.xyz));
-    let off_middle = 2.0 * clamp(shares, vec2f(0.0), vec2f(1.0)) - 1.0;
-    let lean = vec2f(pane.corner.w, pane.normal.w) + vec2f(pane.right.w, pane.up.w) * off_middle;
-    let normal = normalize(pane.normal.xyz + lean.x * lower + lean.y * upward);
-    let along = dot(d, normal);
-    let found = arriving((met - light.middle) / light.half_side, d - 2.0 * along * normal);
-    let cosine = min(abs(along), 1.0);
-    every = Mirrored(every.light + found, every.cosine + cosine);
-    if (all(shares >= vec2f(0.0)) && all(shares <= vec2f(1.0))) {
-      inside = Mirrored(inside.light + found, inside.cosine + cosine);
-      n_inside += 1.0;
-    }
-  }
-  if (n_inside > 0.0) { return Mirrored(inside.light / n_inside, inside.cosine / n_inside); }
-  let n = view.rays * view.rays;
-  return Mirrored(every.light / n, every.cosine / n);
-}
+@group(0) @binding(25) var<storage, read> firsts: array<u32>; // of each pixel's answers, where a network is asked
+@group(0) @binding(31) var<storage, read_write> rays: array<vec4f>;
+@group(0) @binding(32) var<storage, read_write> n_rays: array<atomic<u32>>;
+@group(0) @binding(33) var<storage, read_write> first_rays: array<u32>; // `firsts`, as they are written
+@group(0) @binding(34) var<uniform> strip: vec4u;                       // first of the pixels to be shaded, and how many
 
 // Whose plane mirrors: the pane's that the middle of the pixel shows, else one that shows beside it, since of a pixel
 // that glass and frame share, the splats say how much mirrors, but not where to.
@@ -174,24 +26,47 @@ fn pane_at(at: vec2i) -> u32 {
   return found;
 }
 
+fn off_axis(at: vec2i) -> vec2f { return vec2f(at) + 0.5 - 0.5 * view.size + view.shift; }
+
+// Mirrored rays of a strip's pixels, one after the other, for a network to be asked.
+@compute @workgroup_size(64)
+fn list_rays(@builtin(global_invocation_id) id: vec3u) {
+  if (id.x >= strip.y) { return; }
+  let place = strip.x + id.x;
+  let width = u32(view.size.x);
+  let at = vec2i(vec2u(place % width, place / width));
+  let number = pane_at(at);
+  if (number == 0u || textureLoad(own_reflectivity, at, 0).r <= LEAST_REFLECTIVITY) { return; }
+  let n = u32(view.rays * view.rays);
+  let first = atomicAdd(&n_rays[0], n);
+  first_rays[place] = first;
+  for (var k = 0u; k < n; k++) {
+    let ray = mirror(number - 1u, off_axis(at), i32(k));
+    rays[2u * (first + k)] = vec4f(ray.place, 0.0);
+    rays[2u * (first + k) + 1u] = vec4f(ray.direction, 0.0);
+  }
+}
+
+@compute @workgroup_size(256)
+fn ask_network(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) { ask(group.x, lane); }
+
 @vertex
 fn shade_corner(@builtin(vertex_index) number: u32) -> @builtin(position) vec4f { return corner_of_all(number); }
 
 @fragment
 fn shade_pixel(@builtin(position) position: vec4f) -> @location(0) vec4f {
   let at = vec2i(position.xy);
-  let pixel = position.xy - 0.5 * view.size + view.shift;
+  let pixel = off_axis(at);
   let own = textureLoad(own_light, at, 0);
   var sum = own.rgb;
   let reflectivity = textureLoad(own_reflectivity, at, 0).r;
   let number = pane_at(at);
   if (view.mirrors > 0.0 && number > 0u && reflectivity > LEAST_REFLECTIVITY) {
     let f0 = textureLoad(own_mirrored, at, 0).rgb;
-    let mirrored = mirrored_by(number - 1u, pixel);
-    // Of a share R of the surface, and R F0 in the place of F0, Schlick's term is R F.
-    let grazing = 1.0 - clamp(mirrored.cosine, 0.0, 1.0);
-    let square = grazing * grazing;
-    sum += (f0 + (reflectivity - f0) * (square * square * grazing)) * mirrored.light;
+    var first = 0u;
+    if (light.kind == OF_NETWORK) { first = firsts[u32(at.y) * u32(view.size.x) + u32(at.x)]; }
+    let mirrored = mirrored_by(number - 1u, pixel, first);
+    sum += reflectance(f0, reflectivity, mirrored.cosine) * mirrored.light;
   }
   if (1.0 - own.a > SKY_SEEN) {
     let d = normalize(view.forward + (pixel.x * view.right + pixel.y * view.down) / view.focal);

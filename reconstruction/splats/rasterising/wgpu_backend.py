@@ -154,18 +154,13 @@ class _Window:
 class _Drawing:
     """One picture of splats on a card: its lists, from the way there to the way back."""
 
-    def __init__(self, device: Device, view: View, settings: RasterSettings, parameters: Floats, solid: bool) -> None:
+    def __init__(
+        self, device: Device, view: View, settings: RasterSettings, parameters: Piece, n: int, solid: bool
+    ) -> None:
         self.device, self.view, self.settings = device, view, settings
-        self.n = len(parameters)
-        most = device.most_texels // GEOMETRY_QUADS
-        if self.n > most:
-            raise DeviceFailed(
-                say("{} splats are more than the {} that graphics cards are given; compute on the processor instead",
-                    self.n, most)
-            )  # fmt: skip
+        self.n = n
         self.constants = constants_for(device, settings, solid)
-        self.parameters = device.table(PARAMETER_QUADS * self.n)
-        device.write_table(self.parameters, parameters.reshape(-1, 4))
+        self.parameters = parameters
         self._uniform = _view_uniform(view, settings, self.n, solid)
         self.windows: list[_Window] = []
         commands = device.commands()
@@ -250,13 +245,7 @@ class _Drawing:
                 rows, columns = window.bins.pixels(view)
                 size = rows.stop - rows.start, columns.stop - columns.start
                 n_bytes = 16 * size[0] * size[1]
-                channels, weights = device.buffer(n_quads * n_bytes), device.buffer(4 * window.n_patches)
-                commands.clear(weights, 4 * window.n_patches)
-                commands.run(
-                    "blend", constants, window.bins.n * int_of(constants, "PATCHES"), self.uniform(window.bins),
-                    self.geometry, table, window.pairs, window.numbers, window.starts,
-                    channels, window.states, weights,
-                )  # fmt: skip
+                channels, weights = self.blend(commands, window, table, n_quads)
                 if first == 0:
                     commands.run(
                         "add_weights", constants, groups_of(self.n), self.uniform(),
@@ -268,6 +257,20 @@ class _Drawing:
                 states[rows, columns] = state.view(np.float32).reshape(*size, 4)
         weights_of_splats = commands.read((totals, 4 * self.n))[0].view(np.float32)
         return picture, states, weights_of_splats
+
+    def blend(self, commands: Commands, window: _Window, table: Piece, n_quads: int) -> tuple[Piece, Piece]:
+        """Channels of a window's pixels, and the weights of splats in its patches."""
+        rows, columns = window.bins.pixels(self.view)
+        n_pixels = (rows.stop - rows.start) * (columns.stop - columns.start)
+        constants = self.constants | _quads(n_quads)
+        channels, weights = self.device.buffer(16 * n_quads * n_pixels), self.device.buffer(4 * window.n_patches)
+        commands.clear(weights, 4 * window.n_patches)
+        commands.run(
+            "blend", constants, window.bins.n * int_of(constants, "PATCHES"), self.uniform(window.bins),
+            self.geometry, table, window.pairs, window.numbers, window.starts,
+            channels, window.states, weights,
+        )  # fmt: skip
+        return channels, weights
 
     def radii_px(self) -> Floats:
         """Half the larger side of the box that each splat can touch; 0 where it is not drawn."""
@@ -407,13 +410,9 @@ class _Rasterise(torch.autograd.Function):
             found = [torch.from_numpy(each.astype(np.float32)) for each in out]
             ctx.kept = None
         else:
-            parameters = np.zeros((n, 4 * PARAMETER_QUADS), np.float32)
-            parameters[:, 0:3], parameters[:, 3], parameters[:, 4:8] = means, opacities, quats
-            parameters[:, 8 : 8 + scales.shape[1]] = scales
-            if len(offsets):
-                parameters[:, 12:14] = offsets
             with device.errors_said():
-                drawing = _Drawing(device, view, settings, parameters, solid)
+                parameters = _parameters(device, means, quats, scales, opacities, offsets)
+                drawing = _Drawing(device, view, settings, parameters, n, solid)
                 picture, states, weights = drawing.blended(features)
                 radii = drawing.radii_px()
             ctx.kept = drawing
@@ -442,6 +441,62 @@ class _Rasterise(torch.autograd.Function):
             found[: len(inputs[5]), 12:14],
         )  # fmt: skip
         return (None, None, None, None, *(torch.from_numpy(np.ascontiguousarray(each)) for each in parts))
+
+
+def _parameters(device: Device, means: Floats, quats: Floats, scales: Floats, opacities: Floats, offsets: Any) -> Piece:
+    """Of splats, on the card."""
+    n, most = len(means), device.most_texels // GEOMETRY_QUADS
+    if n > most:
+        raise DeviceFailed(
+            say("{} splats are more than the {} that graphics cards are given; compute on the processor instead",
+                n, most)
+        )  # fmt: skip
+    values = np.zeros((n, 4 * PARAMETER_QUADS), np.float32)
+    values[:, 0:3], values[:, 3], values[:, 4:8], values[:, 8 : 8 + scales.shape[1]] = means, opacities, quats, scales
+    if len(offsets):
+        values[:, 12:14] = offsets
+    found = device.table(PARAMETER_QUADS * n)
+    device.write_table(found, values.reshape(-1, 4))
+    return found
+
+
+class SplatsOnCard:
+    """Splats that stay on a card from picture to picture, for looking at them: nothing is learned.
+
+    Parameters
+    ----------
+    means, quats_wxyz, scales, opacities
+        As `rasterise` takes them; one splat or more.
+    """
+
+    def __init__(self, device: Device, means: Tensor, quats_wxyz: Tensor, scales: Tensor, opacities: Tensor) -> None:
+        given = means, quats_wxyz, scales, opacities
+        a, b, c, d = (np.ascontiguousarray(each.detach().numpy()) for each in given)
+        self.device, self.n, self._is_solid = device, len(means), scales.shape[1] == SOLID
+        self.parameters = _parameters(device, a, b, c, d, ())
+
+    def blended(
+        self, view: View, settings: RasterSettings, table: Piece, n_quads: int
+    ) -> Iterator[tuple[Bins, Piece, Piece]]:
+        """Window by window of a picture what its pixels come to, each to be used before the next is asked for.
+
+        Parameters
+        ----------
+        table
+            Channels of the splats, so many quads of each.
+
+        Returns
+        -------
+        Iterator
+            Windows, their pixels' blended channels (quads, as the splats have them), and their states: alpha, sum of
+            weighted depths, what shines through.
+        """
+        drawing = _Drawing(self.device, view, settings, self.parameters, self.n, self._is_solid)
+        for window in drawing.windows:
+            commands = self.device.commands()
+            channels, _ = drawing.blend(commands, window, table, n_quads)
+            commands.submit()
+            yield window.bins, channels, window.states
 
 
 def _gradient(wanted: Tensor | None, shape: tuple[int, ...]) -> Floats:

@@ -6,38 +6,22 @@ import numpy as np
 import pytest
 
 from reconstruction.exports.component_parts import THICKNESS_M, Ellipsoids, unit_quaternions
-from reconstruction.exports.page_mirrors import mirrors_of
 from reconstruction.exports.web import COLOUR_RANGE, packed, packed_glass, sky_light, wgsl
+from reconstruction.training.model.pane_mirrors import mirrors_of
 
 HALF = "rgba16float"
 DEGREE = 3
 
 ASK = """
 @group(1) @binding(0) var<storage, read> asked: array<vec4f>;
-@group(1) @binding(1) var<storage, read_write> answers: array<vec4f>;
+@group(1) @binding(1) var<storage, read_write> replies: array<vec4f>;
 @compute @workgroup_size(64)
-fn ask(@builtin(global_invocation_id) id: vec3u) {
+fn reply(@builtin(global_invocation_id) id: vec3u) {
   if (id.x >= arrayLength(&asked)) { return; }
-  let found = mirrored_by(u32(asked[id.x].z), asked[id.x].xy);
-  answers[id.x] = vec4f(found.light, found.cosine);
+  let found = mirrored_by(u32(asked[id.x].z), asked[id.x].xy, 0u);
+  replies[id.x] = vec4f(found.light, found.cosine);
 }
 """
-
-
-def numbers_of(mirrors, corners_m):
-    """Content of `Light` and of the `Pane`s, as mirrors.js fills them in."""
-    n = mirrors.numbers
-    names = (
-        *("middle", "half_side", "inner", "cell", "over", "outer", "turn", "reach", "unit", "far_side", "far_times"),
-        *("density_scale", "opaque", "environment"),
-    )
-    light = np.concatenate([*(np.atleast_1d(n[name]) for name in names), np.zeros(3)]).astype(np.float32)
-    normals = np.cross(corners_m[:, 2] - corners_m[:, 0], corners_m[:, 3] - corners_m[:, 1])
-    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    edges = [corners_m[:, i] - corners_m[:, 0] for i in (1, 3)]
-    over = [edge / (edge**2).sum(axis=1, keepdims=True) for edge in edges]
-    columns = zip((corners_m[:, 0], normals, *over), (*mirrors.tilts.T, *mirrors.bows.T), strict=True)
-    return light, np.stack([np.column_stack(each) for each in columns], axis=1).astype(np.float32)
 
 
 class Shaders:
@@ -73,7 +57,7 @@ class Shaders:
     def light_of(self, mirrors, corners_m):
         """By binding, what `mirrors.wgsl` reads of a model."""
         usage = self.wgpu.BufferUsage
-        light, panes = numbers_of(mirrors, corners_m)
+        light, panes = mirrors.light_numbers(), mirrors.pane_numbers(corners_m)
         linear = dict.fromkeys(("address_mode_u", "address_mode_v", "address_mode_w"), "clamp-to-edge")
         linear |= {"mag_filter": "linear", "min_filter": "linear"}
         return {
@@ -84,6 +68,7 @@ class Shaders:
             14: self.texture(mirrors.far, HALF, 8, "2d"),
             15: self.device.create_sampler(**linear),
             17: self.device.create_sampler(**{**linear, "address_mode_u": "repeat"}),
+            24: {"buffer": self.buffer(np.zeros(4, np.float32), usage.STORAGE)},
         }
 
     def group(self, pipeline, resources, number=0):
@@ -163,8 +148,27 @@ class Shaders:
         own = {0: {"buffer": self.buffer(view, usage.UNIFORM)}, **self.light_of(mirrors, corners_m)}
         questions = np.column_stack([asked, np.zeros(len(asked))]).astype(np.float32)
         answers = {0: {"buffer": self.buffer(questions, usage.STORAGE)}, 1: {"buffer": found}}
-        self.compute("ask", -(-len(asked) // 64), own, answers)
+        self.compute("reply", -(-len(asked) // 64), own, answers)
         return np.frombuffer(device.queue.read_buffer(found), np.float32).reshape(-1, 4)
+
+    def asked(self, mirrors, read, size, rays):
+        """Answers of a network to all rays of a picture."""
+        usage, n, network = self.wgpu.BufferUsage, size[0] * size[1], mirrors.network
+        listed = {
+            31: np.zeros((n * rays, 2, 4), np.float32),
+            32: np.zeros(1, np.uint32),
+            34: np.array([0, n, 0, 0], np.uint32),
+            26: np.array(network.numbers, np.uint32),
+            27: network.words,
+            30: np.zeros((n * rays, 4), np.float32),
+        }
+        kinds = {34: usage.UNIFORM, 26: usage.UNIFORM}
+        own = {k: {"buffer": self.buffer(each, kinds.get(k, usage.STORAGE))} for k, each in listed.items()}
+        shared = {k: read[k] for k in (0, 10, 11, 20, 21)}
+        self.compute("list_rays", -(-n // 64), shared | {k: own[k] for k in (31, 32, 34)} | {33: read[25]})
+        groups = -(-n * rays // network.rays_a_group)
+        self.compute("ask_network", groups, {k: own[k] for k in (26, 27, 30)} | {28: own[31], 29: own[32]})
+        return own[30]["buffer"]
 
     def picture(self, model, view, size):
         """Linear light that the page shows of a model, shape (h, w, 3); of `view_numbers`, and a size in pixels."""
@@ -205,6 +209,9 @@ class Shaders:
         sky = np.pad(sky_light(model.sky), ((0, 0), (0, 0), (0, 1)))
         read = dict(zip((18, 19, 20, 21), (each.create_view() for each in (*sums, numbers)), strict=True))
         read |= {0: buffers[0], 16: self.texture([sky], HALF, 8, "2d"), **self.light_of(mirrors, model.corners_m)}
+        read[25] = {"buffer": self.buffer(np.zeros(size[0] * size[1], np.uint32), usage.STORAGE)}
+        if mirrors.network is not None:
+            read[24] = {"buffer": self.asked(mirrors, read, size, int(view[26]) ** 2)}
         shaded = self.target(HALF, size)
         self.draw("shade_corner", "shade_pixel", (3, 1), [(shaded, HALF)], read)
         width, height = size

@@ -11,7 +11,6 @@ import pytest
 import torch
 
 from reconstruction.base.cameras import Intrinsics, Pose, PosedPhoto
-from reconstruction.exports.page_mirrors import mirrors_of
 from reconstruction.exports.web import WebOptions, write_web
 from reconstruction.light.config import GlassLearned
 from reconstruction.light.environment_map import EnvironmentMap
@@ -27,6 +26,7 @@ from reconstruction.splats.rasterising.views import View
 from reconstruction.splats.sky import Sky
 from reconstruction.splats.splats import Splats
 from reconstruction.training.model.joint_model import SceneModel
+from reconstruction.training.model.pane_mirrors import mirrors_of
 from tests.reconstruction.exports.page_shaders import Shaders, view_numbers
 from tests.reconstruction.objects.synthetic_scene import synthetic_scene
 
@@ -63,6 +63,12 @@ def environment_of(rng):
         for level in found.levels:
             level.copy_(torch.from_numpy(rng.normal(0.0, 0.5, level.shape)).float())
     return found
+
+
+def network_of(rng):
+    """Small, and with waves as short as a pane."""
+    shape = MlpShape(width=14, layers=4, position_order=4, direction_order=3)
+    return ReflectionMlp(shape, 0.3, torch.Generator().manual_seed(int(rng.integers(1000))))
 
 
 def model_of(rng, rays=4, make=grid_of):
@@ -160,9 +166,10 @@ def glazed(model, rng):
     return model.with_splats(Splats(tensors, torch.from_numpy(panels).int()))
 
 
-def test_pages_show_what_the_model_shows_through_all_passes(shaders):
+@pytest.mark.parametrize(("make", "rays"), [(grid_of, 1), (network_of, 4)])
+def test_pages_show_what_the_model_shows_through_all_passes(shaders, make, rays):
     rng = np.random.default_rng(3)
-    model = glazed(model_of(rng, 1), rng)
+    model = glazed(model_of(rng, rays, make), rng)
     size = width, height = 96, 64
     for eye, heading, pitch in [((0.3, -4.0, 0.5), 2.0, -3.0), ((2.5, -2.5, -0.5), -40.0, 20.0)]:
         _, axes = looking(eye, heading, pitch)
@@ -172,7 +179,7 @@ def test_pages_show_what_the_model_shows_through_all_passes(shaders):
         view = View(width, height, 60.0, 60.0, width / 2, height / 2, cam_from_world)
         with torch.no_grad():
             picture = model(view, settings=RasterSettings(blur_px=np.sqrt(0.3), antialiased=True))
-        found = shaders.picture(model, view_numbers(eye, axes, 60.0, size, 1), size)
+        found = shaders.picture(model, view_numbers(eye, axes, 60.0, size, int(np.sqrt(rays))), size)
         shown, expected = (display_from_linear(torch.as_tensor(each)).clamp(0, 1) for each in (found, picture.light))
         error = ((shown - expected) ** 2).mean()
         assert error < 10**-4.5  # 51 and 60 dB were measured
@@ -236,9 +243,9 @@ def test_only_light_that_the_page_can_compute_is_given_to_it():
     # A kind of light that learns more than the page knows of must not be shown without that.
     model.light.light.detail = torch.nn.Parameter(torch.zeros(1))
     assert mirrors_of(model) is None
-    shape = MlpShape(width=8, layers=2, position_order=2, direction_order=2)
-    network = ReflectionMlp(shape, 0.3, torch.Generator().manual_seed(0))
-    model.light.light = network
+    # Nor one that is too wide for shared memory.
+    wide = MlpShape(width=514, layers=2, position_order=2, direction_order=2)
+    model.light.light = ReflectionMlp(wide, 0.3, torch.Generator().manual_seed(0))
     assert mirrors_of(model) is None
     model.light = None
     assert mirrors_of(model) is None
