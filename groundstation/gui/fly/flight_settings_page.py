@@ -12,7 +12,7 @@ from groundstation.gui.fly.joystick_controller import JoystickBox
 from groundstation.gui.widgets.inputs import Form
 from groundstation.gui.widgets.tab_order import set_enabled
 from groundstation.services.fly.options import FlightSettings
-from groundstation.services.fly.video import video_url
+from groundstation.services.fly.video import typed_video
 from groundstation.services.fly.video_offer import OfferedVideo
 from groundstation.services.units import UnitSystem
 from missions.mavlink.ntrip import EXAMPLE_CASTER, caster_of
@@ -139,7 +139,7 @@ class SettingsPage(QWidget):
     def _video_typed(self) -> None:
         """Take the address of the video, or say what is wrong with it."""
         try:
-            url = video_url(self.video.text())
+            url = typed_video(self.video.text())
         except InputError as error:
             self._video_said.setText(translated(str(error), UnitSystem.METRIC))
             return

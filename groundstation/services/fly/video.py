@@ -8,20 +8,25 @@ from __future__ import annotations
 
 import re
 import threading
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from groundstation.services.fly.rtp import MAX_SDP_BYTES, read_sdp, rtp_of
 from groundstation.services.jobs.channel import Process, ProcessEnded
 from planning.base.errors import InputError
+from planning.base.files import FileLimit, read_input_file
 from planning.base.messages import say
 
 MAX_URL_CHARACTERS = 160
 """Of VIDEO_STREAM_INFORMATION's uri."""
 
 SCHEMES = ("rtsp", "udp")
-"""RTSP, and MPEG transport streams over UDP; others, such as files or playlists, would open what nobody asked for."""
+"""RTSP, and RTP or MPEG transport streams over UDP; others, such as playlists, would open what nobody asked for."""
+
+SDP_FILE = FileLimit(say("a session description"), MAX_SDP_BYTES)
 
 _URL = re.compile(r"(?P<scheme>[a-z]+)://(?P<place>[^\s/?#@\\|;,'\"]+)(?P<rest>[/?#][^\s\\|;'\"]*)?", re.ASCII)
 _PLACE = re.compile(r"(\[[0-9a-fA-F:.]+\]|[A-Za-z0-9._-]+)(:(?P<port>\d{1,5}))?", re.ASCII)
@@ -36,11 +41,12 @@ def video_url(text: str) -> str:
     Raises
     ------
     InputError
-        It is none of `rtsp://HOST[:PORT][/PATH]` and `udp://HOST:PORT`, or holds a password, which would be kept.
+        It is none of `rtsp://HOST[:PORT][/PATH]`, `udp://HOST:PORT` and `rtp://HOST:PORT/ENCODING[/TYPE]`, or holds a
+        password, which would be kept.
     """
     url = text.strip()
-    if not url:
-        return ""
+    if not url or (len(url) <= MAX_URL_CHARACTERS and rtp_of(url) is not None):
+        return url
     found = _URL.fullmatch(url)
     if "@" in url.partition("/")[2].partition("/")[2].partition("/")[0]:
         raise InputError.say("video: expected an address without a password, for addresses are kept; found one")
@@ -50,6 +56,22 @@ def video_url(text: str) -> str:
     if not (place["port"] is None and found["scheme"] == "rtsp") and not 0 < int(place["port"] or 0) < 65536:
         raise InputError.say("video: expected a port from 1 to 65535 in '{}'", url)
     return url
+
+
+def typed_video(text: str) -> str:
+    """As `video_url`, also of the name of an SDP file, which is read once: who types it may mean a file.
+
+    Raises
+    ------
+    InputError
+        As there, or the file cannot be read or describes no video.
+    """
+    path = Path(text.strip())
+    if path.suffix.lower() != ".sdp" or "://" in text:
+        return video_url(text)
+    video = read_sdp(read_input_file(path, SDP_FILE).decode("utf-8", "replace"), path)
+    # Parameter sets that are too long for an address come in the stream in any case.
+    return video.url if len(video.url) <= MAX_URL_CHARACTERS else replace(video, sets="").url
 
 
 @dataclass(frozen=True, slots=True)

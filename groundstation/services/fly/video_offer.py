@@ -33,7 +33,7 @@ NO_CAMERA_S = 5.0
 MOST_STREAMS = 8
 
 _OWN = re.compile(r"rtsp://(0\.0\.0\.0|127\.|localhost|\[::1?\])", re.IGNORECASE)
-_PORT = re.compile(r"(?:udp://)?(?:(?P<host>[\w.]+|\[[0-9a-fA-F:.]+\])?:)?(?P<port>\d{1,5})/?", re.ASCII)
+_PORT = re.compile(r"(?:(?:udp|rtp)://)?(?:(?P<host>[\w.]+|\[[0-9a-fA-F:.]+\])?:)?(?P<port>\d{1,5})/?", re.ASCII)
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,11 +125,10 @@ def offer_of(stream: VideoStreamInformation) -> OfferedVideo:
     """What a camera tells of a stream, as an address, or why it is none."""
     name = "".join(letter for letter in stream.name if letter.isprintable())[:32]
     uri = stream.uri.strip()
-    if stream.type == RTP_UDP:
-        return OfferedVideo(name, "", say("the camera sends its video as RTP, which is not read: set it to RTSP"))
     if stream.type == TCP_MPEG:
         return OfferedVideo(name, "", say("the camera sends its video over TCP, which is not read: set it to RTSP"))
-    if stream.type == MPEG_TS:
+    if stream.type in (MPEG_TS, RTP_UDP):
+        # Which of the two arrives, the reader sees.
         found = _PORT.fullmatch(uri)
         uri = uri if found is None else f"udp://{found['host'] or '0.0.0.0'}:{found['port']}"
     if _OWN.match(uri):

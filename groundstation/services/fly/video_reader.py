@@ -6,15 +6,21 @@ Only protocols of streams are let in (FFmpeg's `protocol_whitelist`), so that no
 from __future__ import annotations
 
 import os
+import re
+import tempfile
 import threading
 import time
+from pathlib import Path
 
+from groundstation.services.fly.rtp import listen, rtp_of
 from groundstation.services.fly.video import OpenVideo, VideoPicture, VideoProblem
 from groundstation.services.jobs.channel import Send
 from planning.base.messages import say
 
 OPTIONS = "protocol_whitelist;file,rtsp,rtp,udp,tcp|flags;low_delay|rtsp_flags;prefer_tcp"
 """For FFmpeg in OpenCV. A plain file is opened by its name only, which no address that is taken has."""
+
+_UDP = re.compile(r"udp://(?P<host>[A-Za-z0-9._-]+):(?P<port>\d{1,5})/?", re.ASCII)
 
 os.environ["OPENCV_FFMPEG_CAPTURE_OPTIONS"] = OPTIONS
 os.environ["OPENCV_LOG_LEVEL"] = "OFF"
@@ -61,7 +67,25 @@ class VideoReader:
     def _read(self, order: OpenVideo, number: int) -> int:
         """Send pictures as long as they come; returns how many there were by now."""
         limits = [cv2.CAP_PROP_OPEN_TIMEOUT_MSEC, TIMEOUT_MS, cv2.CAP_PROP_READ_TIMEOUT_MSEC, TIMEOUT_MS]
-        capture = cv2.VideoCapture(order.url, cv2.CAP_FFMPEG, limits)
+        with tempfile.TemporaryDirectory(prefix="reflight-video-") as folder:
+            place = self._place(order.url, Path(folder))
+            return self._pictures(order, cv2.VideoCapture(place, cv2.CAP_FFMPEG, limits), number)
+
+    def _place(self, url: str, folder: Path) -> str:
+        """What the decoder opens: the address, or of RTP a description of the stream that is written for it."""
+        video, found = rtp_of(url), _UDP.fullmatch(url)
+        if found is not None:
+            try:
+                video = listen(found["host"], int(found["port"]), self._is_gone.is_set)
+            except OSError:
+                video = None  # the decoder says so, too
+        if video is None:
+            return url
+        path = folder / "video.sdp"
+        path.write_text(video.sdp(), "ascii")
+        return str(path)
+
+    def _pictures(self, order: OpenVideo, capture: cv2.VideoCapture, number: int) -> int:
         try:
             if not capture.isOpened():
                 self._send(VideoProblem(say("no video can be opened at {}; it is tried again", order.url)))

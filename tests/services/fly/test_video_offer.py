@@ -107,7 +107,8 @@ def test_strangers_are_not_believed():
         (MPEG_TS, "udp://239.0.0.1:5600", "udp://239.0.0.1:5600", ""),
         (MPEG_TS, "5600", "udp://0.0.0.0:5600", ""),
         (MPEG_TS, "0.0.0.0:5600", "udp://0.0.0.0:5600", ""),
-        (RTP_UDP, "5600", "", "sends its video as RTP, which is not read: set it to RTSP"),
+        (RTP_UDP, "5600", "udp://0.0.0.0:5600", ""),
+        (RTP_UDP, "udp://10.0.0.1:5600", "udp://10.0.0.1:5600", ""),
         (TCP_MPEG, "tcp://10.0.0.1:5600", "", "over TCP, which is not read"),
         (RTSP, "rtsp://127.0.0.1:8554/x", "", "an address that holds on itself alone"),
         (RTSP, "rtsp://0.0.0.0:8554/x", "", "an address that holds on itself alone"),
@@ -139,7 +140,7 @@ def test_a_stream_that_can_be_shown_comes_before_one_that_cannot():
     talk = Talk()
     talk.hear(heartbeat(), VEHICLE, 0.0)
     talk.hear(heartbeat(8, 30), CAMERA, 0.0)
-    talk.hear(stream("5600", RTP_UDP, 1), CAMERA, 1.0)
+    talk.hear(stream("5600", TCP_MPEG, 1), CAMERA, 1.0)
     assert talk.finder.offered().url == ""
     talk.hear(stream(number=2, name="night"), CAMERA, 1.0)
     assert talk.finder.offered() == OfferedVideo("night", URL)
