@@ -1479,6 +1479,84 @@ Blickrichtung: {2}</translation>
     </message>
 </context>
 <context>
+    <name>FleetBox</name>
+    <message>
+        <source>Aircraft</source>
+        <translation>Fluggeräte</translation>
+    </message>
+    <message>
+        <source>All return, one by one</source>
+        <translation>Alle zurück, nacheinander</translation>
+    </message>
+    <message>
+        <source>Hold: one after the other returns and lands, the lowest battery first; the rest hover meanwhile</source>
+        <translation>Halten: eines nach dem anderen kehrt zurück und landet, das mit dem leersten Akku zuerst; die übrigen schweben so lange</translation>
+    </message>
+    <message>
+        <source>Show this aircraft; the buttons below are for it ({0})</source>
+        <translation>Dieses Fluggerät zeigen; die Knöpfe darunter gelten ihm ({0})</translation>
+    </message>
+</context>
+<context>
+    <name>FleetTexts</name>
+    <message>
+        <source>Aircraft {0}</source>
+        <translation>Fluggerät {0}</translation>
+    </message>
+    <message>
+        <source>not connected</source>
+        <translation>nicht verbunden</translation>
+    </message>
+    <message>
+        <source>photo {0}/{1}</source>
+        <translation>Foto {0}/{1}</translation>
+    </message>
+    <message>
+        <source>{0} apart</source>
+        <translation>{0} Abstand</translation>
+    </message>
+    <message>
+        <source>{0} to {1}</source>
+        <translation>{0} zu {1}</translation>
+    </message>
+    <message>
+        <source>start apart from the others</source>
+        <translation>Start erst nach den anderen</translation>
+    </message>
+    <message>
+        <source>start in {0}</source>
+        <translation>Start in {0}</translation>
+    </message>
+    <message>
+        <source>sortie {0}</source>
+        <translation>Einsatz {0}</translation>
+    </message>
+    <message>
+        <source>signal lost</source>
+        <translation>Signal verloren</translation>
+    </message>
+    <message>
+        <source>in flight</source>
+        <translation>im Flug</translation>
+    </message>
+    <message>
+        <source>landed</source>
+        <translation>gelandet</translation>
+    </message>
+    <message>
+        <source>connected</source>
+        <translation>verbunden</translation>
+    </message>
+    <message>
+        <source>ready</source>
+        <translation>bereit</translation>
+    </message>
+    <message>
+        <source>being prepared</source>
+        <translation>wird vorbereitet</translation>
+    </message>
+</context>
+<context>
     <name>FlightButtons</name>
     <message>
         <source>Hold: {0}</source>
@@ -1535,6 +1613,14 @@ Blickrichtung: {2}</translation>
     <message>
         <source>Land here and now</source>
         <translation>Hier und jetzt landen</translation>
+    </message>
+    <message>
+        <source>{0}: {1}</source>
+        <translation>{0}: {1}</translation>
+    </message>
+    <message>
+        <source>Aircraft {0}: {1}</source>
+        <translation>Fluggerät {0}: {1}</translation>
     </message>
 </context>
 <context>
@@ -1624,6 +1710,14 @@ Blickrichtung: {2}</translation>
     <message>
         <source>Is everybody clear of the aircraft?</source>
         <translation>Halten alle Abstand vom Fluggerät?</translation>
+    </message>
+    <message>
+        <source>until the others have landed</source>
+        <translation>bis die anderen gelandet sind</translation>
+    </message>
+    <message>
+        <source>TOO EARLY: now it may come too near to an aircraft in the air. Wait {0}.</source>
+        <translation>ZU FRÜH: jetzt kann es einem Fluggerät in der Luft zu nahe kommen. Warten Sie: {0}.</translation>
     </message>
     <message>
         <source>{0} is slower than the plan, which reckons with {1}.</source>
@@ -1820,6 +1914,18 @@ Um trotzdem zu fliegen, {1} eintippen:</translation>
         <translation>Der Startplatz ist jetzt, wo das Fluggerät steht: neu planen, dann neu verbinden.</translation>
     </message>
     <message>
+        <source>returns once the others have landed</source>
+        <translation>kehrt zurück, sobald die anderen gelandet sind</translation>
+    </message>
+    <message>
+        <source>Aircraft {0} has sortie {1} already: choose another sortie.</source>
+        <translation>Fluggerät {0} hat Einsatz {1} schon: wählen Sie einen anderen Einsatz.</translation>
+    </message>
+    <message>
+        <source>Aircraft {0} is connected at that address: give this one an address of its own.</source>
+        <translation>Fluggerät {0} ist unter dieser Adresse verbunden: geben Sie diesem eine eigene Adresse.</translation>
+    </message>
+    <message>
         <source>Prepare the flight</source>
         <translation>Flug vorbereiten</translation>
     </message>
@@ -1860,6 +1966,10 @@ Um trotzdem zu fliegen, {1} eintippen:</translation>
         <translation>gelandet</translation>
     </message>
     <message>
+        <source>landed; select it for its report</source>
+        <translation>gelandet; wählen Sie es aus, um seinen Bericht zu sehen</translation>
+    </message>
+    <message>
         <source>proved by its checksum</source>
         <translation>durch seine Prüfsumme bewiesen</translation>
     </message>
@@ -1878,6 +1988,10 @@ Um trotzdem zu fliegen, {1} eintippen:</translation>
     <message>
         <source>Report</source>
         <translation>Bericht</translation>
+    </message>
+    <message>
+        <source>Aircraft {0}: {1}</source>
+        <translation>Fluggerät {0}: {1}</translation>
     </message>
 </context>
 <context>
@@ -2660,6 +2774,10 @@ Scheiben: {2}, je {3} × {4}</translation>
         <source>SIGNAL LOST for {0:.0f} s. What is shown is old; the aircraft continues by itself.</source>
         <translation>SIGNAL VERLOREN seit {0:.0f} s. Die Anzeige ist alt; das Fluggerät fliegt selbständig weiter.</translation>
     </message>
+    <message>
+        <source>Aircraft {0}: {1}</source>
+        <translation>Fluggerät {0}: {1}</translation>
+    </message>
 </context>
 <context>
     <name>LiveCamera</name>
@@ -2694,6 +2812,10 @@ Scheiben: {2}, je {3} × {4}</translation>
 </context>
 <context>
     <name>LivePictures</name>
+    <message>
+        <source>Aircraft {0}</source>
+        <translation>Fluggerät {0}</translation>
+    </message>
     <message>
         <source>Flown of what is planned</source>
         <translation>Geflogen vom Geplanten</translation>
@@ -3147,6 +3269,18 @@ Scheiben: {2}, je {3} × {4}</translation>
         <translation>Fuß</translation>
     </message>
     <message>
+        <source>What is faster</source>
+        <translation>Was schneller ist</translation>
+    </message>
+    <message>
+        <source>Graphics card</source>
+        <translation>Grafikkarte</translation>
+    </message>
+    <message>
+        <source>Processor</source>
+        <translation>Prozessor</translation>
+    </message>
+    <message>
         <source>&amp;Theme</source>
         <translation>&amp;Design</translation>
     </message>
@@ -3161,6 +3295,10 @@ Scheiben: {2}, je {3} × {4}</translation>
     <message>
         <source>&amp;Language</source>
         <translation>&amp;Sprache</translation>
+    </message>
+    <message>
+        <source>Models drawn &amp;by</source>
+        <translation>Modelle &amp;zeichnet</translation>
     </message>
     <message>
         <source>Map &amp;tiles ...</source>
@@ -5713,6 +5851,14 @@ Blickrichtung: {3}</translation>
         <translation>Geofence an Bord</translation>
     </message>
     <message>
+        <source>Geofence of others</source>
+        <translation>Geofence anderer</translation>
+    </message>
+    <message>
+        <source>Earlier geofence</source>
+        <translation>Früherer Geofence</translation>
+    </message>
+    <message>
         <source>Not in the geofence</source>
         <translation>Nicht im Geofence</translation>
     </message>
@@ -8039,10 +8185,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>so viel Sonne nehmen Körper des Standorts einer Scheibe an diesem Tag</translation>
     </message>
     <message>
-        <source>browsers cannot mirror as this model does, by a network or by normals of splats: they show these colours</source>
-        <translation>Browser können nicht spiegeln wie dieses Modell, mit einem Netz oder nach Normalen der Splats: Sie zeigen diese Farben</translation>
-    </message>
-    <message>
         <source>browsers with WebGPU show panes that mirror as in the model, others these colours</source>
         <translation>Browser mit WebGPU zeigen Scheiben, die wie im Modell spiegeln, andere diese Farben</translation>
     </message>
@@ -8075,6 +8217,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>kann nicht gesendet werden: {0}</translation>
     </message>
     <message>
+        <source>cannot be unpacked ({0})</source>
+        <translation>lässt sich nicht entpacken ({0})</translation>
+    </message>
+    <message>
         <source>cannot be written ({0}); send again</source>
         <translation>kann nicht geschrieben werden ({0}); senden Sie erneut</translation>
     </message>
@@ -8089,6 +8235,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>cast shadows</source>
         <translation>Schlagschatten</translation>
+    </message>
+    <message>
+        <source>cells of people that SORA suggests</source>
+        <translation>Zellen für Personen, die SORA vorschlägt</translation>
+    </message>
+    <message>
+        <source>cells of {0} m are coarser than the {1} m that SORA suggests up to this height; crowds in them are evened out</source>
+        <translation>Zellen von {0} m sind gröber als die {1} m, die SORA bis zu dieser Höhe vorschlägt; Ansammlungen darin werden gemittelt</translation>
     </message>
     <message>
         <source>certificate</source>
@@ -8229,6 +8383,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>dense depth</source>
         <translation>dichte Tiefen</translation>
+    </message>
+    <message>
+        <source>describes a video as &apos;{0}&apos;; expected one of {1} to a port</source>
+        <translation>beschreibt ein Video als '{0}'; erwartet wird eines von {1} an einen Port</translation>
+    </message>
+    <message>
+        <source>describes no video by RTP</source>
+        <translation>beschreibt kein Video über RTP</translation>
     </message>
     <message>
         <source>device: &apos;gpu&apos; is asked for, and {0}; leave it out</source>
@@ -8985,6 +9147,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>schnellstes Steigen</translation>
     </message>
     <message>
+        <source>fetching the camera&apos;s definition</source>
+        <translation>Holen der Kameradefinition</translation>
+    </message>
+    <message>
         <source>fetching the log</source>
         <translation>Log holen</translation>
     </message>
@@ -9145,6 +9311,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Ansichten verbinden: erwartet werden entzerrte Ansichten einer Größe mit je einer Maske, gefunden Größen {0}; alle auf denselben Ausschnitt der Fassade entzerren</translation>
     </message>
     <message>
+        <source>geofence: {0} items are on board already</source>
+        <translation>Geofence: {0} Elemente sind schon an Bord</translation>
+    </message>
+    <message>
+        <source>geofences of earlier flights are not known from here ({0})</source>
+        <translation>Geofences früherer Flüge sind hier nicht bekannt ({0})</translation>
+    </message>
+    <message>
         <source>geoid heights</source>
         <translation>Geoidhöhen</translation>
     </message>
@@ -9179,6 +9353,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>ground-risk buffer, to each side</source>
         <translation>Bodenrisikopuffer, zu jeder Seite</translation>
+    </message>
+    <message>
+        <source>ground-risk buffer, where the ground is highest</source>
+        <translation>Bodenrisikopuffer, wo der Boden am höchsten ist</translation>
+    </message>
+    <message>
+        <source>has a parameter without a name that MAVLink can carry: &apos;{0}&apos;</source>
+        <translation>hat einen Parameter ohne einen Namen, den MAVLink übertragen kann: '{0}'</translation>
     </message>
     <message>
         <source>has changed since it was added on {0}; look at it, and add it again</source>
@@ -9437,6 +9619,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>ist voll; löschen Sie dort etwas und senden Sie erneut</translation>
     </message>
     <message>
+        <source>is larger than {0} kB, which no camera definition is</source>
+        <translation>ist größer als {0} kB, was keine Kameradefinition ist</translation>
+    </message>
+    <message>
         <source>is missing: a flight file or a log, or --photos with the photos themselves</source>
         <translation>fehlt: eine Flugdatei oder ein Log, oder --photos mit den Fotos selbst</translation>
     </message>
@@ -9447,6 +9633,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>is no PLY file (it does not start with &apos;ply&apos;)</source>
         <translation>ist keine PLY-Datei (sie beginnt nicht mit &apos;ply&apos;)</translation>
+    </message>
+    <message>
+        <source>is no camera definition: expected &lt;mavlinkcamera&gt;, got &lt;{0}&gt;</source>
+        <translation>ist keine Kameradefinition: erwartet &lt;mavlinkcamera&gt;, gefunden &lt;{0}&gt;</translation>
+    </message>
+    <message>
+        <source>is no camera definition: no XML ({0})</source>
+        <translation>ist keine Kameradefinition: kein XML ({0})</translation>
     </message>
     <message>
         <source>is no camera: {0}</source>
@@ -9471,6 +9665,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>is no geoid of GeographicLib: expected P5 with &apos;# Offset&apos; and &apos;# Scale&apos; and 65535 steps</source>
         <translation>ist kein Geoid von GeographicLib: erwartet: P5 mit &apos;# Offset&apos; und &apos;# Scale&apos; und 65535 Stufen</translation>
+    </message>
+    <message>
+        <source>is no session description (SDP): expected it to begin with v=0</source>
+        <translation>ist keine Sitzungsbeschreibung (SDP): erwartet wird v=0 am Anfang</translation>
     </message>
     <message>
         <source>is not empty, and has no {0} of photos to go on with; name a new folder</source>
@@ -9629,6 +9827,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>nicht untersucht</translation>
     </message>
     <message>
+        <source>it was not measured</source>
+        <translation>es wurde nicht gemessen</translation>
+    </message>
+    <message>
         <source>it was not told what the flight is for</source>
         <translation>ihm wurde nicht gesagt, wozu der Flug dient</translation>
     </message>
@@ -9647,6 +9849,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>it zooms, but all photos count with the field of view of the camera that is named</source>
         <translation>sie zoomt, aber alle Fotos zählen mit dem Bildwinkel der genannten Kamera</translation>
+    </message>
+    <message>
+        <source>item {0} is none of a fence</source>
+        <translation>Element {0} gehört zu keinem Geofence</translation>
     </message>
     <message>
         <source>its authority</source>
@@ -10065,6 +10271,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>nennt kein Koordinatenreferenzsystem; die Datei nehmen, wie ihr Hersteller sie gibt</translation>
     </message>
     <message>
+        <source>names the parameter &apos;{0}&apos; twice</source>
+        <translation>nennt den Parameter '{0}' zweimal</translation>
+    </message>
+    <message>
+        <source>names {0} parameters; expected at most {1}</source>
+        <translation>nennt {0} Parameter; erwartet werden höchstens {1}</translation>
+    </message>
+    <message>
         <source>needs the folder of its annotated photos; name it with --data</source>
         <translation>braucht den Ordner seiner annotierten Fotos; mit --data nennen</translation>
     </message>
@@ -10173,6 +10387,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>kein Foto sagt, wo und wann es gemacht wurde ({0}); die Dateien benutzen, wie die Kamera sie schrieb: Programme zum Bearbeiten, Senden oder Teilen nehmen das oft heraus</translation>
     </message>
     <message>
+        <source>no place is allowed by it</source>
+        <translation>er erlaubt keinen Ort</translation>
+    </message>
+    <message>
         <source>no plug-ins are installed (entry points of {0})</source>
         <translation>keine Plug-ins sind installiert (Entry Points von {0})</translation>
     </message>
@@ -10259,6 +10477,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>none from {0}: {1}</source>
         <translation>keine von {0}: {1}</translation>
+    </message>
+    <message>
+        <source>none is on board, and the sortie needs none</source>
+        <translation>keiner ist an Bord, und der Flug braucht keinen</translation>
     </message>
     <message>
         <source>none of its {0} photos says where the camera looked; name the plan that was flown as well (--plan)</source>
@@ -10405,6 +10627,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Hindernisse aus der Oberfläche: {0} Quader, und {1}, wo sie keine Höhen hat</translation>
     </message>
     <message>
+        <source>of a picture&apos;s time saved</source>
+        <translation>der Zeit eines Bildes gespart</translation>
+    </message>
+    <message>
         <source>of a step&apos;s time for splats saved</source>
         <translation>der Zeit eines Schritts für Splats gespart</translation>
     </message>
@@ -10461,6 +10687,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>eines der Argumente %s ist nötig</translation>
     </message>
     <message>
+        <source>one that this ground station had not put there was removed, as the pilot said ({0})</source>
+        <translation>einer, der nicht von dieser Bodenstation war, wurde auf Weisung des Piloten entfernt ({0})</translation>
+    </message>
+    <message>
         <source>open it</source>
         <translation>es öffnen</translation>
     </message>
@@ -10507,6 +10737,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>overexposed photos</source>
         <translation>überbelichtete Fotos</translation>
+    </message>
+    <message>
+        <source>overrule this line to remove it, or change it with the program that set it</source>
+        <translation>diese Zeile übergehen, um ihn zu entfernen, oder ihn mit dem Programm ändern, das ihn gesetzt hat</translation>
     </message>
     <message>
         <source>panel &apos;{0}&apos; stands there twice</source>
@@ -10611,6 +10845,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>photos: {0} of {1} views</source>
         <translation>Fotos: {0} von {1} Aufnahmen</translation>
+    </message>
+    <message>
+        <source>pictures of models drawn by the graphics card</source>
+        <translation>Bilder von Modellen von der Grafikkarte</translation>
     </message>
     <message>
         <source>pitch</source>
@@ -10941,6 +11179,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>stellt die Mission ein: {0}</translation>
     </message>
     <message>
+        <source>set on the camera: &apos;{0}&apos; to {1}, {2}</source>
+        <translation>auf der Kamera gesetzt: '{0}' auf {1}, {2}</translation>
+    </message>
+    <message>
         <source>setting</source>
         <translation>Einstellung</translation>
     </message>
@@ -11023,6 +11265,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>smallest distance between aircraft that start as planned, {0} s after the first start</source>
         <translation>kleinster Abstand zwischen Fluggeräten, die wie geplant starten, {0} s nach dem ersten Start</translation>
+    </message>
+    <message>
+        <source>smallest distance between aircraft while both were heard</source>
+        <translation>kleinster Abstand zwischen Fluggeräten, solange beide gehört wurden</translation>
     </message>
     <message>
         <source>smallest height above {0}, {1} s after the start</source>
@@ -11201,6 +11447,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Gelände von {0} m bis {1} m im eigenen System des Standorts, bekannt auf {2} % der Fläche</translation>
     </message>
     <message>
+        <source>terrain of the site</source>
+        <translation>Gelände des Standorts</translation>
+    </message>
+    <message>
+        <source>that of an earlier flight of this ground station is cleared ({0})</source>
+        <translation>der eines früheren Flugs dieser Bodenstation ist gelöscht ({0})</translation>
+    </message>
+    <message>
         <source>the AIXM file {0}; expected airspaces alone</source>
         <translation>die AIXM-Datei {0}; erwartet werden nur Lufträume</translation>
     </message>
@@ -11269,6 +11523,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>der Akku an Bord fliegt einen Einsatz; entweder ihn verlangen oder volle</translation>
     </message>
     <message>
+        <source>the buffer follows the terrain: {0} m where the ground is highest, {1} m where it is lowest; other heights count from the lowest ground in it</source>
+        <translation>der Puffer folgt dem Gelände: {0} m, wo der Boden am höchsten ist, {1} m, wo er am tiefsten ist; andere Höhen zählen vom tiefsten Boden darin</translation>
+    </message>
+    <message>
         <source>the building without panels</source>
         <translation>das Gebäude ohne Scheiben</translation>
     </message>
@@ -11287,10 +11545,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the camera says that photo {0} failed</source>
         <translation>die Kamera meldet, dass Foto {0} nicht gelang</translation>
-    </message>
-    <message>
-        <source>the camera sends its video as RTP, which is not read: set it to RTSP</source>
-        <translation>die Kamera sendet ihr Video als RTP, was nicht gelesen wird: sie auf RTSP stellen</translation>
     </message>
     <message>
         <source>the camera sends its video over TCP, which is not read: set it to RTSP</source>
@@ -12457,8 +12711,24 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>{0}; erneut exportieren</translation>
     </message>
     <message>
+        <source>{0}; it stays on board, and the sortie comes within {1} m of its edge</source>
+        <translation>{0}; er bleibt an Bord, und der Flug kommt seinem Rand auf {1} m nahe</translation>
+    </message>
+    <message>
+        <source>{0}; it stays on board, and the sortie stays {1} m inside</source>
+        <translation>{0}; er bleibt an Bord, und der Flug bleibt {1} m innerhalb</translation>
+    </message>
+    <message>
         <source>{0}; motion blur at {1}</source>
         <translation>{0}; Bewegungsunschärfe bei {1}</translation>
+    </message>
+    <message>
+        <source>{0}; no camera needs that</source>
+        <translation>{0}; keine Kamera braucht das</translation>
+    </message>
+    <message>
+        <source>{0}; or attach it to the site as its terrain, where what it leaves open can be stated</source>
+        <translation>{0}; oder sie dem Standort als Gelände beifügen, wo sich angeben lässt, was sie offen lässt</translation>
     </message>
     <message>
         <source>{0}; the sun or its mirror image is in {1} of {2} photos, {3} show uneven light, the pilot is blinded for {4} s</source>
@@ -12467,6 +12737,18 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>{0}; what was flown before is in {1}</source>
         <translation>{0}; was vorher geflogen wurde, steht in {1}</translation>
+    </message>
+    <message>
+        <source>{0}; whether the sortie stays inside cannot be told; {1}</source>
+        <translation>{0}; ob der Flug darin bleibt, lässt sich nicht sagen; {1}</translation>
+    </message>
+    <message>
+        <source>{0}; {1}, but it is switched off ({2}): it stays on board</source>
+        <translation>{0}; {1}, aber er ist ausgeschaltet ({2}): Er bleibt an Bord</translation>
+    </message>
+    <message>
+        <source>{0}; {1}: the vehicle would refuse the mission or break it off; {2}</source>
+        <translation>{0}; {1}: Das Fluggerät würde die Mission ablehnen oder abbrechen; {2}</translation>
     </message>
     <message>
         <source>{0}{1} - {2} ({3} {4}, tolerance {5}; costs about {6} s)</source>
@@ -14025,8 +14307,24 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>&apos;{0}&apos; hat 60 oder mehr Minuten oder Sekunden</translation>
     </message>
     <message>
+        <source>&apos;{0}&apos; has a range that is none</source>
+        <translation>'{0}' hat einen Bereich, der keiner ist</translation>
+    </message>
+    <message>
+        <source>&apos;{0}&apos; has an option that is no number</source>
+        <translation>'{0}' hat einen Auswahlwert, der keine Zahl ist</translation>
+    </message>
+    <message>
         <source>&apos;{0}&apos; has decimals before its last part</source>
         <translation>&apos;{0}&apos; hat Nachkommastellen vor dem letzten Teil</translation>
+    </message>
+    <message>
+        <source>&apos;{0}&apos; has the type &apos;{1}&apos;, which MAVLink does not know</source>
+        <translation>'{0}' hat den Typ '{1}', den MAVLink nicht kennt</translation>
+    </message>
+    <message>
+        <source>&apos;{0}&apos; has {1} options; expected at most {2}</source>
+        <translation>'{0}' hat {1} Auswahlwerte; erwartet werden höchstens {2}</translation>
     </message>
     <message>
         <source>&apos;{0}&apos; is no band of UTM; bands are C to X without I and O</source>
@@ -14035,6 +14333,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>&apos;{0}&apos; is no place; expected latitude and longitude (22.3372, 114.2636, or 22°20&apos;14&quot; N 114°15&apos;49&quot; E), UTM (50Q 218155 2472500) or MGRS (50Q KK 18155 72500)</source>
         <translation>&apos;{0}&apos; ist kein Ort; erwartet werden Breite und Länge (22.3372, 114.2636 oder 22°20&apos;14&quot; N 114°15&apos;49&quot; E), UTM (50Q 218155 2472500) oder MGRS (50Q KK 18155 72500)</translation>
+    </message>
+    <message>
+        <source>&apos;{0}&apos; of the camera cannot be set so: {1}</source>
+        <translation>'{0}' der Kamera lässt sich nicht so einstellen: {1}</translation>
     </message>
     <message>
         <source>, {0} dB on facades of {1}</source>
@@ -14377,12 +14679,32 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>ein GeoTIFF</translation>
     </message>
     <message>
+        <source>a camera definition</source>
+        <translation>eine Kameradefinition</translation>
+    </message>
+    <message>
+        <source>a coarse model needs at least {0} photos, and {1} of {2} are whole; the first other: {3}</source>
+        <translation>ein grobes Modell braucht mindestens {0} Fotos, und {1} von {2} sind vollständig; das erste andere: {3}</translation>
+    </message>
+    <message>
         <source>a draft: check every number before you use it</source>
         <translation>ein Entwurf: prüfen Sie jede Zahl, bevor Sie sie verwenden</translation>
     </message>
     <message>
         <source>a file of geo-zones: ED-269 or ED-318 JSON, GeoJSON, KML, AIXM 5.1 or OpenAir</source>
         <translation>eine Datei mit Geozonen: ED-269 oder ED-318 JSON, GeoJSON, KML, AIXM 5.1 oder OpenAir</translation>
+    </message>
+    <message>
+        <source>a graphics card is tried once the camera rests</source>
+        <translation>eine Grafikkarte wird versucht, sobald die Kamera ruht</translation>
+    </message>
+    <message>
+        <source>a leg of the sortie leaves it, by {0} m</source>
+        <translation>eine Strecke des Flugs verlässt ihn, um {0} m</translation>
+    </message>
+    <message>
+        <source>a list of geofences</source>
+        <translation>eine Liste von Geofences</translation>
     </message>
     <message>
         <source>a log book</source>
@@ -14401,6 +14723,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>ein Teil ihres Umrisses steht anderswo (&apos;{0}&apos;)</translation>
     </message>
     <message>
+        <source>a part of the picture is damaged; copy the file again, and check the card</source>
+        <translation>ein Teil des Bildes ist beschädigt; kopieren Sie die Datei noch einmal und prüfen Sie die Karte</translation>
+    </message>
+    <message>
+        <source>a session description</source>
+        <translation>eine Sitzungsbeschreibung</translation>
+    </message>
+    <message>
         <source>a straight return home may leave the paths; set hover or land for lost links, or take the hull</source>
         <translation>eine gerade Rückkehr kann die Pfade verlassen; stellen Sie für Verbindungsverlust Schweben oder Landen ein, oder nehmen Sie die Hülle</translation>
     </message>
@@ -14411,6 +14741,18 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>air risk class (ARC) and SAIL</source>
         <translation>Luftrisikoklasse (ARC) und SAIL</translation>
+    </message>
+    <message>
+        <source>aircraft {0} is {1} m away; where both can stop it may be {2} m</source>
+        <translation>Fluggerät {0} ist {1} m entfernt; wo beide anhalten können, sind es vielleicht {2} m</translation>
+    </message>
+    <message>
+        <source>aircraft {0} was last heard {1} s ago: the distance to it is not watched</source>
+        <translation>Fluggerät {0} wurde zuletzt vor {1} s gehört: der Abstand zu ihm wird nicht überwacht</translation>
+    </message>
+    <message>
+        <source>aircraft {0}: {1}</source>
+        <translation>Fluggerät {0}: {1}</translation>
     </message>
     <message>
         <source>all photos</source>
@@ -14429,8 +14771,16 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>ein anderes Fenster schreibt es zu lange; der Flug steht nicht darin</translation>
     </message>
     <message>
+        <source>areas to stay in: {0}, to keep out of: {1}</source>
+        <translation>Gebiete, in denen zu bleiben ist: {0}, zu meiden: {1}</translation>
+    </message>
+    <message>
         <source>as far as it falls</source>
         <translation>so weit es fällt</translation>
+    </message>
+    <message>
+        <source>as its training</source>
+        <translation>wie sein Training</translation>
     </message>
     <message>
         <source>assumed: {0}</source>
@@ -14451,6 +14801,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>braking tilt</source>
         <translation>Neigung beim Bremsen</translation>
+    </message>
+    <message>
+        <source>browsers cannot mirror as this model does, by normals of splats or by a wide network: they show these colours</source>
+        <translation>Browser können nicht so spiegeln wie dieses Modell, nämlich nach Normalen von Splats oder durch ein breites Netz: Sie zeigen diese Farben</translation>
     </message>
     <message>
         <source>climbed before the pilot acts</source>
@@ -14545,12 +14899,64 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Standort &apos;{0}&apos;</translation>
     </message>
     <message>
+        <source>the camera&apos;s definition could not be fetched ({0}): {1}</source>
+        <translation>die Definition der Kamera ließ sich nicht holen ({0}): {1}</translation>
+    </message>
+    <message>
+        <source>the camera&apos;s definition has no parameter for this, set it by hand: {0}</source>
+        <translation>die Definition der Kamera hat dafür keinen Parameter, von Hand einstellen: {0}</translation>
+    </message>
+    <message>
+        <source>the camera&apos;s definition is not on board ({0}); name its file to set it by that</source>
+        <translation>die Definition der Kamera ist nicht an Bord ({0}); ihre Datei nennen, um sie danach einzustellen</translation>
+    </message>
+    <message>
+        <source>the camera&apos;s definition is not taken: {0}</source>
+        <translation>die Definition der Kamera wird nicht genommen: {0}</translation>
+    </message>
+    <message>
+        <source>the camera&apos;s definition was fetched ({0}): {1} parameters</source>
+        <translation>die Definition der Kamera wurde geholt ({0}): {1} Parameter</translation>
+    </message>
+    <message>
+        <source>the geofence on board could not be read ({0}): it may be somebody else&apos;s, and stays</source>
+        <translation>der Geofence an Bord ließ sich nicht lesen ({0}): Er kann von jemand anderem sein und bleibt</translation>
+    </message>
+    <message>
+        <source>the geofence on board is read again: {0}</source>
+        <translation>der Geofence an Bord wird noch einmal gelesen: {0}</translation>
+    </message>
+    <message>
+        <source>the missions and their proof are written; the check of the proof was cancelled</source>
+        <translation>die Missionen und ihr Beweis sind geschrieben; die Prüfung des Beweises wurde abgebrochen</translation>
+    </message>
+    <message>
         <source>the panes mirror something that the site lacks: {0} x {1} m, {2} m high, {3} m from home at bearing {4}; the flight keeps clear of what is seen of it, but look before you fly, and enter it into the site</source>
         <translation>die Scheiben spiegeln etwas, das dem Standort fehlt: {0} x {1} m, {2} m hoch, {3} m vom Startplatz in Peilung {4}; der Flug hält Abstand von dem, was davon zu sehen ist, aber vor dem Flug hinsehen und es in den Standort eintragen</translation>
     </message>
     <message>
+        <source>the picture is damaged, or cannot be decoded; it was left out</source>
+        <translation>das Bild ist beschädigt oder kann nicht gelesen werden; es wurde weggelassen</translation>
+    </message>
+    <message>
+        <source>the plan has no camera whose settings are known; name an aircraft profile with one</source>
+        <translation>der Plan hat keine Kamera, deren Einstellungen bekannt sind; ein Profil eines Fluggeräts mit einer nennen</translation>
+    </message>
+    <message>
         <source>the plan&apos;s aircraft is not the one of its profile &apos;{0}&apos; now; plan the first flight again</source>
         <translation>das Fluggerät des Plans ist nicht mehr das seines Profils &apos;{0}&apos;; den ersten Flug neu planen</translation>
+    </message>
+    <message>
+        <source>the processor goes on: {0}</source>
+        <translation>der Prozessor macht weiter: {0}</translation>
+    </message>
+    <message>
+        <source>the processor, as you asked</source>
+        <translation>der Prozessor, wie gewünscht</translation>
+    </message>
+    <message>
+        <source>the take-off lies outside of it, and the sortie leaves it by {0} m</source>
+        <translation>der Startplatz liegt außerhalb, und der Flug verlässt ihn um {0} m</translation>
     </message>
     <message>
         <source>the tour does not fit {0}: expected each of its {1} points once, found {2}, missing {3}, unknown {4}</source>
@@ -14571,6 +14977,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the vehicle does not say that it is a simulation: {0}; nothing was changed on it</source>
         <translation>das Fluggerät sagt nicht, dass es eine Simulation ist: {0}; nichts wurde daran geändert</translation>
+    </message>
+    <message>
+        <source>the vehicle does not say whether it has a geofence; look before it takes off</source>
+        <translation>das Fluggerät sagt nicht, ob es einen Geofence hat; vor dem Start nachsehen</translation>
+    </message>
+    <message>
+        <source>the vehicle has a geofence that this ground station did not put there ({0})</source>
+        <translation>das Fluggerät hat einen Geofence, der nicht von dieser Bodenstation ist ({0})</translation>
     </message>
     <message>
         <source>the vehicle knows neither file transfer (MAVFTP) nor the log protocol; take its card out</source>
@@ -14705,6 +15119,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Toleranz</translation>
     </message>
     <message>
+        <source>top of the flight geography above the ground below it</source>
+        <translation>Oberkante der Fluggeografie über dem Boden darunter</translation>
+    </message>
+    <message>
         <source>truth: {0}, {1} s a photo{2}</source>
         <translation>Wahrheit: {0}, {1} s je Foto{2}</translation>
     </message>
@@ -14759,6 +15177,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>watch the flight until it has landed</source>
         <translation>den Flug bis zur Landung verfolgen</translation>
+    </message>
+    <message>
+        <source>waypoint {0} lies outside of it, and the sortie leaves it by {1} m</source>
+        <translation>Wegpunkt {0} liegt außerhalb, und der Flug verlässt ihn um {1} m</translation>
     </message>
     <message>
         <source>wgpu is not installed (pip install wgpu)</source>
@@ -14953,6 +15375,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>{0} zeichnet nicht, was der Prozessor zeichnet (Abweichung: {1})</translation>
     </message>
     <message>
+        <source>{0} does not draw what the processor draws ({1} dB)</source>
+        <translation>{0} zeichnet nicht, was der Prozessor zeichnet ({1} dB)</translation>
+    </message>
+    <message>
         <source>{0} ended the process that tried it, or did not answer</source>
         <translation>{0} hat den Prozess beendet, der sie versuchte, oder nicht geantwortet</translation>
     </message>
@@ -15027,6 +15453,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>{0} is {1}, which has no place in MISSION_ITEM_INT; expected {2}</source>
         <translation>{0} ist {1}, wofür MISSION_ITEM_INT keinen Platz hat; erwartet wird {2}</translation>
+    </message>
+    <message>
+        <source>{0} items that are no geofence: {1}</source>
+        <translation>{0} Elemente, die kein Geofence sind: {1}</translation>
     </message>
     <message>
         <source>{0} keeps it sharp, or a stop for each photo</source>
@@ -15285,6 +15715,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>{0}, and the camera chooses the shutter time; no longer than {1} keeps motion blur within a pixel: set it</source>
         <translation>{0}, und die Kamera wählt die Verschlusszeit; höchstens {1} hält die Bewegungsunschärfe unter einem Pixel: einstellen</translation>
+    </message>
+    <message>
+        <source>{0}, and this sortie has its own, which would replace it; {1}</source>
+        <translation>{0}, und dieser Flug hat einen eigenen, der ihn ersetzen würde; {1}</translation>
+    </message>
+    <message>
+        <source>{0}, as you asked</source>
+        <translation>{0}, wie gewünscht</translation>
     </message>
     <message>
         <source>{0}, f/{1}, ISO {2} is an exposure for EV {3}; with the sun {4} degrees high a clear sky gives EV {5}</source>
@@ -19467,10 +19905,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Kameras und Punkte werden geschrieben</translation>
     </message>
     <message>
-        <source>the picture cannot be decoded; it was left out</source>
-        <translation>das Bild ist nicht lesbar; es wurde ausgelassen</translation>
-    </message>
-    <message>
         <source>the picture has {0} pixels, its camera {1} x {2}; it was left out</source>
         <translation>das Bild hat {0} Pixel, seine Kamera {1} x {2}; es wurde ausgelassen</translation>
     </message>
@@ -22404,6 +22838,21 @@ Größe: {3}; Dreiecke: {4}</translation>
     <message>
         <source>The photo is seen from its own place only; 0 goes back there.</source>
         <translation>Das Foto ist nur von seinem eigenen Ort aus zu sehen; 0 führt dorthin zurück.</translation>
+    </message>
+</context>
+<context>
+    <name>ViewPictures</name>
+    <message>
+        <source>Graphics card</source>
+        <translation>Grafikkarte</translation>
+    </message>
+    <message>
+        <source>Processor</source>
+        <translation>Prozessor</translation>
+    </message>
+    <message>
+        <source>The processor draws models for now; View, Models drawn by tries a graphics card again.</source>
+        <translation>Modelle zeichnet vorerst der Prozessor; Ansicht, Modelle zeichnet versucht es wieder mit einer Grafikkarte.</translation>
     </message>
 </context>
 <context>
