@@ -1,9 +1,9 @@
 """What splats are drawn on in a training: the processor, or a graphics card where that takes less time for a step.
 
 A card is asked by one step of the training's own splats, forward and backward, and its picture and gradients are
-compared with the processor's: what drivers and cards make of the kernels is not known beforehand. Everything else of a
-training stays on the processor. Pictures of models that somebody looks at are decided about in the same way, by one
-picture each way. Programs that stand in for a card are never chosen by themselves.
+compared with the processor's: what drivers and cards make of the kernels is not known beforehand. Where it is taken,
+splats, losses and Adam are the card's, see `card_step`. Pictures of models that somebody looks at are decided about in
+the same way, by one picture each way. Programs that stand in for a card are never chosen by themselves.
 """
 
 from __future__ import annotations
@@ -45,8 +45,9 @@ MODULE = "reconstruction.training.devices"
 TRIAL_S = 120.0
 """For compiling the kernels and drawing two splats, at most."""
 
-BYTES_A_SPLAT = 1024
-"""Of a card's memory for each splat, about, with its lists, features and gradients."""
+BYTES_A_SPLAT = 2048
+"""Of a card's memory for each splat, about: 784 are learned or added up over steps, the others lists, features and
+gradients of a picture."""
 BYTES_FOR_ALL = 256 << 20
 
 

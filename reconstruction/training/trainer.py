@@ -22,7 +22,7 @@ from torch import Tensor
 from planning.base.errors import OperationCancelled
 from planning.base.messages import say
 from reconstruction.base.out_of_memory import NotFinite, is_out_of_memory, require_finite
-from reconstruction.gpu.device import DeviceFailed
+from reconstruction.gpu.device import DeviceFailed, open_device
 from reconstruction.splats.densification.adaptive import AdaptiveControl, AdaptiveParameters
 from reconstruction.splats.densification.mcmc import MarkovChain, McmcParameters
 from reconstruction.splats.densification.strategy import Densification, FixedNumber, Limits
@@ -36,6 +36,7 @@ from reconstruction.training.callbacks import (
     TrainingSnapshot,
     quality_db,
 )
+from reconstruction.training.card_step import CardGradients, CardStep, fits_card_step
 from reconstruction.training.config import TrainConfig
 from reconstruction.training.model.joint_model import Picture, SceneModel
 from reconstruction.training.objective import objective, on_device
@@ -139,6 +140,12 @@ LAST_SHARE = 0.05
 WRITTEN = 2.0
 """Time that a finished model takes to be written, as weights and for other programs, against a checkpoint's."""
 
+FRESH_S = 1.0
+"""By which what somebody sees of splats that a graphics card holds may be old."""
+
+FRESH_STEPS = 100
+"""That are lost where a graphics card fails, at most."""
+
 SEEDS = 1_000_003
 """Between the seeds of two steps, so that trainings with neighbouring seeds share none."""
 
@@ -169,7 +176,7 @@ class Trainer(TrainingState):
     last_px
         Pixels of all held-out views, which are looked at when it has ended.
     on_gpu
-        Whether splats are drawn by the graphics card, until it fails.
+        Whether splats are drawn, and where their light allows it learned, by the graphics card, until it fails.
     """
 
     def __init__(
@@ -203,6 +210,9 @@ class Trainer(TrainingState):
         self._with_glass = config.trained_by.knows_panels
         self._cool_down: CoolDown | None = None
         self._terms: dict[str, float] = {}
+        self._by_card = on_gpu and ranks.n == 1 and fits_card_step(model, config)
+        self._card: CardStep | None = None
+        self._brought_s = -math.inf
 
     @property
     def is_first(self) -> bool:
@@ -254,6 +264,7 @@ class Trainer(TrainingState):
         self._visit(watching)
         while not self._is_settled(watching) and self.progress < 1.0:
             if self.progress >= until:
+                self._bring(moments=True)
                 return
             self._report(watching)
             self._wait(watching)
@@ -263,6 +274,7 @@ class Trainer(TrainingState):
                 self._score(watching)
             if self.at.spent_s - self.at.saved_at_s >= self.config.checkpoint_every_s:
                 self.save()
+        self._bring(moments=True)
         self.model.finish(self.config.reflections)
         self._score(watching)
         self.at.spent_s = self._watch()
@@ -287,6 +299,8 @@ class Trainer(TrainingState):
         if watching.visit is None or not self._ranks.is_first:
             return
         at, was_training = self.at, self.model.training
+        if state != "training" or self._watch() - self._brought_s >= FRESH_S:
+            self._bring(moments=state != "training")
         state = "settling" if self._cool_down is not None and state == "training" else state
         self.model.eval()
         watching.visit(
@@ -356,36 +370,35 @@ class Trainer(TrainingState):
         cool_down = self._cool_down
         falling = self.progress if cool_down is None else cool_down.progress_of_rates(at.spent_s)
         set_rates(self.optimiser, config.rates, at.step, max(self.progress, falling), at.factor)
-        offsets = torch.zeros(len(splats), 2, device=self.device, requires_grad=True)
         self.poses.settle(config.own_poses, self.progress)
         move = self.poses(sample.number) if self.poses.are_learned(config.own_poses) else None
-        picture = self.picture(sample, self.exposures(sample.number), offsets, move)
-        self.transients.settle(config.transients, self.progress)
-        looked_at = sample
-        if config.transients != "off":
-            looked_at = replace(sample, shown=self.transients.lasting(sample))
-        loss, terms = objective(picture, looked_at, config.losses, self.progress, self._with_glass)
         glass = self.model.light
         more = None if glass is None else glass.regulariser(config.reflections, at.step)
-        loss = loss if more is None else loss + more
         self.optimiser.zero_grad(set_to_none=True)
-        loss.backward()  # type: ignore[no-untyped-call]
-        parameters = [value for group in self.optimiser.param_groups for value in group["params"]]
-        require_finite(self._ranks.average_gradients(parameters, loss.detach()), parameters)
-        if self.transients.are_looked_for(config.transients):
-            self.transients.see(sample, picture.display, picture.raster.depths)
-        self.is_editing = True
         is_growing = cool_down is None and config.densify_from <= self.progress < config.densify_until
         strategy = self.strategy if is_growing else self._no_more
         stage = config.losses.stage(self.progress) if self._with_glass else None
-        observe_pictures(
-            strategy, picture.raster, offsets, samples, self._ranks, 0.0 if stage is None else stage.weight
-        )
-        strategy.before_step(at.step, splats, self.optimiser)
-        take_step(self.optimiser, splats, config.rates)
+        weight = 0.0 if stage is None else stage.weight
+        card = self._card_step()
+        if card is not None:
+            found, terms = card.gradients(
+                sample, self.exposures(sample.number), move, config.degree_at(self.progress), self._settings,
+                config.losses, self.progress, self._jitter(), more,
+            )  # fmt: skip
+            self._require_finite(None)
+            self.is_editing = True
+            self._learn_on(card, found, strategy, 1.0 + weight)
+        else:
+            offsets = torch.zeros(len(splats), 2, device=self.device, requires_grad=True)
+            picture = self.picture(sample, self.exposures(sample.number), offsets, move)
+            terms = self._gradients(picture, sample, more)
+            self.is_editing = True
+            observe_pictures(strategy, picture.raster, offsets, samples, self._ranks, weight)
+            strategy.before_step(at.step, splats, self.optimiser)
+            take_step(self.optimiser, splats, config.rates)
+            strategy.after_step(at.step, splats, self.optimiser, self.generator)
         self.exposures.project()
         self.poses.project()
-        strategy.after_step(at.step, splats, self.optimiser, self.generator)
         self.optimiser.zero_grad(set_to_none=True)
         if glass is not None:
             glass.after_step(config.reflections, at.step, 1.0)
@@ -393,6 +406,76 @@ class Trainer(TrainingState):
         at.step += 1
         self._terms = terms
         return terms
+
+    def _gradients(self, picture: Picture, sample: Sample, more: Tensor | None) -> dict[str, float]:
+        """Gradients of a picture's loss; what each term of it was."""
+        config, looked_at = self.config, sample
+        self.transients.settle(config.transients, self.progress)
+        if config.transients != "off":
+            looked_at = replace(sample, shown=self.transients.lasting(sample))
+        loss, terms = objective(picture, looked_at, config.losses, self.progress, self._with_glass)
+        loss = loss if more is None else loss + more
+        loss.backward()  # type: ignore[no-untyped-call]
+        self._require_finite(loss.detach())
+        if self.transients.are_looked_for(config.transients):
+            self.transients.see(sample, picture.display, picture.raster.depths)
+        return terms
+
+    def _require_finite(self, loss: Tensor | None) -> None:
+        """See that a step can be taken, by all processes; without a loss, which somebody has looked at."""
+        parameters = [value for group in self.optimiser.param_groups for value in group["params"]]
+        known = torch.zeros((), device=self.device) if loss is None else loss
+        require_finite(self._ranks.average_gradients(parameters, known), parameters)
+
+    # Splats that a graphics card holds: what is learned lies there, and comes back when somebody asks for it.
+
+    def _card_step(self) -> CardStep | None:
+        """What takes steps on the card; None where the processor does."""
+        if self._by_card and self._card is None:
+            self._card = CardStep(open_device(), self.model, self.optimiser)
+        return self._card
+
+    def _learn_on(self, card: CardStep, found: CardGradients, strategy: Densification, pulled: float) -> None:
+        """A step of Adam on the card, and of what else is learned here; splats are added here, too."""
+        at, is_changed = self.at, strategy.changes_after(self.at.step)
+        limits = strategy.limits
+        card.learn(
+            found, self.config.rates, strategy, limits, self.config.seed + SEEDS * (at.step + 1),
+            observed=0.0 if strategy is self._no_more else pulled, jitters=not is_changed,
+        )  # fmt: skip
+        self.optimiser.step()
+        if is_changed or card.n_since >= FRESH_STEPS:
+            self._bring(moments=True)
+        if is_changed:
+            strategy.after_step(at.step, self.model.splats, self.optimiser, self.generator)
+            self._card = None
+
+    def _bring(self, *, moments: bool = False) -> None:
+        """Bring what the card has learned of the splats; of what densification asks, too, with Adam's moments."""
+        if self._card is None or not self._card.n_since:
+            return
+        self._brought_s = self._watch()
+        try:
+            self._card.bring(moments=moments)
+            if moments:
+                self._card.observed_by(self.strategy)
+        except DeviceFailed as error:
+            self._leave_card(error)
+
+    def is_finite(self) -> bool:
+        """Whether all parameters are numbers."""
+        self._bring()
+        return super().is_finite()
+
+    def state(self) -> dict[str, Any]:
+        """All that the training is; what comes from the clock is seconds only."""
+        self._bring(moments=True)
+        return super().state()
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Go on from a state, bit by bit where the processor does all the work."""
+        super().restore(state)
+        self._card = None
 
     def picture(
         self, sample: Sample, gain: Tensor | float, offsets: Tensor | None = None, move: Tensor | None = None
@@ -405,10 +488,21 @@ class Trainer(TrainingState):
             return self._drawn(sample, gain, offsets, move)
 
     def _leave_card(self, error: DeviceFailed) -> None:
-        """Go on with the processor: nothing of the step was taken yet."""
-        self._settings = replace(self._settings, on_gpu=False)
+        """Go on with the processor: nothing of the step was taken yet.
+
+        Where the card does not even answer what it has learned of the splats, they are what they were when it was last
+        asked.
+        """
+        self._settings, self._by_card, card, self._card = replace(self._settings, on_gpu=False), False, self._card, None
         self.optimiser.zero_grad(set_to_none=True)
+        self.is_editing = False
         self.at.notes.append(say("from step {} on splats were drawn by the processor: {}", self.at.step + 1, error))
+        if card is None or not card.n_since:
+            return
+        try:
+            card.bring(moments=True)
+        except DeviceFailed:
+            self.at.notes.append(say("what splats learned in the {} steps before was lost with it", card.n_since))
 
     def _drawn(self, sample: Sample, gain: Tensor | float, offsets: Tensor | None, move: Tensor | None) -> Picture:
         picture: Picture = self.model(
@@ -434,6 +528,7 @@ class Trainer(TrainingState):
         if not self._ranks.is_first or not self.shown or at.scored_step == at.step:
             return
         at.scored_step = at.step
+        self._bring()
 
         def displayed(held_out: HeldOut) -> Tensor:
             self._report(watching)
@@ -456,6 +551,7 @@ class Trainer(TrainingState):
     def qualities_db(self, views: Sequence[HeldOut]) -> list[float]:
         """PSNR, dB, of each view by itself, as `quality_db` has it."""
         was_training = self.model.training
+        self._bring()
         self.model.eval()
         found = [quality_db([view], self._displayed) for view in views]
         self.model.train(was_training)

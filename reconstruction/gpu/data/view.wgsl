@@ -1,3 +1,4 @@
+//: include texels
 // What all kernels know of the picture: one uniform block, written anew for each picture and window of bins. Splats lie
 // in textures, texel by texel, as wide as TEXELS_A_ROW: bindings of buffers end at 128 MiB on older cards, and textures
 // are read faster.
@@ -13,8 +14,4 @@ struct View {
     size: vec4u,                // width and height, pixels; splats; splats in front of the camera
     bins: vec4u,                // of the window that is drawn: first column and row, columns and rows
     part: vec4u,                // of the splats whose gradients are added up: first, number, whether to more
-}
-
-fn texel(number: u32) -> vec2u {
-    return vec2u(number % TEXELS_A_ROW, number / TEXELS_A_ROW);
 }

@@ -19,7 +19,9 @@ from planning.base.messages import say
 from planning.base.parameters import check, parameter
 from reconstruction.splats.densification.strategy import (
     CUT,
+    NO_CHANGES,
     NOTHING,
+    BetweenChanges,
     Change,
     Limits,
     SplatStatistics,
@@ -103,6 +105,20 @@ class AdaptiveControl:
         """Add up what the pictures say about each splat."""
         self._seen = self._seen.before(raster)
         self._seen.add(raster, screen_gradients, view)
+
+    def take_in(self, seen: SplatStatistics) -> None:
+        """Join it with what is known."""
+        self._seen = self._seen.joined(seen)
+
+    def between_changes(self, splats: Splats) -> BetweenChanges:
+        """Nothing."""
+        return NO_CHANGES
+
+    def changes_after(self, step: int) -> bool:
+        """Every so many steps, and where opacities are reset or soon were."""
+        chosen = self.parameters
+        is_reset = chosen.reset_every > 0 and (step + 1) % chosen.reset_every == 0
+        return is_reset or (step + 1) % chosen.every == 0 or self._since_reset < chosen.grace
 
     def after_step(self, step: int, splats: Splats, optimiser: Optimizer, generator: torch.Generator) -> Change:
         """Every so many steps, prune and then clone and split; now and then, reset opacities."""

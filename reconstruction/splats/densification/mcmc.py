@@ -18,7 +18,9 @@ from torch.optim import Optimizer
 from planning.base.parameters import check, parameter
 from reconstruction.splats.densification.strategy import (
     CUT,
+    NO_CHANGES,
     NOTHING,
+    BetweenChanges,
     Change,
     Limits,
     SplatStatistics,
@@ -91,18 +93,39 @@ class MarkovChain:
 
     def before_step(self, step: int, splats: Splats, optimiser: Optimizer) -> None:
         """Add the gradients of mean opacity and mean size."""
-        chosen, n = self.parameters, len(splats)
-        if not n or step >= chosen.stop:
+        if not len(splats) or step >= self.parameters.stop:
             return
+        between = self.between_changes(splats)
         opacities, sizes = splats.opacities.detach(), splats.scales.detach()
-        slopes = opacities * (1.0 - opacities)
-        _add_gradient(splats.opacity_logits, chosen.opacity_weight / n * slopes)
-        _add_gradient(splats.log_scales, chosen.size_weight / sizes.numel() * sizes / sizes.median())
+        _add_gradient(splats.opacity_logits, between.opacity_pull * opacities * (1.0 - opacities))
+        _add_gradient(splats.log_scales, between.size_pull * sizes)
 
     def observe(self, raster: Raster, screen_gradients: Tensor | None, view: View) -> None:
         """Add up whether splats show."""
         self._seen = self._seen.before(raster)
         self._seen.add(raster, None, view)
+
+    def take_in(self, seen: SplatStatistics) -> None:
+        """Join it with what is known."""
+        self._seen = self._seen.joined(seen)
+
+    def between_changes(self, splats: Splats) -> BetweenChanges:
+        """Mean opacity and mean size over the median pull, and all jitter."""
+        chosen, sizes = self.parameters, splats.scales.detach()
+        if not len(splats):
+            return NO_CHANGES
+        return BetweenChanges(
+            chosen.opacity_weight / len(splats),
+            chosen.size_weight / (sizes.numel() * float(sizes.median())),
+            chosen.noise,
+            GATE_AT,
+            GATE_SLOPE,
+            LEAST_GATE,
+        )
+
+    def changes_after(self, step: int) -> bool:
+        """Every so many steps."""
+        return (step + 1) % self.parameters.every == 0
 
     def after_step(self, step: int, splats: Splats, optimiser: Optimizer, generator: torch.Generator) -> Change:
         """Every so many steps, relocate the dead and add some; jitter all."""

@@ -106,6 +106,18 @@ class SplatStatistics:
         eyes = torch.unique(self.eyes_m, dim=0).to(splats.means)
         return torch.cdist(splats.means.detach(), eyes).min(dim=1).values < clear_m
 
+    def joined(self, later: SplatStatistics) -> SplatStatistics:
+        """With those of further pictures; those alone where the number of splats has changed since."""
+        if len(self) != len(later):
+            return later
+        return SplatStatistics(
+            self.pulls + later.pulls,
+            self.views + later.views,
+            self.weights + later.weights,
+            torch.maximum(self.sigmas_px, later.sigmas_px),
+            torch.cat([self.eyes_m, later.eyes_m]),
+        )
+
     def tensors(self) -> dict[str, Tensor]:
         """By name."""
         return {name: getattr(self, name) for name in (*SUMS, "eyes_m")}
@@ -115,6 +127,30 @@ class SplatStatistics:
         """What `tensors` gave."""
         return cls(*(tensors[name].clone() for name in (*SUMS, "eyes_m")))
 
+
+@dataclass(frozen=True, slots=True)
+class BetweenChanges:
+    """What a strategy does in each step, besides keeping sizes within limits.
+
+    Parameters
+    ----------
+    opacity_pull, size_pull
+        Added to the gradients of logits of opacities a, times a (1 - a), and of logarithms of sizes s, times s.
+    noise
+        Standard deviation of the jitter of a see-through splat, of its own.
+    gate_at, gate_slope, least_gate
+        Opacity at which that has half its strength, how fast it ends above, and share from which on it counts.
+    """
+
+    opacity_pull: float = 0.0
+    size_pull: float = 0.0
+    noise: float = 0.0
+    gate_at: float = 0.0
+    gate_slope: float = 1.0
+    least_gate: float = 1.0
+
+
+NO_CHANGES = BetweenChanges()
 
 CUT = 1.0 / 255.0
 """Opacity up to which a splat is not drawn and has no gradient: it can only be taken away or put elsewhere."""
@@ -187,11 +223,24 @@ class Limits:
 class Densification(Protocol):
     """A strategy. Its own state goes through `state_dict` and `load_state_dict`, so that a training resumes exactly."""
 
+    @property
+    def limits(self) -> Limits:
+        """That splats are kept within."""
+
     def before_step(self, step: int, splats: Splats, optimiser: Optimizer) -> None:
         """After `backward` and before the optimiser's step: gradients of what the strategy wants may be added."""
 
     def observe(self, raster: Raster, screen_gradients: Tensor | None, view: View) -> None:
         """Take in a picture that was rendered and its gradients of the splats' screen positions, shape (n, 2), px."""
+
+    def take_in(self, seen: SplatStatistics) -> None:
+        """Take in what somebody else added up over several pictures."""
+
+    def between_changes(self, splats: Splats) -> BetweenChanges:
+        """What `before_step` and `after_step` do in steps in which `changes_after` is not, for who does it himself."""
+
+    def changes_after(self, step: int) -> bool:
+        """Whether `after_step` may add splats, take some away, or reset some."""
 
     def after_step(self, step: int, splats: Splats, optimiser: Optimizer, generator: torch.Generator) -> Change:
         """After the optimiser's step, number `step` from 0: change the splats, which may become more or fewer."""
@@ -214,6 +263,17 @@ class FixedNumber:
 
     def observe(self, raster: Raster, screen_gradients: Tensor | None, view: View) -> None:
         """Nothing to remember."""
+
+    def take_in(self, seen: SplatStatistics) -> None:
+        """Nothing to remember."""
+
+    def between_changes(self, splats: Splats) -> BetweenChanges:
+        """Nothing."""
+        return NO_CHANGES
+
+    def changes_after(self, step: int) -> bool:
+        """Never."""
+        return False
 
     def after_step(self, step: int, splats: Splats, optimiser: Optimizer, generator: torch.Generator) -> Change:
         """Keep sizes within limits."""

@@ -31,6 +31,8 @@ from reconstruction.splats.rasterising.torch_reference import LEAST_AREA_PX2, LI
 from reconstruction.splats.rasterising.views import View
 
 Floats = NDArray[np.float32]
+Parts = list[tuple[int, int]]
+"""Of splats: first number and count of each."""
 
 MOST_QUADS = 5
 """Of channels that lanes keep at once: a row of sums has eight quads, three of which are of geometry."""
@@ -129,7 +131,7 @@ class Bins:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Window:
+class Window:
     """Lists of a window, and what its pixels came to.
 
     Parameters
@@ -151,18 +153,25 @@ class _Window:
     n_patches: int
 
 
-class _Drawing:
-    """One picture of splats on a card: its lists, from the way there to the way back."""
+class Drawing:
+    """One picture of splats on a card: its lists, from the way there to the way back.
+
+    Parameters
+    ----------
+    parameters
+        A table of `PARAMETER_QUADS` for each of the `n` splats, see project.wgsl.
+    solid
+        Whether they are ellipsoids.
+    """
 
     def __init__(
         self, device: Device, view: View, settings: RasterSettings, parameters: Piece, n: int, solid: bool
     ) -> None:
         self.device, self.view, self.settings = device, view, settings
-        self.n = n
+        self.n, self.parameters = n, parameters
         self.constants = constants_for(device, settings, solid)
-        self.parameters = parameters
         self._uniform = _view_uniform(view, settings, self.n, solid)
-        self.windows: list[_Window] = []
+        self.windows: list[Window] = []
         commands = device.commands()
         self.geometry = device.table(GEOMETRY_QUADS * self.n)
         keys, order = device.buffer(4 * self.n), device.buffer(4 * self.n)
@@ -215,7 +224,7 @@ class _Drawing:
 
     def _listed(
         self, commands: Commands, bins: Bins, first_pairs: Piece, firsts: Piece, n_pairs: int, n_patches: int
-    ) -> _Window:
+    ) -> Window:
         device = self.device
         pairs = device.table(n_pairs, "rgba32uint")
         of_bins, numbers = device.buffer(4 * n_pairs), device.buffer(4 * n_pairs)
@@ -228,7 +237,7 @@ class _Drawing:
         commands.run("find_bins", {}, groups_of(n_pairs + 1), uniform(n_pairs, bins.n), of_bins, starts)
         rows, columns = bins.pixels(self.view)
         n_pixels = (rows.stop - rows.start) * (columns.stop - columns.start)
-        return _Window(bins, pairs, numbers, starts, firsts, device.buffer(16 * n_pixels), n_patches)
+        return Window(bins, pairs, numbers, starts, firsts, device.buffer(16 * n_pixels), n_patches)
 
     def blended(self, features: Floats) -> tuple[Floats, Floats, Floats]:
         """Pictures of channels, shape (n, c), of alpha and depth, and the splats' weights."""
@@ -240,17 +249,11 @@ class _Drawing:
         commands = device.commands()
         commands.clear(totals, 4 * self.n)
         for first, table, n_quads in self._tables(features):
-            constants = self.constants | _quads(n_quads)
             for window in self.windows:
                 rows, columns = window.bins.pixels(view)
                 size = rows.stop - rows.start, columns.stop - columns.start
                 n_bytes = 16 * size[0] * size[1]
-                channels, weights = self.blend(commands, window, table, n_quads)
-                if first == 0:
-                    commands.run(
-                        "add_weights", constants, groups_of(self.n), self.uniform(),
-                        self.order, window.firsts, weights, totals,
-                    )  # fmt: skip
+                channels = self.blend(commands, window, table, n_quads, totals if first == 0 else None)
                 found, state = commands.read((channels, n_quads * n_bytes), (window.states, n_bytes))
                 part = found.view(np.float32).reshape(*size, 4 * n_quads)
                 picture[rows, columns, first : first + 4 * n_quads] = part[..., : features.shape[1] - first]
@@ -258,19 +261,23 @@ class _Drawing:
         weights_of_splats = commands.read((totals, 4 * self.n))[0].view(np.float32)
         return picture, states, weights_of_splats
 
-    def blend(self, commands: Commands, window: _Window, table: Piece, n_quads: int) -> tuple[Piece, Piece]:
-        """Channels of a window's pixels, and the weights of splats in its patches."""
+    def blend(self, commands: Commands, window: Window, table: Piece, n_quads: int, totals: Piece | None) -> Piece:
+        """Channels of a window's pixels, `n_quads` each; splats' weights in it are added to `totals`, shape (n,)."""
+        device, constants = self.device, self.constants | quads(n_quads)
         rows, columns = window.bins.pixels(self.view)
         n_pixels = (rows.stop - rows.start) * (columns.stop - columns.start)
-        constants = self.constants | _quads(n_quads)
-        channels, weights = self.device.buffer(16 * n_quads * n_pixels), self.device.buffer(4 * window.n_patches)
+        channels, weights = device.buffer(16 * n_quads * n_pixels), device.buffer(4 * window.n_patches)
         commands.clear(weights, 4 * window.n_patches)
         commands.run(
             "blend", constants, window.bins.n * int_of(constants, "PATCHES"), self.uniform(window.bins),
-            self.geometry, table, window.pairs, window.numbers, window.starts,
-            channels, window.states, weights,
+            self.geometry, table, window.pairs, window.numbers, window.starts, channels, window.states, weights,
         )  # fmt: skip
-        return channels, weights
+        if totals is not None:
+            commands.run(
+                "add_weights", constants, groups_of(self.n), self.uniform(),
+                self.order, window.firsts, weights, totals,
+            )  # fmt: skip
+        return channels
 
     def radii_px(self) -> Floats:
         """Half the larger side of the box that each splat can touch; 0 where it is not drawn."""
@@ -290,17 +297,13 @@ class _Drawing:
     ) -> tuple[Floats, Floats]:
         """Of the parameters, shape (n, 16), and of the channels, shape (n, c), from those of the pictures."""
         device, view = self.device, self.view
-        most = device.most_bytes // (16 * ROW_QUADS)
-        parts = [(start, min(most, self.n - start)) for start in range(0, self.n, most)]
+        parts = parts_of(self.n, device.most_bytes // (16 * ROW_QUADS))
         found = np.zeros((self.n, 4 * PARAMETER_QUADS), np.float32)
         of_features = np.empty(features.shape, np.float32)
         # Geometry is moved by all channels, so their parts add up.
         for first, table, n_quads in self._tables(features):
-            constants = self.constants | _quads(n_quads)
-            totals = [device.buffer(16 * ROW_QUADS * count) for _, count in parts]
             commands = device.commands()
-            for piece, (_, count) in zip(totals, parts, strict=True):
-                commands.clear(piece, 16 * ROW_QUADS * count)
+            totals = self.no_sums(commands, parts)
             for window in self.windows:
                 rows, columns = window.bins.pixels(view)
                 wanted = np.zeros((rows.stop - rows.start, columns.stop - columns.start, 4 * n_quads + 4), np.float32)
@@ -310,30 +313,49 @@ class _Drawing:
                     wanted[..., -4], wanted[..., -3] = of_alphas[rows, columns], of_depths[rows, columns]
                 pixels = device.table(wanted.size // 4)
                 device.write_table(pixels, wanted.reshape(-1, 4))
-                self._back(commands, constants, window, table, pixels, parts, totals)
+                self.blend_back(commands, window, table, n_quads, pixels, parts, totals)
             for (start, count), piece in zip(parts, totals, strict=True):
-                of_part = device.buffer(16 * PARAMETER_QUADS * count)
-                commands.run(
-                    "project_back", constants, groups_of(count), self.uniform(part=(start, count)),
-                    self.parameters, piece, self.radii, of_part,
-                )  # fmt: skip
+                of_part = self.project_back(commands, (start, count), piece)
                 sums, own = commands.read((piece, 16 * ROW_QUADS * count), (of_part, 16 * PARAMETER_QUADS * count))
                 rows_of = sums.view(np.float32).reshape(count, 4 * ROW_QUADS)
                 of_features[start : start + count, first : first + 4 * n_quads] = rows_of[:, :n_here]
                 found[start : start + count] += own.view(np.float32).reshape(count, 4 * PARAMETER_QUADS)
         return found, of_features
 
-    def _back(
+    def no_sums(self, commands: Commands, parts: Parts) -> list[Piece]:
+        """Rows of `ROW_QUADS` for each splat, parts one after the other, filled with zeros."""
+        totals = [self.device.buffer(16 * ROW_QUADS * count) for _, count in parts]
+        for piece, (_, count) in zip(totals, parts, strict=True):
+            commands.clear(piece, 16 * ROW_QUADS * count)
+        return totals
+
+    def project_back(self, commands: Commands, part: tuple[int, int], totals: Piece) -> Piece:
+        """Gradients of a part's parameters, `PARAMETER_QUADS` each, from what was added up for them."""
+        of_part = self.device.buffer(16 * PARAMETER_QUADS * part[1])
+        commands.run(
+            "project_back", self.constants, groups_of(part[1]), self.uniform(part=part),
+            self.parameters, totals, self.radii, of_part,
+        )  # fmt: skip
+        return of_part
+
+    def blend_back(
         self,
         commands: Commands,
-        constants: dict[str, Constant],
-        window: _Window,
+        window: Window,
         table: Piece,
+        n_quads: int,
         pixels: Piece,
-        parts: list[tuple[int, int]],
+        parts: Parts,
         totals: list[Piece],
     ) -> None:
-        """Add to the totals what a window gives."""
+        """Add to the totals of all parts what a window gives.
+
+        Parameters
+        ----------
+        pixels
+            A table of its pixels: gradients of their `n_quads` of channels, and one quad of alpha and depth.
+        """
+        constants = self.constants | quads(n_quads)
         shared = self.geometry, table, window.pairs, window.numbers, window.starts, window.states, pixels
         n_groups = window.bins.n * int_of(constants, "PATCHES")
         if self.settings.deterministic:
@@ -352,7 +374,13 @@ class _Drawing:
                 commands.run("blend_back", constants, n_groups, self.uniform(window.bins, part), *shared, piece)
 
 
-def _quads(n: int) -> dict[str, Constant]:
+def parts_of(n: int, most: int) -> Parts:
+    """First number and count of parts of at most `most` that make up `n`."""
+    return [(start, min(most, n - start)) for start in range(0, n, most)]
+
+
+def quads(n: int) -> dict[str, Constant]:
+    """Constants of kernels for so many quads of channels."""
     return {"N_QUADS": n, "QUADS": tuple(range(n))}
 
 
@@ -412,7 +440,7 @@ class _Rasterise(torch.autograd.Function):
         else:
             with device.errors_said():
                 parameters = _parameters(device, means, quats, scales, opacities, offsets)
-                drawing = _Drawing(device, view, settings, parameters, n, solid)
+                drawing = Drawing(device, view, settings, parameters, n, solid)
                 picture, states, weights = drawing.blended(features)
                 radii = drawing.radii_px()
             ctx.kept = drawing
@@ -443,14 +471,20 @@ class _Rasterise(torch.autograd.Function):
         return (None, None, None, None, *(torch.from_numpy(np.ascontiguousarray(each)) for each in parts))
 
 
-def _parameters(device: Device, means: Floats, quats: Floats, scales: Floats, opacities: Floats, offsets: Any) -> Piece:
-    """Of splats, on the card."""
-    n, most = len(means), device.most_texels // GEOMETRY_QUADS
+def check_number(device: Device, n: int) -> None:
+    """Raise `DeviceFailed` where there are more splats than a card's tables hold."""
+    most = device.most_texels // GEOMETRY_QUADS
     if n > most:
         raise DeviceFailed(
             say("{} splats are more than the {} that graphics cards are given; compute on the processor instead",
                 n, most)
         )  # fmt: skip
+
+
+def _parameters(device: Device, means: Floats, quats: Floats, scales: Floats, opacities: Floats, offsets: Any) -> Piece:
+    """Of splats, on the card."""
+    n = len(means)
+    check_number(device, n)
     values = np.zeros((n, 4 * PARAMETER_QUADS), np.float32)
     values[:, 0:3], values[:, 3], values[:, 4:8], values[:, 8 : 8 + scales.shape[1]] = means, opacities, quats, scales
     if len(offsets):
@@ -491,10 +525,10 @@ class SplatsOnCard:
             Windows, their pixels' blended channels (quads, as the splats have them), and their states: alpha, sum of
             weighted depths, what shines through.
         """
-        drawing = _Drawing(self.device, view, settings, self.parameters, self.n, self._is_solid)
+        drawing = Drawing(self.device, view, settings, self.parameters, self.n, self._is_solid)
         for window in drawing.windows:
             commands = self.device.commands()
-            channels, _ = drawing.blend(commands, window, table, n_quads)
+            channels = drawing.blend(commands, window, table, n_quads, None)
             commands.submit()
             yield window.bins, channels, window.states
 
@@ -533,7 +567,7 @@ def rasterise_wgpu(
     """
     opened = device or open_device()
     offsets = means.new_zeros((0, 2)) if screen_offsets is None else screen_offsets
-    drawings: list[_Drawing] = []
+    drawings: list[Drawing] = []
     apply: Callable[..., tuple[Tensor, ...]] = _Rasterise.apply
     picture, alphas, depths, weights, radii = apply(
         opened, view, settings, drawings, means, quats_wxyz, scales, opacities, features, offsets

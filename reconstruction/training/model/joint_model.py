@@ -239,7 +239,7 @@ class SceneModel(nn.Module):
             labels=splats.panels if self._asks_splats else None,
             settings=settings,
         )
-        directions = view.directions().to(device)
+        directions = view.directions(splats.means.dtype).to(device)
         if self.light is not None:
             panels = self._panels(view, raster)
             shaded = self._shaded(view, raster, directions, panels, generator)
@@ -361,12 +361,12 @@ class SceneModel(nn.Module):
             mirrors &= panels >= 0
         rows, columns = torch.nonzero(mirrors, as_tuple=True)
         features = raster.features[rows, columns]
-        with torch.autocast(panels.device.type, torch.bfloat16, enabled=self.precision == "bfloat16"):
-            if self._asks_splats:
+        if self._asks_splats:
+            with self._autocast(panels.device):
                 light, cosines = self._mirrored_by_splats(view, raster, directions[rows, columns], rows, columns)
-            else:
-                light, cosines = self._mirrored_by_planes(view, rows, columns, panels[rows, columns], generator)
-        light = light.float()
+        else:
+            light, cosines = self.mirrored_by_planes(view, rows, columns, panels[rows, columns], generator)
+        light, cosines = light.to(features), cosines.to(features)
         reflectivity = features[:, FEATURES["reflectivity"]]
         added = schlick(features[:, FEATURES["f0"]], cosines, reflectivity) * light
         place, own = (rows, columns), raster.features[..., FEATURES["colour"]]
@@ -378,13 +378,18 @@ class SceneModel(nn.Module):
             torch.zeros_like(blended).index_put(place, reflectivity.squeeze(-1)),
         )
 
-    def _mirrored_by_planes(
+    def _autocast(self, device: torch.device) -> torch.autocast:
+        return torch.autocast(device.type, torch.bfloat16, enabled=self.precision == "bfloat16")
+
+    def mirrored_by_planes(
         self, view: View, rows: Tensor, columns: Tensor, panels: Tensor, generator: torch.Generator | None
     ) -> tuple[Tensor, Tensor]:
         """L, shape (n, 3), and cosines of incidence, shape (n,), of pixels, by the panels' planes."""
         assert self.light is not None
         table = RayTable.of([photo_of(view, self.origin_enu_m)], self.planes, {}).to(panels.device)
-        return self.light(rays_of_pixels(table, 0, columns, rows, panels), generator)  # type: ignore[no-any-return]
+        with self._autocast(panels.device):
+            light, cosines = self.light(rays_of_pixels(table, 0, columns, rows, panels), generator)
+        return light.float(), cosines
 
     def _mirrored_by_splats(
         self, view: View, raster: Raster, omega_o: Tensor, rows: Tensor, columns: Tensor

@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 from planning.base.effects import decide
 from planning.base.errors import InputError
 from reconstruction.gpu.device import Adapter, DeviceFailed, open_device, why_no_gpu
+from reconstruction.splats.card_splats import CardSplats
+from reconstruction.splats.rasterising.wgpu_backend import Drawing
 from reconstruction.splats.splats import Splats
 from reconstruction.training import devices
 from reconstruction.training.config import TrainConfig
@@ -149,15 +151,13 @@ def test_a_training_on_the_card_is_the_one_on_the_processor_and_survives_the_car
     assert not torch.equal(mine, theirs)
     torch.testing.assert_close(mine, theirs, atol=0.02, rtol=0.0)
     assert by_card.quality.psnr_db == pytest.approx(by_processor.quality.psnr_db, abs=0.2)
-    # The card is lost on the way: in a picture, and then on the way back.
-    for at in ("_Drawing.blended", "_Drawing.gradients"):
+    # The card is lost on the way: in a picture, and then in a step of Adam.
+    for owner, method in ((Drawing, "blend_back"), (CardSplats, "learn")):
         calls = iter(range(100))
-        name, method = at.split(".")
-        owner = getattr(__import__("reconstruction.splats.rasterising.wgpu_backend", fromlist=[name]), name)
         usual = getattr(owner, method)
 
         def lost(self: object, *given: object, usual: object = usual, calls: object = calls) -> object:
-            if next(calls) == 5:
+            if next(calls) == 4:
                 self.device.raw.destroy()
             return usual(self, *given)
 
@@ -165,9 +165,11 @@ def test_a_training_on_the_card_is_the_one_on_the_processor_and_survives_the_car
             changed.setattr(owner, method, lost)
             trained = train_model(data_set, replace(SMALL, device="gpu"))
         assert trained.n_steps == 8
-        (note,) = trained.notes
+        note, lost_steps = trained.notes
         assert "on splats were drawn by the processor: the graphics card" in note
         assert "does not answer any more" in note
+        n_lost = 2 if owner is Drawing else 4
+        assert lost_steps == f"what splats learned in the {n_lost} steps before was lost with it"
 
 
 @pytest.mark.slow

@@ -1,0 +1,493 @@
+"""A step of the joint training on a graphics card: from splats in its memory to their gradients, losses included.
+
+Photos go to the card, four bytes a pixel, with the light that panes mirror towards its pixels; what comes back are
+sums: of losses, and the gradients of exposure, vignetting, the sky and the pose, and of mirrored light. While the card
+draws, the processor finds out what is mirrored. The formulas are those of `SceneModel.forward` and `objective`; sums
+are in whole numbers, so that the same step has the same bits in whatever order threads come to them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from torch import Tensor
+from torch.optim import Optimizer
+
+from reconstruction.base.out_of_memory import NotFinite
+from reconstruction.gpu.device import Commands, Device, Piece, uniform
+from reconstruction.gpu.shaders import Constant
+from reconstruction.gpu.sorting import groups_of
+from reconstruction.light.environment_map import LEVEL
+from reconstruction.light.shading import DARKEST
+from reconstruction.metrics.image_metrics import C1, C2, WINDOW_PX, window_weights
+from reconstruction.splats.card_splats import AdamStep, CardSplats, fits_card
+from reconstruction.splats.densification.strategy import BetweenChanges, Densification, Limits
+from reconstruction.splats.rasterising.raster_types import RasterSettings
+from reconstruction.splats.rasterising.views import View
+from reconstruction.splats.rasterising.wgpu_backend import CONSTANTS, Drawing, Window, int_of, quads
+from reconstruction.splats.sky import SEEN
+from reconstruction.training.config import LossWeights, Rates, TrainConfig
+from reconstruction.training.losses import CLOSED, SHORTEST
+from reconstruction.training.methods.shader import Shader
+from reconstruction.training.model.joint_model import LEAST_REFLECTIVITY, MOST_LOST, SceneModel, panels_in_view
+from reconstruction.training.photos.photo_stream import Sample
+from reconstruction.training.photos.poses import moved_view
+
+Floats = NDArray[np.float32]
+
+SHOWN, FACADE = 1, 2
+"""Bits beside a pixel's colour."""
+
+NO_MIRROR = -1.0
+"""In the place of the cosine of a pixel that mirrors nothing."""
+
+PIXELS_A_THREAD = 8
+"""Of kernels that add up over all pixels."""
+
+WORDS: dict[str, Constant] = {"IS_BAD": 0, "N_LARGE": 1, "N_KNOWN": 2, "N_MESH": 3}
+SLOTS: dict[str, Constant] = {
+    "ERRORS": 2, "LARGE": 3, "SIMILAR": 4, "OFF_NORMALS": 5, "OFF_MESH": 6, "OF_GAIN": 7, "OF_CORNER": 10,
+    "OF_MOVE": 11, "SKY": 32,
+}  # fmt: skip
+"""Words of counts, and numbers of 64 bits behind them, of a picture's sums; the sky's are the last."""
+FIXED_ONE = 2.0**32
+
+RUN, TAPS = 4, 14
+"""Sums over a window that a thread makes, and what goes into them."""
+
+SIMILARITY: dict[str, Constant] = {
+    **{f"W_{number}": float(weight) for number, weight in enumerate(window_weights()[: WINDOW_PX // 2 + 1])},
+    "FOUR": tuple(range(RUN)),
+    "TAPS": tuple(range(TAPS)),
+    "C1": C1,
+    "C2": C2,
+}
+PICTURE: dict[str, Constant] = {
+    "TEXELS_A_ROW": CONSTANTS["TEXELS_A_ROW"],
+    "BIN": CONSTANTS["BIN"],
+    "PI": CONSTANTS["PI"],
+    "DARKEST": DARKEST,
+    "LEAST_LEVEL": LEVEL,
+    "LEAST_REFLECTIVITY": LEAST_REFLECTIVITY,
+    "SEEN": SEEN,
+    "CLOSED": CLOSED,
+    "SHORTEST": SHORTEST,
+}
+
+
+def fits_card_step(model: SceneModel, config: TrainConfig) -> bool:
+    """Whether a card can make all of a step but mirrored light: of harmonics, and of panes whose planes are known."""
+    return (
+        fits_card(model.splats)
+        and type(model.shader) is Shader
+        and (model.light is None or model.geometry == "panels")
+        and config.losses.normal_smoothness == 0.0
+        and config.transients == "off"
+    )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Sums:
+    """What a picture's kernels added up."""
+
+    words: NDArray[np.uint32]
+    numbers: NDArray[np.float64]
+
+    @staticmethod
+    def of(raw: NDArray[np.uint8]) -> _Sums:
+        return _Sums(raw.view(np.uint32), raw.view("<i8").astype(np.float64) / FIXED_ONE)
+
+    def count(self, name: str) -> int:
+        return int(self.words[int_of(WORDS, name)])
+
+    def some(self, name: str, n: int = 1) -> NDArray[np.float64]:
+        start = int_of(SLOTS, name)
+        return self.numbers[start : start + n]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CardGradients:
+    """Of splats, in a card's memory: what a step of Adam is taken by, and the picture they are of.
+
+    Parameters
+    ----------
+    n_pixels
+        Of the picture; gradients are those of the loss times as many.
+    """
+
+    drawing: Drawing
+    degree: int
+    totals: list[Piece]
+    of_parameters: list[Piece]
+    weights: Piece
+    n_pixels: int
+
+
+class CardStep:
+    """Splats of a model in a card's memory, and steps of their training.
+
+    Raises
+    ------
+    DeviceFailed
+        The card fails, or has too little memory.
+    """
+
+    def __init__(self, device: Device, model: SceneModel, optimiser: Optimizer) -> None:
+        self.device, self._model, self._optimiser = device, model, optimiser
+        self.splats = CardSplats(device, model.splats, optimiser, model.light is not None)
+        self._between: dict[int, BetweenChanges] = {}
+        self._eyes: list[Tensor] = []
+        self.n_since = 0
+
+    def gradients(
+        self,
+        sample: Sample,
+        gain: Tensor,
+        move: Tensor | None,
+        degree: int,
+        settings: RasterSettings,
+        weights: LossWeights,
+        progress: float,
+        generator: torch.Generator | None,
+        more: Tensor | None = None,
+    ) -> tuple[CardGradients, dict[str, float]]:
+        """Of a photo: those of splats stay on the card, all others reach what `gain`, `move` and the model are of.
+
+        Parameters
+        ----------
+        gain, move
+            As for `SceneModel.forward`.
+        weights, progress
+            As for `objective`.
+        more
+            Added to the loss, with gradients of its own.
+
+        Raises
+        ------
+        NotFinite
+            The loss or a gradient is no number.
+        DeviceFailed
+            The card fails, or has too little memory.
+        """
+        model, view = self._model, sample.view if move is None else moved_view(sample.view, move)
+        splats, n_pixels = self.splats, sample.view.width_px * sample.view.height_px
+        with self.device.errors_said():
+            drawing, features = splats.drawing(view, settings, degree)
+            commands, of_splats = self.device.commands(), self.device.buffer(4 * splats.n)
+            commands.clear(of_splats, 4 * splats.n)
+            blended = [
+                drawing.blend(commands, window, features, splats.n_quads, of_splats) for window in drawing.windows
+            ]
+            commands.submit()
+        light = _MirroredLight.of(model, view, generator)
+        sky = model.sky.picture()
+        with self.device.errors_said():
+            picture = _CardPicture(self.device, drawing, splats, sample, light, sky, model, gain, weights, progress)
+            commands = self.device.commands()
+            for window, channels in zip(drawing.windows, blended, strict=True):
+                picture.light(commands, window, channels)
+            picture.compare(commands)
+            totals = drawing.no_sums(commands, splats.parts)
+            for window, channels in zip(drawing.windows, blended, strict=True):
+                wanted = picture.back(commands, window, channels)
+                drawing.blend_back(commands, window, features, splats.n_quads, wanted, splats.parts, totals)
+            of_parameters = [
+                drawing.project_back(commands, part, piece) for part, piece in zip(splats.parts, totals, strict=True)
+            ]
+            slots = WORDS | SLOTS
+            splats.add_up(commands, view, degree, totals, of_parameters, picture.sums, slots, moves=move is not None)
+            sums, of_mirrored = picture.read(commands)
+        terms = picture.terms(sums)
+        if not np.isfinite(sum(terms.values())):
+            raise NotFinite("the loss is not a number")
+        if sums.count("IS_BAD"):
+            raise NotFinite("a gradient is not a number")
+        _give_back(model, gain, move, light, sky, more, sums, of_mirrored, n_pixels)
+        return CardGradients(drawing, degree, totals, of_parameters, of_splats, n_pixels), terms
+
+    def learn(self, found: CardGradients, rates: Rates, strategy: Densification, limits: Limits, seed: int, *,
+              observed: float, jitters: bool) -> None:  # fmt: skip
+        """Take a step of Adam on all splats.
+
+        Parameters
+        ----------
+        rates
+            For what of splats goes only a share of a step; rates themselves are the optimiser's.
+        observed
+            What gradients of screen positions are divided by before they are added up for densification; 0: they are
+            not.
+        jitters
+            Whether the strategy's noise is part of this step.
+        """
+        by_name = {group["name"]: group["lr"] for group in self._optimiser.param_groups}
+        by_name["details"] = by_name["colours"] * rates.colour_details
+        between = self._between.setdefault(id(strategy), strategy.between_changes(self._model.splats))
+        view = found.drawing.view
+        screen = 0.0
+        if observed:
+            screen = view.width_px * view.height_px / (observed * found.n_pixels)
+            self._eyes.append(view.position_m)
+        if not jitters:
+            between = BetweenChanges(between.opacity_pull, between.size_pull)
+        by = AdamStep(by_name, rates.glass_geometry, 1.0 / found.n_pixels, screen, limits, between, seed)
+        with self.device.errors_said():
+            self.splats.learn(found.drawing, found.degree, found.totals, found.of_parameters, found.weights, by)
+        self.n_since += 1
+
+    def bring(self, *, moments: bool) -> None:
+        """Bring what was learned since to the model's splats, and Adam's moments to the optimiser."""
+        self.splats.bring(self._model.splats, self._optimiser if moments else None)
+        if moments:
+            self.n_since = 0
+
+    def observed_by(self, strategy: Densification) -> None:
+        """Hand what was added up for densification to a strategy."""
+        if self._eyes:
+            strategy.take_in(self.splats.seen(torch.stack(self._eyes)))
+            self._eyes.clear()
+            self.splats.forget_seen()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _MirroredLight:
+    """Light that panes mirror towards some pixels of a picture.
+
+    Parameters
+    ----------
+    rows, columns
+        Of the n pixels.
+    light, cosines
+        Shapes (n, 3) and (n,), with their history.
+    """
+
+    rows: Tensor
+    columns: Tensor
+    light: Tensor
+    cosines: Tensor
+
+    @staticmethod
+    def of(model: SceneModel, view: View, generator: torch.Generator | None) -> _MirroredLight | None:
+        """All pixels whose pane is known: which of them glass covers, the card alone knows yet."""
+        if model.light is None:
+            return None
+        panels = torch.from_numpy(panels_in_view(view, model.corners_m))
+        rows, columns = torch.nonzero(panels >= 0, as_tuple=True)
+        light, cosines = model.mirrored_by_planes(view, rows, columns, panels[rows, columns], generator)
+        return _MirroredLight(rows, columns, light, cosines)
+
+    def picture(self, view: View) -> Floats:
+        """Light and cosine by pixel, shape (h, w, 4)."""
+        found = np.full((view.height_px, view.width_px, 4), NO_MIRROR, np.float32)
+        rows, columns = self.rows.numpy(), self.columns.numpy()
+        found[rows, columns, :3], found[rows, columns, 3] = self.light.detach(), self.cosines.detach()
+        return found
+
+
+class _CardPicture:
+    """A picture's pixels on a card, from blended channels to losses and back."""
+
+    def __init__(
+        self,
+        device: Device,
+        drawing: Drawing,
+        splats: CardSplats,
+        sample: Sample,
+        light: _MirroredLight | None,
+        sky: Tensor,
+        model: SceneModel,
+        gain: Tensor,
+        weights: LossWeights,
+        progress: float,
+    ) -> None:
+        self.device, self.drawing, self.view = device, drawing, drawing.view
+        self.n_quads, self.n_sky = splats.n_quads, sky.numel()
+        view, with_glass = self.view, light is not None
+        self.n = n = view.width_px * view.height_px
+        self.weights, self.stage = weights, weights.stage(progress) if with_glass else None
+        self.by_depth = weights.normal_consistency if progress >= weights.consistent_from else 0.0
+        has_mesh = with_glass and weights.normal_prior > 0.0 and sample.normals is not None
+        self.by_mesh = weights.normal_prior if has_mesh else 0.0
+        self.constants = PICTURE | WORDS | SLOTS | quads(self.n_quads) | {"GLASS": int(with_glass)}
+        self.constants["MESH"] = int(has_mesh)
+        self.truth = _written(device, packed_photo(sample))
+        self.mirrored = device.buffer(16 * n) if light is None else _written(device, light.picture(view))
+        self.reference = self.truth
+        if has_mesh:
+            assert sample.normals is not None
+            self.reference = _written(device, np.pad(sample.normals.numpy(), ((0, 0), (0, 0), (0, 1))))
+        self.sky = device.table(len(sky.reshape(-1, 3)))
+        device.write_table(self.sky, np.pad(sky.detach().reshape(-1, 3).numpy(), ((0, 0), (0, 1))))
+        self.found, self.bodies = device.table(n), device.table(n)
+        self.of_found, self.of_bodies = device.buffer(16 * n), device.buffer(16 * n)
+        self.n_sum_bytes = 8 * (int_of(SLOTS, "SKY") + self.n_sky)
+        self.sums = device.buffer(self.n_sum_bytes)
+        has_window = weights.dssim > 0.0 and min(view.width_px, view.height_px) >= WINDOW_PX
+        self.dssim = weights.dssim if has_window else 0.0
+        large = self.stage is not None and self.stage.weight > 0.0
+        self._uniform = uniform(
+            *gain.detach().expand(3).tolist(), float(model.corner_loss.detach()),
+            model.corner_square, MOST_LOST, min(weights.white, 1.0), self.stage.threshold if self.stage else 0.0,
+            (1.0 - self.dssim) / 3.0, self.stage.weight * n if self.stage else 0.0, 0.0, 0.0,
+            view.width_px, view.height_px, sky.shape[0], int(large),
+        )  # fmt: skip
+
+    def _groups(self, n: int) -> int:
+        return groups_of(-(-n // PIXELS_A_THREAD))
+
+    def _n_pixels(self, window: Window) -> int:
+        rows, columns = window.bins.pixels(self.view)
+        return int((rows.stop - rows.start) * (columns.stop - columns.start))
+
+    def light(self, commands: Commands, window: Window, channels: Piece) -> None:
+        """Light a window's pixels, and compare them with the photo."""
+        if window is self.drawing.windows[0]:
+            commands.clear(self.sums, self.n_sum_bytes)
+        commands.run(
+            "light_pixels", self.constants, self._groups(self._n_pixels(window)), self.drawing.uniform(window.bins),
+            self._uniform, self.sky, channels, window.states, self.truth, self.mirrored, self.found, self.bodies,
+            self.sums,
+        )  # fmt: skip
+
+    def compare(self, commands: Commands) -> None:
+        """Losses that more than one pixel has a part in, with their gradients."""
+        n, view = self.n, self.drawing.uniform()
+        if self.dssim:
+            similarity(
+                commands, self.device, self.view.width_px, self.view.height_px, self.found, self.truth, self.of_found,
+                self.sums, -self.dssim * n,
+            )  # fmt: skip
+        else:
+            commands.clear(self.of_found, 16 * n)
+        if not self.by_depth and not self.by_mesh:
+            commands.clear(self.of_bodies, 16 * n)
+            return
+        commands.run(
+            "compare_normals", self.constants, self._groups(n), view, self.found, self.bodies, self.truth,
+            self.reference, self.sums,
+        )  # fmt: skip
+        commands.run(
+            "normals_back", self.constants, groups_of(n), view, uniform(self.by_depth * n, self.by_mesh * n),
+            self.found, self.bodies, self.truth, self.reference, self.sums, self.of_found, self.of_bodies,
+        )  # fmt: skip
+
+    def back(self, commands: Commands, window: Window, channels: Piece) -> Piece:
+        """Gradients of a window's channels, alphas and depths, as `Drawing.blend_back` takes them."""
+        n_pixels = self._n_pixels(window)
+        wanted = self.device.table((self.n_quads + 1) * n_pixels)
+        commands.run(
+            "pixels_back", self.constants, self._groups(n_pixels), self.drawing.uniform(window.bins), self._uniform,
+            self.sky, wanted, channels, self.truth, self.mirrored, self.found, self.of_found, self.of_bodies,
+            self.sums,
+        )  # fmt: skip
+        return wanted
+
+    def read(self, commands: Commands) -> tuple[_Sums, Floats | None]:
+        """Sums, and gradients of mirrored light and its cosines by pixel, shape (h, w, 4)."""
+        asked = [(self.sums, self.n_sum_bytes)]
+        if self.constants["GLASS"]:
+            asked.append((self.mirrored, 16 * self.n))
+        sums, *mirrored = commands.read(*asked)
+        shape = self.view.height_px, self.view.width_px, 4
+        return _Sums.of(sums), mirrored[0].view(np.float32).reshape(shape) if mirrored else None
+
+    def terms(self, sums: _Sums) -> dict[str, float]:
+        """What each weighted term adds to the loss, as `objective` has it."""
+        (errors,), (large,), (similar,) = (sums.some(name) for name in ("ERRORS", "LARGE", "SIMILAR"))
+        colour = (1.0 - self.dssim) * errors / (3 * self.n)
+        if self.dssim:
+            colour += self.dssim * (1.0 - similar / n_values(self.view.width_px, self.view.height_px))
+        found = {"colour": float(colour)}
+        if self.by_depth:
+            found["normal consistency"] = (
+                self.by_depth * float(sums.some("OFF_NORMALS")[0]) / max(sums.count("N_KNOWN"), 1)
+            )
+        if self.by_mesh:
+            found["normal prior"] = self.by_mesh * float(sums.some("OFF_MESH")[0]) / max(sums.count("N_MESH"), 1)
+        if self.stage is not None and self.stage.weight > 0.0:
+            found["high frequency"] = self.stage.weight * float(large) / (sums.count("N_LARGE") + 1e-6)
+        return found
+
+
+def n_values(width: int, height: int) -> int:
+    """Windows of D-SSIM in a picture of three colours, times these."""
+    return int(3 * (width - WINDOW_PX + 1) * (height - WINDOW_PX + 1))
+
+
+def similarity(
+    commands: Commands, device: Device, width: int, height: int, found: Piece, truth: Piece, of_found: Piece,
+    sums: Piece, factor: float,
+) -> None:  # fmt: skip
+    """Structural similarity of a picture to a photo, added up, and the gradient of its mean times `factor`.
+
+    Parameters
+    ----------
+    found
+        A table, a texel a pixel; sRGB values.
+    truth
+        A photo as `packed_photo` has it.
+    of_found
+        Written, four numbers a pixel, the fourth 0.
+    sums
+        Added to at the slot SIMILAR.
+    """
+    inner, rows = width - WINDOW_PX + 1, height - WINDOW_PX + 1
+    sizes = uniform(width, height, inner, rows)
+    constants = SIMILARITY | WORDS | SLOTS | {"TEXELS_A_ROW": CONSTANTS["TEXELS_A_ROW"]}
+    moments, derivatives = device.table(5 * height * inner), device.table(3 * rows * inner)
+    spread = device.table(3 * height * inner)
+    in_row, in_column = groups_of(height * -(-inner // RUN)), groups_of(inner * -(-height // RUN))
+    commands.run("similarity_rows", constants, in_row, sizes, found, truth, moments)
+    commands.run("similarity", constants, in_column, sizes, moments, derivatives, sums)
+    commands.run("similarity_columns", constants, in_column, sizes, derivatives, spread)
+    commands.run(
+        "similarity_back", constants, groups_of(height * -(-width // RUN)),
+        sizes + uniform(factor / n_values(width, height)), spread, found, truth, of_found,
+    )  # fmt: skip
+
+
+def packed_photo(sample: Sample) -> NDArray[np.uint32]:
+    """Red, green, blue, and what is known of a pixel, in four bytes, shape (h, w)."""
+    shown = torch.ones_like(sample.facade) if sample.shown is None else sample.shown
+    flags = SHOWN * shown.to(torch.uint8) + FACADE * (sample.facade & shown).to(torch.uint8)
+    packed = torch.cat([sample.display, flags[..., None]], dim=2).contiguous().numpy()
+    return packed.view("<u4")[..., 0]
+
+
+def _written(device: Device, values: NDArray[np.float32] | NDArray[np.uint32]) -> Piece:
+    piece = device.buffer(values.nbytes)
+    device.write(piece, values)
+    return piece
+
+
+def _give_back(
+    model: SceneModel,
+    gain: Tensor,
+    move: Tensor | None,
+    light: _MirroredLight | None,
+    sky: Tensor,
+    more: Tensor | None,
+    sums: _Sums,
+    of_mirrored: Floats | None,
+    n_pixels: int,
+) -> None:
+    """Hand gradients on to what is not on the card."""
+    of_gain = torch.from_numpy(sums.some("OF_GAIN", 3) / n_pixels).to(gain)
+    of_sky = torch.from_numpy(sums.some("SKY", sky.numel()) / n_pixels).to(sky).reshape(sky.shape)
+    of_corner = torch.tensor(float(sums.some("OF_CORNER")[0]) / n_pixels)
+    pairs = [
+        (gain, of_gain.sum().reshape(gain.shape) if gain.numel() == 1 else of_gain),
+        (sky, of_sky),
+        (model.corner_loss, of_corner),
+    ]
+    if move is not None:
+        pairs.append((move, torch.from_numpy(sums.some("OF_MOVE", 6) / n_pixels).to(move)))
+    if light is not None and of_mirrored is not None:
+        found = torch.from_numpy(of_mirrored)[light.rows, light.columns] / n_pixels
+        pairs += [(light.light, found[:, :3]), (light.cosines, found[:, 3])]
+    if more is not None:
+        pairs.append((more, torch.ones_like(more)))
+    pairs = [(value, gradient) for value, gradient in pairs if value.requires_grad]
+    torch.autograd.backward([value for value, _ in pairs], [gradient for _, gradient in pairs])
