@@ -15,6 +15,7 @@ from PySide6.QtCore import QCoreApplication
 from PySide6.QtGui import QAction
 from PySide6.QtWidgets import QWidget
 
+from groundstation.gui.application.gradual import GradualTab
 from groundstation.gui.application.translate import QT_TRANSLATE_NOOP
 
 if TYPE_CHECKING:
@@ -78,9 +79,10 @@ class TabSpec:
     module: str
     class_name: str
 
-    def make(self, context: ApplicationContext, view: SharedView) -> Tab:
-        """The tab itself, when it is first shown."""
-        tab: Tab = getattr(importlib.import_module(self.module), self.class_name)(context, view)
+    def begin(self, context: ApplicationContext, view: SharedView) -> Tab:
+        """The tab itself; a `GradualTab` is only begun."""
+        kind = getattr(importlib.import_module(self.module), self.class_name)
+        tab: Tab = kind(context, view, at_once=False) if issubclass(kind, GradualTab) else kind(context, view)
         return tab
 
     def shown_title(self) -> str:

@@ -51,6 +51,8 @@ PATIENCE_S = 240.0
 GUARD_MS, GUARD_S = 500, 60.0
 """How often somebody looks for dialogs that nobody clicks, and how long one may stand."""
 
+OWN_SCHEDULE = Path("/proc/thread-self/schedstat")
+
 Step = Callable[[QDialog], None]
 
 
@@ -370,24 +372,24 @@ def _name(widget: QWidget) -> str:
 class TurnGaps:
     """Gaps between turns of the event loop, by a timer of 2 ms.
 
-    A machine that others use, or that gives a container no more than its share, takes the processor away from all
-    threads of this process. So a gap is as long as this process worked in it, on any thread that may hold the
-    interpreter, and no longer than by the clock; a wait that costs no processor is seen by the clock, which is given
-    `TAKEN_AWAY` times as long, and longer where others wait for the processor, too.
+    A machine that others use, or that gives a container no more than its share, takes the processor away. So what is
+    taken off the clock is the time in which this thread could have run and had no processor, as Linux counts it; and a
+    gap is as long as this process worked in it, on any thread that may hold the interpreter, and no longer than the
+    clock that is left. A wait that costs no processor is seen by that clock, which is given `TAKEN_AWAY` times as long,
+    and longer where others wait for the processor, too: a thread that this one waits for may want one.
     """
 
     TAKEN_AWAY = 4.0
-
-    SHARED = 0.25
-    """Work takes so much longer for each other one that wants a processor, and uses its caches: a frame of the flight
-    took 65 ms of this process alone, and 100 ms beside seven others on two processors."""
 
     def __init__(self) -> None:
         self._ticks: list[tuple[float, float]] = []
         self._timer = QTimer()
         self._timer.setTimerType(Qt.TimerType.PreciseTimer)
-        self._timer.timeout.connect(lambda: self._ticks.append((time.perf_counter(), time.process_time())))
+        self._timer.timeout.connect(self._tick)
         self._timer.start(2)
+
+    def _tick(self) -> None:
+        self._ticks.append((time.perf_counter() - _waited_for_processor_s(), time.process_time()))
 
     def start(self) -> None:
         """Forget all gaps so far."""
@@ -400,14 +402,18 @@ class TurnGaps:
         taken_away = self.TAKEN_AWAY * max(1.0, self._load())
         return 1e3 * float(np.maximum(np.minimum(clock, worked), clock / taken_away).max())
 
-    def allowed_ms(self, limit_ms: float) -> float:
-        """A limit for a machine of one's own, on this one now."""
-        return limit_ms * (1.0 + self.SHARED * max(0.0, self._load() - 1.0))
-
     @staticmethod
     def _load() -> float:
         """How many want each processor."""
         return os.getloadavg()[0] / (os.cpu_count() or 1)
+
+
+def _waited_for_processor_s() -> float:
+    """For which this thread could have run and no processor was free, since it began; 0 where nobody says."""
+    try:
+        return int(OWN_SCHEDULE.read_bytes().split()[1]) / 1e9
+    except OSError:
+        return 0.0
 
 
 def turn_until(application, condition: Callable[[], bool], timeout_s: float = PATIENCE_S) -> float:

@@ -795,3 +795,17 @@ def test_photos_on_panels_are_asked_for_when_there_are_some_and_lie_before_the_p
     view.offer_photos(False)
     shown = picture(application, view)
     assert ((shown[..., 0] > 100) & (shown[..., 1:] < 30).all(axis=2)).sum() == 0
+
+
+def test_the_first_picture_comes_a_layer_a_frame_and_whole_for_whom_takes_it(application, view):
+    view.set_site(roof())
+    canvas = view.canvas()
+    application.processEvents()
+    n_first = canvas._n_layers
+    assert n_first < len(canvas._drawn)
+    whole = canvas.picture().astype(int)
+    turns = 0
+    while canvas._n_layers < len(canvas._drawn) and turns < 100:
+        application.processEvents()
+        turns += 1
+    assert differs(whole, picture(application, view)) == 0

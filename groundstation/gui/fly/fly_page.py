@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 from PySide6.QtCore import QObject, Qt
@@ -19,6 +20,7 @@ from PySide6.QtWidgets import (
 )
 
 from groundstation.gui.application.context import ApplicationContext
+from groundstation.gui.application.gradual import GradualTab
 from groundstation.gui.application.translate import translated
 from groundstation.gui.fly.connection_box import ConnectionBox
 from groundstation.gui.fly.fleet_box import FleetBox, FleetTexts
@@ -255,18 +257,22 @@ class FlightNotes(QListWidget):
 _HELD_BY = {JoystickAction.RETURN: Request.RETURN, JoystickAction.LAND: Request.LAND}
 
 
-class FlyPage(QObject):
+class FlyPage(GradualTab):
     """The tab."""
 
-    def __init__(self, context: ApplicationContext, shared_view: SharedView) -> None:
-        super().__init__(shared_view)
+    def __init__(self, context: ApplicationContext, shared_view: SharedView, *, at_once: bool = True) -> None:
         self._context, self._shared_view = context, shared_view
+        super().__init__(shared_view, at_once=at_once)
+
+    def _parts(self) -> Iterator[None]:
+        context, shared_view = self._context, self._shared_view
         self.controller, self.questions = FlyController.of(context), FlightQuestions()
         self._words = FlightTexts(context, self.controller, self)
         self._fleet_words = FleetTexts(context, self.controller, self)
         self.connection, self.sortie = ConnectionBox(), ChoiceBox()
         self.buttons, self.checks = FlightButtons(), PreflightList()
         self.readouts, self.warnings = ReadoutsView(), WarningsView()
+        yield
         self.simulation, self.settings, self.strip = SimulationPage(), SettingsPage(), PhotoStrip()
         self.findings = FindingsList()
         self.notes, self.report, self.band = FlightNotes(), ReportView(), LinkBand()
@@ -288,9 +294,11 @@ class FlyPage(QObject):
         self._phase = QLabel()
         self._phase.setWordWrap(True)
         self._phase.setProperty("role", "heading")
+        yield
         self.left = self._make_left()
         self.right: QWidget | None = self._make_right()
         self.bottom: QWidget | None = self._make_bottom()
+        yield
         self.band.put_into(shared_view.window())
         self._connect()
         self.connection.setValue(self.controller.choice)

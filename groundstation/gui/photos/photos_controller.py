@@ -43,6 +43,7 @@ from planning.plan import Plan
 from planning.site.records import Facade, SiteModel
 from reconstruction.coarse.parameters import CoarseRequest
 from reconstruction.panels.solving.facades_file import found_facades
+from reconstruction.scenes.runs.run_record import BegunPhotos, begun_photos
 
 if TYPE_CHECKING:
     from groundstation.services.scenes.photos import RenderedScene
@@ -87,6 +88,7 @@ class PhotosController(QObject):
         super().__init__(parent)
         self._context = context
         self.folder: Path | None = None
+        self._rendering: Path | None = None
         self.colmap: Path | None = None
         self.intake: PhotoIntake | None = None
         self.cards: tuple[PhotoCard, ...] = ()
@@ -201,6 +203,7 @@ class PhotosController(QObject):
         model, entry = self._context.document.site, self._context.document.current
         if model is None or entry is None:
             return
+        self._rendering = folder
 
         def work(context: JobContext) -> RenderedScene:
             from groundstation.services.scenes.photos import render_flight
@@ -216,6 +219,12 @@ class PhotosController(QObject):
                 self.read(folder / IMAGES)
 
         self._start(self.tr("Render the photos"), work, done)
+
+    def begun_rendering(self, flight: Path, usual: Path) -> BegunPhotos | None:
+        """Photos of a flight whose rendering was begun: in the folder chosen last, or in one like the `usual` one."""
+        places = (self._rendering, *sorted(usual.parent.glob(f"{usual.name}*")))
+        begun = (begun_photos(place, flight) for place in places if place is not None)
+        return next((found for found in begun if found is not None), None)
 
     def take_panels(self, show: Callable[[tuple[Surface, ...]], None]) -> None:
         """Take what the photos show of the panels, and show it where they are still these photos."""

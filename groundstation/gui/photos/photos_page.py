@@ -35,7 +35,7 @@ from groundstation.gui.photos.photos_controller import PhotosController
 from groundstation.gui.shared_view import SharedView
 from groundstation.gui.widgets.findings_list import FindingsList
 from groundstation.gui.widgets.inputs import ChoiceBox
-from groundstation.gui.widgets.questions import Questions
+from groundstation.gui.widgets.questions import Answer, Questions
 from groundstation.gui.widgets.scrolling import scrolled, split
 from groundstation.services.jobs.runner import JobContext
 from groundstation.services.photos.found_panels import PanelDraft
@@ -445,6 +445,19 @@ class PhotosPage(QObject):
         if flight is None or self.controller.is_busy:
             return
         proposed = (Path.home() if project is None else project) / RENDERED_FOLDER
+        begun = self.controller.begun_rendering(flight, proposed)
+        if begun is not None:
+            text = self.tr("Of the photos of this flight, {0} of {1} were rendered into {2}, before it was cancelled.")
+            answer = self.questions.go_on(
+                self._shared_view.window(),
+                self.tr("Render the photos"),
+                text.format(begun.n_done, begun.n_photos, begun.folder),
+                self.tr("Render anew ..."),
+            )
+            if answer is Answer.YES:
+                self.controller.render(flight, begun.folder, begun.width_px)
+            if answer is not Answer.NO:
+                return
         title = self.tr("Folder for the rendered photos")
         folder = self.questions.new_folder(self._shared_view.window(), title, proposed)
         if folder is not None:

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import itertools
 import time
+from collections.abc import Iterator
 from dataclasses import replace
 from enum import StrEnum
 
 import numpy as np
 from numpy.typing import NDArray
-from PySide6.QtCore import QCoreApplication, QObject, Signal
+from PySide6.QtCore import QCoreApplication, Signal
 from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import QLabel, QPushButton, QTabWidget, QToolButton, QVBoxLayout, QWidget
 
 from groundstation.gui.application.context import ApplicationContext
+from groundstation.gui.application.gradual import GradualTab
 from groundstation.gui.charts.axes import Line, LinesPlot
 from groundstation.gui.charts.quality_chart import QualityChart
 from groundstation.gui.plan.camera_page import CameraPage
@@ -172,22 +174,27 @@ def vertex_clearances_m(legs_m: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.array([min(pair) for pair in itertools.pairwise(padded)])
 
 
-class PlanPage(QObject):
+class PlanPage(GradualTab):
     """The tab."""
 
-    def __init__(self, context: ApplicationContext, shared_view: SharedView) -> None:
-        super().__init__(shared_view)
+    def __init__(self, context: ApplicationContext, shared_view: SharedView, *, at_once: bool = True) -> None:
         self._context, self._shared_view = context, shared_view
+        super().__init__(shared_view, at_once=at_once)
+
+    def _parts(self) -> Iterator[None]:
+        context, shared_view = self._context, self._shared_view
         self._planning_id: int | None = None
         self._camera_of: tuple[object, ...] = ()
         self.controller = PlanController(context, self)
         self.form, self.chart = PlanForm(), QualityChart(time.perf_counter)
+        yield
         self.effects, self.panel, self.paint = EffectsPanel(), PanelDetail(), PaintBar()
         self.sun, self.camera = SunPanel(), CameraPage()
         self.sun_controller = SunController(context, self.sun, lambda: self.controller.is_planning)
         self.effects_controller = EffectsController(
             context, self.effects.isVisible, lambda: self.controller.is_planning, self
         )
+        yield
         self.lists, self.viewpoint = (
             PlanLists(context, self.controller),
             ViewpointPage(context, self.controller, shared_view),
@@ -197,6 +204,7 @@ class PlanPage(QObject):
             self.tr("Expected PSNR [dB]"),
             self.tr("What this plan is worth is not known, or it was changed since; plan it again."),
         )
+        yield
         # Below the shared view there is width, which a bar over a day needs.
         self.lists.addTab(self.sun, self.tr("Sun"))
         self._result, self._verdict = QLabel(), QLabel()
@@ -205,6 +213,7 @@ class PlanPage(QObject):
         self.left = self._make_left()
         self.right: QWidget | None = self._make_right()
         self.bottom: QWidget | None = self.lists
+        yield
         shared_view.add_overlay_bar(self.paint)
         self.paint.hide()
         self._connect()

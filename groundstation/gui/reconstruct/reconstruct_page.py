@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,6 +11,7 @@ from PySide6.QtGui import QAction, QCloseEvent
 from PySide6.QtWidgets import QLabel, QTabWidget, QVBoxLayout, QWidget
 
 from groundstation.gui.application.context import ApplicationContext
+from groundstation.gui.application.gradual import GradualTab
 from groundstation.gui.reconstruct.choice_side import ChoiceSide, MachineTexts
 from groundstation.gui.reconstruct.progress_page import LightPage, ProgressPage
 from groundstation.gui.reconstruct.reconstruct_controller import Phase, ReconstructController
@@ -43,12 +45,15 @@ SIDE_PX, DETAIL_PX, LEAST_DETAIL_PX = 270, 340, 260
 """Widths beside the view, at 1280 pixels."""
 
 
-class ReconstructPage(QObject):
+class ReconstructPage(GradualTab):
     """The tab."""
 
-    def __init__(self, context: ApplicationContext, shared_view: SharedView) -> None:
-        super().__init__(shared_view)
+    def __init__(self, context: ApplicationContext, shared_view: SharedView, *, at_once: bool = True) -> None:
         self._context, self._shared_view = context, shared_view
+        super().__init__(shared_view, at_once=at_once)
+
+    def _parts(self) -> Iterator[None]:
+        context = self._context
         self.controller, self.questions, self.asks = (
             ReconstructController.of(context),
             Questions(),
@@ -56,6 +61,7 @@ class ReconstructPage(QObject):
         )
         self._words = MachineTexts(self)
         self.side, self.pane = ChoiceSide(self.controller, self._words), ViewPane(context, self.controller)
+        yield
         self.progress, self.light = ProgressPage(), LightPage()
         self.machine = QWidget()
         self._machine_lines: list[QLabel] = []
@@ -64,6 +70,7 @@ class ReconstructPage(QObject):
         self.bottom: QWidget | None = None
         self._was_busy = False
         self._offered: Path | None = None
+        yield
         self._connect()
         self.side.form.setValue(self.controller.choice)
         self.light.setValue(self.controller.choice.light)

@@ -128,6 +128,8 @@ class Canvas(QtInteractor):  # type: ignore[misc]  # pyvistaqt has no types
         self._background = ("#ffffff", "")
         self._pinhole: Pinhole | None = None
         self._is_detail_due = False
+        # What is drawn for the first time is compiled for it, 70 ms in all: a frame more for each layer.
+        self._n_layers = 0
         self.n_painted = 0
         self.is_open = True
 
@@ -246,9 +248,13 @@ class Canvas(QtInteractor):  # type: ignore[misc]  # pyvistaqt has no types
             self._is_detail_due = False
             self._show_detail()
         super().paintGL()
+        if self._n_layers < len(self._drawn) and self.is_open:
+            self._n_layers += 1
+            QTimer.singleShot(0, self, self._detail_changed)
 
     def picture(self) -> NDArray[np.uint8]:
         """What is drawn, without what lies over the widget, shape (height, width, 3)."""
+        self._n_layers, self._is_detail_due = len(self._drawn), True
         return image_array(self.grabFramebuffer())
 
     def _detail_changed(self) -> None:
@@ -259,9 +265,9 @@ class Canvas(QtInteractor):  # type: ignore[misc]  # pyvistaqt has no types
     def _show_detail(self) -> None:
         """Switch on what the layers and the distance call for; fit near and far to it."""
         depths = []
-        for name, drawn in self._drawn.items():
+        for number, (name, drawn) in enumerate(self._drawn.items()):
             for part in drawn:
-                is_shown = name not in self._hidden
+                is_shown = name not in self._hidden and number < self._n_layers
                 part.actor.SetVisibility(is_shown)
                 if is_shown and self._pinhole is not None:
                     nearest, farthest = _depths(part.bounds, self._pinhole)

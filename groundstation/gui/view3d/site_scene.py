@@ -418,13 +418,17 @@ def _prism(mesh: TriangleMesh) -> Drawable:
 
 def _zones(model: SiteModel) -> Iterator[ZoneShape]:
     """Geo-zones around the airspace, with what they are between its ground and its sky."""
+    zones = tuple(near_zones(model))
+    if not zones:
+        return  # the window need not load what zones are cut with
+
     import shapely
 
     airspace = model.site.airspace
     (x0, y0, z0), (x1, y1, z1) = airspace.min_enu_m, airspace.max_enu_m
     around = shapely.box(x0 - ZONE_REACH_M, y0 - ZONE_REACH_M, x1 + ZONE_REACH_M, y1 + ZONE_REACH_M)
     ground_z_m = min(z0, airspace.ground_z_m)
-    for near in near_zones(model):
+    for near in zones:
         cut = []
         for each in near.local.volumes:
             area = each.area.intersection(around)

@@ -132,6 +132,19 @@ class Questions(QObject):
         )
         return {_Button.Yes: Answer.YES, _Button.Discard: Answer.NO}.get(answer, Answer.CANCEL)
 
+    def go_on(self, parent: QWidget, title: str, text: str, anew: str) -> Answer:
+        """Whether work that was begun goes on, or is done anew, as the button `anew` says."""
+        answer = _answer(
+            QMessageBox.Icon.Question,
+            parent,
+            title,
+            text,
+            _Button.Yes | _Button.No | _Button.Cancel,
+            _Button.Yes,
+            {_Button.Yes: self.tr("Go on"), _Button.No: anew},
+        )
+        return {_Button.Yes: Answer.YES, _Button.No: Answer.NO}.get(answer, Answer.CANCEL)
+
     def folder(self, parent: QWidget, title: str, *places: Path | None) -> Path | None:
         """A folder that exists; the dialog begins at the first of the `places` that is there."""
         begin = next((place for place in places if place is not None and place.is_dir()), None)

@@ -24,6 +24,7 @@ from PySide6.QtWidgets import (
 )
 
 from groundstation.gui.application.context import ApplicationContext
+from groundstation.gui.application.gradual import GradualTab
 from groundstation.gui.application.interpreter import BackgroundImport
 from groundstation.gui.shared_view import SharedView
 from groundstation.gui.tabs import TABS, Place, Tab, TabSpec
@@ -50,6 +51,9 @@ STEPS = frozenset(Step)
 MAKE_NEXT_MS = 500
 """After a tab was shown, the next one is made, which takes about a tenth of a second."""
 
+TURN_MS = 10
+"""Between two parts of it; without a pause Qt may do them all in one turn."""
+
 TABS_OF_ACTS = {Act(f"to-{spec.name}"): spec.name for spec in TABS}
 """Where each act leads that is nothing but a way to another tab."""
 
@@ -75,7 +79,7 @@ class MainWindow(QMainWindow):
         self._context = context
         self._tabs: dict[str, Tab] = {}
         self._shown: TabSpec | None = None
-        self._made_tabs: dict[str, Tab] = {}
+        self._begun_tabs: dict[str, Tab] = {}
         self._was_shown = False
         self._ready: set[str] = set()
         self._manual: ManualWindow | None = None
@@ -178,7 +182,10 @@ class MainWindow(QMainWindow):
         """A tab by its name; made when it was not yet."""
         if name not in self._tabs:
             spec = next(spec for spec in TABS if spec.name == name)
-            page = self._tabs[name] = self._made(spec)
+            page = self._begun(spec)
+            if isinstance(page, GradualTab):
+                page.finish()
+            self._tabs[name] = page
             if spec.place is Place.WHOLE_PAGE:
                 self._pages.addWidget(page.left)
             else:
@@ -189,11 +196,11 @@ class MainWindow(QMainWindow):
                     self._bottom.addWidget(page.bottom)
         return self._tabs[name]
 
-    def _made(self, spec: TabSpec) -> Tab:
-        """A tab, whether it has its place in the window or not yet."""
-        if spec.name not in self._made_tabs:
-            self._made_tabs[spec.name] = spec.make(self._context, self.shared_view)
-        return self._made_tabs[spec.name]
+    def _begun(self, spec: TabSpec) -> Tab:
+        """A tab, whether it has its place in the window or not yet; perhaps not all of it."""
+        if spec.name not in self._begun_tabs:
+            self._begun_tabs[spec.name] = spec.begin(self._context, self.shared_view)
+        return self._begun_tabs[spec.name]
 
     def show_tab(self, name: str) -> None:
         """Bring a tab to the front, and the keyboard to its first widget."""
@@ -223,9 +230,10 @@ class MainWindow(QMainWindow):
             if following.module not in self._ready:
                 self._make_soon.start()
             elif following.name not in self._tabs:
-                # It gets its place, which takes half as long again, in a turn of its own.
-                self._made(following)
-                QTimer.singleShot(0, self, lambda: self.tab(following.name))
+                # Each part, and its place, which takes half as long again, in a turn of its own.
+                is_known, page = following.name in self._begun_tabs, self._begun(following)
+                has_more = page.go_on() if isinstance(page, GradualTab) else not is_known
+                QTimer.singleShot(TURN_MS, self, self._make_next if has_more else lambda: self.tab(following.name))
 
     def _leave_start(self, before: Document, after: Document) -> None:
         """Show a site that was opened from the start page; a window that has made room for another stays as it is."""

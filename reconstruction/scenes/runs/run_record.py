@@ -5,9 +5,9 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, fields, is_dataclass
+from dataclasses import asdict, dataclass, fields, is_dataclass
 from pathlib import Path, PurePath
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,8 +16,10 @@ from planning.base.errors import InputError
 from planning.base.files import is_empty, sha256_of_file
 from planning.base.json_file import expect_format, read_json, write_atomically
 from planning.base.messages import say
-from reconstruction.scenes.record import Scene
-from reconstruction.scenes.runs.photo_job import PhotoJob
+
+if TYPE_CHECKING:  # a window looks for begun photos, and need not load what renders them
+    from reconstruction.scenes.record import Scene
+    from reconstruction.scenes.runs.photo_job import PhotoJob
 
 SCENE_PHOTOS_FORMAT = "reflight-scene-photos/1"
 RUN_FILE = "scene.json"
@@ -153,6 +155,36 @@ def finished_photos(folder: Path, run: RunRecord) -> Files:
             )
     names = {photo["name"] for photo in run["photos"]}
     return {name: sums for name, sums in found["files"].items() if name in names and _is_complete(folder, sums)}
+
+
+@dataclass(frozen=True, slots=True)
+class BegunPhotos:
+    """Photos of a flight that a run left which was cancelled, or ended otherwise before it was done."""
+
+    folder: Path
+    n_done: int
+    n_photos: int
+    width_px: int
+
+
+def begun_photos(folder: Path, flight: Path) -> BegunPhotos | None:
+    """What a folder holds of a flight's photos, with which the same run goes on; None where it holds none."""
+    path = folder / RUN_FILE
+    try:
+        run = read_json(path, names_files=True) if path.is_file() else None
+    except InputError:
+        return None
+    match run:
+        case {
+            "format": "reflight-scene-photos/1",
+            "complete": False,
+            "made_from": {"flight": str(name)},
+            "camera": {"width_px": int(width_px)},
+            "photos": list(photos),
+            "files": dict(files),
+        } if name == flight.name:
+            return BegunPhotos(folder, len(files), len(photos), width_px)
+    return None
 
 
 def _differences(old: Any, new: Any, place: str) -> Iterator[tuple[str, Any, Any]]:

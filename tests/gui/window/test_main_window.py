@@ -405,3 +405,13 @@ def test_modules_that_are_half_imported_are_asked_for_nothing(tmp_path, is_left_
     code = "\n".join((*lines, "interpreter.leave_modules_alone()" * is_left_alone, "import half_imported"))
     made = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert (made.returncode == 0) is is_left_alone, made.stderr
+
+
+def test_a_tab_that_is_only_begun_is_whole_for_whom_wants_it(application, controller):
+    window = controller.window
+    begun = window._begun(next(spec for spec in TABS if spec.name == "reconstruct"))
+    assert not hasattr(begun, "left")
+    window.show_tab("reconstruct")
+    assert window.tab("reconstruct") is begun
+    assert begun.left.isVisible()
+    assert not begun.go_on()

@@ -13,7 +13,7 @@ from planning.geo.crs import crs_conversion
 from planning.geo.enu import enu_from_geodetic, geodetic_from_enu
 from planning.geo.frames import Origin
 from planning.geo.geoid import undulation_m
-from planning.geo.mesh import TriangleMesh, box_mesh
+from planning.geo.mesh import TriangleMesh, box_mesh, ply_bytes
 from planning.site.importing.importer import ImportedSite, import_site
 from planning.site.importing.options import ImportOptions, PanelGrid
 from planning.site.importing.polygons import unit_normals
@@ -243,3 +243,11 @@ def test_a_point_cloud_is_no_mesh(shared_data: Path) -> None:
 def test_missing_or_contradicting_wishes_are_refused(tmp_path: Path, options: ImportOptions, said: str) -> None:
     with pytest.raises(InputError, match=said):
         import_site(written(tmp_path, "a.obj"), options)
+
+
+def test_written_meshes_are_those_of_trimesh_to_the_last_bit() -> None:
+    rng = np.random.default_rng(0)
+    rough = TriangleMesh(rng.normal(0.0, 1e4, (50, 3)), rng.integers(0, 50, (80, 3)))
+    for mesh in (TOWER, rough, TriangleMesh(np.zeros((0, 3)), np.zeros((0, 3), np.int64))):
+        known = trimesh.Trimesh(mesh.vertices_enu_m, mesh.triangles, process=False).export(file_type="ply")
+        assert ply_bytes(mesh) == known
