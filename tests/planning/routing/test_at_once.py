@@ -139,6 +139,56 @@ def test_starts_keep_every_pair_apart_and_every_aircraft_busy_with_one_sortie(sh
     assert landed_s(ways, starts) <= alone + len(shapes)
 
 
+@st.composite
+def flights(draw):
+    """Legs between random corners in a box, flown at constant speed after a stop at each."""
+    seed, n_legs = draw(st.integers(0, 2**32 - 1)), draw(st.integers(1, 6))
+    rng = np.random.default_rng(seed)
+    corners = rng.uniform((0.0, 0.0, 5.0), (60.0, 40.0, 25.0), (n_legs + 1, 3))
+    corners[0] = corners[-1] = rng.choice(((0.0, 0.0, 5.0), (40.0, 0.0, 5.0)))
+    lengths_m = np.linalg.norm(np.diff(corners, axis=0), axis=1)
+    took_s, stop_s = lengths_m / rng.uniform(1.0, 6.0) + 0.1, rng.uniform(3.0, 8.0, n_legs)
+    until_s = np.cumsum(took_s + stop_s)
+    return LegTimes(corners[:-1], corners[1:], until_s - took_s - stop_s, until_s), took_s
+
+
+def dense(legs: LegTimes, took_s, own_s):
+    """Where an aircraft is at planned times of its own, shape (n, 3), and on which leg; NaN and -1 on the ground."""
+    leg = np.searchsorted(legs.until_s, own_s, side="right").clip(0, len(took_s) - 1)
+    share = np.clip((own_s - legs.from_s[leg]) / took_s[leg], 0.0, 1.0)[..., None]
+    places = (1.0 - share) * legs.starts_enu_m[leg] + share * legs.ends_enu_m[leg]
+    flies = (own_s >= 0.0) & (own_s <= legs.until_s[-1])
+    return np.where(flies[..., None], places, np.nan), np.where(flies, leg, -1)
+
+
+LATE_S = np.linspace(-TIMING_S, TIMING_S, 13)
+RATES = np.array(list(itertools.product((1.0 - TIMING_SHARE, 1.0 + TIMING_SHARE), repeat=2)))
+LATES_S, RATES = np.repeat(LATE_S, len(RATES))[:, None], np.tile(RATES, (len(LATE_S), 1))[:, :, None]
+"""One early while the other is late, from one extreme to the other, each fast or slow."""
+
+
+@given(flights(), flights(), st.floats(4.0, 25.0), st.integers(0, 2**32 - 1))
+@settings(deadline=None)
+def test_starts_judged_apart_are_so_by_brute_force_and_those_forbidden_are_for_a_reason(one, other, apart_m, seed):
+    """A second judge: both are sampled densely in time, early or late, fast or slow."""
+    (first, first_took_s), (second, second_took_s) = one, other
+    is_near = leg_distances_m(first, second) < apart_m
+    spans, rng = forbidden_s(is_near, first, second), np.random.default_rng(seed)
+    ends = spans.ravel() if spans.size else np.zeros(1)
+    # Just outside of what is forbidden, and a little inside.
+    beyond, within = np.add(spans, (-0.01, 0.01)), np.add(spans, (2.0, -2.0))
+    picked = rng.choice(np.concatenate([beyond, within, [[0.0, 0.0]]]).ravel(), 3)
+    longest_s = first.until_s[-1] + second.until_s[-1] + 4.0 * TIMING_S
+    t = np.arange(-2.0 * TIMING_S, 1.1 * first.until_s[-1] + 2.0 * TIMING_S, 0.5)
+    here, leg = dense(first, first_took_s, (t - LATES_S) / RATES[:, 0])
+    for gap_s in (*rng.uniform(-longest_s, longest_s, 2), *picked):
+        there, beside = dense(second, second_took_s, (t - gap_s + LATES_S) / RATES[:, 1])
+        if not any(low < gap_s < high for low, high in spans):
+            assert not (np.linalg.norm(here - there, axis=-1) < apart_m).any()
+        elif np.abs(ends - gap_s).min() > 1.0:
+            assert (is_near[leg, beside] & (leg >= 0) & (beside >= 0)).any(), "no two near legs are flown together"
+
+
 def test_a_sortie_whose_path_is_none_is_an_error_of_its_own():
     site_model, plan = flown()
     found = check_plan(changed(plan, 0, path_enu_m=()), site_model)
