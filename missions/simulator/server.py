@@ -59,6 +59,41 @@ class FlownClock:
         self._now_s += duration_s
 
 
+LEAD_S = 0.05
+"""How far, in real time, one of several vehicles may be ahead of the others: less than a pilot sees."""
+
+
+class CommonTime:
+    """Keeps vehicles together that are simulated at once, each on a thread of its own: none flies ahead of another.
+
+    So the distance between them does not depend on how busy the machine is with which of them.
+    """
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._clocks: dict[FlownClock, float] = {}
+
+    def join(self, clock: FlownClock) -> None:
+        """A vehicle flies from now on, as if it had flown as long as the one that is furthest behind."""
+        with self._lock:
+            self._clocks[clock] = clock() - self._least_s(clock, 0.0)
+
+    def leave(self, clock: FlownClock) -> None:
+        """A vehicle flies no more; nobody waits for it."""
+        with self._lock:
+            self._clocks.pop(clock, None)
+
+    def may_fly(self, clock: FlownClock) -> bool:
+        """Whether a vehicle is not ahead of another."""
+        with self._lock:
+            own_s = clock() - self._clocks[clock]
+            return own_s <= self._least_s(clock, own_s) + LEAD_S
+
+    def _least_s(self, own: FlownClock, usual_s: float) -> float:
+        """How long the one that is furthest behind has flown, besides one's own."""
+        return min((clock() - start_s for clock, start_s in self._clocks.items() if clock is not own), default=usual_s)
+
+
 class DirectLink:
     """A link to a vehicle in the same process, without bytes and sockets: `receive` flies until there is a message.
 

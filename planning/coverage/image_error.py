@@ -49,6 +49,7 @@ class Term:
     of
         `room`: what is seen through and on the pane, by place on it and direction of view. `surroundings`: what is
         mirrored, by its place. `image`: what is mirrored, by place on the pane and direction, wherever it stands.
+        `tilt`: how a pane leans, by the pane.
     variance
         Of the colours of such elements before any photo, sRGB values 0 to 1 squared, times what they add to pictures.
     share
@@ -61,7 +62,7 @@ class Term:
         Cells along each side of the picture of all directions; 0: direction does not matter.
     """
 
-    of: Literal["room", "surroundings", "image"]
+    of: Literal["room", "surroundings", "image", "tilt"]
     variance: float
     share: float
     places: int = 1
@@ -104,6 +105,8 @@ def element_keys(term: Term, rays: MirroredRays) -> NDArray[np.int64]:
     """Which element of a term each ray shows, as numbers that are equal where it is the same one, shape (k,)."""
     if term.of == "surroundings":
         places = _cells_of_surroundings(rays, term.side_m)
+    elif term.of == "tilt":
+        places = rays.panels
     else:
         cells = np.floor(rays.across * term.places).astype(np.int64)
         places = (rays.panels * term.places + cells[:, 0]) * term.places + cells[:, 1]
@@ -124,8 +127,21 @@ def _cells_of_surroundings(rays: MirroredRays, side_m: float) -> NDArray[np.int6
 
 
 def _looks(term: Term, rays: MirroredRays) -> Array:
-    """Weight of each ray: the square of the share of light that comes from there."""
-    return np.square(1.0 - rays.reflectances if term.of == "room" else rays.reflectances)
+    """Weight of each ray: the square of the share of light that comes from there, times that of how it changes.
+
+    A pane whose normal n leans by s along an edge e mirrors d + 2 s ((d n) e + (d e) n) less what a flat one does, to
+    first order: at a distance l the mirrored place moves by 2 s l sqrt((d n)^2 + (d e)^2). For the mean of both edges
+    that is s l sqrt(2 (1 + (d n)^2)), and a colour that changes alike everywhere changes by as much. So the Fisher
+    information of a tilt is that of colours times l^2 (1 + (d n)^2) / 2, here in parts of `FAR_M`; sky tells nothing.
+    """
+    if term.of == "room":
+        return np.square(1.0 - rays.reflectances)
+    if term.of != "tilt":
+        return np.square(rays.reflectances)
+    # Mirrored less incoming is 2 (d n) n.
+    cosine2 = 0.25 * np.square(rays.mirrored_enu - rays.incoming_enu).sum(axis=1)
+    lever = np.where(rays.distances_m < FAR_M, rays.distances_m / FAR_M, 0.0)
+    return np.asarray(np.square(rays.reflectances * lever) * 0.5 * (1.0 + cosine2))
 
 
 class ImageErrorModel:

@@ -44,6 +44,7 @@ SIZES = (
     *(Term("surroundings", 1.0, 1.0, side_m=side_m) for side_m in (8.0, 4.0, 2.0, 1.0)),
     Term("surroundings", 1.0, 1.0, side_m=2.0, directions=8),
     Term("image", 1.0, 1.0, directions=8),
+    Term("tilt", 1.0, 1.0),
 )
 TRIED = tuple(replace(size, share=share) for size in SIZES for share in SHARES)
 

@@ -490,7 +490,13 @@ class FlyController(QObject):
     def _connection(self, sortie: LiveSortie, charge: float, aircraft: LiveAircraft) -> Connection:
         choice = aircraft.choice
         if choice.kind is LinkKind.SIMULATION:
-            return self.simulation.connection(sortie, choice, charge, aircraft.number - 1)
+            assert aircraft.fleet is not None
+            flown = (each.choice for each in self._aircraft.values() if each.flight and each.fleet is aircraft.fleet)
+            first = next((each for each in flown if each.kind is LinkKind.SIMULATION), choice)
+            # Those that fly at once fly as fast, or nothing could be said of their distance.
+            choice = replace(choice, speed_up=first.speed_up)
+            common = aircraft.fleet.simulated_time
+            return self.simulation.connection(sortie, choice, charge, aircraft.number - 1, common)
         return VehicleAt(choice.url, signer=cache(link_signer) if choice.is_signed else None)
 
     # Events

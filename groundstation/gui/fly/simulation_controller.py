@@ -18,6 +18,7 @@ from groundstation.services.jobs.runner import JobContext
 from groundstation.services.plan.effects import EffectChoice
 from groundstation.services.units import UnitSystem
 from missions.simulator.conditions import Conditions
+from missions.simulator.server import CommonTime
 from planning.base.effects import EffectSetting
 from planning.base.parameters import declared, with_values
 from planning.plan import Plan
@@ -110,10 +111,12 @@ class SimulationController(QObject):
         self._expected_wind_m_s = CALM.wind_m_s
         self.effect_settings: dict[str, EffectSetting] = {}
 
-    def connection(self, sortie: LiveSortie, choice: ConnectionChoice, charge: float, seed: int = 0) -> Simulation:
+    def connection(
+        self, sortie: LiveSortie, choice: ConnectionChoice, charge: float, seed: int, common: CommonTime
+    ) -> Simulation:
         """The simulation of a sortie, as it was chosen; `charge` of the battery that it begins with, 1 full.
 
-        Each aircraft has errors of its own, by its `seed`.
+        Each aircraft has errors of its own, by its `seed`, and time in common with those that fly at once.
         """
         self.expect_wind_of(sortie.case.plan)
         return Simulation(
@@ -125,6 +128,7 @@ class SimulationController(QObject):
             effects=dict(self.effect_settings),
             charge=charge,
             seed=seed,
+            common=common,
         )
 
     def choose(

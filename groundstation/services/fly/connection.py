@@ -37,7 +37,7 @@ from missions.simulator.conditions import Conditions
 from missions.simulator.effects.battery import BatterySag
 from missions.simulator.effects.facts import effect_facts
 from missions.simulator.effects.link_loss import through_air
-from missions.simulator.server import MAX_SPEEDUP, FlownClock, serve
+from missions.simulator.server import MAX_SPEEDUP, CommonTime, FlownClock, serve
 from missions.simulator.vehicle import SimulatedVehicle
 from planning.base.effects import Decision, EffectSetting
 from planning.base.errors import GroundStationError, InputError
@@ -318,6 +318,8 @@ class Simulation:
         Where the aircraft stands; None: at home.
     parameters
         Of the vehicle, where they differ from its profile's; None for one that it does not have.
+    common
+        Time that it shares with others that are simulated at once; None: it flies alone.
     """
 
     plan: Plan
@@ -330,6 +332,7 @@ class Simulation:
     seed: int = 0
     stands_enu_m: Vec3 | None = None
     parameters: Mapping[str, float | None] = field(default_factory=dict)
+    common: CommonTime | None = None
     is_simulated: bool = True
 
     def __post_init__(self) -> None:
@@ -361,14 +364,20 @@ class Simulation:
         ground, air = memory_pair(vehicle=vehicle.address, clock=watched)
         ground.observe(observe)
         link = through_air(ground, decisions, self.conditions, lambda: vehicle.flight_s, self.seed)
+        common = CommonTime() if self.common is None else self.common
+        common.join(watched)
+
+        def fly() -> None:
+            def is_heard() -> bool:
+                return ground.is_idle() and common.may_fly(watched)
+
+            try:
+                serve(vehicle, [air], self.speed_up, is_heard=is_heard, flown=watched)
+            finally:
+                common.leave(watched)
+
         # It ends when the link is closed.
-        threading.Thread(
-            target=serve,
-            args=(vehicle, [air], self.speed_up),
-            kwargs={"is_heard": ground.is_idle, "flown": watched},
-            name="simulated-vehicle",
-            daemon=True,
-        ).start()
+        threading.Thread(target=fly, name="simulated-vehicle", daemon=True).start()
         return OpenedLink(link, decisions, vehicle, clock=watched)
 
     def _parameters(self) -> dict[str, float | None]:

@@ -26,6 +26,7 @@ from groundstation.vehicle.watch import APART_TOLERANCE_M, STALE_S, OtherAircraf
 from missions.flight.matching import DEFAULT_GATES, Gates, pose_of_photo
 from missions.flight.record import FlightRecord, TakenPhoto
 from missions.flight.report_rules import DEFAULT_LIMITS, Limits
+from missions.simulator.server import CommonTime
 from planning.base.errors import GroundStationError
 from planning.base.findings import Finding, Severity
 from planning.base.messages import say
@@ -240,7 +241,7 @@ class Fleet:
     """
 
     def __init__(self, case: Case, folder: Path, flown: tuple[FlightRecord, ...] = ()) -> None:
-        self.coverage, self.traffic = LiveCoverage(case), Traffic()
+        self.coverage, self.traffic, self.simulated_time = LiveCoverage(case), Traffic(), CommonTime()
         self._case, self._lock = case, threading.Lock()
         self._recordings = FlightRecordings(case, folder, flown)
         self._legs: dict[int, LegTimes | None] = {}

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from missions.mavlink.link import Link, memory_pair, open_link
@@ -25,7 +26,16 @@ from missions.mavlink.messages import (
     SystemTime,
 )
 from missions.mavlink.wire import Decoder
-from missions.simulator.server import DEAF_S, MAX_FLOWN_S, MAX_STEP_S, DirectLink, FlownClock, serve
+from missions.simulator.server import (
+    DEAF_S,
+    LEAD_S,
+    MAX_FLOWN_S,
+    MAX_STEP_S,
+    CommonTime,
+    DirectLink,
+    FlownClock,
+    serve,
+)
 from missions.simulator.vehicle import SimulatedVehicle
 from planning.base.errors import LinkError
 from planning.base.progress import StopRequest
@@ -245,3 +255,36 @@ def test_mission_is_uploaded_over_tcp_and_a_client_that_leaves_disturbs_nobody()
         assert wait(stays, MissionAck).type == 0
         stays.close()
     assert len(vehicle.stores.mission) == 2
+
+
+def test_vehicles_that_are_simulated_at_once_wait_for_each_other():
+    common, one, other = CommonTime(), FlownClock(5.0), FlownClock(900.0)
+    common.join(one)
+    one.advance(60.0)
+    assert common.may_fly(one), "nobody to wait for"
+    common.join(other)
+    one.advance(0.9 * LEAD_S)
+    assert common.may_fly(one)
+    one.advance(LEAD_S)
+    assert not common.may_fly(one)
+    assert common.may_fly(other), "the one behind always may"
+    other.advance(LEAD_S)
+    assert common.may_fly(one)
+    one.advance(30.0)
+    common.leave(other)
+    assert common.may_fly(one)
+
+
+def test_time_in_common_lets_threads_fly_equally_long():
+    """Each is held up by another thread that takes the processor, and none gets ahead."""
+    common, clocks = CommonTime(), [FlownClock(), FlownClock(7.0), FlownClock(3.0)]
+    starts = [clock() for clock in clocks]
+    for clock in clocks:
+        common.join(clock)
+    rng = np.random.default_rng(0)
+    for turn in rng.choice(3, 4000, p=(0.8, 0.15, 0.05)):
+        if common.may_fly(clocks[turn]):
+            clocks[turn].advance(float(rng.uniform(0.0, MAX_STEP_S)))
+    flown = [clock() - start for clock, start in zip(clocks, starts, strict=True)]
+    assert max(flown) - min(flown) <= LEAD_S + MAX_STEP_S
+    assert min(flown) > 1.0

@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 
 from planning.aircraft.catalogue import profile
 from planning.base.progress import QUIET
-from planning.coverage.image_error import ImageErrorModel, decibels
-from planning.coverage.mirrored_rays import Surroundings, pane_reflectance
+from planning.coverage.image_error import FAR_M, ImageErrorModel, Term, _looks, decibels
+from planning.coverage.mirrored_rays import MirroredRays, Surroundings, pane_reflectance
 from planning.coverage.sections import panel_frames
 from planning.parameters import Constraints, GreedyParameters
 from planning.plan import ViewpointArrays, plan_of, plan_to_json
@@ -42,6 +42,8 @@ from planning.viewpoints.spacing import SpacingRule
 from planning.viewpoints.unseen import random_views, walk_views
 from reconstruction.scenes.light.pane_surfaces import pane_light
 from reconstruction.scenes.record import Glass
+
+TILT = Term("tilt", 0.01, 0.0025)
 
 
 @cache
@@ -197,6 +199,59 @@ def test_more_photos_never_leave_more_error_and_none_leave_all_of_it():
     assert errors == sorted(errors, reverse=True)
     assert errors[-1] > error.floor
     assert decibels(0.01) == pytest.approx(20.0)
+
+
+@given(st.integers(0, 2**32 - 1))
+def test_a_tilt_moves_what_is_mirrored_as_its_information_says(seed):
+    """By turning the normal of a pane a little and mirroring anew; the mean of both its edges."""
+    rng = np.random.default_rng(seed)
+    normal, along = np.linalg.qr(rng.normal(size=(3, 2)))[0].T
+    edges, s = (along, np.cross(normal, along)), 1e-5
+    incoming = rng.normal(size=3)
+    incoming *= -np.sign(incoming @ normal) / np.linalg.norm(incoming)
+
+    def mirrored(n):
+        n = n / np.linalg.norm(n)
+        return incoming - 2.0 * (incoming @ n) * n
+
+    moved = [np.linalg.norm(mirrored(normal + s * edge) - mirrored(normal)) / s for edge in edges]
+    here = mirrored(normal)
+    rays = MirroredRays(
+        1,
+        1,
+        *(np.zeros(1, np.int64),) * 2,
+        np.zeros((1, 2)),
+        np.zeros((1, 3)),
+        np.ones(1),
+        *(incoming[None], here[None], np.array([FAR_M / 4.0])),
+    )
+    assert _looks(TILT, rays)[0] == pytest.approx(np.mean(np.square(moved)) / 4.0 / 16.0, rel=1e-3, abs=1e-9)
+    assert _looks(TILT, replace(rays, distances_m=np.array([np.inf])))[0] == 0.0, "sky tells nothing"
+
+
+@pytest.mark.parametrize("name", ["single-panel", pytest.param("court", marks=pytest.mark.slow)])
+@given(seed=st.integers(0, 2**32 - 1))
+def test_with_tilts_of_panes_less_error_is_monotone_and_submodular_too(name, seed):
+    (leaning, amounts), rng = with_tilts(name), np.random.default_rng(seed)
+    larger = rng.permutation(len(amounts))[: rng.integers(2, 12)]
+    smaller, more = larger[: len(larger) // 2], amounts[rng.integers(len(amounts))]
+    few, many = (amounts[chosen].sum(axis=0) for chosen in (smaller, larger))
+    least, less = (leaning.error_of(sums) - leaning.error_of(sums + more) for sums in (many, few))
+    assert less >= least - 1e-15
+    assert least >= 0.0
+    assert leaning.error_of(many) <= leaning.error_of(few) <= leaning.most_error + 1e-15
+
+
+@cache
+def with_tilts(name):
+    """Tilts alone, and what each of some views tells of them."""
+    site, views = prepared(name).site_model, candidates(name, 40)
+    surroundings = Surroundings(site, panel_frames(panel_corners(site.site)))
+    leaning = ImageErrorModel(surroundings, profile("m3e").camera, (TILT,), [views])
+    assert 0 < leaning.n_elements <= site.site.n_panels
+    shown, amounts = leaning.shown(views), np.zeros((40, leaning.n_elements))
+    np.add.at(amounts, (np.repeat(np.arange(40), np.diff(shown.starts)), shown.items), shown.amounts)
+    return leaning, amounts
 
 
 def test_amounts_in_single_precision_are_those_in_double():
