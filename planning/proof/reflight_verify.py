@@ -159,8 +159,8 @@ class Solids:
         numbers = sorted(numbers, key=lambda k: (max([corner[axis] for corner in self.triangles[k]]), k))
         return low, high, [self._boxes(numbers[:half]), self._boxes(numbers[half:])], ()
 
-    def nearer(self, points: list[Vec], directions: list[Vec], gap: float) -> int:
-        """A triangle that no direction separates by `gap` from the convex hull of points; -1 where there is none.
+    def clear(self, points: list[Vec], directions: list[Vec], gap: float) -> bool:
+        """Whether directions separate each triangle by `gap` from the convex hull of points.
 
         Directions are shorter than 1, so that a gap along one is a lower bound of the distance.
         """
@@ -176,8 +176,8 @@ class Solids:
                 stack.extend(halves)
                 for k in numbers:
                     if not any([max([dot(n, v) for v in self.triangles[k]]) <= level for n, level in levels]):
-                        return int(k)
-        return -1
+                        return False
+        return True
 
 class Pane:
     """A panel: centroid c, normal n, tangents t and b of its hemisphere, and where lines of sight end."""
@@ -392,12 +392,12 @@ class Case:
         far = any([end[i] <= low[i] - E or end[i] >= high[i] + E for i in range(3)]) or not solids.triangles
         demand(starts and far, "no way is shown from home to outside of everything")
         for ends, by in zip(pairwise(way), self.proof["outside_directions"], strict=True):
-            free = solids.nearer(list(ends), self._named(by), 0.0) < 0
+            free = solids.clear(list(ends), self._named(by), 0.0)
             demand(free, "the way from home to outside of everything is not free")
 
     def distance(self) -> str:
         for s, k, a, b in self.legs:
-            if self.solids.nearer([a, b], self._named(self.proof["legs"][s][k]), self.near_m) >= 0:
+            if not self.solids.clear([a, b], self._named(self.proof["legs"][s][k]), self.near_m):
                 places = (a, b, scaled(plus(a, b), 0.5))
                 is_near = any([distance(p, each) <= self.near_m - E for each in self.solids.triangles for p in places])
                 why = f"sortie {s + 1}, leg {k + 1}: {self.near_m:g} m from everything are not kept"
@@ -410,7 +410,7 @@ class Case:
         if not self.no_fly.triangles:
             return "the site has no no-fly volumes"
         for s, k, a, b in self.legs:
-            kept = self.no_fly.nearer([a, b], self._named(self.proof["no_fly"][s][k]), 0.0) < 0
+            kept = self.no_fly.clear([a, b], self._named(self.proof["no_fly"][s][k]), 0.0)
             demand(kept, f"sortie {s + 1}, leg {k + 1} may enter a no-fly volume")
         self._leaves(self.no_fly)
         return "no leg enters a no-fly volume"
@@ -425,7 +425,7 @@ class Case:
             climb: list[Vec] = [a, b, (a[0], a[1], tops[0]), (b[0], b[1], tops[1])]
             home: list[Vec] = [(p[0], p[1], top) for p in (a, b, self.home) for top in tops]
             for part in (climb, home, [self.home, (x, y, max(tops))]):
-                kept = self.solids.nearer(part, by, kept_m) < 0 and self.no_fly.nearer(part, by, 0.0) < 0
+                kept = self.solids.clear(part, by, kept_m) and self.no_fly.clear(part, by, 0.0)
                 why = f"the return from sortie {s + 1}, leg {k + 1} may come nearer than {kept_m:g} m to something"
                 demand(kept, why)
         return (f"from everywhere: up to {above_m:g} m above take-off, level home and down keeps {kept_m:g} m, outside "
@@ -477,7 +477,7 @@ class Case:
         kept += [ring == 0 or along <= self.angles[ring][1] * away - E, along >= self.angles[ring + 1][1] * away + E]
         if not all(kept) or self.occlusion == "off":
             return all(kept)
-        return self.solids.nearer([place, pane.target], self._named(sight), 0.0) < 0
+        return self.solids.clear([place, pane.target], self._named(sight), 0.0)
 
     def covers(self, view: tuple[str, Vec, float, float], element: int) -> bool:
         (_, place, heading, pitch), pane = view, self.panes[element // self.n]
@@ -508,7 +508,7 @@ class Case:
         for element, x, y, z, by in get(self.proof, "witnesses", list):
             place = vector([x, y, z], "witnesses")
             inside = all([a <= p <= b for a, p, b in zip(self.low, place, self.high, strict=True)])
-            inside = inside and self.solids.nearer([place], self._named(by), self.near_m) < 0
+            inside = inside and self.solids.clear([place], self._named(by), self.near_m)
             shown += inside and self.lies_in(place, place_in(element, total, "witnesses"), by)
         demand(total - len(done) <= bound, f"{len(done)} of {total - bound:g} sections are shown to be out of reach")
         return (f"no flight in this airspace, with this gimbal and {self.near_m:g} m from everything covers more than "
@@ -718,7 +718,7 @@ class Mission:
 
     def _flown(self, text: str, rules: dict[str, re.Pattern[str]], order: str) -> tuple[list[Vec], list[Vec], Any]:
         """Places, photos and heights of return that the blocks of a text say."""
-        places, photos, returns, letters, at = list[Vec](), list[Vec](), [1e6], "", 0
+        places, photos, returns, letters, at = list[Vec](), list[Vec](), list[float](), "", 0
         while at < len(text):
             letter, found = next(((k, m) for k, each in rules.items() if (m := each.match(text, at))), ("", None))
             demand(found is not None, f"what follows place {len(places)} is not as Reflight writes it")
@@ -726,18 +726,18 @@ class Mission:
             n = {k: float(v) for k, v in found.groupdict().items() if v is not None}  # type: ignore[union-attr]
             if "x" in n:
                 place = n["y"], n["x"], n["z"] if "z" in n else n["t" if self.is_relative else "e"]
-                last = places[-1] if places and not self.is_dji else (1e9, 1e9, 1e9)  # MAVLink repeats a place to wait
-                shift = sub(place, last)
-                places += [place] if max(abs(shift[0]), abs(shift[1])) > 1e-8 or abs(shift[2]) > SAME_M else []
+                shifts = [sub(place, last) for last in places[-1:] if not self.is_dji]  # MAVLink repeats one to wait
+                is_again = [max(abs(x), abs(y)) <= 1e-8 and abs(z) <= SAME_M for x, y, z in shifts]
+                places += [] if any(is_again) else [place]
             photos += [(len(places) - 1.0, n["h"], n["p"])] if "h" in n else []
             returns, self.zooms = returns + [n[k] for k in "cr" if k in n], self.zooms + [n[k] for k in "q" if k in n]
             self.speeds = self.speeds + [n.get("v", 0.0)]
             waits = [n.get(wait, 0.0) for wait in "swf"]
             is_right = min(waits) >= 0.0 and max(waits) <= 60.0 and n.get("i", len(places) - 1) == len(places) - 1
-            demand(is_right and max(map(abs, n.values()), default=0.0) <= 1e6, "a wait or a number is wrong")
+            demand(is_right and all([abs(x) <= 1e6 for x in n.values()]), "a wait or a number is wrong")
         demand(re.fullmatch(order, letters) is not None, "its parts are not in the order in which Reflight writes them")
-        demand(min(returns) > 0.0, "a height of return is not above take-off")
-        return places, photos, returns[1:]
+        demand(all([height > 0.0 for height in returns]), "a height of return is not above take-off")
+        return places, photos, returns
 
 def flies(case: Case, mission: Mission) -> int:
     """The sortie that a mission flies."""

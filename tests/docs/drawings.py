@@ -1,4 +1,4 @@
-"""The drawings of docs/drawings as SVG: data flow, sections of a hemisphere, the house, phases of a flight."""
+"""The drawings of docs/drawings as SVG: data flow, sections of a hemisphere, the house, phases of a flight, proofs."""
 
 from __future__ import annotations
 
@@ -92,6 +92,7 @@ def drawings(pyproject: Path) -> dict[str, str]:
         "hemisphere-sections.svg": hemisphere_sections(),
         "house.svg": house(pyproject),
         "flight-phases.svg": flight_phases(),
+        "proof.svg": proof(),
     }
 
 
@@ -292,4 +293,58 @@ def flight_phases() -> str:
     drawing.arrow([(252, 192), (162, 192)])
     drawing.text(20, 285, "green: what leads on", size=12, colour=GREEN)
     drawing.text(170, 285, "red: what may end it", size=12, colour=RED)
+    return drawing.svg()
+
+
+def proof() -> str:
+    """A flight before a building from the side: what is proved of it in green, what is not in red."""
+    drawing = Drawing(940, 440, "What is proved of a flight before a building, and what is not")
+    ground = [(0, 385), (200, 380), (330, 392), (480, 380), (560, 370), (940, 370), (940, 440), (0, 440)]
+    drawing.polygon(np.array(ground, np.float64), "#e9e4d8")
+    drawing.polygon(np.array([(640, 130), (800, 130), (800, 370), (640, 370)], np.float64), PALE)
+    for y in (140, 216, 292):
+        drawing.polygon(np.array([(632, y), (640, y), (640, y + 66), (632, y + 66)], np.float64), "#9fb8c8")
+    # Boxes behind the building, from which its panels cannot be seen.
+    for x, y, w, h in (
+        (806, 130, 60, 80),
+        (866, 130, 60, 80),
+        (806, 210, 60, 80),
+        (866, 210, 30, 40),
+        (896, 210, 30, 40),
+    ):
+        box = [(x, y), (x + w, y), (x + w, y + h), (x, y + h)]
+        drawing.polygon(np.array(box, np.float64), BLUE, BLUE, 0.12)
+    drawing.text(806, 100, "boxes: nothing", colour=GREEN, size=12)
+    drawing.text(806, 116, "is seen from here", colour=GREEN, size=12)
+    drawing.polygon(np.array([(225, 250), (305, 250), (305, 383), (225, 383)], np.float64), RED, RED, 0.12)
+    drawing.text(265, 243, "no-fly volume: not entered", "middle", colour=GREEN, size=12)
+    # The flight: column, legs, views, and the return from anywhere.
+    drawing.arrow([(110, 380), (110, 200), (520, 160)], BLUE)
+    drawing.arrow([(520, 160), (520, 330)], BLUE)
+    drawing.arrow([(520, 330), (400, 215), (114, 232)], BLUE)
+    drawing.arrow([(520, 300), (505, 290), (505, 90), (96, 90), (96, 376)], GREEN, is_dashed=True)
+    drawing.text(120, 82, "return: up, level home, down; the battery keeps its reserve", colour=GREEN, size=12)
+    drawing.text(30, 400, "straight above home", colour=GREEN, size=12)
+    for y in (170, 320):
+        drawing.arrow([(520, y), (628, y)], ORANGE)
+    drawing.text(528, 162, "a view covers", colour=GREEN, size=12)
+    drawing.text(528, 338, "a section", colour=GREEN, size=12)
+    drawing.shapes.append(f'<line x1="595" y1="30" x2="595" y2="368" stroke="{GREEN}" stroke-dasharray="9 4"/>')
+    drawing.text(640, 22, "a plane between leg and building:", "end", colour=GREEN, size=12)
+    drawing.text(590, 40, "the leg keeps its distance", "end", colour=GREEN, size=12)
+    drawing.arrow([(420, 234), (420, 384)], GREEN)
+    drawing.text(428, 364, "height above ground", colour=GREEN, size=12)
+    # What the files cannot tell.
+    for y in (140, 152, 164):
+        drawing.arrow([(20, y), (80, y)], RED)
+    drawing.text(20, 130, "wind", colour=RED, size=12)
+    drawing.shapes.append(f'<circle cx="520" cy="205" r="17" fill="none" stroke="{RED}" stroke-dasharray="3 3"/>')
+    drawing.text(497, 193, "where GNSS has it", "end", colour=RED, size=12)
+    drawing.shapes.append(
+        f'<path d="M735 130 V40 H660" fill="none" stroke="{RED}" stroke-width="2" stroke-dasharray="4 4"/>'
+    )
+    drawing.text(742, 52, "a crane that the site lacks", colour=RED, size=12)
+    drawing.text(250, 212, "corners cut by the autopilot", "middle", colour=RED, size=12)
+    drawing.text(30, 428, "green: proved on the files", colour=GREEN, size=12)
+    drawing.text(230, 428, "red: not proved", colour=RED, size=12)
     return drawing.svg()

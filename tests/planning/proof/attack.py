@@ -49,17 +49,19 @@ def attack(seed: int, kind: str, files: Mapping[str, bytes], places: Places, ver
     return Outcome(kind, changed, claims, wrongly_proved(changed, claims, places))
 
 
-SPEAKS_OF: dict[str, tuple[str, ...]] = {
-    "distance": ("sorties", "constraints"),
-    "no-fly": ("sorties",),
-    "return": ("sorties", "constraints"),
-    "battery": ("sorties", "viewpoints", "aircraft", "rules"),
-    "coverage": ("viewpoints", "camera", "constraints", "coverage"),
-    "reachable": ("camera", "constraints", "coverage"),
-    "mission": ("sorties", "viewpoints", "aircraft", "camera", "origin", "home_enu_m"),
-    "missions": ("sorties", "viewpoints", "aircraft", "camera", "origin", "home_enu_m"),
+LEGS, VIEWS, FLIGHT = ("sorties", "constraints"), ("camera", "constraints", "coverage"), ("origin", "home_enu_m")
+
+SPEAKS_OF: dict[str, tuple[tuple[str, ...] | None, tuple[str, ...]]] = {
+    "distance": (None, LEGS),
+    "no-fly": (None, ("sorties",)),
+    "return": (None, LEGS),
+    "battery": ((), ("sorties", "viewpoints", "aircraft", "rules")),
+    "coverage": (None, ("viewpoints", *VIEWS)),
+    "reachable": (None, VIEWS),
+    "mission": (FLIGHT, ("sorties", "viewpoints", "aircraft", "camera", *FLIGHT)),
+    "missions": (FLIGHT, ("sorties", "viewpoints", "aircraft", "camera", *FLIGHT)),
 }
-"""Parts of the plan that claims speak of, beside the whole site with its meshes: the claims that take long to judge."""
+"""Parts of the site, None for all of it with its meshes, and of the plan: of the claims that take long to judge."""
 
 
 class Judge:
@@ -85,19 +87,20 @@ class Judge:
 
 def _spoken_of(case: Case, claim: str) -> tuple[object, ...] | None:
     """Everything that the truth of a claim depends on; None where it is soon judged, or what it is cannot be read."""
-    parts = SPEAKS_OF.get(claim.split(" ", maxsplit=1)[0])
-    if parts is None:
+    name = claim.partition(" ")[0]
+    if name not in SPEAKS_OF:
         return None
+    of_site, of_plan = SPEAKS_OF[name]
     missions = mission_names(case.files)
-    read = [name for name in case.files if name not in ("plan.json", "plan.proof", *missions)]
-    read += missions if claim == "missions" else [name for name in missions if claim == f"mission {name}"]
+    read = missions if claim == "missions" else [each for each in missions if claim == f"mission {each}"]
+    if of_site is None:
+        read = [each for each in case.files if each not in ("plan.json", "plan.proof", *missions)]
     try:
-        proof, plan = case.json("plan.proof"), case.plan
-        of_plan = tuple(json.dumps(plan.get(part)) for part in parts)
-        of_proof = json.dumps([proof.get(name) for name in ("return_height_m", "return_kept_m")])
+        parts = [case.site.get(part) for part in of_site or ()] + [case.plan.get(part) for part in of_plan]
+        parts += [case.json("plan.proof").get(name) for name in ("return_height_m", "return_kept_m")]
     except Exception:  # a damaged file breaks readers in ways without number
         return None
-    return claim, of_plan, of_proof, *((name, case.files[name]) for name in read)
+    return claim, json.dumps(parts), *((each, case.files[each]) for each in read)
 
 
 def wrongly_proved(files: Mapping[str, bytes], claims: Sequence[Claim], places: Places) -> list[Claim]:

@@ -263,6 +263,14 @@ def _turned(a: float, b: float) -> float:
 
 def sortie_of(case: Case, name: str) -> int | None:
     """The sortie that a mission flies; None where there is none."""
+    key = f"sortie of {name}"
+    if key not in case._read:
+        case._read[key] = _sortie_of(case, name)
+    found: int | None = case._read[key]
+    return found
+
+
+def _sortie_of(case: Case, name: str) -> int | None:
     merged: list[Stop] = []
     for stop in stops_of(case, name):
         if merged and _apart(stop.place, [float(x) for x in merged[-1].place]) < 2e-3:

@@ -107,6 +107,8 @@ def _texts(tree: ast.AST) -> set[int]:
             parts.append(node.annotation)
         if isinstance(node, ast.JoinedStr):
             parts.append(node)
+        if isinstance(node, ast.keyword) and node.arg == "strict":  # of zip: lists of this program's own, equally long
+            parts.append(node)
         for part in parts:
             if part is not None:
                 found.update(id(each) for each in ast.walk(part))

@@ -152,7 +152,7 @@ def _geometry(module: ModuleType, random: Random) -> Iterator[Any]:
             n = point(1.0)
             directions = [tuple(0.99 * x / math.hypot(*n) for x in n)]
             ends = [tuple(6.0 * x + y for x, y in zip(n, point(1.0), strict=True)) for _ in range(2)]
-            yield solids.nearer(ends, directions, random.choice((0.0, 0.5)))
+            yield solids.clear(ends, directions, random.choice((0.0, 0.5)))
     yield module.prism([(0.0, 0.0), (4.0, 0.0), (4.0, 3.0), (2.0, 1.0)], 1.0, 2.0)
     for k in range(60):
         tilt = random.choice((0.0, 1e-13, 5e-7, 1.0e-6, 1.002e-6, 0.3, 2.0))

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import ast
 import os
 import signal
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
 from itertools import islice
@@ -13,9 +14,11 @@ from pathlib import Path
 from random import Random
 from tempfile import TemporaryDirectory
 from types import ModuleType
+from typing import Any, NamedTuple
 
 import pytest
 
+from tests.planning.proof.borders import SECTIONS, Probe
 from tests.planning.proof.mutants import Mutant, mutants
 from tests.planning.proof.probes import answers
 from tests.planning.proof.scenes import kept_hut
@@ -71,45 +74,96 @@ def _claims(module: ModuleType, folder: Path) -> list[Claim]:
     return [Claim(each["id"], each["verdict"], each["text"]) for each in found]
 
 
-def _is_told(mutant: Mutant, truth: list[str], folders: list[Path], claims: list[list[Claim]]) -> bool:
-    """Whether anything tells a mutant from the verifier."""
+Ask = Callable[[ModuleType], Iterator[Any]]
+
+
+class Known(NamedTuple):
+    """A question to a verifier, what it answers, and the lines at which the functions begin that it has called."""
+
+    ask: Ask
+    answers: list[str]
+    called: set[int]
+
+
+def _known(module: ModuleType, folders: list[Path]) -> list[Known]:
+    """All questions: probes of parts, the hut, borders, tampered huts."""
+
+    def claimed(folder: Path) -> Ask:
+        return lambda of: iter(_claims(of, folder))
+
+    def bordered(section: Callable[[Probe], Iterator[Any]]) -> Ask:
+        return lambda of: section(Probe(of, folders[0]))
+
+    asks = [
+        answers,
+        claimed(folders[0]),
+        *(bordered(each) for each in SECTIONS),
+        *(claimed(each) for each in folders[1:]),
+    ]
+    return [_asked(module, ask) for ask in asks]
+
+
+def _asked(module: ModuleType, ask: Ask) -> Known:
+    called: set[int] = set()
+
+    def note(frame: Any, event: str, _argument: object) -> None:
+        if event == "call" and frame.f_code.co_filename == str(PYTHON):
+            called.add(frame.f_code.co_firstlineno)
+
+    sys.setprofile(note)
+    try:
+        found = [repr(answer) for answer in ask(module)]
+    finally:
+        sys.setprofile(None)
+    return Known(ask, found, called)
+
+
+def _functions(source: str) -> list[tuple[int, int]]:
+    """First and last lines of all functions, inner ones last."""
+    nodes = [node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.FunctionDef)]
+    return sorted((node.lineno, node.end_lineno or node.lineno) for node in nodes)
+
+
+def _is_told(mutant: Mutant, known: list[Known], functions: list[tuple[int, int]]) -> bool:
+    """Whether anything tells a mutant from the verifier; only what calls the changed function can."""
     module = ModuleType("mutant")
     sys.modules[module.__name__] = module
+    around = [first for first, last in functions if first <= mutant.line <= last]
     try:
         with _alarm():
             exec(mutant.code, module.__dict__)
-            if any(repr(answer) != known for answer, known in zip(answers(module), truth, strict=True)):
-                return True
-            return any(_claims(module, folder) != known for folder, known in zip(folders, claims, strict=True))
+            for question in known:
+                if around and around[-1] not in question.called:
+                    continue
+                given = question.ask(module)
+                if any(repr(next(given)) != answer for answer in question.answers) or next(given, None) is not None:
+                    return True
+            return False
     except Exception:  # a mutant that breaks is told by that
         return True
 
 
 def _survivors(part: int) -> tuple[int, list[str]]:
     """How many mutants a part of them holds, and those that nothing tells."""
-    module, source = load(), PYTHON.read_text(encoding="utf-8")
-    truth = [repr(answer) for answer in answers(module)]
+    source = PYTHON.read_text(encoding="utf-8")
     lines, found, n = source.splitlines(), [], 0
     with TemporaryDirectory() as name:
-        folders = _folders(Path(name))
-        claims = [_claims(module, folder) for folder in folders]
+        known, functions = _known(load(), _folders(Path(name))), _functions(source)
         for mutant in islice(mutants(source), part, None, N_PARTS):
             n += 1
-            if not _is_told(mutant, truth, folders, claims):
+            if not _is_told(mutant, known, functions):
                 found.append(f"{mutant.line}: {mutant.change} | {lines[mutant.line - 1].strip()[:100]}")
     return n, found
 
 
 def test_a_mutant_without_a_check_is_told(tmp_path: Path) -> None:
-    module, source = load(), PYTHON.read_text(encoding="utf-8")
-    folders = _folders(tmp_path)[:1]
-    claims = [_claims(module, folder) for folder in folders]
-    truth = [repr(answer) for answer in answers(module)]
-    first = next(mutants(source))
+    source = PYTHON.read_text(encoding="utf-8")
+    known, functions = _known(load(), _folders(tmp_path)[:1])[:2], _functions(source)
     same = Mutant(0, "nothing", compile(source, str(PYTHON), "exec"))
-    assert not _is_told(same, truth, folders, claims)
-    other = compile(source.replace("has a key twice", "is odd"), "mutant", "exec")
-    assert _is_told(first._replace(code=other), truth, folders, claims)
+    assert not _is_told(same, known, functions)
+    line = source[: source.index("has a key twice")].count("\n") + 1
+    other = Mutant(line, "words", compile(source.replace("has a key twice", "is odd"), "mutant", "exec"))
+    assert _is_told(other, known, functions)
 
 
 @pytest.mark.slow

@@ -74,7 +74,7 @@ def test_what_is_separated_keeps_its_distance(seed: int) -> None:
         if size > 0.0:
             directions.append(tuple(0.9999999999999 * x / size for x in vector))
     gap = nearest + random.choice((-1e-3, -1e-6, -2e-7, -1e-7, -1e-9, 0.0, 1e-12, 1e-7)) * random.random()
-    if gap > 0.0 and verifier.Solids(triangles).nearer([a, b], directions, gap) < 0:
+    if gap > 0.0 and verifier.Solids(triangles).clear([a, b], directions, gap):
         assert min(exact) >= Fraction(gap) ** 2
 
 

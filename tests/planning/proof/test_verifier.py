@@ -12,11 +12,13 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from groundstation.services.mission.export import export_plan
 from groundstation.services.mission.proof import PAGE, VERIFIER, verified
 from groundstation.services.plan.planning import plan_site
+from planning.geo.height_field import HeightField
 from planning.geo.mesh import write_mesh
 from planning.parameters import Constraints, GreedyParameters
 from planning.proof.make import proof_path
@@ -24,6 +26,8 @@ from planning.proof.reflight_verify import CLAIMS, Case, Mission, flies, judged
 from planning.request import PlanRequest
 from planning.site.bundled import write_scene
 from planning.site.file import write_site
+from planning.site.records import SiteModel
+from planning.site.terrain import terrain_of
 from tests.planning.plan_cases import kiosk
 
 Change = Callable[[dict[str, Any]], None]
@@ -248,6 +252,28 @@ def test_plans_on_bundled_sites_are_proved(tmp_path: Path, scene: str) -> None:
     plan_site(site, PlanRequest(time_budget_s=60.0), plan)
     found = verified(site, plan, proof_path(plan))
     assert {claim.verdict for claim in found} == {"proved"}, found
+
+
+def on_a_slope() -> SiteModel:
+    """The kiosk on ground that rises by 2 m in 10 m to the north, with waves of 0.3 m."""
+    x, y = np.meshgrid(np.arange(-60.0, 61.0, 2.0), np.arange(-60.0, 61.0, 2.0))
+    z = 0.2 * y + 0.3 * np.sin(x / 3.0) * np.cos(y / 4.0)
+    ground = terrain_of(HeightField(-60.0, -60.0, 2.0, z), z + 0.05, z - 0.05, accuracy_m=0.1)
+    return kiosk(terrain=ground, home_enu_m=(0.0, -30.0, -5.5))
+
+
+@pytest.mark.slow
+def test_a_plan_on_a_slope_is_proved(tmp_path: Path) -> None:
+    model = on_a_slope()
+    write_mesh(tmp_path / "kiosk.ply", model.building)
+    write_site(tmp_path / "kiosk.site.json", model.site)
+    plan_site(tmp_path / "kiosk.site.json", FEW, tmp_path / "kiosk.plan.json")
+    found = verdicts(tmp_path)
+    assert set(found.values()) == {"proved"}, found
+    steeper = with_changed(
+        tmp_path, tmp_path / "steeper", "kiosk.site.json", lambda site: site["terrain"].update(accuracy_m=9.0)
+    )
+    assert verdict(steeper, "airspace") == "false"
 
 
 MOST_LINES, MOST_COLUMNS = 830, 120
