@@ -19,7 +19,7 @@ COUNTS = {"planar": (50, 100, 200), "curved": (50, 100), "court": (50, 100), "pl
 FAR = ("planar-far",)
 NEAR = tuple(scene for scene in COUNTS if scene not in FAR)
 METHODS = ("random", "sections", "image-error")
-N_SEEDS = 2
+N_SEEDS = 3
 
 N_FURTHER = 100
 FURTHER = {
