@@ -45,7 +45,7 @@ class Ellipsoids:
     sh
         Coefficients of display colours (sRGB values less 0.5), shape (n, 16, 3): those of real harmonics with the phase
         (-1)^m, as 3DGS files have them. Colour = 0.5 + sum of coefficient times harmonic of the direction from the
-        camera to the mean.
+        camera to the mean. Fewer than 16 of a lower degree.
     panels
         Number of the panel that each lies on, int32, shape (n,); -1 for none.
     """
@@ -72,17 +72,17 @@ class Ellipsoids:
         )
 
 
-def ellipsoids_of(component: GsComponent) -> Ellipsoids:
-    """Those of a component, in the order of its rows."""
+def ellipsoids_of(component: GsComponent, degree: int = 3) -> Ellipsoids:
+    """Those of a component, in the order of its rows, with the harmonics of a degree."""
     panels = np.full(len(component.gaussians), NO_PANEL, np.int32)
     for element in component.elements:
         panels[element.start : element.stop] = element.panel
-    return _ellipsoids(component.gaussians, panels)
+    return _ellipsoids(component.gaussians, panels, (degree + 1) ** 2)
 
 
-def ellipsoids_of_all(components: Iterable[GsComponent]) -> Ellipsoids:
-    """Those of components, one after the other."""
-    parts = [ellipsoids_of(component) for component in components]
+def ellipsoids_of_all(components: Iterable[GsComponent], degree: int = 3) -> Ellipsoids:
+    """Those of components, one after the other, with the harmonics of a degree."""
+    parts = [ellipsoids_of(component, degree) for component in components]
     return Ellipsoids(
         *(
             np.concatenate([getattr(part, name) for part in parts])
@@ -91,7 +91,7 @@ def ellipsoids_of_all(components: Iterable[GsComponent]) -> Ellipsoids:
     )
 
 
-def _ellipsoids(gaussians: GsGaussian, panels: NDArray[np.int32]) -> Ellipsoids:
+def _ellipsoids(gaussians: GsGaussian, panels: NDArray[np.int32], n_harmonics: int) -> Ellipsoids:
     values = gaussians.values
     scales = np.exp(values["log_scales"])
     if scales.shape[1] == 2:
@@ -101,7 +101,7 @@ def _ellipsoids(gaussians: GsGaussian, panels: NDArray[np.int32]) -> Ellipsoids:
         unit_quaternions(values["quats"]),
         scales.astype(np.float32, copy=False),
         _sigmoid(values["opacity_logits"]),
-        values["sh"] * ODD[:, None],
+        values["sh"][:, :n_harmonics] * ODD[:n_harmonics, None],
         panels,
     )
 

@@ -2,8 +2,12 @@
 
 All is in that one file, because a page that is opened from a disk may not read others, and tablets hand a browser just
 the file that was touched. Gaussians follow the page in chunks, the most visible ones first: the first picture is there
-before all is read. What users wrote is data: JSON whose characters cannot end a script, shown as text only; the page's
-policy forbids all network, all other scripts, and markup made of text.
+before all is read. Models that are too large for that have a coarse model in the page, and parts beside it
+(`page_parts`). These are scripts, which a page may load from the disk as well as by http; it keeps so many of them as
+there is room for, those that are seen largest.
+
+What users wrote is data: JSON whose characters cannot end a script, shown as text only; the page's policy forbids all
+network, all other scripts, and markup made of text.
 """
 
 from __future__ import annotations
@@ -12,6 +16,7 @@ import base64
 import hashlib
 import html
 import json
+import shutil
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from itertools import islice
@@ -24,11 +29,13 @@ from numpy.typing import NDArray
 
 from planning.base.errors import InputError
 from planning.base.files import MIB, FileLimit, make_folder, open_input_file
+from planning.base.json_file import write_atomically
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from reconstruction.exports.component_parts import Ellipsoids, ellipsoids_of_all
 from reconstruction.exports.compression import whole_file
 from reconstruction.exports.gaussian_blocks import raster_of
+from reconstruction.exports.page_parts import PART, GlassValues, TwoLevels, two_levels
 from reconstruction.exports.page_records import Row, by_object, columns_of, files_of
 from reconstruction.gpu.shaders import shader
 from reconstruction.objects.gs_scene import GsElement, GsScene
@@ -63,8 +70,14 @@ N_AT_ONCE = 8_192
 """Gaussians of a chunk: 8 rows of the page's texture, 0.6 MB of text, and up to 0.4 MB more of those on panes. With the
 first chunk the first picture is there."""
 
-MAX_GAUSSIANS = 4_000_000
-"""Textures of 4096 rows of 1024 Gaussians are what nearly every device bears."""
+MOST_EMBEDDED = 1_000_000
+"""Gaussians of a page that is one file: 75 MB with harmonics of degree 2, and mirrors."""
+
+RESIDENT = 1 << 21
+"""Gaussians of parts that a page keeps at most: 230 MB of graphics memory."""
+
+MAX_GAUSSIANS = 32_000_000
+"""2 GB of files."""
 
 MAX_PANES = 65_535
 
@@ -148,7 +161,13 @@ class PackedGlass:
             yield self.words[part].astype("<u4").tobytes() + self.rest[part].tobytes()
 
 
-def packed(gaussians: Ellipsoids, panes: NDArray[np.int32], degree: int, most: int | None = None) -> PackedGaussians:
+def packed(
+    gaussians: Ellipsoids,
+    panes: NDArray[np.int32],
+    degree: int,
+    most: int | None = None,
+    steps: NDArray[np.float32] | None = None,
+) -> PackedGaussians:
     """Gaussians for a page; those too faint to be drawn are left out.
 
     Parameters
@@ -159,6 +178,8 @@ def packed(gaussians: Ellipsoids, panes: NDArray[np.int32], degree: int, most: i
         Of the harmonics kept, 0 to 3.
     most
         So many of the most visible are kept; None: all.
+    steps
+        Of coefficients; None: such as suit these.
     """
     seen = np.flatnonzero(gaussians.opacities >= FAINTEST)
     order = seen[np.argsort(-_visibilities(gaussians)[seen], kind="stable")][:most]
@@ -173,23 +194,32 @@ def packed(gaussians: Ellipsoids, panes: NDArray[np.int32], degree: int, most: i
     halves[:, 3, 1] = panes[order] + 1
     words[:, 3:7] = halves[..., 0] | halves[..., 1].astype(np.uint32) << 16
     words[:, 7] = _bytes(_flat_shares(chosen.sh), chosen.opacities)
-    rest, steps = _rest(chosen.sh[:, 1 : (degree + 1) ** 2])
+    rest, steps = _rest(chosen.sh[:, 1 : (degree + 1) ** 2], steps)
     return PackedGaussians(words, rest, steps, order)
 
 
-def packed_glass(mirrors: PaneMirrors, places: NDArray[np.int32], chunks: PackedGaussians, degree: int) -> PackedGlass:
+def packed_glass(
+    glass: GlassValues, chunks: PackedGaussians, degree: int, steps: NDArray[np.float32] | None = None
+) -> PackedGlass:
     """Own values of Gaussians on panes.
 
     Parameters
     ----------
-    places
-        Row in the model of each Gaussian that `packed` was given.
+    glass
+        Of each Gaussian that `packed` was given.
+    steps
+        Of coefficients; None: such as suit these.
     """
     is_on_pane = chunks.is_on_pane
-    rows = places[chunks.rows[is_on_pane]]
-    sh, f0 = mirrors.sh[rows], mirrors.f0[rows]
-    words = np.column_stack([_bytes(_flat_shares(sh), mirrors.reflectivity[rows]), _bytes(f0, np.zeros(len(f0)))])
-    return PackedGlass(words, *_rest(sh[:, 1 : (degree + 1) ** 2]), is_on_pane)
+    own = glass.chosen(chunks.rows[is_on_pane])
+    more = _bytes(own.f0, np.zeros(len(own.f0)))
+    words = np.column_stack([_bytes(_flat_shares(own.sh), own.reflectivity), more])
+    return PackedGlass(words, *_rest(own.sh[:, 1 : (degree + 1) ** 2], steps), is_on_pane)
+
+
+def glass_of(mirrors: PaneMirrors, places: NDArray[np.int32], degree: int) -> GlassValues:
+    """Of Gaussians by their rows in the model, with harmonics of a degree."""
+    return GlassValues(mirrors.sh[places, : (degree + 1) ** 2], mirrors.reflectivity[places], mirrors.f0[places])
 
 
 def _visibilities(gaussians: Ellipsoids) -> NDArray[np.float32]:
@@ -211,12 +241,21 @@ def _bytes(three: NDArray[Any], one: NDArray[Any]) -> Words:
     return np.asarray((bytes_ << np.array([0, 8, 16, 24], np.uint32)).sum(axis=1, dtype=np.uint32))
 
 
-def _rest(coefficients: NDArray[np.float32]) -> tuple[NDArray[np.int8], NDArray[np.float32]]:
-    """Bytes of coefficients, and their steps: the outermost 0.1 % are cut, or a few stray ones would coarsen all."""
+def _steps(coefficients: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Of bytes of coefficients: the outermost 0.1 % are cut, or a few stray ones would coarsen all."""
     if not len(coefficients) or not coefficients.shape[1]:
-        return np.zeros(coefficients.shape, np.int8), np.zeros(coefficients.shape[1], np.float32)
+        return np.zeros(coefficients.shape[1], np.float32)
     largest = np.quantile(np.abs(coefficients), 0.999, axis=(0, 2), method="higher")
-    steps = np.maximum(largest / 127.0, 1e-12).astype(np.float32)
+    return np.maximum(largest / 127.0, 1e-12).astype(np.float32)
+
+
+def _rest(
+    coefficients: NDArray[np.float32], steps: NDArray[np.float32] | None = None
+) -> tuple[NDArray[np.int8], NDArray[np.float32]]:
+    """Bytes of coefficients, and their steps."""
+    steps = _steps(coefficients) if steps is None else steps
+    if not len(coefficients) or not coefficients.shape[1]:
+        return np.zeros(coefficients.shape, np.int8), steps
     return np.clip(np.rint(coefficients / steps[:, None]), -127.0, 127.0).astype(np.int8), steps
 
 
@@ -389,12 +428,26 @@ def plain_sky_light() -> Halves:
 
 FORMAT = "reflight-web/1"
 PAGE = "index.html"
+PARTS = "parts-"
 SIGN = f'<meta name="generator" content="{FORMAT}">'
 """Of our pages, in their first bytes: no other page is written over."""
 
 SOURCES = Path(__file__).parent / "data"
 SCRIPTS = (
-    *("words", "geometry", "order", "shaders", "picture", "mirrors", "colours", "records", "motion", "loading", "page"),
+    *(
+        "words",
+        "geometry",
+        "order",
+        "shaders",
+        "picture",
+        "mirrors",
+        "colours",
+        "records",
+        "motion",
+        "loading",
+        "parts",
+    ),
+    "page",
 )
 LAST = "scripting"
 SHADERS = ("view", "splats", "mirrors", "overlays")
@@ -502,8 +555,8 @@ def write_web(
     found, n_strays = by_object(records, frozenset({scene.global_id, *parts_of_scene}))
     files = files_of(found, options.content_of, monitor)
     gaussians = _gaussians(scene, elements, options, folder)
-    chunks = packed(gaussians, panes_of(gaussians, elements), options.degree, options.most)
-    glass = _glass(scene, chunks, options)
+    shown = _packed_scene(scene, gaussians, elements, options)
+    chunks, glass = shown.chunks, shown.glass
     sky = plain_sky_light() if options.sky is None else options.sky
     described = {
         "title": options.title or scene.name,
@@ -517,6 +570,7 @@ def write_web(
         "rest_steps": [float(step) for step in chunks.rest_steps],
         "colour_range": COLOUR_RANGE,
         "mirrors": None if glass is None else _described_mirrors(options, elements, glass),
+        "beside": shown.described(),
         "sky": {"rows": len(sky), "halves": base64.b64encode(sky.astype("<f2").tobytes()).decode()},
         "view": first_view(scene, elements, gaussians),
         **described_panes(scene, elements),
@@ -524,6 +578,7 @@ def write_web(
         "records": found,
         "files": files.as_json(),
     }
+    place = _name_parts(described)
     head = _head(described, options.title or scene.name)
 
     def parts() -> Iterator[bytes]:
@@ -534,6 +589,9 @@ def write_web(
             yield _block("g", number, chunk)
             for values in islice(own, 1):
                 yield _block("m", number, values)
+            if shown.part_of is not None:
+                numbers = shown.part_of[number * N_AT_ONCE : (number + 1) * N_AT_ONCE]
+                yield _block("b", number, numbers.astype("<u2").tobytes())
             if number == 0 and glass is not None and options.mirrors is not None:
                 # The first picture waits for neither the light nor the rest.
                 for place, block in enumerate(options.mirrors.blocks()):
@@ -543,10 +601,10 @@ def write_web(
                 yield _block(kind, number, content)
         yield b"</body></html>\n"
 
-    n_bytes = _write(folder, parts())
+    n_bytes = _write(folder, parts(), place, shown.files(monitor))
     states = list(files.states.values())
     lost = [states.count(state) for state in ("missing", "damaged", "large")]
-    counts = len(chunks), len(elements), len(files.pictures), len(files.documents), n_strays
+    counts = shown.n_gaussians, len(elements), len(files.pictures), len(files.documents), n_strays
     return WebPage(folder / PAGE, n_bytes, *counts, *lost)
 
 
@@ -580,7 +638,7 @@ def _gaussians(scene: GsScene, elements: Sequence[GsElement], options: WebOption
         raise InputError(
             say("not written: {} panels, a page bears {}; export one facade", len(elements), MAX_PANES, place=folder)
         )
-    gaussians = ellipsoids_of_all(scene.components)
+    gaussians = ellipsoids_of_all(scene.components, options.degree)
     for name in ("means_m", "quats", "scales_m", "opacities", "sh"):
         if not np.isfinite(getattr(gaussians, name)).all():
             raise InputError(
@@ -600,12 +658,99 @@ def _gaussians(scene: GsScene, elements: Sequence[GsElement], options: WebOption
     return gaussians
 
 
-def _glass(scene: GsScene, chunks: PackedGaussians, options: WebOptions) -> PackedGlass | None:
-    """None where no pane mirrors."""
-    if options.mirrors is None or not chunks.is_on_pane.any():
-        return None
-    places = np.concatenate([component.gaussians.places for component in scene.components])
-    return packed_glass(options.mirrors, places, chunks, options.degree)
+@dataclass(frozen=True, slots=True, eq=False)
+class _PackedScene:
+    """What a page has of a scene's Gaussians, and what lies beside it.
+
+    Parameters
+    ----------
+    chunks, glass
+        All of it, or the coarse model; `glass` None where no pane mirrors.
+    levels
+        None where all is in the page.
+    fine, own, panes
+        What parts are of, with values of glass and panes by row.
+    part_of
+        Number + 1 of the part that takes the place of each Gaussian in the page; 0 for none.
+    """
+
+    chunks: PackedGaussians
+    glass: PackedGlass | None
+    fine: Ellipsoids
+    own: GlassValues | None
+    panes: NDArray[np.int32]
+    degree: int
+    levels: TwoLevels | None = None
+    part_of: NDArray[np.int32] | None = None
+
+    @property
+    def n_gaussians(self) -> int:
+        """That can be seen, be it not all at once."""
+        return len(self.chunks) if self.levels is None else int((self.fine.opacities >= FAINTEST).sum())
+
+    def described(self) -> dict[str, Any] | None:
+        """For the page, as JSON has it: of each part how many Gaussians, how many of them on panes, and where."""
+        if self.levels is None:
+            return None
+        each = []
+        for part in self.levels.parts:
+            seen = self.fine.opacities[part.rows] >= FAINTEST
+            n_glass = int((seen & (self.panes[part.rows] >= 0)).sum()) if self.glass is not None else 0
+            each.append([int(seen.sum()), n_glass, *(round(value, 3) for value in (*part.middle_m, part.radius_m))])
+        most_glass = max((n_glass for _, n_glass, *_ in each), default=0)
+        room = min(len(each) * PART, RESIDENT)
+        return {"size": PART, "room": room, "most_glass": most_glass, "side": self.levels.side_m, "each": each}
+
+    def files(self, monitor: Monitor) -> Iterator[bytes]:
+        """Scripts that hand the page its parts."""
+        parts = () if self.levels is None else self.levels.parts
+        for number, part in enumerate(parts):
+            monitor.report(say("writing the page"), number, len(parts))
+            steps = self.chunks.rest_steps
+            chunks = packed(self.fine.chosen(part.rows), self.panes[part.rows], self.degree, steps=steps)
+            contents = [_in_one(chunks.words, chunks.rest)]
+            if self.glass is not None and self.own is not None:
+                steps = self.glass.rest_steps
+                glass = packed_glass(self.own.chosen(part.rows), chunks, self.degree, steps)
+                contents.append(_in_one(glass.words, glass.rest))
+            texts = b",".join(b'"%b"' % base64.b64encode(content) for content in contents)
+            yield b"reflightPart(%d,%b);\n" % (number, texts)
+
+
+def _in_one(words: Words, rest: NDArray[np.int8]) -> bytes:
+    return words.astype("<u4").tobytes() + rest.tobytes()
+
+
+def _packed_scene(
+    scene: GsScene, gaussians: Ellipsoids, elements: Sequence[GsElement], options: WebOptions
+) -> _PackedScene:
+    """All of it in the page, or a coarse model and parts."""
+    degree, mirrors, panes = options.degree, options.mirrors, panes_of(gaussians, elements)
+    own = None
+    if mirrors is not None and (panes >= 0).any():
+        own = glass_of(mirrors, np.concatenate([part.gaussians.places for part in scene.components]), degree)
+    if options.most is not None or len(gaussians) <= MOST_EMBEDDED:
+        chunks = packed(gaussians, panes, degree, options.most)
+        glass = None if own is None or not chunks.is_on_pane.any() else packed_glass(own, chunks, degree)
+        return _PackedScene(chunks, glass, gaussians, own, panes, degree)
+    levels = two_levels(gaussians, own)
+    some = slice(None, None, max(1, len(gaussians) // MOST_EMBEDDED))
+    steps = _steps(gaussians.sh[some, 1:])
+    chunks = packed(levels.coarse, panes_of(levels.coarse, elements), degree, steps=steps)
+    glass = None
+    if own is not None and levels.glass is not None:
+        glass = packed_glass(levels.glass, chunks, degree, _steps(own.sh[some][panes[some] >= 0][:, 1:]))
+    part_of = levels.part_of[chunks.rows] + 1
+    return _PackedScene(chunks, glass, gaussians, own, panes, degree, levels, part_of)
+
+
+def _name_parts(described: dict[str, Any]) -> str:
+    """Name the folder of parts by what the page says of them; "" where there are none."""
+    if described["beside"] is None:
+        return ""
+    text = json.dumps(described, ensure_ascii=True, allow_nan=False)
+    described["beside"]["folder"] = f"{PARTS}{hashlib.sha256(text.encode()).hexdigest()[:12]}"
+    return str(described["beside"]["folder"])
 
 
 def _described_mirrors(options: WebOptions, elements: Sequence[GsElement], glass: PackedGlass) -> dict[str, Any]:
@@ -629,7 +774,8 @@ def _head(described: Mapping[str, Any], title: str) -> bytes:
         )
     blanks = {
         "SIGN": SIGN,
-        "SCRIPT_HASH": _hash(script),
+        # What our script loads is ours, too: parts.
+        "SCRIPT_HASH": _hash(script) + (" 'strict-dynamic'" if described["beside"] else ""),
         "STYLE_HASH": _hash(style),
         "TITLE": html.escape(title.encode("utf-8", "replace").decode()),
         "STYLE": style,
@@ -660,16 +806,40 @@ def _block(kind: str, number: int, content: bytes) -> bytes:
     return b'<script type="text/plain" id="%b%d">%b</script>\n' % (kind.encode(), number, base64.b64encode(content))
 
 
-def _write(folder: Path, parts: Iterator[bytes]) -> int:
-    """Write the page, whole or not at all; a folder that was made for it goes if that fails."""
+def _write(folder: Path, blocks: Iterator[bytes], place: str, parts: Iterator[bytes]) -> int:
+    """Write the page, whole or not at all; a folder that was made for it goes if that fails.
+
+    Parameters
+    ----------
+    place
+        Name of the folder of parts; those of an older page go once the new one stands.
+    """
     is_new = not folder.exists()
     make_folder(folder)
-    path, n_bytes = folder / PAGE, 0
+    path, n_bytes, older = folder / PAGE, 0, set(folder.glob(f"{PARTS}*"))
+    new = folder / place if place else None
+    is_done = False
     try:
+        if new is not None:
+            n_bytes += _write_parts(new, parts)
         with whole_file(path) as temporary, temporary.open("wb") as stream:
-            for part in parts:
-                n_bytes += stream.write(part)
+            for block in blocks:
+                n_bytes += stream.write(block)
+        is_done = True
     finally:
+        ours = set() if new is None else {new}
+        for each in older - ours if is_done else ours - older:
+            shutil.rmtree(each, ignore_errors=True)
         if is_new and not path.exists():
             folder.rmdir()
+    return n_bytes
+
+
+def _write_parts(folder: Path, parts: Iterator[bytes]) -> int:
+    """Write the files of a page's parts."""
+    make_folder(folder)
+    n_bytes = 0
+    for number, content in enumerate(parts):
+        write_atomically(folder / f"{number}.js", content)
+        n_bytes += len(content)
     return n_bytes

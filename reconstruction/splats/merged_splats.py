@@ -320,7 +320,7 @@ def splats_of_detail(splats: Splats) -> SplatsOfDetail:
     across = np.sort(scales, axis=1)[:, -FLAT:].prod(axis=1)
     covers, shares = _covers(tree, 2.0 * math.pi * splats.opacities.double().numpy() * across)
     middles, spreads = _moments(shares, _with_room(means, n_all), _with_room(_covariances(splats), n_all))
-    sizes, turns = _axes(spreads[n:], scales.shape[1])
+    sizes, turns = axes_of(spreads[n:], scales.shape[1])
     natural = 2.0 * math.pi * MOST_OPAQUE * sizes[:, :FLAT].prod(axis=1)
     larger = np.clip(np.sqrt(covers[n:] / natural), 1.0, MOST_LARGER)
     own = {
@@ -428,7 +428,7 @@ def _covariances(splats: Splats) -> Array:
     return np.asarray((axes @ axes.transpose(1, 2)).numpy())
 
 
-def _axes(spreads: Array, n_sizes: int) -> tuple[Array, Array]:
+def axes_of(spreads: Array, n_sizes: int) -> tuple[Array, Array]:
     """Standard deviations, largest first, shape (n, n_sizes), and quaternions (w, x, y, z) of their axes."""
     squares, axes = np.linalg.eigh(spreads)
     sizes = np.sqrt(np.maximum(squares[:, ::-1], 0.0))

@@ -70,7 +70,8 @@ async function load() {
     const places = new Float32Array(words.buffer, 0, 8 * rows);
     const means = new Float32Array(3 * rows);
     for (let i = 0; i < rows; i++) means.set(places.subarray(8 * i, 8 * i + 3), 3 * i);
-    sorter.add(means);
+    sorter.add(means, model.beside ? new Uint16Array((await bytesOfBlock(`b${number_}`)).buffer) : null);
+    if (picture !== shown) return undefined;
     const isLast = first + rows >= n;
     byId("loading").firstElementChild.style.width = `${(100 * (first + rows)) / n}%`;
     byId("loading").setAttribute("aria-valuenow", String(Math.round((100 * (first + rows)) / n)));

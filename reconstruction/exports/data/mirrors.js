@@ -63,7 +63,7 @@ class MirrorPicture {
     this.words = this.buffer(32 * most, STORAGE);
     this.rest = this.buffer(4 * nRest * most, STORAGE);
     this.rows = this.buffer(4 * most, STORAGE);
-    this.glass = this.buffer(4 * (2 + nRest) * Math.min(model.mirrors.n_glass, most), STORAGE);
+    this.glass = this.buffer(4 * (2 + nRest) * glassRoom(model, most), STORAGE);
     this.shown = this.buffer(16 * most, STORAGE);
     this.order = this.buffer(4 * most, STORAGE);
     this.tints = this.buffer(4 * (panes.panes.length + 1), STORAGE);
@@ -211,19 +211,31 @@ class MirrorPicture {
 
   // The next Gaussians: 8 words each, bytes of their harmonics, and own values of those on panes.
   add(words, rest, glass) {
+    this.nGlass += this.writeFrom(this.n, this.nGlass, words, rest, glass);
+    this.n += words.length / 8;
+  }
+
+  // Gaussians of a part from `start` on.
+  put(start, slot, words, rest, glass) {
+    const { model } = this;
+    this.writeFrom(start, model.mirrors.n_glass + slot * model.beside.most_glass, words, rest, glass);
+    this.n = Math.max(this.n, start + words.length / 8);
+  }
+
+  // Returns how many are on panes.
+  writeFrom(start, startGlass, words, rest, glass) {
     const { model, device: { queue } } = this;
     const n = words.length / 8;
     const held = 4 * WORDS_OF_DEGREE[model.degree];
     const rows = new Uint32Array(n);
     let nGlass = 0;
-    for (let i = 0; i < n; i++) if (words[8 * i + 6] >>> 16) rows[i] = this.nGlass + ++nGlass;
-    queue.writeBuffer(this.words, 32 * this.n, words);
-    queue.writeBuffer(this.rows, 4 * this.n, rows);
-    if (held) queue.writeBuffer(this.rest, held * this.n, spaced(rest, n, 0, held));
-    if (nGlass) queue.writeBuffer(this.glass, (8 + held) * this.nGlass, spaced(glass, nGlass, 8, held));
-    this.n += n;
-    this.nGlass += nGlass;
+    for (let i = 0; i < n; i++) if (words[8 * i + 6] >>> 16) rows[i] = startGlass + ++nGlass;
+    queue.writeBuffer(this.words, 32 * start, words);
+    queue.writeBuffer(this.rows, 4 * start, rows);
+    if (held) queue.writeBuffer(this.rest, held * start, spaced(rest, n, 0, held));
+    if (nGlass) queue.writeBuffer(this.glass, (8 + held) * startGlass, spaced(glass, nGlass, 8, held));
     this.haveChanged();
+    return nGlass;
   }
 
   // What panes mirror: density and light of the grid, what may be leapt over, and what is far away.
@@ -444,6 +456,9 @@ class MirrorPicture {
   }
 }
 
+// Gaussians on panes of which own values are kept: the page's, and those of its parts.
+const glassRoom = ({ mirrors, beside, n }, most) =>
+  Math.min(mirrors.n_glass, most) + (beside ? Math.max(0, Math.ceil((most - n) / beside.size)) * beside.most_glass : 0);
 const cleared = (texture) => ({ view: texture.createView(), loadOp: "clear", storeOp: "store", clearValue: [0, 0, 0, 0] });
 const deepest = (texture) => ({ view: texture.createView(), depthLoadOp: "clear", depthClearValue: 1, depthStoreOp: "discard" });
 const padded = (steps) => Array.from({ length: 16 }, (_, i) => steps[i] ?? 0);

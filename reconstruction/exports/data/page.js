@@ -9,6 +9,7 @@ const state = { picked: null, hovered: null, column: null, matches: null, isLoad
 const scheme = window.matchMedia("(prefers-color-scheme: dark)");
 let picture = null;
 let sorter = null;
+let parts = null;
 let isAsked = false;
 let restTimer = 0;
 let lastFrame = 0;
@@ -33,6 +34,7 @@ const fullRatio = () => Math.min(window.devicePixelRatio || 1, 2);
 function draw() {
   if (picture === null) return;
   sorter.want(camera, state.isMoving && state.share < 1 ? Math.ceil(state.share * picture.n) : undefined);
+  parts?.want(camera);
   picture.draw(camera, fullRatio() * (state.isMoving ? state.quality : 1), panes, looks(), state.isMoving);
 }
 
@@ -226,6 +228,7 @@ function showWords() {
 // How far what panes mirror can be trusted.
 function showNote() {
   const texts = model.n ? [say(state.note || (model.is_baked ? "baked" : "plain"))] : [];
+  if (parts?.isLost) texts.push(say("partsMissing", { folder: model.beside.folder }));
   if (picture !== null && picture.most < model.n) texts.push(say("partly", { n: picture.most, all: model.n }));
   byId("note").textContent = texts.join(" ");
 }
@@ -255,7 +258,8 @@ function tell(key) {
 // A picture of as many Gaussians as the device has memory for, the most visible ones: all, half of them, and so on.
 async function fitting(make) {
   const least = 100000;
-  for (let most = Math.max(model.n, 1); ; most = Math.ceil(most / 2 / model.at_once) * model.at_once) {
+  const all = model.beside ? ROW * Math.ceil(model.n / ROW) + model.beside.room : model.n;
+  for (let most = Math.max(all, 1); ; most = Math.ceil(most / 2 / model.at_once) * model.at_once) {
     try {
       return await make(most);
     } catch (error) {
@@ -309,7 +313,7 @@ async function startPicture() {
 
 // The graphics card went away, as laptops' do at times: on with what WebGL 2 can show.
 function startAgain() {
-  picture = null;
+  picture = parts = null;
   sorter?.end();
   sorter = null;
   if (!state.isKeeping) return tell("lost");
@@ -334,7 +338,12 @@ async function begin(found) {
   }));
   showColours();
   try {
-    if ((await load()) === false) tell("damaged");
+    const isWhole = await load();
+    if (isWhole === false) tell("damaged");
+    if (isWhole && model.beside) {
+      parts = new Parts(picture, sorter, showNote);
+      ask();
+    }
   } catch (error) {
     console.error(error);
     tell("damaged");

@@ -97,12 +97,18 @@ class Picture {
 
   // The next Gaussians: 8 words each, and bytes of their harmonics; a multiple of ROW, but for the last ones.
   add(words, rest) {
+    this.put(this.n, -1, words, rest);
+    this.n += words.length / 8;
+  }
+
+  // Gaussians from `start` on, a multiple of ROW.
+  put(start, _slot, words, rest) {
     const { gl, model } = this;
     const n = words.length / 8;
     const nRows = Math.ceil(n / ROW);
     const put = (texture, width, values) => {
       gl.bindTexture(gl.TEXTURE_2D, texture);
-      gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, this.n / ROW, width, nRows, gl.RGBA_INTEGER, gl.UNSIGNED_INT, values);
+      gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, start / ROW, width, nRows, gl.RGBA_INTEGER, gl.UNSIGNED_INT, values);
     };
     const whole = new Uint32Array(8 * ROW * nRows);
     whole.set(words);
@@ -113,7 +119,6 @@ class Picture {
       for (let i = 0; i < n; i++) bytes.set(rest.subarray(i * given, (i + 1) * given), i * held);
       put(this.rest, model.degree * ROW, new Uint32Array(bytes.buffer));
     }
-    this.n += n;
     this.seenFrom = null;
   }
 

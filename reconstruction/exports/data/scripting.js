@@ -9,7 +9,7 @@ window.reflight = Object.freeze({
   at: (x, y) => { const pane = panes.hit(camera.eye, camera.ray(x, y))?.pane; return pane === undefined ? null : model.panes[pane].id; },
   seenAt: async (x, y) => { const pane = await seenAt(x, y); return pane === null ? null : model.panes[pane].id; },
   pick: (id) => pick(model.panes.findIndex((pane) => pane.id === id)),
-  state: () => ({ isLoaded: state.isLoaded, isMirroring: picture?.isMirroring ?? false, n: picture?.n ?? 0, nOrdered: picture?.nOrdered ?? 0, picked: state.picked === null ? null : model.panes[state.picked].id }),
+  state: () => ({ isLoaded: state.isLoaded, isMirroring: picture?.isMirroring ?? false, n: picture?.n ?? 0, nOrdered: picture?.nOrdered ?? 0, most: picture?.most ?? 0, parts: [...(parts?.resident.keys() ?? [])], picked: state.picked === null ? null : model.panes[state.picked].id }),
   // All loaded, arrived, in order, picked and drawn at full size.
   async settled() {
     let waited = null;
@@ -17,7 +17,8 @@ window.reflight = Object.freeze({
     do {
       sorter?.want(camera);
       await pause(20);
-    } while (goTo.current || (sorter && !sorter.isSettled));
+      parts?.want(camera);
+    } while (goTo.current || (sorter && !sorter.isSettled) || (parts && !parts.isSettled));
     clearTimeout(restTimer);
     state.isMoving = false;
     draw();

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from reconstruction.exports.component_parts import THICKNESS_M, Ellipsoids, unit_quaternions
-from reconstruction.exports.web import COLOUR_RANGE, packed, packed_glass, sky_light, wgsl
+from reconstruction.exports.web import COLOUR_RANGE, glass_of, packed, packed_glass, sky_light, wgsl
 from reconstruction.training.model.pane_mirrors import mirrors_of
 
 HALF = "rgba16float"
@@ -176,7 +176,7 @@ class Shaders:
         splats, n = model.splats, len(model.splats)
         ellipsoids = _ellipsoids(splats, mirrors)
         chunks = packed(ellipsoids, splats.panels.numpy(), DEGREE)
-        glass = packed_glass(mirrors, np.arange(n, dtype=np.int32), chunks, DEGREE)
+        glass = packed_glass(glass_of(mirrors, np.arange(n, dtype=np.int32), DEGREE), chunks, DEGREE)
         rows = np.where(chunks.is_on_pane, np.cumsum(chunks.is_on_pane), 0).astype(np.uint32)
         own = np.concatenate([glass.words.view(np.uint8), _spaced(glass.rest)], axis=1)
         steps = np.zeros((2, 16), np.float32)
