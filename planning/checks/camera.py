@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from planning.aircraft.camera_use import SHARP_PX, CameraUse, camera_use_of, focus_text
-from planning.base.effects import Assessment, decide
+from planning.base.effects import Assessment, Decision, decide
 from planning.base.errors import InfeasibleError
 from planning.base.findings import Finding, Severity
 from planning.base.messages import joined, say
@@ -132,12 +132,16 @@ class _Smear:
         return max(found, key=lambda pair: pair[0], default=(0.0, None))
 
 
+HALF_PX = 0.5
+"""Less than what neighbouring pixels blur into each other."""
+
+
 class MotionBlur:
-    """The effect: smear while the shutter is open; off where all photos are taken at a hover."""
+    """The effect: smear while the shutter is open; off where all photos are taken at a hover, or move that little."""
 
     name = say("motion blur")
     unit = "px"
-    tolerance = 0.0
+    tolerance = HALF_PX
 
     def assess(self, scene: _Smear) -> Assessment:
         """Largest smear; where the shutter time is not known, that of a second."""
@@ -153,7 +157,7 @@ class RollingShutter:
 
     name = say("rolling shutter")
     unit = "px"
-    tolerance = 0.0
+    tolerance = HALF_PX
 
     def assess(self, scene: _Smear) -> Assessment:
         """Largest skew."""
@@ -164,12 +168,26 @@ class RollingShutter:
         return Assessment(scene.worst()[0], say("rows are read one after the other"), 0.0)
 
 
+def _while_open(case: Case) -> _Smear:
+    """What moves while the shutter is open."""
+    plan = case.plan
+    return _Smear(photo_motions(case), plan.camera_settings.shutter_s, plan.camera.pixel_angle_rad)
+
+
+def _while_read(case: Case) -> _Smear:
+    """What moves between the first row and the last."""
+    use, readout_s = camera_use_of(case.plan), 0.0
+    if use.shutter == "electronic":
+        known_s = None if use.controls is None else use.controls.readout_s
+        readout_s = USUAL_READOUT_S if known_s is None else known_s
+    return _Smear(photo_motions(case), readout_s, case.plan.camera.pixel_angle_rad)
+
+
 def motion_blur(case: Case) -> Iterator[Finding]:
     """Photos are not smeared by more than a pixel while the shutter is open."""
-    plan = case.plan
-    scene = _Smear(photo_motions(case), plan.camera_settings.shutter_s, plan.camera.pixel_angle_rad)
+    plan, scene = case.plan, _while_open(case)
     decision, (worst_px, motion) = decide(MotionBlur(), scene), scene.worst()
-    if not decision.on or motion is None:
+    if motion is None or worst_px <= 0.0:
         yield Finding(Severity.OK, "motion-blur", decision.reason, "", 0.0, SHARP_PX, "px")
         return
     if scene.time_s is None:
@@ -201,13 +219,10 @@ def _sharp_motion(motion: PhotoMotion, time_s: float, worst_px: float, plan: Pla
 def rolling_shutter(case: Case) -> Iterator[Finding]:
     """An electronic shutter does not skew photos by more than a pixel."""
     use = camera_use_of(case.plan)
-    controls = use.controls
-    readout_s = 0.0
-    if use.shutter == "electronic":
-        readout_s = USUAL_READOUT_S if controls is None or controls.readout_s is None else controls.readout_s
-    scene = _Smear(photo_motions(case), readout_s, case.plan.camera.pixel_angle_rad)
+    controls, scene = use.controls, _while_read(case)
+    readout_s = scene.time_s or 0.0
     decision, (worst_px, motion) = decide(RollingShutter(), scene), scene.worst()
-    if not decision.on or motion is None:
+    if motion is None or worst_px <= 0.0:
         yield Finding(Severity.OK, "rolling-shutter", decision.reason, "", 0.0, SHARP_PX, "px")
         return
     subject = say("skew of a photo by the electronic shutter, which reads its rows in {:.0f} ms", 1e3 * readout_s)
@@ -290,6 +305,30 @@ def worst_defocus(case: Case, use: CameraUse, f_number: float) -> Defocus | None
         mirror = max(mirror, (max(lens.defocus_px(at, math.inf) for at in focuses_m), name))
     nearest_m = min(near_m for near_m, _ in depths.values())
     return Defocus(*pane, *mirror, nearest_m)
+
+
+class DepthOfField:
+    """The effect: circles that points of panes and of mirror images become out of focus."""
+
+    name = say("depth of field")
+    unit = "px"
+    tolerance = HALF_PX
+
+    def assess(self, scene: Defocus | None) -> Assessment:
+        """The largest circle."""
+        if scene is None:
+            return Assessment(0.0, say("no photo shows glass"), 0.0)
+        reason = say("panes are out of focus by {:.1f} px, mirror images by {:.1f} px", scene.pane_px, scene.mirror_px)
+        return Assessment(max(scene.pane_px, scene.mirror_px), reason, 0.0)
+
+
+def camera_effects(case: Case) -> tuple[Decision, ...]:
+    """What the camera does to photos of a plan, and whether it shows; depth of field where the aperture is known."""
+    use = camera_use_of(case.plan)
+    found = [decide(MotionBlur(), _while_open(case)), decide(RollingShutter(), _while_read(case))]
+    if use.f_number is not None:
+        found.append(decide(DepthOfField(), worst_defocus(case, use, use.f_number)))
+    return tuple(found)
 
 
 def depth_of_field(case: Case) -> Iterator[Finding]:

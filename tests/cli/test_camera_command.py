@@ -11,6 +11,8 @@ def test_the_settings_of_a_plan_are_shown_with_who_makes_them_and_what_comes_of_
     assert "set by the mission: automatic focus before the first photo, then locked" in out
     assert "set by hand: white balance manual, 5500 K" in out
     assert "motion-blur: all photos are taken at a hover, so none is blurred by motion" in out
+    assert "motion blur: off - all photos are taken at a hover, so none is blurred by motion (0 px" in out
+    assert "depth of field: o" in out
 
 
 def test_settings_are_changed_and_nothing_else_of_the_plan(reflight, pane, tmp_path):

@@ -61,6 +61,7 @@ def run(options: argparse.Namespace) -> int:
                 "cost": report.cost,
                 "by_mission": list(report.steps.by_mission),
                 "by_hand": list(report.steps.by_hand),
+                "effects": [plain_values(effect) for effect in report.effects],
                 "findings": [finding_summary(finding) for finding in report.findings],
             }
         )
@@ -82,6 +83,8 @@ def run(options: argparse.Namespace) -> int:
     for finding in report.findings:
         place = glue(" [", finding.place, "]") if finding.place else ""
         show(glue(f"{worded(MARKS[finding.severity]):>7}  {finding.code}", place, ": ", finding.message))
+    for effect in report.effects:
+        show(str(effect))
     if not report.findings:
         tell("what photos come of it is not known without the site: add --site SITE")
     if options.out is not None:

@@ -98,7 +98,7 @@ class EffectsController(QObject):
         def work(context: JobContext) -> Found:
             context.report(say("looking at the scene"), 0, 1)
             scene = scene_effects(site, request) if known is None else known
-            return scene, plan, scene.choices + (() if plan is None else plan_effects(plan))
+            return scene, plan, scene.choices + (() if plan is None else plan_effects(plan, site))
 
         self._job = self._context.start(self.tr("Look at the scene"), work, self._found)
 

@@ -16,12 +16,13 @@ from missions.mavlink.camera_definition import read_definition
 from missions.mission.build import missions_from_plan
 from planning.aircraft.camera_use import camera_use_of, controls_of
 from planning.aircraft.catalogue import profile
+from planning.base.effects import Decision
 from planning.base.errors import GroundStationError, InputError
 from planning.base.findings import Finding
 from planning.base.json_file import check_output
 from planning.base.parameters import with_values
 from planning.base.progress import QUIET, Monitor
-from planning.checks.camera import CAMERA_RULES
+from planning.checks.camera import CAMERA_RULES, camera_effects
 from planning.checks.case import Case
 from planning.optics import CameraControls
 from planning.parameters import CameraSettings
@@ -42,6 +43,8 @@ class CameraReport:
         All that is set, in one line, and what its depth of field costs.
     findings
         Of the rules about the camera; empty where the site is not known.
+    effects
+        What the camera does to photos, and whether it shows; empty likewise.
     """
 
     plan: Plan
@@ -49,6 +52,7 @@ class CameraReport:
     cost: str
     steps: CameraSteps
     findings: tuple[Finding, ...]
+    effects: tuple[Decision, ...] = ()
 
 
 def with_camera(plan: Plan, settings: CameraSettings) -> Plan:
@@ -75,11 +79,11 @@ def changed_settings(settings: CameraSettings, values: Mapping[tuple[str, ...], 
 
 def camera_report(plan: Plan, site_model: SiteModel | None, monitor: Monitor = QUIET) -> CameraReport:
     """What a plan's camera settings mean."""
-    findings: tuple[Finding, ...] = ()
-    if site_model is not None:
-        case = Case.of(plan, site_model)
-        findings = tuple(finding for rule in CAMERA_RULES for finding in rule(case))
-    return _report(plan, findings)
+    if site_model is None:
+        return _report(plan, ())
+    case = Case.of(plan, site_model)
+    findings = tuple(finding for rule in CAMERA_RULES for finding in rule(case))
+    return replace(_report(plan, findings), effects=camera_effects(case))
 
 
 def report_of_findings(plan: Plan, findings: Iterable[Finding]) -> CameraReport:

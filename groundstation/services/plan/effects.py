@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 from planning.base.effects import Decision, EffectSetting, decide
 from planning.base.errors import InfeasibleError
+from planning.checks.camera import camera_effects
+from planning.checks.case import Case
 from planning.motion.speed_profile import CornerSpeed
 from planning.motion.timing import motion_limits, sortie_flight_path
 from planning.plan import Plan
@@ -62,10 +64,18 @@ def scene_effects(site_model: SiteModel, request: PlanRequest) -> SceneEffects:
     return SceneEffects(site_model, request, (occlusion,))
 
 
-def plan_effects(plan: Plan) -> tuple[EffectChoice, ...]:
-    """Effects that the check of a plan looks at; the user cannot overrule them."""
+def plan_effects(plan: Plan, site_model: SiteModel | None = None) -> tuple[EffectChoice, ...]:
+    """Effects that the check of a plan looks at; the user cannot overrule them.
+
+    Parameters
+    ----------
+    site_model
+        Its site, for what the camera does to photos of it; None: that is left out.
+    """
     corners = corner_speed(plan)
-    return () if corners is None else (EffectChoice(corners, None),)
+    of_camera = () if site_model is None or site_model.site.n_panels == 0 else camera_effects(Case.of(plan, site_model))
+    found = (*(() if corners is None else (corners,)), *of_camera)
+    return tuple(EffectChoice(decision, None) for decision in found)
 
 
 def corner_speed(plan: Plan) -> Decision | None:
