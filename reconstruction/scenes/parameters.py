@@ -19,6 +19,7 @@ CURVATURE, INTERIOR, SUN_GLARE, OCCLUSION = "curvature", say("interior see-throu
 SKY_OCCLUSION = say("sky occlusion")
 DISTORTION, VIGNETTING, NOISE = say("lens distortion"), "vignetting", "noise"
 MOTION_BLUR, EXPOSURE = say("motion blur"), say("exposure changes")
+DEPTH_OF_FIELD = say("depth of field")
 POSITION_ERROR, GIMBAL_ERROR = say("position error"), say("gimbal error")
 
 ROWS, MOST_ROWS = 1024, 8192

@@ -32,6 +32,7 @@ from reconstruction.panels.rectify.surface import FacadeSurface
 from reconstruction.panels.rectify.view import SurfaceView, surface_view
 from reconstruction.scenes.effects.registry import EFFECTS
 from reconstruction.scenes.parameters import (
+    DEPTH_OF_FIELD,
     DISTORTION,
     EXPOSURE,
     GIMBAL_ERROR,
@@ -107,7 +108,7 @@ def rendered_photo(
 
 WHITE = 255.0
 
-OF_A_FLIGHT = (DISTORTION, MOTION_BLUR, EXPOSURE, POSITION_ERROR, GIMBAL_ERROR)
+OF_A_FLIGHT = (DISTORTION, DEPTH_OF_FIELD, MOTION_BLUR, EXPOSURE, POSITION_ERROR, GIMBAL_ERROR)
 """Effects that single photos of a straight camera at rest do not show."""
 
 OF_A_PHOTO = tuple(effect.name for effect in EFFECTS if effect.name not in OF_A_FLIGHT)

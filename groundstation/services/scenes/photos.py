@@ -282,6 +282,8 @@ def _photographed(
     scene, made_from = scene_of_request(request)
     written_site, companions = as_written(scene.site)
     views = scene_views(request, scene, written_site, folder, monitor)
+    if request.plan is not None:
+        camera_model = with_plans_lens(camera_model, plan_of_site(request.plan, scene.site))
     lens = _lens(request, views.camera, camera_model)
     photos = posed_photos(views.shots, lens, folder / "images")
     findings = (*views.findings, *_walled_in(photos, scene.site))
@@ -297,6 +299,21 @@ def _photographed(
     )
     written = render_photo_folder(job, folder, n_processes, monitor, cluster=cluster)
     return RenderedScene(scene.name, written, findings, time.perf_counter() - started_s)
+
+
+def with_plans_lens(camera_model: CameraModel, plan: Plan) -> CameraModel:
+    """A camera model with the aperture and focus of a plan that states one, where it states none itself.
+
+    An automatic focus lies at the plan's least distance, where panes are.
+    """
+    settings = plan.camera_settings
+    if camera_model.pupil_mm is not None or settings.aperture is None:
+        return camera_model
+    pupil_mm = plan.camera.focal_length_mm / settings.aperture
+    focus_m = camera_model.focus_m
+    if focus_m is None and settings.focus != "infinity":
+        focus_m = settings.focus_distance_m or plan.constraints.min_distance_m
+    return replace(camera_model, pupil_mm=pupil_mm, focus_m=focus_m)
 
 
 def _lens(request: SceneRequest, camera: Camera, camera_model: CameraModel) -> Intrinsics:

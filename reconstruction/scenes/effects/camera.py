@@ -8,9 +8,19 @@ import numpy as np
 
 from planning.base.effects import Assessment
 from planning.base.messages import say
-from reconstruction.scenes.effects.probe import SECONDS_PER_ANGLE, TOLERANCE_GREY, TOLERANCE_PX, Probe, cost_s
-from reconstruction.scenes.parameters import DISTORTION, NOISE, VIGNETTING
+from reconstruction.scenes.effects.probe import (
+    QUANTILE,
+    RAYS_PER_PIXEL,
+    SECONDS_PER_ANGLE,
+    SECONDS_PER_RAY,
+    TOLERANCE_GREY,
+    TOLERANCE_PX,
+    Probe,
+    cost_s,
+)
+from reconstruction.scenes.parameters import DEPTH_OF_FIELD, DISTORTION, NOISE, VIGNETTING
 from reconstruction.scenes.photos.lens_effects import MIDDLE_GREY, grey_levels
+from reconstruction.scenes.photos.thin_lens import n_places
 
 SECONDS_PER_BEND = 3e-7
 """Of one core, for a ray whose distortion is undone."""
@@ -71,4 +81,35 @@ class Noise:
         return Assessment(size, reason, 3.0 * probe.n_pixels * SECONDS_PER_ANGLE)
 
 
-EFFECTS = (Distortion(), Vignetting(), Noise())
+@dataclass(frozen=True, slots=True)
+class DepthOfField:
+    """Circles that points become out of focus: of what is seen directly, and of what is mirrored, behind its pane."""
+
+    tolerance: float = TOLERANCE_PX
+    name = DEPTH_OF_FIELD
+    unit = "px"
+
+    def assess(self, probe: Probe) -> Assessment:
+        """By the rays of the probe; the sky counts as infinitely far, and so does what is mirrored of it."""
+        lens = probe.camera_model.lens
+        if lens is None:
+            return Assessment(0.0, say("no aperture is stated, so all is in focus"), 0.0)
+        seen_px = lens.circle_px(probe.depths_m, probe.focal_px)
+        mirror = probe.mirrored
+        # The image of a thing lies on the ray as far behind the pane as the thing is before it.
+        mirrored_px = lens.circle_px(
+            probe.depths_m[probe.is_pane] * (1.0 + mirror.path_m / mirror.sight_m), mirror.focal_px
+        )
+        direct, images = (float(np.quantile(part, QUANTILE)) if len(part) else 0.0 for part in (seen_px, mirrored_px))
+        reason = say(
+            "through a pupil of {:.1f} mm, what is seen is out of focus by {:.1f} px, what is mirrored by {:.1f} px",
+            lens.pupil_mm,
+            direct,
+            images,
+        )
+        size = max(direct, images)
+        rays = n_places(size) * probe.n_pixels * RAYS_PER_PIXEL * (1.0 + probe.glass_share)
+        return Assessment(size, reason, rays * SECONDS_PER_RAY)
+
+
+EFFECTS = (Distortion(), Vignetting(), Noise(), DepthOfField())

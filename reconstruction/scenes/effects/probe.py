@@ -116,6 +116,8 @@ class Probe:
         rays = [spread(photos[k]) for k in chosen]
         self._origins, self._directions = (np.concatenate([r[i] for r in rays]) for i in (0, 1))
         self._focal_px = np.concatenate([np.full(len(r[0]), r[2]) for r in rays])
+        axes = [np.broadcast_to(photos[k].pose.cam_from_enu[2], r[1].shape) for k, r in zip(chosen, rays, strict=True)]
+        self._along_axis = np.einsum("nk,nk->n", np.concatenate(axes), self._directions)
         self.hits = self.geometry.meet(self._origins, self._directions)
         """What the rays met first."""
         self.mirrored = self._follow()
@@ -135,6 +137,21 @@ class Probe:
     def glass_share(self) -> float:
         """Of the pictures' area."""
         return len(self.mirrored) / max(len(self._origins), 1)
+
+    @property
+    def depths_m(self) -> Array:
+        """Of what the rays met first, along the optical axis, inf for the sky, shape (n,)."""
+        return np.asarray(self.hits.distance_m * self._along_axis)
+
+    @property
+    def focal_px(self) -> Array:
+        """Of the photos that the rays belong to, shape (n,)."""
+        return np.asarray(self._focal_px)
+
+    @property
+    def is_pane(self) -> NDArray[np.bool_]:
+        """Whether the rays met panes, shape (n,)."""
+        return np.asarray(self.hits.panes >= 0)
 
     def change_without(self, switches: Switches) -> float:
         """Root mean square, in grey levels, of what switching off changes in the pictures; without the sun's disc."""

@@ -19,6 +19,7 @@ from planning.base.messages import say
 from planning.geo.frames import Vec3
 from reconstruction.base.cameras import STRAIGHT, Intrinsics, Pose, PosedPhoto
 from reconstruction.scenes.photos.lens_effects import Sensor
+from reconstruction.scenes.photos.thin_lens import ThinLens
 
 Array = NDArray[np.float64]
 
@@ -41,6 +42,9 @@ choice. Single: 1.5 m on both axes together and 3 m (DJI's specifications of D-R
 
 LARGEST_M, LARGEST_DEG = 100.0, 45.0
 """Of errors: told worse, a photo belongs to another building, or looks at one."""
+
+LARGEST_PUPIL_MM, NEAREST_FOCUS_M, FARTHEST_FOCUS_M = 100.0, 0.1, 1e6
+"""No lens in the air is wider, or focuses nearer; farther is infinity."""
 
 SHUTTERS_S = (1.0 / 8000.0, 8.0)
 """Shortest and longest of a camera that meters (DJI, Mavic 3 Enterprise, specifications)."""
@@ -153,6 +157,11 @@ class CameraModel:
         `locked`: one for all photos. `metered`: each photo's own, in thirds of a stop, by the shutter.
     distortion
         Brown's k1, k2, p1, p2, k3, as in DJI's DewarpData.
+    pupil_mm
+        Diameter of the lens's entrance pupil, focal length over f-number; None takes that of a plan whose aperture is
+        stated, and a pinhole, which has all in focus, where none is.
+    focus_m
+        Depth that is in focus; None: infinity, or that of the plan.
     """
 
     shutter_s: float | None = None
@@ -162,14 +171,27 @@ class CameraModel:
     sensor: Sensor = field(default_factory=Sensor)
     position: PositionErrors = field(default_factory=PositionErrors)
     gimbal: GimbalErrors = field(default_factory=GimbalErrors)
+    pupil_mm: float | None = None
+    focus_m: float | None = None
 
     def __post_init__(self) -> None:
+        if self.pupil_mm is not None:
+            _check("pupil_mm", self.pupil_mm, 0.0, LARGEST_PUPIL_MM)
+        if self.focus_m is not None:
+            _check("focus_m", self.focus_m, NEAREST_FOCUS_M, FARTHEST_FOCUS_M)
         if self.shutter_s is not None:
             _check("shutter_s", self.shutter_s, 0.0, LONGEST_S)
         if self.speed_m_s is not None:
             _check("speed_m_s", self.speed_m_s, 0.0, FASTEST_M_S)
         for value in self.distortion:
             _check("distortion", value, -100.0, 100.0)
+
+    @property
+    def lens(self) -> ThinLens | None:
+        """What it sees through; None where all is in focus."""
+        if not self.pupil_mm:
+            return None
+        return ThinLens(self.pupil_mm, math.inf if self.focus_m is None else self.focus_m)
 
 
 USUAL_CAMERA_MODEL = CameraModel()

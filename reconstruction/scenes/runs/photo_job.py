@@ -15,10 +15,12 @@ from reconstruction.base.cameras import PosedPhoto
 from reconstruction.dataset.refined_mesh import grown_corners
 from reconstruction.photos.write import Circumstances, photo_jpeg
 from reconstruction.scenes.mitsuba.renderer import renderer_of
-from reconstruction.scenes.parameters import DEFAULT_POINTS, RenderSettings
+from reconstruction.scenes.parameters import DEFAULT_POINTS, DEPTH_OF_FIELD, RenderSettings
 from reconstruction.scenes.photos.camera_model import USUAL_CAMERA_MODEL, CameraModel, Capture, Moment
 from reconstruction.scenes.photos.lens_effects import developed
 from reconstruction.scenes.photos.photo_layers import facade_mask, layer_contents, layer_file
+from reconstruction.scenes.photos.renderer import RenderedPhoto
+from reconstruction.scenes.photos.thin_lens import out_of_focus
 from reconstruction.scenes.record import Scene
 
 PATIENCE_S = 0.5
@@ -77,7 +79,7 @@ class RenderWorker:
         """Render a photo; returns the content of its files by path in the folder."""
         job, photo, capture = self._job, self._job.photos[number], self._captures[number]
         seed = int(np.random.SeedSequence([job.scene.seed, number]).generate_state(1)[0])
-        rendered = self._renderer.render(photo, seed, capture.moved_enu_m)
+        rendered = self._taken(photo, seed, capture)
         site = job.scene.site.site
         assert photo.taken_at is not None
         picture = developed(rendered, self._exposure * capture.exposure, job.camera_model.sensor)
@@ -92,6 +94,17 @@ class RenderWorker:
         for layer, content in layer_contents(rendered, mask).items():
             contents[layer_file(self._folder, layer, photo.name)] = content
         return {path.relative_to(self._folder).as_posix(): content for path, content in contents.items()}
+
+    def _taken(self, photo: PosedPhoto, seed: int, capture: Capture) -> RenderedPhoto:
+        """Light on the sensor: by a lens where that is out of focus somewhere, else by a pinhole."""
+
+        def pinhole(one: PosedPhoto) -> RenderedPhoto:
+            return self._renderer.render(one, seed, capture.moved_enu_m)
+
+        lens = self._job.camera_model.lens
+        if lens is None or not self._job.settings.is_on(DEPTH_OF_FIELD):
+            return pinhole(photo)
+        return out_of_focus(photo, lens, pinhole)
 
 
 def checksums_of(folder: Path, contents: Mapping[str, bytes]) -> dict[str, str]:
